@@ -1,0 +1,24 @@
+# Every library here is a Debian 12 package installed by script/bootstrap; README.md says what each is for.
+find_package(PkgConfig REQUIRED)
+find_package(TBB REQUIRED)
+find_package(glm REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(OpenImageIO REQUIRED)
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
+
+# Debian's OpenImageIO target names an OpenCV include directory that only exists with OpenCV's -dev package.
+get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+if(oiio_includes)
+  list(FILTER oiio_includes EXCLUDE REGEX "opencv")
+  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_includes}")
+endif()
+
+# tinygltf is compiled into scene/ itself, without its own image codecs: textures are OpenImageIO's.
+add_library(tinygltf_headers INTERFACE)
+target_compile_definitions(tinygltf_headers INTERFACE TINYGLTF_NO_STB_IMAGE TINYGLTF_NO_STB_IMAGE_WRITE
+                           TINYGLTF_NO_INCLUDE_STB_IMAGE TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
+                           TINYGLTF_NO_INCLUDE_JSON TINYGLTF_USE_CPP14)

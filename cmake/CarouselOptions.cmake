@@ -1,0 +1,29 @@
+# Flags every translation unit is built with.
+add_library(carousel_options INTERFACE)
+target_compile_features(carousel_options INTERFACE cxx_std_20)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+# One arithmetic for every machine: a contracted product makes Highway targets differ and the watertight
+# test leak (DESIGN.md section 3), so contraction is off everywhere, and there is no -march=native.
+target_compile_options(carousel_options INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
+                       -Wno-psabi)
+if(CAROUSEL_CHECKED)
+  target_compile_definitions(carousel_options INTERFACE CAROUSEL_CHECKED=1)
+endif()
+if(CAROUSEL_SANITIZE)
+  target_compile_options(carousel_options INTERFACE -fsanitize=${CAROUSEL_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(carousel_options INTERFACE -fsanitize=${CAROUSEL_SANITIZE})
+endif()
+
+find_package(Threads REQUIRED)
+target_link_libraries(carousel_options INTERFACE Threads::Threads)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()

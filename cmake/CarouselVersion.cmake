@@ -1,0 +1,16 @@
+# The commit and compiler that `carousel --version` and every report name, read when cmake configures.
+find_package(Git QUIET)
+set(CAROUSEL_COMMIT "unknown")
+if(Git_FOUND)
+  execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --exclude=*
+                  WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+                  OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+  if(NOT failed)
+    set(CAROUSEL_COMMIT ${described})
+  endif()
+endif()
+add_library(carousel_version INTERFACE)
+target_compile_definitions(carousel_version INTERFACE
+  CAROUSEL_VERSION="${PROJECT_VERSION}" CAROUSEL_COMMIT="${CAROUSEL_COMMIT}"
+  CAROUSEL_COMPILER="${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"
+  CAROUSEL_BUILD_TYPE="${CMAKE_BUILD_TYPE}")

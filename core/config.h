@@ -1,0 +1,219 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace carousel {
+
+// The configuration tree (DESIGN.md section 8, a contract): plain structs, filled once and then only read.
+// Field defaults stand here; unit, range and meaning stand beside them in core/config_fields.h, from which
+// parser, schema, documentation and error texts are derived. 
+
+enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver };
+enum class EngineKind { kNative, kCycle };
+enum class SimdTarget { kAuto, kSse2, kSse4, kAvx2, kAvx3 };
+enum class TopologyShape {
+  kRing, kBidirectional, kMultiRing, kHierarchical, kPointToPoint, kBus, kCentral, kIndependent
+};
+enum class CentralForm { kCells, kDistributor };
+enum class Visit { kAll, kOwners };
+enum class Flow { kCredits, kBubble, kNone };
+enum class QueueKind { kSpscRing, kTbbBounded, kMutex };
+enum class Placement { kBalanced, kRoundRobin, kFirstTaker, kAddressed };
+enum class PacketShapes { kStrip, kSingle };
+enum class PacketCarry { kReference, kData };
+enum class PacketResults { kMask, kPerShape, kMessage, kImpliedOrder };
+enum class Traversal { kSpread, kOrdered, kTreelet };
+enum class Policy { kFullest, kOldest, kNewest, kDeepest, kNearest };
+enum class Select { kStrict, kFullFirst };
+enum class Home { kIssuer, kHash, kLocal };
+enum class WhenFull { kReserve, kSpill };
+enum class TriangleLevel { kFast, kWatertight, kDouble, kExact };
+enum class BoxLevel { kPlain, kConservative, kDouble };
+enum class TransformLevel { kInverseMatrix, kTwoStep, kTwoStepDouble, kTransposeIfRotation };
+enum class SpawnOffset { kEpsilon, kUlp, kBound };
+enum class Verify { kNone, kReference };
+
+struct SkyConfig {
+  Vec3 color{0.6f, 0.7f, 0.9f};   ///< linear RGB
+  float strength = 1;             ///< radiance multiplier; 0 is no sky
+};
+
+struct SceneConfig {
+  std::string file;                        ///< glTF file; relative to the config's folder, then to the working one
+  std::optional<BuiltinScene> builtin;     ///< exactly one of file and builtin
+  std::int64_t triangles = 20000;          ///< built-in spheres, terrain, sliver: about this many in all
+  std::int64_t instances = 1000;           ///< built-in instances
+  std::int64_t seed = 1;                   ///< built-in scenes
+  std::int64_t camera = 0;                 ///< index among the scene's cameras
+  std::optional<SkyConfig> sky;            ///< absent: the built-in scene's own, or for a file the default above
+};
+
+struct CameraConfig {
+  float aperture = 0;         ///< lens diameter
+  float focus_distance = 1;
+};
+
+struct ImageConfig {
+  std::int64_t width = 256, height = 256;
+  std::int64_t samples = 4;
+  std::int64_t max_depth = 4;   ///< surfaces a path may visit; 1 is direct light only
+  std::int64_t seed = 1;
+};
+
+struct EngineConfig {
+  EngineKind kind = EngineKind::kNative;
+  std::optional<std::int64_t> threads;   ///< absent: `auto`, the machine's cores
+  std::int64_t clock_mhz = 1000;
+  SimdTarget simd = SimdTarget::kAuto;
+};
+
+struct LinkConfig {
+  QueueKind queue = QueueKind::kSpscRing;
+  std::int64_t depth = 16;
+  std::int64_t latency_cycles = 4;
+  std::int64_t bytes_per_cycle = 32;
+};
+
+struct TesterUnits {
+  std::int64_t units = 1;
+  std::int64_t interval_cycles = 1;
+  std::int64_t latency_cycles = 4;
+};
+
+struct TestersConfig {
+  TesterUnits box{8, 1, 4}, triangle{4, 1, 4}, plane{8, 1, 4}, bundle{1, 1, 4}, transform{1, 1, 4};
+  struct Simd {
+    std::int64_t lanes = 8;
+    enum class Map { kRays, kShapes } map = Map::kRays;
+  } simd;
+  std::int64_t contexts = 1;
+  enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
+};
+
+/// What one resource has otherwise than the rest.
+struct ResourceOverride {
+  std::int64_t resource = 0;
+  TestersConfig testers;
+};
+
+struct TopologyConfig {
+  std::int64_t resources = 8;
+  TopologyShape shape = TopologyShape::kRing;
+  std::int64_t rings = 2;
+  std::int64_t groups = 4;
+  CentralForm form = CentralForm::kCells;
+  Visit visit = Visit::kAll;
+  Flow flow = Flow::kCredits;
+  LinkConfig link;
+  std::vector<ResourceOverride> overrides;
+};
+
+struct RaysConfig {
+  std::int64_t slots_per_resource = 1024;
+  Placement placement = Placement::kBalanced;
+};
+
+struct PacketsConfig {
+  std::int64_t rays = 32;
+  PacketShapes shapes = PacketShapes::kStrip;
+  PacketCarry carry = PacketCarry::kReference;
+  PacketResults results = PacketResults::kMask;
+};
+
+struct CollectionsConfig {
+  std::int64_t ready = 32;
+  Traversal traversal = Traversal::kSpread;
+  Policy policy = Policy::kNearest;
+  Select select = Select::kFullFirst;
+  Home home = Home::kIssuer;
+  std::int64_t capacity = 65536;
+  WhenFull when_full = WhenFull::kReserve;
+};
+
+struct BvhConfig {
+  std::int64_t width = 8;
+  std::int64_t leaf_triangles = 4;
+  std::int64_t treelet_triangles = 2048;
+};
+
+struct AccuracyConfig {
+  TriangleLevel triangle = TriangleLevel::kWatertight;
+  BoxLevel box = BoxLevel::kConservative;
+  TransformLevel transform = TransformLevel::kTwoStep;
+  SpawnOffset spawn = SpawnOffset::kBound;
+};
+
+struct CullPlanesConfig {
+  std::int64_t count = 0;
+  enum class Nodes { kLeaves, kInner, kAll } nodes = Nodes::kLeaves;
+  bool shared_normals = false;
+  enum class Fit { kVertices, kBoxes } fit = Fit::kVertices;
+};
+
+struct BundlesConfig {
+  std::int64_t size = 0;
+  enum class Form { kInterval, kSilhouette } form = Form::kInterval;
+  enum class Order { kAllHitFirst, kAnyHitFirst, kParallel, kAllHitOnly, kAnyHitOnly } order = Order::kAllHitFirst;
+  enum class Lifetime { kPersistent, kReformed } lifetime = Lifetime::kPersistent;
+};
+
+struct MemoryConfig {
+  std::int64_t l2_kib = 1024, line_bytes = 64, ways = 8, shared_by = 4;
+  std::int64_t l2_latency_cycles = 30, dram_latency_cycles = 200, dram_bytes_per_cycle = 32;
+  enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kPacket;
+  std::int64_t fetch_ahead = 2, shape_buffer_kib = 4;
+};
+
+struct ShadingConfig {
+  std::int64_t workers = 2;
+  struct Effects {
+    enum class Choice { kAuto, kAll, kList } choice = Choice::kAuto;
+    std::vector<std::string> names;   ///< for kList
+  } effects;
+  bool idle_resources_shade = false;
+  std::int64_t cycles_per_shade = 20;
+  enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
+};
+
+struct TrafficConfig {
+  enum class Pattern { kUniform, kTornado, kNeighbour, kHotspot, kBursty } pattern = Pattern::kUniform;
+  double rate = 0.1;
+  std::int64_t packets = 100000;
+};
+
+struct WorkloadConfig {
+  enum class Kind { kRays, kRaysFrom, kTraffic } kind = Kind::kRays;
+  std::string rays_from;   ///< ray CSV; relative to the config's folder, then to the working one
+  TrafficConfig traffic;
+};
+
+struct Config {
+  std::int64_t schema_version = 1;
+  SceneConfig scene;
+  CameraConfig camera;
+  ImageConfig image;
+  EngineConfig engine;
+  TopologyConfig topology;
+  RaysConfig rays;
+  PacketsConfig packets;
+  CollectionsConfig collections;
+  BvhConfig bvh;
+  AccuracyConfig accuracy;
+  CullPlanesConfig cull_planes;
+  BundlesConfig bundles;
+  TestersConfig testers;
+  MemoryConfig memory;
+  ShadingConfig shading;
+  Verify verify = Verify::kNone;
+  WorkloadConfig workload;
+  std::map<std::string, std::vector<std::string>> vary;   ///< key path to values; for sweep
+};
+
+}  // namespace carousel

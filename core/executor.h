@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace carousel {
+
+/// How data-parallel work runs. The three kinds give the same results: callers write to disjoint places and
+/// reduce in a fixed order. ThreadSanitizer knows std::jthread but not Debian's TBB, hence the seam.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+  /// Calls `body(begin, end)` over disjoint ranges that cover [0, count), each at most `grain` long or a
+  /// multiple of it; returns when all are done. An exception of a body is rethrown once.
+  virtual void parallel_for(std::size_t count, std::size_t grain,
+                            const std::function<void(std::size_t, std::size_t)>& body) = 0;
+  /// Runs both, possibly at once. May be nested.
+  virtual void invoke(const std::function<void()>& a, const std::function<void()>& b) = 0;
+  virtual std::size_t threads() const = 0;
+};
+
+std::unique_ptr<Executor> make_sequential_executor();
+std::unique_ptr<Executor> make_jthread_executor(std::size_t threads);
+std::unique_ptr<Executor> make_tbb_executor(std::size_t threads);
+
+}  // namespace carousel
