@@ -1,0 +1,42 @@
+#include "scene/load_scene.h"
+
+#include <cstdint>
+#include <string>
+
+#include "core/error.h"
+#include "scene/builtin.h"
+#include "scene/gltf_import.h"
+
+namespace carousel::scene {
+
+namespace {
+
+std::filesystem::path find_file(const std::string& name, const std::filesystem::path& config_dir) {
+  std::error_code ignored;
+  const std::filesystem::path beside = config_dir / name;
+  if (std::filesystem::is_regular_file(beside, ignored)) return beside;
+  if (std::filesystem::is_regular_file(name, ignored)) return name;
+  throw SceneError(name, "", "no such file; looked in '" + config_dir.string() + "' and in the working directory");
+}
+
+}  // namespace
+
+Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn) {
+  if (config.file.empty() == !config.builtin.has_value()) {
+    throw ConfigError({{{}, "scene", "expected exactly one of file and builtin"}});
+  }
+  Scene scene = config.builtin ? make_builtin(config) : load_gltf(find_file(config.file, config_dir), warn);
+  if (config.sky || !config.builtin) {
+    const SkyConfig sky = config.sky.value_or(SkyConfig{});
+    scene.sky.radiance = sky.color * sky.strength;
+  }
+  const auto cameras = static_cast<std::int64_t>(scene.cameras.size());
+  if (config.camera < 0 || config.camera >= cameras) {
+    throw ConfigError({{{}, "scene.camera",
+                        "expected 0 to " + std::to_string(cameras - 1) + " (the cameras of this scene), found " +
+                            std::to_string(config.camera)}});
+  }
+  return scene;
+}
+
+}  // namespace carousel::scene

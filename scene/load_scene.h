@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "core/config.h"
+#include "scene/scene.h"
+
+namespace carousel::scene {
+
+/// Takes one warning, a sentence without a newline. May be empty: warnings are then dropped.
+using WarningSink = std::function<void(const std::string&)>;
+
+/// The scene a configuration names, built in or a file (looked for in `config_dir`, then in the working
+/// directory), with the configuration's sky; without one a built-in scene keeps its own and a file gets
+/// SkyConfig's default. Throws SceneError for the file, ConfigError when neither or both of file and builtin
+/// are given, when a count is out of range, or when the scene has no camera of that index.
+Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir,
+                 const WarningSink& warn = {});
+
+}  // namespace carousel::scene
