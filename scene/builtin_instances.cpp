@@ -89,7 +89,7 @@ Scene make_instances(std::int64_t instances, std::int64_t seed) {
 
   Mesh ground;
   ground.name = "ground";
-  const float edge = 5 * disc + 10;
+  const float edge = 20 * disc + 100;
   add_quad(ground, {-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}, {-edge, 0, -edge}, ground_material);
   scene.meshes.push_back(std::move(ground));
   scene.instances.push_back({MeshId(shapes), {}});

@@ -66,7 +66,7 @@ Scene make_sliver(std::int64_t triangles, std::int64_t seed) {
 
   Mesh ground;
   ground.name = "ground";
-  add_quad(ground, {-30, 0, 30}, {30, 0, 30}, {30, 0, -30}, {-30, 0, -30}, ground_material);
+  add_quad(ground, {-200, 0, 200}, {200, 0, 200}, {200, 0, -200}, {-200, 0, -200}, ground_material);
   scene.meshes.push_back(std::move(ground));
   scene.instances = {{MeshId(0), {}}, {MeshId(1), {}}};
 

@@ -80,7 +80,7 @@ Scene make_spheres(std::int64_t triangles, std::int64_t seed) {
 
   Mesh ground;
   ground.name = "ground";
-  const float edge = 4 * half + 10;
+  const float edge = 40 * half + 100;
   add_quad(ground, {-edge, 0, edge}, {edge, 0, edge}, {edge, 0, -edge}, {-edge, 0, -edge}, MaterialId(0));
   scene.meshes.push_back(std::move(ground));
   scene.instances = {{MeshId(0), {}}, {MeshId(1), {}}};

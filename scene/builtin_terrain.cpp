@@ -13,7 +13,7 @@ namespace carousel::scene {
 namespace {
 
 constexpr float kSize = 20;      // edge of the square, scene units
-constexpr float kHeight = 5.5f;
+constexpr float kHeight = 4.0f;
 
 /// Gradient noise on the integer lattice, about -1 to 1: Perlin, "Improving Noise", SIGGRAPH 2002, with a hash
 /// in place of the permutation table.
@@ -50,7 +50,7 @@ class Noise {
 /// Octaves too fine for a grid of that `step` are left out: they would only be aliased.
 float height_at(const Noise& noise, float x, float z, float step) {
   float sum = 0, amplitude = 0.5f, weight = 1;
-  float frequency = 0.14f, px = frequency * x, pz = frequency * z;
+  float frequency = 0.11f, px = frequency * x, pz = frequency * z;
   for (int octave = 0; octave < 10 && (octave == 0 || frequency * step < 0.25f); ++octave) {
     float ridge = 1 - std::abs(noise(px, pz));
     ridge *= ridge * weight;
@@ -68,9 +68,9 @@ Vec4 color_of(float height, float slope, float grain) {
   const Vec3 grass{0.10f, 0.17f, 0.04f}, meadow{0.22f, 0.24f, 0.08f}, rock{0.23f, 0.20f, 0.18f},
       snow{0.85f, 0.88f, 0.93f};
   const float h = height / kHeight + 0.05f * grain;
-  Vec3 color = glm::mix(grass, meadow, glm::smoothstep(-0.1f, 0.15f, h));
-  color = glm::mix(color, rock, std::max(glm::smoothstep(0.15f, 0.35f, h), glm::smoothstep(0.45f, 0.7f, slope)));
-  color = glm::mix(color, snow, glm::smoothstep(0.3f, 0.42f, h) * (1 - glm::smoothstep(0.5f, 0.8f, slope)));
+  Vec3 color = glm::mix(grass, meadow, glm::smoothstep(0.0f, 0.3f, h));
+  color = glm::mix(color, rock, std::max(glm::smoothstep(0.28f, 0.42f, h), glm::smoothstep(0.2f, 0.42f, slope)));
+  color = glm::mix(color, snow, glm::smoothstep(0.42f, 0.52f, h) * (1 - glm::smoothstep(0.3f, 0.5f, slope)));
   return Vec4(color * (1 + 0.15f * grain), 1);
 }
 
@@ -132,7 +132,7 @@ Scene make_terrain(std::int64_t triangles, std::int64_t seed) {
   scene.lights.push_back(sun);
   scene.sky.radiance = {0.36f, 0.52f, 0.80f};
 
-  scene.cameras.push_back(look_at({1.5f, std::max(ground, 0.0f) + 4.5f, 12.5f}, {0, 0.2f, 0}, 0.75f));
+  scene.cameras.push_back(look_at({1.5f, std::max(ground, 0.0f) + 4.0f, 12.0f}, {0, 0.2f, 0}, 0.75f));
   scene.cameras.back().name = "valley";
   scene.cameras.push_back(look_at({0, 28, 0.01f}, {0, 0, 0}, 0.75f, {0, 0, -1}));
   scene.cameras.back().name = "above";
