@@ -17,7 +17,7 @@ namespace carousel {
 
 enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver };
 enum class EngineKind { kNative, kCycle };
-enum class SimdTarget { kAuto, kSse2, kSse4, kAvx2, kAvx3 };
+enum class SimdTarget { kAuto, kScalar, kSsse3, kSse4, kAvx2, kAvx3 };
 enum class TopologyShape {
   kRing, kBidirectional, kMultiRing, kHierarchical, kPointToPoint, kBus, kCentral, kIndependent
 };

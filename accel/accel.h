@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/node.h"
+#include "accel/transform.h"
+#include "core/aabb.h"
+#include "core/config.h"
+#include "core/executor.h"
+#include "scene/scene.h"
+
+namespace carousel::accel {
+
+/// One placement of a bottom-level structure.
+struct InstanceNode {
+  NodeRef root;                  ///< inner node or leaf of the mesh's BLAS
+  InstanceTransform transform;
+  Aabb world;                    ///< part of what a hit is (DESIGN.md section 3)
+  std::uint8_t strip_size = 0;   ///< shapes below the root
+  std::uint32_t triangles = 0;
+};
+
+/// Two levels: a TLAS over instances and a BLAS a mesh, all nodes in one array and all triangles in another.
+/// Immutable once built; any thread may read. The root is always an inner node, with no children when the
+/// scene is empty.
+struct Accel {
+  std::vector<Node> nodes;
+  std::vector<TriangleBlock> blocks;
+  std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
+  NodeRef root;
+  int width = kMaxWidth;                 ///< children a node at most
+  int max_depth = 0;                     ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
+  std::size_t baked_instances = 0;       ///< singular transforms, stored as world-space triangles
+
+  std::size_t size_bytes() const {
+    return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) +
+           instances.size() * sizeof(InstanceNode);
+  }
+  NodeKey root_key() const { return {kNoInstance, root}; }
+  /// The node a child lane leads to; an instance child leads to the root of its BLAS.
+  NodeKey child_key(NodeKey parent, int lane) const {
+    const NodeRef ref = nodes[parent.ref.node()].child[lane];
+    if (ref.kind() == NodeRef::Kind::kInstance) return {ref.instance_index(), instances[ref.instance_index()].root};
+    return {parent.instance, ref};
+  }
+  /// Shapes in the strip of `key`: children of an inner node, triangles of a leaf.
+  int strip_size(NodeKey key) const;
+  /// Triangles below `key`.
+  std::uint32_t triangles_below(NodeKey key) const;
+};
+
+/// Deterministic for any executor. Throws SceneError when the scene has more nodes or blocks than a NodeRef
+/// can name.
+Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor);
+
+}  // namespace carousel::accel

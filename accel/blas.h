@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "accel/node.h"
+#include "accel/wide_collapse.h"
+#include "core/aabb.h"
+#include "core/config.h"
+#include "core/executor.h"
+#include "scene/scene.h"
+
+namespace carousel::accel {
+
+/// Bottom-level structure of one mesh, with references into its own arrays.
+struct Blas {
+  std::vector<Node> nodes;
+  std::vector<TriangleBlock> blocks;
+  WideTree tree;    ///< meaningless when the mesh has no triangles
+  Aabb box;
+};
+
+Blas build_blas(const scene::Mesh& mesh, const BvhConfig& config, Executor& executor);
+
+}  // namespace carousel::accel

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "accel/accel.h"
+#include "core/config.h"
+#include "core/ray.h"
+#include "core/test_counts.h"
+
+namespace carousel::accel {
+
+/// The rays of one call: records[slots[i]] for i in [0, count), or records[i] when `slots` is null.
+struct RayMembers {
+  RayRecord* records = nullptr;
+  const std::uint32_t* slots = nullptr;
+  std::size_t count = 0;
+};
+
+/// Bits of RayTag::flags while a ray is in flight.
+inline constexpr std::uint8_t kRayDone = 1;   ///< a shadow ray that found its hit: nothing more is tested
+
+/// What a strip of boxes answers. Untouched for strips of triangles, whose answer is in the rays' hits.
+struct StripHits {
+  std::uint8_t* masks = nullptr;   ///< one a member: bit l set when child lane l is hit
+  float* nearest = nullptr;        ///< one a lane (8): lowered to the nearest entry of any member
+  float* entries = nullptr;        ///< null, or 8 a member: the entry of each lane (valid where the mask is set)
+};
+
+/// Tests each member against the shapes of `key` that `lanes` selects (boxes below an inner node; of a leaf's
+/// triangles, bit i is triangle i in block order). Members that are done are skipped, with an empty mask.
+/// Rays are brought to model space when the key is below an instance. SIMD target dispatched once a call.
+void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                const StripHits& hits, TestCounts& counts);
+
+/// Traces each member through everything below `key`, depth-first and nearest first.
+void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts);
+
+/// Names of the SIMD targets this program was built for and this machine has, best first.
+std::vector<std::string> simd_targets();
+/// Restricts the kernels to one target; call while nothing traces. Throws ConfigError when the machine lacks it.
+void select_simd_target(SimdTarget target);
+
+}  // namespace carousel::accel

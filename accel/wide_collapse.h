@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "accel/node.h"
+#include "accel/sah_build.h"
+
+namespace carousel::accel {
+
+/// What a leaf of the binary tree becomes in the wide one.
+struct WideLeaf {
+  NodeRef ref;
+  std::uint8_t strip_size = 0;
+  std::uint32_t triangles = 0;
+};
+
+struct WideTree {
+  NodeRef root;
+  std::uint8_t root_strip_size = 0;
+  std::uint32_t triangles = 0;
+  int depth = 0;   ///< strips on the longest way down, a triangle leaf counted as one
+};
+
+/// Turns a binary tree into nodes of up to `width` children, appended to `nodes` depth-first: a node opens its
+/// child of the largest area until it is full (Wald, Benthin, Boulos 2008, "Getting rid of packets").
+/// `make_leaf` is called once a leaf, in depth-first order. A tree that is one leaf has that leaf as its root.
+WideTree collapse(const std::vector<BinaryNode>& binary, int width,
+                  const std::function<WideLeaf(const BinaryNode&)>& make_leaf, std::vector<Node>& nodes);
+
+}  // namespace carousel::accel

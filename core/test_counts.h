@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+namespace carousel {
+
+/// What testing rays cost, in tests: one box, triangle, plane or bundle against one ray (bundle), or one ray
+/// brought from world to model space.
+struct TestCounts {
+  std::uint64_t box = 0, triangle = 0, plane = 0, bundle = 0, transforms = 0;
+
+  TestCounts& operator+=(const TestCounts& o) {
+    box += o.box;
+    triangle += o.triangle;
+    plane += o.plane;
+    bundle += o.bundle;
+    transforms += o.transforms;
+    return *this;
+  }
+};
+
+}  // namespace carousel
