@@ -13,7 +13,7 @@ namespace carousel {
 
 // The configuration tree (DESIGN.md section 8, a contract): plain structs, filled once and then only read.
 // Field defaults stand here; unit, range and meaning stand beside them in core/config_fields.h, from which
-// parser, schema, documentation and error texts are derived. 
+// parser, schema, documentation and error texts are derived.
 
 enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver };
 enum class EngineKind { kNative, kCycle };

@@ -1,0 +1,254 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include "core/config_enums.h"
+
+namespace carousel::config {
+
+// The one description of the configuration: key, range, unit and meaning of every field; defaults stand in
+// core/config.h. Reader, writer, schema and documentation are visitors of it. A visitor V offers
+//   field(key, value, [range,] unit, meaning)   integers, reals, colours; texts and switches without a range
+//   field_or_auto(key, optional integer, range, unit, meaning)
+//   choice(key, enum or optional enum, meaning)
+//   section(key, struct or optional struct, meaning)
+//   section_or_number(key, struct, meaning)     a bare number stands for {units: number}
+//   list(key, vector of struct, meaning)
+//   effects, workload, vary(key, value, meaning)   the three with a syntax of their own
+
+struct IntRange {
+  std::int64_t min, max;
+};
+
+/// A closed range, or without its lower end.
+struct RealRange {
+  double min, max;
+  bool above_min = false;
+};
+
+inline constexpr std::int64_t kMaxResources = 256;
+inline constexpr std::int64_t kMaxSlots = 1 << 22;
+// A ray ID is 32 bits: the resource's number and the slot's have to fit.
+static_assert(std::bit_width(std::uint64_t(kMaxResources - 1)) +
+                  std::bit_width(std::uint64_t(kMaxSlots - 1)) <=
+              32);
+
+inline constexpr IntRange kSeed{0, std::numeric_limits<std::int64_t>::max()};
+inline constexpr IntRange kCycles{1, 1'000'000};
+
+template <class V>
+void describe(V& v, SkyConfig& c) {
+  v.field("color", c.color, RealRange{0, 1e6}, "linear RGB", "colour of the sky");
+  v.field("strength", c.strength, RealRange{0, 1e6}, "", "multiplies the colour; 0 is no sky");
+}
+
+template <class V>
+void describe(V& v, SceneConfig& c) {
+  v.field("file", c.file, "", "glTF file, relative to the config's folder, then to the working one");
+  v.choice("builtin", c.builtin, "generated scene, instead of a file");
+  v.field("triangles", c.triangles, IntRange{1, 100'000'000}, "triangles",
+          "built-in spheres, terrain, sliver: about this many in all");
+  v.field("instances", c.instances, IntRange{1, 10'000'000}, "instances",
+          "built-in scene of instances: how many");
+  v.field("seed", c.seed, kSeed, "", "varies a built-in scene");
+  v.field("camera", c.camera, IntRange{0, 65535}, "", "index among the scene's cameras");
+  v.section("sky", c.sky, "constant sky; absent: the built-in scene's own, or for a file the default");
+}
+
+template <class V>
+void describe(V& v, CameraConfig& c) {
+  v.field("aperture", c.aperture, RealRange{0, 1e6}, "scene units", "diameter of the lens; 0 is a pinhole");
+  v.field("focus_distance", c.focus_distance, RealRange{0, 1e9, true}, "scene units",
+          "distance of the plane in focus");
+}
+
+template <class V>
+void describe(V& v, ImageConfig& c) {
+  v.field("width", c.width, IntRange{1, 16384}, "pixels", "width of the picture");
+  v.field("height", c.height, IntRange{1, 16384}, "pixels", "height of the picture");
+  v.field("samples", c.samples, IntRange{1, 65536}, "paths per pixel", "samples of each pixel");
+  v.field("max_depth", c.max_depth, IntRange{1, 64}, "surfaces",
+          "surfaces a path may visit; 1 is direct light only");
+  v.field("seed", c.seed, kSeed, "", "seed of all random numbers of the picture");
+}
+
+template <class V>
+void describe(V& v, EngineConfig& c) {
+  v.choice("kind", c.kind, "native: worker threads and real queues; cycle: virtual time");
+  v.field_or_auto("threads", c.threads, IntRange{1, 1024}, "threads",
+                  "worker threads; auto is as many as the machine has cores");
+  v.field("clock_mhz", c.clock_mhz, IntRange{1, 100'000}, "MHz", "clock of the simulated machine");
+  v.choice("simd", c.simd, "instruction set of the test kernels; auto is the best this machine has");
+}
+
+template <class V>
+void describe(V& v, LinkConfig& c) {
+  v.choice("queue", c.queue, "queue that carries a link in the native engine");
+  v.field("depth", c.depth, IntRange{1, 65536}, "packets", "packets a link holds");
+  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "time a packet takes over a link");
+  v.field("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle", "width of a link");
+}
+
+template <class V>
+void describe(V& v, TesterUnits& c) {
+  v.field("units", c.units, IntRange{1, 1024}, "units", "testers of this kind in a resource");
+  v.field("interval_cycles", c.interval_cycles, kCycles, "cycles", "a unit starts a test this often");
+  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "from the start of a test to its result");
+}
+
+template <class V>
+void describe(V& v, TestersConfig::Simd& c) {
+  v.field("lanes", c.lanes, IntRange{1, 64}, "lanes", "tests a unit does side by side");
+  v.choice("map", c.map, "what the lanes hold: rays against one shape, or shapes against one ray");
+}
+
+template <class V>
+void describe(V& v, TestersConfig& c) {
+  v.section_or_number("box", c.box, "ray against box");
+  v.section_or_number("triangle", c.triangle, "ray against triangle");
+  v.section_or_number("plane", c.plane, "ray against cull plane");
+  v.section_or_number("bundle", c.bundle, "bundle of rays against box");
+  v.section_or_number("transform", c.transform, "ray from world to model space");
+  v.section("simd", c.simd, "lanes of the testers");
+  v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "packets a resource has in test at once");
+  v.choice("any_hit", c.any_hit, "where opacity is looked up: at the tester, or by a shader worker");
+}
+
+template <class V>
+void describe(V& v, ResourceOverride& c) {
+  v.field("resource", c.resource, IntRange{0, kMaxResources - 1}, "", "number of the resource");
+  v.section("testers", c.testers, "its testers, where they differ from the rest");
+}
+
+template <class V>
+void describe(V& v, TopologyConfig& c) {
+  v.field("resources", c.resources, IntRange{1, kMaxResources}, "resources", "compute resources");
+  v.choice("shape", c.shape, "how the resources are linked");
+  v.field("rings", c.rings, IntRange{1, 64}, "rings", "for multi_ring");
+  v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "for hierarchical");
+  v.choice("form", c.form, "for central");
+  v.choice("visit", c.visit,
+           "whether a packet is handled by all resources or by the owners of its rays only");
+  v.choice("flow", c.flow, "what keeps the ring from filling up; none needs --force");
+  v.section("link", c.link, "every link");
+  v.list("overrides", c.overrides, "resources that differ from the rest");
+}
+
+template <class V>
+void describe(V& v, RaysConfig& c) {
+  v.field("slots_per_resource", c.slots_per_resource, IntRange{1, kMaxSlots}, "rays",
+          "rays a resource stores at a time");
+  v.choice("placement", c.placement, "which resource takes a new ray");
+}
+
+template <class V>
+void describe(V& v, PacketsConfig& c) {
+  v.field("rays", c.rays, IntRange{1, 1024}, "rays", "ray IDs a packet carries at most");
+  v.choice("shapes", c.shapes, "a packet carries all shapes below one node, or a single one");
+  v.choice("carry", c.carry, "a packet carries a reference to its shapes, or their data");
+  v.choice("results", c.results, "how hits travel back to the packet's owner");
+}
+
+template <class V>
+void describe(V& v, CollectionsConfig& c) {
+  v.field("ready", c.ready, IntRange{1, 65536}, "rays",
+          "rays that make a collection ready; more than packets.rays go out in several packets");
+  v.choice("traversal", c.traversal, "how a ray goes down the tree");
+  v.choice("policy", c.policy, "which collection is tested next");
+  v.choice("select", c.select, "full collections first, or the policy alone");
+  v.choice("home", c.home, "where the collections of a packet's hits live");
+  v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource", "room for collections");
+  v.choice("when_full", c.when_full, "keep a reserve and hold new rays back, or spill to memory");
+}
+
+template <class V>
+void describe(V& v, BvhConfig& c) {
+  v.field("width", c.width, IntRange{2, 8}, "children", "children of an inner node at most");
+  v.field("leaf_triangles", c.leaf_triangles, IntRange{1, 16}, "triangles", "triangles of a leaf at most");
+  v.field("treelet_triangles", c.treelet_triangles, IntRange{1, 1 << 24}, "triangles",
+          "size of the subtrees that traversal: treelet crosses in one visit");
+}
+
+template <class V>
+void describe(V& v, AccuracyConfig& c) {
+  v.choice("triangle", c.triangle, "ray against triangle");
+  v.choice("box", c.box, "ray against box");
+  v.choice("transform", c.transform, "ray from world to model space");
+  v.choice("spawn", c.spawn, "how far from its surface a new ray starts");
+}
+
+template <class V>
+void describe(V& v, CullPlanesConfig& c) {
+  v.field("count", c.count, IntRange{0, 16}, "planes per node", "cull planes; 0 is none");
+  v.choice("nodes", c.nodes, "nodes that get planes");
+  v.field("shared_normals", c.shared_normals, "", "siblings share their planes' normals");
+  v.choice("fit", c.fit, "what the planes are moved up to");
+}
+
+template <class V>
+void describe(V& v, BundlesConfig& c) {
+  v.field("size", c.size, IntRange{0, 64}, "rays", "rays of a bundle at most; 0 is no bundles");
+  v.choice("form", c.form, "how a bundle is tested");
+  v.choice("order", c.order, "which of the bundle's tests come first");
+  v.choice("lifetime", c.lifetime, "whether bundles stay together from node to node");
+}
+
+template <class V>
+void describe(V& v, MemoryConfig& c) {
+  v.field("l2_kib", c.l2_kib, IntRange{1, 1 << 20}, "KiB", "shared cache");
+  v.field("line_bytes", c.line_bytes, IntRange{16, 1024}, "bytes", "cache line");
+  v.field("ways", c.ways, IntRange{1, 64}, "ways", "associativity of the shared cache");
+  v.field("shared_by", c.shared_by, IntRange{1, kMaxResources}, "resources",
+          "resources that share one cache");
+  v.field("l2_latency_cycles", c.l2_latency_cycles, kCycles, "cycles", "a hit in the shared cache");
+  v.field("dram_latency_cycles", c.dram_latency_cycles, kCycles, "cycles", "a miss");
+  v.field("dram_bytes_per_cycle", c.dram_bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle",
+          "memory bandwidth");
+  v.choice("fetch", c.fetch, "who fetches shape data: the packet's issuer, each resource, or one for all");
+  v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets",
+          "packets whose shapes are fetched in advance");
+  v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB", "shape data a resource holds");
+}
+
+template <class V>
+void describe(V& v, ShadingConfig& c) {
+  v.field("workers", c.workers, IntRange{1, 256}, "workers", "shader workers");
+  v.effects("effects", c.effects, "effects of light: what the scene calls for, all, or those named");
+  v.field("idle_resources_shade", c.idle_resources_shade, "", "idle resources help the shader workers");
+  v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles", "time to shade one ray");
+  v.choice("distribute", c.distribute, "which worker gets a completed ray");
+}
+
+template <class V>
+void describe(V& v, TrafficConfig& c) {
+  v.choice("pattern", c.pattern, "where packets go");
+  v.field("rate", c.rate, RealRange{0, 1, true}, "packets per resource and cycle", "packets injected");
+  v.field("packets", c.packets, IntRange{1, 1'000'000'000'000}, "packets", "packets in all");
+}
+
+template <class V>
+void describe(V& v, Config& c) {
+  v.field("schema_version", c.schema_version, IntRange{1, 1}, "", "version of these keys");
+  v.section("scene", c.scene, "what is rendered");
+  v.section("camera", c.camera, "lens of the camera");
+  v.section("image", c.image, "picture and paths");
+  v.section("engine", c.engine, "how the simulation runs");
+  v.section("topology", c.topology, "resources and links");
+  v.section("rays", c.rays, "storage of rays");
+  v.section("packets", c.packets, "what travels");
+  v.section("collections", c.collections, "rays that wait for a node");
+  v.section("bvh", c.bvh, "acceleration structure");
+  v.section("accuracy", c.accuracy, "arithmetic of the tests");
+  v.section("cull_planes", c.cull_planes, "planes that mark parts of boxes as empty");
+  v.section("bundles", c.bundles, "similar rays tested as one");
+  v.section("testers", c.testers, "test units of a resource; a bare number is units");
+  v.section("memory", c.memory, "caches and memory of the simulated machine");
+  v.section("shading", c.shading, "shader workers and effects");
+  v.choice("verify", c.verify, "reference: trace every ray again, depth first, and compare");
+  v.workload("workload", c.workload, "rays of the picture, rays of a file, or synthetic traffic");
+  v.vary("vary", c.vary, "for sweep: values of keys, key.path: [a, b, c]");
+}
+
+}  // namespace carousel::config

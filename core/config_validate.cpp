@@ -1,0 +1,176 @@
+#include "core/config_validate.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/config_enums.h"
+#include "core/config_schema.h"
+#include "core/edit_distance.h"
+
+namespace carousel {
+
+namespace {
+
+class Rules {
+ public:
+  Rules(const Config& config, const KeyPositions& positions, const ValidateOptions& options)
+      : c(config), options_(options), positions_(positions) {}
+
+  std::vector<ConfigIssue> check() {
+    one_scene();
+    built_engine();
+    built_shape();
+    built_accuracy();
+    built_planes_and_bundles();
+    built_packets();
+    built_shading();
+    built_testers();
+    built_workload();
+    flow_that_can_deadlock();
+    bubble_needs_two_places();
+    ordered_needs_strips();
+    hashed_homes_spill();
+    overrides_name_resources();
+    vary_names_keys();
+    return std::move(issues_);
+  }
+
+ private:
+  void issue(const std::string& key, std::string message) {
+    issues_.push_back({positions_.find(key), key, std::move(message)});
+  }
+
+  template <class T>
+  void only(const std::string& key, T value, T built, std::string_view found, std::string_view expected) {
+    if (value != built) issue(key, fmt::format("{} is not built yet; expected {}", found, expected));
+  }
+  template <class E>
+  void only(const std::string& key, E value, E built) {
+    only(key, value, built, enum_name(value), enum_name(built));
+  }
+
+  void one_scene() {
+    if (c.scene.file.empty() && !c.scene.builtin) {
+      if (c.workload.kind == WorkloadConfig::Kind::kTraffic) return;  // traffic meets no scene
+      issue("scene", "expected a scene: file, or builtin (cornell, spheres, terrain, instances, sliver)");
+    }
+    if (!c.scene.file.empty() && c.scene.builtin)
+      issue("scene.builtin", "expected either file or builtin, found both");
+  }
+
+  void built_engine() { only("engine.kind", c.engine.kind, EngineKind::kNative); }
+
+  void built_shape() {
+    const TopologyShape shape = c.topology.shape;
+    if (shape == TopologyShape::kRing || shape == TopologyShape::kBidirectional ||
+        shape == TopologyShape::kPointToPoint)
+      return;
+    issue("topology.shape",
+          fmt::format("the native engine has no {}; expected ring, bidirectional or point_to_point",
+                      enum_name(shape)));
+  }
+
+  void built_accuracy() {
+    only("accuracy.triangle", c.accuracy.triangle, TriangleLevel::kWatertight);
+    only("accuracy.box", c.accuracy.box, BoxLevel::kConservative);
+    only("accuracy.transform", c.accuracy.transform, TransformLevel::kTwoStep);
+    only("accuracy.spawn", c.accuracy.spawn, SpawnOffset::kBound);
+  }
+
+  void built_planes_and_bundles() {
+    only("cull_planes.count", c.cull_planes.count, std::int64_t{0}, std::to_string(c.cull_planes.count), "0");
+    only("bundles.size", c.bundles.size, std::int64_t{0}, std::to_string(c.bundles.size), "0");
+  }
+
+  void built_packets() {
+    only("packets.carry", c.packets.carry, PacketCarry::kReference);
+    only("packets.results", c.packets.results, PacketResults::kMask);
+  }
+
+  void built_shading() {
+    using Choice = ShadingConfig::Effects::Choice;
+    if (c.shading.effects.choice != Choice::kAuto)
+      issue("shading.effects", "choosing effects is not built yet; expected auto");
+    only("shading.idle_resources_shade", c.shading.idle_resources_shade, false, "true", "false");
+  }
+
+  void built_testers() { only("testers.any_hit", c.testers.any_hit, TestersConfig::AnyHit::kInline); }
+
+  void built_workload() {
+    if (c.workload.kind == WorkloadConfig::Kind::kTraffic)
+      issue("workload", "traffic is not built yet; expected rays or {rays_from: FILE}");
+  }
+
+  void flow_that_can_deadlock() {
+    if (c.topology.flow == Flow::kNone && !options_.force)
+      issue("topology.flow", "none lets the links fill up and stop; expected credits or bubble, or --force");
+  }
+
+  void bubble_needs_two_places() {
+    if (c.topology.flow == Flow::kBubble && c.topology.link.depth < 2)
+      issue("topology.link.depth",
+            fmt::format("flow: bubble keeps one place of a link free; expected at least 2, found {}",
+                        c.topology.link.depth));
+  }
+
+  void ordered_needs_strips() {
+    if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip)
+      issue("packets.shapes",
+            "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
+  }
+
+  void hashed_homes_spill() {
+    if (c.collections.home == Home::kHash && c.collections.when_full != WhenFull::kSpill)
+      issue("collections.when_full",
+            "home: hash can fill one resource with another's collections and stop; expected spill, found "
+            "reserve");
+  }
+
+  void overrides_name_resources() {
+    std::map<std::int64_t, std::size_t> seen;
+    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i) {
+      const ResourceOverride& one = c.topology.overrides[i];
+      const std::string key = fmt::format("topology.overrides.{}.resource", i);
+      if (one.resource >= c.topology.resources)
+        issue(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1,
+                               one.resource));
+      else if (!seen.emplace(one.resource, i).second)
+        issue(key, fmt::format("resource {} has an override already", one.resource));
+      only(fmt::format("topology.overrides.{}.testers.any_hit", i), one.testers.any_hit,
+           TestersConfig::AnyHit::kInline);
+    }
+  }
+
+  void vary_names_keys() {
+    if (c.vary.empty()) return;
+    const std::vector<std::string> known = config::config_key_paths();
+    for (const auto& [keys, values] : c.vary) {
+      for (std::size_t begin = 0; begin <= keys.size();) {  // several keys vary together: "a.b,c.d"
+        const std::size_t end = std::min(keys.find(',', begin), keys.size());
+        const std::string key = keys.substr(begin, end - begin);
+        begin = end + 1;
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        const auto near = nearest_name(key, known);
+        issues_.push_back(
+            {positions_.find("vary." + keys), "vary." + keys,
+             fmt::format("unknown key '{}'{}", key, near ? "; did you mean '" + *near + "'?" : "")});
+      }
+    }
+  }
+
+  const Config& c;
+  const ValidateOptions& options_;
+  const KeyPositions& positions_;
+  std::vector<ConfigIssue> issues_;
+};
+
+}  // namespace
+
+std::vector<ConfigIssue> validate_config(const Config& config, const KeyPositions& positions,
+                                         const ValidateOptions& options) {
+  return Rules(config, positions, options).check();
+}
+
+}  // namespace carousel
