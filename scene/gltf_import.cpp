@@ -1,11 +1,91 @@
 #include "scene/gltf_import.h"
 
+#include <fstream>
+#include <new>
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "core/error.h"
+#include "scene/camera_pose.h"
+#include "scene/gltf_accessor.h"
+#include "scene/gltf_buffers.h"
+#include "scene/gltf_checks.h"
+#include "scene/gltf_document.h"
+#include "scene/gltf_materials.h"
+#include "scene/gltf_meshes.h"
+#include "scene/gltf_model.h"
+#include "scene/gltf_nodes.h"
+#include "scene/gltf_schema.h"
 
 namespace carousel::scene {
 
-Scene load_gltf(const std::filesystem::path& file, const WarningSink&) {
-  throw SceneError(file.string(), "", "glTF files are not read yet");
+namespace {
+
+/// Reads the meshes that instances name (by the file's indices) and renames them to ours, in the file's order.
+void read_used_meshes(MeshReader& reader, std::size_t file_meshes, Scene& scene) {
+  std::vector<std::optional<MeshId>> ids(file_meshes);
+  for (const Instance& instance : scene.instances) ids[instance.mesh.value] = MeshId(0);
+  for (std::size_t i = 0; i < file_meshes; ++i) {
+    if (!ids[i]) continue;
+    ids[i] = MeshId(static_cast<std::uint32_t>(scene.meshes.size()));
+    scene.meshes.push_back(reader.read(i));
+  }
+  for (Instance& instance : scene.instances) instance.mesh = *ids[instance.mesh.value];
+}
+
+Scene import(std::span<const std::byte> bytes, const std::string& file, std::optional<std::filesystem::path> folder,
+             const WarningSink& warn) {
+  GltfDocument document = parse_document(bytes, file);
+  check_extensions(document, warn);
+  check_schema(document);
+  check_links(document);
+  const GltfResources resources(document, std::move(folder));
+  GltfModel model = read_model(document, resources);
+  const AccessorTable accessors(document, model);
+  ImportBudget budget(document, bytes.size() + model.bytes_read);
+
+  Scene scene;
+  read_materials(document, model, scene, warn);
+  read_nodes(document, model.model, accessors, budget, scene);
+  const MaterialId fallback(static_cast<std::uint32_t>(scene.materials.size() - 1));
+  MeshReader meshes(document, model.model, accessors, budget, fallback);
+  read_used_meshes(meshes, model.model.meshes.size(), scene);
+  if (meshes.skipped_primitives() > 0 && warn) {
+    warn(file + ": " + std::to_string(meshes.skipped_primitives()) +
+         " primitives skipped: points, lines or without positions");
+  }
+  if (scene.instanced_triangle_count() == 0) document.fail("", "the scene shows no triangles");
+  if (scene.cameras.empty()) scene.cameras.push_back(fitted_camera(scene.bounds()));
+  if (scene.name.empty()) scene.name = std::filesystem::path(file).stem().string();
+  return scene;
+}
+
+}  // namespace
+
+Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn) {
+  const std::string name = file.string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) throw SceneError(name, "", "no such file");
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) throw SceneError(name, "", "cannot be read");
+  try {
+    std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw SceneError(name, "", "reading failed");
+    return import(bytes, name, file.parent_path(), warn);
+  } catch (const std::bad_alloc&) {
+    throw SceneError(name, "", "not enough memory to load it");
+  }
+}
+
+Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name, const WarningSink& warn) {
+  try {
+    return import(bytes, name, std::nullopt, warn);
+  } catch (const std::bad_alloc&) {
+    throw SceneError(name, "", "not enough memory to load it");
+  }
 }
 
 }  // namespace carousel::scene

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "scene/load_scene.h"
 #include "scene/scene.h"
+#include "scene/warnings.h"
 
 namespace carousel::scene {
 

@@ -1,16 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <string>
 
 #include "core/config.h"
 #include "scene/scene.h"
+#include "scene/warnings.h"
 
 namespace carousel::scene {
-
-/// Takes one warning, a sentence without a newline. May be empty: warnings are then dropped.
-using WarningSink = std::function<void(const std::string&)>;
 
 /// The scene a configuration names, built in or a file (looked for in `config_dir`, then in the working
 /// directory), with the configuration's sky; without one a built-in scene keeps its own and a file gets

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/gltf_document.h"
+#include "scene/gltf_model.h"
+
+namespace carousel::scene {
+
+/// glTF's numbers for component types.
+enum class Component : int {
+  kByte = 5120,
+  kUnsignedByte = 5121,
+  kShort = 5122,
+  kUnsignedShort = 5123,
+  kUnsignedInt = 5125,
+  kFloat = 5126
+};
+
+std::size_t size_of(Component component);
+const char* name_of(Component component);
+
+/// What an accessor is used for; decides which element and component types are allowed.
+enum class AccessorUse {
+  kPosition, kNormal, kTexCoord, kColor,          // mesh attributes
+  kTranslation, kRotation, kScale,                // EXT_mesh_gpu_instancing
+  kIndices
+};
+
+/// The accessors of a file, each checked against its buffer views before anything is allocated for it.
+class AccessorTable {
+ public:
+  /// Throws SceneError at the accessor that reaches outside its buffer view, whether it is used or not.
+  AccessorTable(const GltfDocument& document, const GltfModel& model);
+
+  std::uint64_t count(std::size_t accessor) const { return accessors_[accessor].count; }
+  /// Components of one element: 1 to 4, more for matrices.
+  int components(std::size_t accessor) const { return accessors_[accessor].components; }
+
+  /// Throws SceneError at `path` (where the accessor is referred to) unless its type fits the use, or when its
+  /// data is not in the file.
+  void check_use(std::size_t accessor, AccessorUse use, const std::string& path) const;
+
+  /// All elements, count * components floats; normalised integers become -1..1 or 0..1, exactly rounded. Throws
+  /// SceneError at `path` for the first one that is not finite, and at the accessor for bad sparse indices.
+  std::vector<float> floats(std::size_t accessor, const std::string& path) const;
+  /// All elements of a scalar integer accessor.
+  std::vector<std::uint32_t> integers(std::size_t accessor) const;
+
+ private:
+  /// Elements `stride` bytes apart from `offset` of a buffer.
+  struct Strided {
+    std::size_t buffer = 0, offset = 0, stride = 0;
+  };
+  struct Sparse {
+    std::uint64_t count = 0;
+    Component index_component = Component::kUnsignedInt;
+    Strided indices, values;
+  };
+  struct Accessor {
+    std::uint64_t count = 0;
+    Component component = Component::kFloat;
+    std::string type;
+    int components = 1;
+    bool normalized = false;
+    std::optional<Strided> base;
+    std::optional<Sparse> sparse;
+    std::vector<std::size_t> views;   ///< every buffer view it reads
+  };
+
+  Accessor parse(const Json& json, const std::string& path) const;
+  Strided locate(std::size_t view, std::uint64_t offset, std::uint64_t count, std::size_t element_size,
+                 bool may_stride, const std::string& path) const;
+  std::vector<std::uint32_t> sparse_indices(std::size_t accessor) const;
+  const unsigned char* element(const Strided& where, std::uint64_t index) const;
+  template <class T, class Convert>
+  std::vector<T> read(std::size_t accessor, const Convert& convert) const;
+
+  const GltfDocument& document_;
+  std::vector<std::span<const unsigned char>> buffers_;   ///< empty: without data
+  std::vector<Accessor> accessors_;
+  bool quantized_ = false;   ///< KHR_mesh_quantization is used
+};
+
+}  // namespace carousel::scene

@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "scene/gltf_checks.h"
+
+namespace carousel::scene {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> kRead = {
+    "EXT_mesh_gpu_instancing", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
+/// Their uncompressed fallback is used where a file has one; without it the importer says so by name.
+constexpr std::array<std::string_view, 2> kFallback = {"EXT_meshopt_compression", "KHR_draco_mesh_compression"};
+
+bool has_morph_targets(const Json& json) {
+  const auto meshes = json.find("meshes");
+  if (meshes == json.end() || !meshes->is_array()) return false;
+  for (const Json& mesh : *meshes) {
+    if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
+    for (const Json& primitive : mesh["primitives"]) {
+      if (primitive.is_object() && primitive.contains("targets")) return true;
+    }
+  }
+  return false;
+}
+
+bool has_entries(const Json& json, const char* key) {
+  const auto entry = json.find(key);
+  return entry != json.end() && entry->is_array() && !entry->empty();
+}
+
+}  // namespace
+
+void check_extensions(const GltfDocument& document, const WarningSink& warn) {
+  const Json& json = document.json;
+  if (has_entries(json, "extensionsRequired")) {
+    const Json& required = json["extensionsRequired"];
+    for (std::size_t i = 0; i < required.size(); ++i) {
+      if (!required[i].is_string()) continue;   // the schema check says it better
+      const auto& name = required[i].get_ref<const std::string&>();
+      if (std::ranges::find(kRead, name) == kRead.end()) {
+        document.fail(json_path("/extensionsRequired", i), "the file requires " + name + ", which Carousel does not read");
+      }
+    }
+  }
+  if (!warn) return;
+  std::string ignored;
+  if (has_entries(json, "extensionsUsed")) {
+    for (const Json& entry : json["extensionsUsed"]) {
+      if (!entry.is_string()) continue;
+      const auto& name = entry.get_ref<const std::string&>();
+      if (std::ranges::find(kRead, name) != kRead.end() || std::ranges::find(kFallback, name) != kFallback.end()) continue;
+      ignored += (ignored.empty() ? "" : ", ") + name;
+    }
+  }
+  if (!ignored.empty()) warn(document.file + ": optional extensions ignored: " + ignored);
+  std::string posed;
+  for (const char* key : {"animations", "skins"}) {
+    if (has_entries(json, key)) posed += (posed.empty() ? "" : ", ") + std::string(key);
+  }
+  if (has_morph_targets(json)) posed += (posed.empty() ? "" : ", ") + std::string("morph targets");
+  if (!posed.empty()) warn(document.file + ": ignored, the base pose is shown: " + posed);
+}
+
+std::string compression_note(const Json& owner) {
+  const auto extensions = owner.find("extensions");
+  if (extensions == owner.end()) return "";
+  for (const std::string_view name : kFallback) {
+    if (extensions->contains(std::string(name))) {
+      return " (it is compressed with " + std::string(name) + ", which Carousel does not read)";
+    }
+  }
+  return "";
+}
+
+}  // namespace carousel::scene

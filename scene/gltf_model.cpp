@@ -1,0 +1,149 @@
+#include "scene/gltf_model.h"
+
+#include <exception>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "scene/gltf_checks.h"
+#include "scene/image_decode.h"
+
+namespace carousel::scene {
+
+namespace {
+
+/// Images that a texture slot of some material leads to; the others are not even read.
+std::vector<bool> needed_images(const Json& json) {
+  std::vector<bool> needed(json.contains("images") ? json["images"].size() : 0);
+  const auto use = [&](const Json& owner, const char* slot) {
+    if (!owner.contains(slot)) return;
+    const Json& texture = json["textures"][owner[slot]["index"].get<std::size_t>()];
+    if (texture.contains("source")) needed[texture["source"].get<std::size_t>()] = true;
+  };
+  if (!json.contains("materials")) return needed;
+  for (const Json& material : json["materials"]) {
+    use(material, "normalTexture");
+    use(material, "emissiveTexture");
+    if (!material.contains("pbrMetallicRoughness")) continue;
+    use(material["pbrMetallicRoughness"], "baseColorTexture");
+    use(material["pbrMetallicRoughness"], "metallicRoughnessTexture");
+  }
+  return needed;
+}
+
+/// What tinygltf's callbacks see. Addresses in the document it parses are "carousel-buffer-3" and
+/// "carousel-image-0", so that it never opens a file itself.
+struct Feed {
+  const GltfDocument& document;
+  const GltfResources& resources;
+  std::vector<Bytes> buffers;
+  std::vector<bool> needed;
+  GltfModel& out;
+};
+
+constexpr std::string_view kBufferAddress = "carousel-buffer-", kImageAddress = "carousel-image-";
+
+bool read_address(Bytes* out, std::string*, const std::string& address, void* user) {
+  Feed& feed = *static_cast<Feed*>(user);
+  if (address.starts_with(kBufferAddress)) {
+    *out = std::move(feed.buffers.at(std::stoul(address.substr(kBufferAddress.size()))));
+    return true;
+  }
+  if (!address.starts_with(kImageAddress)) return false;
+  const std::size_t index = std::stoul(address.substr(kImageAddress.size()));
+  *out = feed.needed.at(index) ? feed.resources.image(index) : Bytes(1);
+  feed.out.bytes_read += out->size();
+  return true;
+}
+
+bool take_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int, const unsigned char* bytes,
+                int size, void* user) {
+  Feed& feed = *static_cast<Feed*>(user);
+  const auto i = static_cast<std::size_t>(index);
+  if (!feed.needed.at(i)) return true;
+  const Json& image = feed.document.json["images"][i];
+  try {
+    feed.out.images[i] = decode_image({bytes, static_cast<std::size_t>(size)});
+  } catch (const std::runtime_error& e) {
+    feed.document.fail(json_path("/images", i), std::string("the image is ") + e.what());
+  }
+  feed.out.images[i].name = image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
+  return true;
+}
+
+/// The document with addresses replaced, and with every accessor naming some buffer view: tinygltf insists on
+/// one for indices, though a sparse accessor may do without.
+std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buffers) {
+  Json json = checked;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    json["buffers"][i]["uri"] = std::string(kBufferAddress) + std::to_string(i);
+    json["buffers"][i]["byteLength"] = buffers[i].size();
+  }
+  if (json.contains("images")) {
+    for (std::size_t i = 0; i < json["images"].size(); ++i) {
+      Json& image = json["images"][i];
+      if (image.contains("uri")) image["uri"] = std::string(kImageAddress) + std::to_string(i);
+    }
+  }
+  if (json.contains("accessors") && json.contains("bufferViews") && !json["bufferViews"].empty()) {
+    for (Json& accessor : json["accessors"]) {
+      if (!accessor.contains("bufferView")) accessor["bufferView"] = 0;
+    }
+  }
+  json.erase("skins");
+  json.erase("animations");
+  return json.dump();
+}
+
+/// Every image in a buffer view must find its bytes there, before tinygltf looks.
+void check_embedded_images(const GltfDocument& document, const std::vector<bool>& has_data) {
+  if (!document.json.contains("images")) return;
+  const Json& images = document.json["images"];
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!images[i].contains("bufferView")) continue;
+    const Json& view = document.json["bufferViews"][images[i]["bufferView"].get<std::size_t>()];
+    const std::string path = json_path(json_path("/images", i), "bufferView");
+    if (!has_data[view["buffer"].get<std::size_t>()]) {
+      document.fail(path, "the buffer holds no data" + compression_note(view));
+    }
+    if (view["byteLength"].get<std::uint64_t>() > 0x7fffffff) document.fail(path, "larger than 2 GiB");
+  }
+}
+
+}  // namespace
+
+GltfModel read_model(const GltfDocument& document, const GltfResources& resources) {
+  GltfModel out;
+  Feed feed{document, resources, {}, needed_images(document.json), out};
+  out.images.resize(feed.needed.size());
+  const std::size_t buffers = document.json.contains("buffers") ? document.json["buffers"].size() : 0;
+  for (std::size_t i = 0; i < buffers; ++i) {
+    std::optional<Bytes> bytes = resources.buffer(i);
+    out.buffer_has_data.push_back(bytes.has_value());
+    feed.buffers.push_back(bytes ? std::move(*bytes) : Bytes(1));
+    out.bytes_read += feed.buffers.back().size();
+  }
+  check_embedded_images(document, out.buffer_has_data);
+  const std::string text = text_for_tinygltf(document.json, feed.buffers);
+  if (text.size() > 0xffffffffu) document.fail("", "more than 4 GiB of JSON");
+
+  tinygltf::TinyGLTF reader;
+  reader.SetImageLoader(take_image, &feed);
+  reader.SetFsCallbacks({[](const std::string&, void*) { return true; },
+                         [](const std::string& name, void*) { return name; }, read_address, nullptr, &feed});
+  std::string error, warning;
+  try {
+    if (reader.LoadASCIIFromString(&out.model, &error, &warning, text.data(), static_cast<unsigned int>(text.size()), "")) {
+      return out;
+    }
+  } catch (const SceneError&) {
+    throw;
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+  while (!error.empty() && error.back() == '\n') error.pop_back();
+  document.fail("", "tinygltf: " + (error.empty() ? "cannot be read" : error));
+}
+
+}  // namespace carousel::scene

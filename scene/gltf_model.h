@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include <tiny_gltf.h>
+
+#include "scene/gltf_buffers.h"
+#include "scene/gltf_document.h"
+#include "scene/scene.h"
+
+namespace carousel::scene {
+
+/// A checked document as tinygltf reads it.
+struct GltfModel {
+  tinygltf::Model model;
+  std::vector<bool> buffer_has_data;   ///< one a buffer; a buffer without data holds one byte that means nothing
+  std::vector<Image> images;           ///< one an image; empty where no material needs it
+  std::uint64_t bytes_read = 0;        ///< of buffers and images
+};
+
+/// Runs tinygltf over a document that passed check_schema and check_links. All bytes it gets are ours: files
+/// come from `resources`, pixels from decode_image; accessors are left to AccessorTable. Throws SceneError.
+GltfModel read_model(const GltfDocument& document, const GltfResources& resources);
+
+}  // namespace carousel::scene
