@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+
+namespace carousel::shading {
+
+/// How much light one bounce between GGX microfacets returns, tabulated over direction and roughness. The
+/// rest is what the single-scattering lobe loses; bsdf.h gives it back: C. Kulla, A. Conty, "Revisiting
+/// physically based shading at Imageworks", SIGGRAPH course, 2017.
+class GgxAlbedo {
+ public:
+  /// The one table; computed on first use (a few milliseconds), then read-only. Any thread.
+  static const GgxAlbedo& table();
+
+  struct Pair {
+    float metal = 0;        ///< F = 1: the albedo of the bare lobe
+    float dielectric = 0;   ///< F0 = 0.04, what it loses given back: what a diffuse base below is denied
+  };
+  /// Share of light arriving from (or leaving to) direction cosine `cos_theta` that is reflected.
+  Pair directional(float cos_theta, float alpha) const;
+  /// The cosine-weighted mean over all directions.
+  Pair average(float alpha) const;
+
+ private:
+  GgxAlbedo();
+  // Nodes are even in sqrt(cosine) and in sqrt(alpha): both change fastest near 0.
+  static constexpr int kSize = 32;
+  using Row = std::array<Pair, kSize>;
+  static Pair at(const Row& row, float cos_theta);
+
+  std::array<Row, kSize> directional_;   // [roughness][cosine]
+  std::array<Pair, kSize> average_;
+};
+
+}  // namespace carousel::shading

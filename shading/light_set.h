@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config.h"
+#include "core/ray.h"
+#include "core/vec.h"
+#include "scene/scene.h"
+#include "shading/emissive_triangles.h"
+#include "shading/light_choice.h"
+#include "shading/sampler.h"
+#include "shading/triangle_geometry.h"
+
+namespace carousel::shading {
+
+/// A way to the light: what a shadow ray has to be asked before `radiance` may be counted.
+struct LightSample {
+  Vec3 direction{0};    ///< of the shadow ray, not normalised; origin is where sample() was asked from
+  float tmax = 0;       ///< just short of the light
+  Vec3 wi{0};           ///< unit direction
+  Vec3 radiance{0};     ///< arriving radiance (irradiance for punctual lights) over the density; 0: no light
+  float pdf = 0;        ///< density per solid angle; 0 for lights that no other ray can hit
+};
+
+/// Everything that next-event estimation chooses from: punctual lights and emissive triangles, in proportion
+/// to their flux. Immutable; any thread.
+class LightSet {
+ public:
+  explicit LightSet(const scene::Scene& scene);
+
+  bool empty() const { return choice_.empty(); }
+  /// Precondition: !empty().
+  LightSample sample(const LightDraw& draw, const Vec3& origin, SpawnOffset offset) const;
+
+  /// Density per solid angle with which sample() finds a point of an emissive triangle that a ray of unit
+  /// direction met at distance `t` under |cosine| `cos_light`; 0 if it never does.
+  float triangle_pdf(std::uint32_t instance, std::uint32_t primitive, float t, float cos_light) const;
+
+ private:
+  LightSample sample_triangle(const EmissiveTriangle& light, float probability, const Vec2& u,
+                              const Vec3& origin, SpawnOffset offset) const;
+
+  const scene::Scene& scene_;
+  EmissiveTriangles triangles_;
+  LightChoice choice_;   // punctual lights first, then triangles
+};
+
+}  // namespace carousel::shading

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "core/digest.h"
+#include "core/workload.h"
+#include "scene/scene.h"
+#include "shading/camera_rays.h"
+#include "shading/film.h"
+#include "shading/light_set.h"
+#include "shading/path_pool.h"
+#include "shading/pixel_order.h"
+#include "shading/ray_recorder.h"
+#include "shading/sampler.h"
+#include "shading/surface.h"
+
+namespace carousel::shading {
+
+/// One frame by path tracing: camera rays, at each surface one shadow ray and one bounce ray, weighted by
+/// multiple importance sampling (E. Veach, L. Guibas, SIGGRAPH 1995, balance heuristic), Russian roulette
+/// from the fourth surface on. Image and hits digest are the same bits for any number of workers, any cutting
+/// of batches and any order. The last of `image.max_depth` surfaces sends no bounce ray: light from the sky,
+/// which only such rays find, is not seen there.
+class PathTracer : public Workload {
+ public:
+  /// Keeps a reference to `scene`. At most `max_paths_in_flight` paths have rays out at a time, 1 if 0 is
+  /// given. Preconditions, which the config's ranges ensure: image.width, height and samples at least 1,
+  /// max_depth 1 to 255, width * height below 2^32.
+  /// Throws std::out_of_range if the scene has no camera `scene.camera`.
+  PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight,
+             std::size_t workers);
+  ~PathTracer() override;
+
+  /// Every completed ray is reported to `recorder`, which must outlive the tracing; null: none is. Call
+  /// before the first generate().
+  void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
+
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
+
+  // Results, for when the frame is done and the workers are joined.
+
+  struct Counts {
+    std::array<std::uint64_t, kRayKinds> emitted{};     ///< rays by RayKind
+    std::array<std::uint64_t, kRayKinds> completed{};
+    std::uint64_t saturated = 0;   ///< radiance values that were not finite or beyond fixed point's range
+    std::uint64_t paths = 0;       ///< committed to the film
+  };
+  Counts counts() const;
+  HitsDigest hits_digest() const;
+  /// Of linear_rgb().
+  std::string image_digest() const;
+  std::vector<float> linear_rgb() const { return film_.linear_rgb(); }
+  std::uint32_t width() const { return film_.width(); }
+  std::uint32_t height() const { return film_.height(); }
+
+ private:
+  struct Worker;
+
+  void shade_closest(const RayResult& result, Worker& worker, RayBatch& out, std::uint32_t& children);
+  void shade_shadow(const RayResult& result, Worker& worker);
+  void add_emission(PathState& path, const RayResult& result, const TriangleGeometry& geometry,
+                    const TrianglePoint& point, bool front, Worker& worker);
+  void add_radiance(PathState& path, const Vec3& radiance, Worker& worker);
+  void finish_ray(std::uint32_t path, std::uint32_t children, Worker& worker);
+  void emit(const Ray& ray, const RayTag& tag, Worker& worker, RayBatch& out);
+
+  const scene::Scene& scene_;
+  const std::uint64_t paths_;
+  const std::uint32_t max_depth_;
+  const SpawnOffset spawn_;
+  const Sampler sampler_;
+  const PixelOrder order_;
+  const CameraRays camera_;
+  const LightSet lights_;
+  PathPool pool_;
+  Film film_;
+  std::unique_ptr<Worker[]> workers_;
+  std::size_t worker_count_;
+  std::atomic<std::uint64_t> generated_{0};   // camera rays that generate() calls have appended
+  RayRecorder* recorder_ = nullptr;
+};
+
+}  // namespace carousel::shading

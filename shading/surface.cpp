@@ -1,0 +1,125 @@
+#include "shading/surface.h"
+
+#include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "shading/luminance.h"
+#include "shading/texture_lookup.h"
+
+namespace carousel::shading {
+
+namespace {
+
+template <class T>
+T interpolate(const std::vector<T>& values, const TrianglePoint& p) {
+  return values[p.vertices[0]] * p.weights[0] + values[p.vertices[1]] * p.weights[1] +
+         values[p.vertices[2]] * p.weights[2];
+}
+
+const std::vector<Vec2>& uv_set(const scene::Mesh& mesh, const scene::TextureUse& use) {
+  return use.uv_set == 0 ? mesh.uv0 : mesh.uv1;
+}
+
+Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use, Encoding encoding) {
+  const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
+  const Vec2 uv = uvs.empty() ? Vec2{0, 0} : interpolate(uvs, p);
+  return lookup(scene, use.texture, transform_uv(use, uv), encoding);
+}
+
+/// The cofactors of R, with its determinant's sign: R^-T up to a positive factor.
+Vec3 transform_normal(const Mat3& r, bool mirrored, const Vec3& n) {
+  const Vec3 m = glm::cross(r[1], r[2]) * n.x + glm::cross(r[2], r[0]) * n.y + glm::cross(r[0], r[1]) * n.z;
+  return mirrored ? -m : m;
+}
+
+Vec3 normalized_or(const Vec3& v, const Vec3& fallback) {
+  const float length2 = glm::dot(v, v);
+  return length2 > 1e-30f && length2 < 1e30f ? v * (1.0f / std::sqrt(length2)) : fallback;
+}
+
+/// The normal map's tangent frame comes from the texture coordinates' derivatives. glTF: x points along +u,
+/// y towards the top of the image, that is along -v.
+Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g, const Vec3& n) {
+  const scene::TextureUse& use = *p.material->normal_texture;
+  const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
+  if (uvs.empty()) return n;
+  const Vec2 uv0 = transform_uv(use, uvs[p.vertices[0]]);
+  const Vec2 d1 = transform_uv(use, uvs[p.vertices[1]]) - uv0, d2 = transform_uv(use, uvs[p.vertices[2]]) - uv0;
+  const float determinant = d1.x * d2.y - d1.y * d2.x;
+  if (determinant == 0.0f) return n;
+  const Vec3 e1(g.linear * (g.model[1] - g.model[0])), e2(g.linear * (g.model[2] - g.model[0]));
+  const float sign = determinant < 0.0f ? -1.0f : 1.0f;
+  const Vec3 du = (e1 * d2.y - e2 * d1.y) * sign, dv = (e2 * d1.x - e1 * d2.x) * sign;
+  const Vec3 tangent = normalized_or(du - n * glm::dot(n, du), Vec3{0});
+  Vec3 bitangent = glm::cross(n, tangent);
+  if (glm::dot(bitangent, dv) > 0.0f) bitangent = -bitangent;
+
+  const Vec3 map = sample(scene, p, use, Encoding::kLinear) * 2.0f - 1.0f;
+  const float scale = p.material->normal_scale;
+  return normalized_or(tangent * (map.x * scale) + bitangent * (map.y * scale) + n * map.z, n);
+}
+
+}  // namespace
+
+TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
+                             float v) {
+  const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh.value];
+  const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t{primitive};
+  return {&mesh, &scene.materials[mesh.triangle_materials[primitive].value], {corner[0], corner[1], corner[2]},
+          {1.0f - u - v, u, v}};
+}
+
+Vec3 base_color(const scene::Scene& scene, const TrianglePoint& p) {
+  Vec3 color(p.material->base_color);
+  if (p.material->base_color_texture) {
+    color *= sample(scene, p, *p.material->base_color_texture, Encoding::kSrgb);
+  }
+  if (!p.mesh->colors.empty()) color *= Vec3(interpolate(p.mesh->colors, p));
+  return color;
+}
+
+MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& p) {
+  MaterialPoint m{base_color(scene, p), p.material->metallic, p.material->roughness};
+  if (p.material->metallic_roughness_texture) {
+    const Vec3 texel = sample(scene, p, *p.material->metallic_roughness_texture, Encoding::kLinear);
+    m.roughness *= texel.y;
+    m.metallic *= texel.z;
+  }
+  // A base colour above 1 would make light out of nothing at every bounce.
+  m.base_color = glm::clamp(m.base_color, Vec3{0}, Vec3{1});
+  m.metallic = glm::clamp(m.metallic, 0.0f, 1.0f);
+  m.roughness = glm::clamp(m.roughness, 0.0f, 1.0f);
+  return m;
+}
+
+Vec3 emitted(const scene::Scene& scene, const TrianglePoint& p) {
+  Vec3 radiance = p.material->emissive;
+  if (p.material->emissive_texture) {
+    radiance *= sample(scene, p, *p.material->emissive_texture, Encoding::kSrgb);
+  }
+  return radiance;
+}
+
+bool is_emissive(const scene::Material& material) {
+  return !material.unlit && max_component(material.emissive) > 0.0f;
+}
+
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g,
+                    const Vec3& facing, bool front, const Vec3& wo) {
+  Vec3 n = front ? facing : -facing;
+  if (!p.mesh->normals.empty()) {
+    n = normalized_or(transform_normal(Mat3(g.linear), g.mirrored, interpolate(p.mesh->normals, p)), n);
+  }
+  if (p.material->normal_texture) n = bend(scene, p, g, n);
+  if (!front) n = -n;
+  if (glm::dot(n, facing) < 0.0f) n = -n;   // normals modelled against the winding
+
+  constexpr float kLeastCosine = 0.01f;
+  const float cosine = glm::dot(n, wo);
+  if (cosine < kLeastCosine) n = normalized_or(n + (kLeastCosine - cosine) * wo, facing);
+  return n;
+}
+
+}  // namespace carousel::shading

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/vec.h"
+#include "scene/scene.h"
+#include "shading/bsdf.h"
+#include "shading/triangle_geometry.h"
+
+namespace carousel::shading {
+
+/// A hit triangle's entry in its mesh, and where on it.
+struct TrianglePoint {
+  const scene::Mesh* mesh;
+  const scene::Material* material;
+  std::array<std::uint32_t, 3> vertices;   ///< indices into the mesh's arrays
+  std::array<float, 3> weights;            ///< barycentric
+};
+
+/// `u` weighs vertex 1 and `v` vertex 2.
+TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
+                             float v);
+
+/// What the base colour texture, its factor and the vertex colour multiply to. For unlit materials all there
+/// is.
+Vec3 base_color(const scene::Scene& scene, const TrianglePoint& point);
+
+/// Base colour, metallic and roughness.
+MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& point);
+
+/// Radiance of the emitting side. Which sides emit: emits().
+Vec3 emitted(const scene::Scene& scene, const TrianglePoint& point);
+
+/// True if the material gives off light by itself and takes part in lighting.
+bool is_emissive(const scene::Material& material);
+
+/// The front side emits, and the back if the material is double-sided.
+inline bool emits(const scene::Material& material, bool front) { return front || material.double_sided; }
+
+/// The normal to shade with, in world space and on the side of `wo`: interpolated, bent by the normal map,
+/// and turned until `wo` is above its horizon. `facing` is the geometric normal on the side of `wo`.
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const TriangleGeometry& geometry,
+                    const Vec3& facing, bool front, const Vec3& wo);
+
+}  // namespace carousel::shading
