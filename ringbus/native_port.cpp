@@ -1,0 +1,328 @@
+#include "ringbus/native_port.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace carousel::ringbus {
+
+namespace {
+
+constexpr std::size_t kReceiveBatch = 8;     // packets taken from a link at once: one index update for all
+constexpr std::size_t kCompletedBatch = 512; // rays handed to shading at once
+
+}  // namespace
+
+NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventSink* sink)
+    : machine_(machine),
+      sink_(sink),
+      resource_(id, machine.config, machine.accel, scene_size, sink),
+      exit_of_(machine.topology.resources()),
+      free_(machine.topology.directions()) {
+  const std::vector<Topology::Wire>& wires = machine.topology.wires();
+  for (std::size_t i = 0; i < wires.size(); ++i) {
+    if (wires[i].to == id) entries_.push_back({machine.links[i].get(), wires[i].direction});
+    if (wires[i].from != id) continue;
+    exit_of_[wires[i].to.value] = static_cast<std::uint32_t>(exits_.size());
+    exits_.push_back({machine.links[i].get(), {}});
+  }
+  for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
+    if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
+  local_.owner = id;
+  local_.owners.resize((machine.topology.resources() + 63) / 64);
+}
+
+bool NativePort::step() {
+  bool moved = send_in_hand();
+  moved |= receive();
+  moved |= admit();
+  moved |= issue(false);
+  // Collections that are not full only when there is nothing better to do: waiting fills them.
+  if (!moved) moved = issue(true);
+  moved |= send_in_hand();
+  flush_completed(!moved);
+  return moved;
+}
+
+// ---- packets passing
+
+bool NativePort::send_in_hand() {
+  bool moved = false;
+  std::array<PacketId, kReceiveBatch> batch;
+  for (Exit& exit : exits_) {
+    while (!exit.in_hand.empty()) {
+      const std::size_t count = std::min(batch.size(), exit.in_hand.size());
+      std::copy_n(exit.in_hand.begin(), count, batch.begin());
+      const std::size_t sent = exit.link->try_send({batch.data(), count});
+      exit.in_hand.erase(exit.in_hand.begin(), exit.in_hand.begin() + static_cast<std::ptrdiff_t>(sent));
+      moved |= sent > 0;
+      if (sent < count) {
+        stall(StallReason::kLink);
+        break;
+      }
+    }
+  }
+  return moved;
+}
+
+bool NativePort::receive() {
+  bool moved = false;
+  std::array<PacketId, kReceiveBatch> batch;
+  for (const Entry& entry : entries_) {
+    // On a ring, what cannot leave must not come in, or the hand would be a queue without a bound. Point to
+    // point, every packet there is would fit into the hand, so all may come in.
+    if (!machine_.topology.point_to_point() && !exits_[entry.direction].in_hand.empty()) continue;
+    const std::size_t count = entry.link->try_receive(batch);
+    for (std::size_t k = 0; k < count; ++k) arrive(batch[k]);
+    moved |= count > 0;
+  }
+  return moved;
+}
+
+void NativePort::arrive(PacketId id) {
+  Packet& packet = machine_.packet(id);
+  if (packet.owner == resource_.id()) return come_home(id);
+  if (machine_.topology.handles(packet, resource_.id())) {
+    switch (packet.kind) {
+      case PacketKind::kTest: resource_.test(packet); break;
+      case PacketKind::kMemberships: resource_.join(packet); break;
+      case PacketKind::kRays: take_rays(packet); break;
+    }
+  }
+  forward(id);
+}
+
+void NativePort::forward(PacketId id) {
+  const Packet& packet = machine_.packet(id);
+  const std::size_t exit = machine_.topology.point_to_point()
+                               ? exit_of_[machine_.topology.next(packet, resource_.id()).value]
+                               : packet.direction;
+  exits_[exit].in_hand.push_back(id);
+  hop(id);
+}
+
+void NativePort::come_home(PacketId id) {
+  Packet& packet = machine_.packet(id);
+  if (packet.kind == PacketKind::kRays) {
+    take_rays(packet);
+    if (!packet.requests.empty()) {
+      // Nobody had room. They wait here and give the packet back, so that rays in flight can go on.
+      RayGroup left;
+      left.rays.swap(packet.requests);
+      left.addresses.swap(packet.addresses);
+      waiting_.push_back(std::move(left));
+    }
+  } else {
+    resource_.retire(packet);
+  }
+  free_[packet.direction].push_back(id);
+  // Release: pairs with the acquire in packets_out().
+  out_.store(out_.load(std::memory_order_relaxed) - 1, std::memory_order_release);
+}
+
+void NativePort::leave(PacketId id) {
+  // Relaxed: a ray of this packet is still counted, and that count is looked at first.
+  out_.store(out_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  forward(id);
+}
+
+// ---- new rays
+
+bool NativePort::admit() {
+  machine_.control.collect(resource_.id(), waiting_);
+  if (waiting_head_ == waiting_.size()) return false;
+  const bool moved = machine_.control.rays_travel() ? send_rays_round() : admit_groups();
+  if (waiting_head_ == waiting_.size()) {
+    waiting_.clear();
+    waiting_head_ = 0;
+  }
+  return moved;
+}
+
+bool NativePort::admit_groups() {
+  bool moved = false;
+  while (waiting_head_ < waiting_.size()) {
+    RayBatch& rays = waiting_[waiting_head_].rays;
+    const std::size_t count = std::min(rays.size(), resource_.admissible());
+    if (count == 0) {
+      stall(resource_.free_slots() == 0 ? StallReason::kSlots : StallReason::kStorage);
+      return moved;
+    }
+    resource_.admit(std::span(rays).first(count));
+    moved = true;
+    if (count == rays.size())
+      ++waiting_head_;
+    else
+      rays.erase(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  return moved;
+}
+
+bool NativePort::take_rays(Packet& packet) {
+  const bool addressed = !packet.addresses.empty();
+  // First takers leave the rest of the ring its share: the rays left over the resources left, counting this one.
+  std::size_t share = packet.requests.size();
+  if (!addressed && packet.hops_left > 0) share = (share + packet.hops_left) / (packet.hops_left + 1);
+  if (packet.hops_left > 0) --packet.hops_left;
+  const std::size_t room = std::min(share, resource_.admissible());
+  RayBatch taken;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < packet.requests.size(); ++i) {
+    if (taken.size() < room && (!addressed || packet.addresses[i] == resource_.id())) {
+      taken.push_back(packet.requests[i]);
+      continue;
+    }
+    packet.requests[kept] = packet.requests[i];
+    if (addressed) packet.addresses[kept] = packet.addresses[i];
+    ++kept;
+  }
+  packet.requests.resize(kept);
+  if (addressed) packet.addresses.resize(kept);
+  if (taken.empty()) return false;
+  resource_.admit(taken);
+  machine_.control.taken(resource_.id(), taken.size());
+  return true;
+}
+
+bool NativePort::send_rays_round() {
+  bool moved = false;
+  while (waiting_head_ < waiting_.size()) {
+    RayGroup& group = waiting_[waiting_head_];
+    const bool room = group.addresses.empty()
+                          ? machine_.control.has_room(nullptr)
+                          : std::any_of(group.addresses.begin(), group.addresses.end(),
+                                        [&](ResourceId r) { return machine_.control.has_room(&r); });
+    if (!room) {
+      stall(StallReason::kSlots);
+      return moved;
+    }
+    PacketId id;
+    Packet* packet = &local_;
+    const bool travels = machine_.topology.resources() > 1;
+    // The last packet is left to rays that are under way: only they can free the slots that new ones wait for.
+    if (travels && !resource_.idle() && resource_.packets_in_flight() == 0) return moved;
+    if (travels) {
+      if (!free_packet(id)) return moved;
+      packet = &machine_.packet(id);
+    }
+    packet->kind = PacketKind::kRays;
+    packet->requests = std::move(group.rays);
+    packet->addresses = std::move(group.addresses);
+    packet->members.clear();
+    packet->hops_left = static_cast<std::uint32_t>(machine_.topology.resources() - 1);
+    group = RayGroup{};
+    ++waiting_head_;
+    moved |= take_rays(*packet);
+    if (travels) {
+      moved = true;
+      leave(id);
+    } else if (!packet->requests.empty()) {
+      group.rays = std::move(packet->requests);
+      group.addresses = std::move(packet->addresses);
+      --waiting_head_;
+      return moved;
+    }
+  }
+  return moved;
+}
+
+// ---- issuing
+
+bool NativePort::may_inject(std::size_t exit) const {
+  // A packet in hand goes first. The bubble rule also leaves a place for the ring's own traffic.
+  if (machine_.config.topology.flow == Flow::kNone) return exits_[exit].in_hand.size() < kReceiveBatch;
+  if (machine_.topology.point_to_point()) return true;
+  if (!exits_[exit].in_hand.empty()) return false;
+  return machine_.config.topology.flow != Flow::kBubble || exits_[exit].link->free_places() >= 2;
+}
+
+bool NativePort::free_packet(PacketId& id) {
+  bool blocked = false;
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const std::size_t direction = (next_direction_ + i) % free_.size();
+    if (free_[direction].empty()) continue;
+    if (!may_inject(direction)) {
+      blocked = true;
+      continue;
+    }
+    id = free_[direction].back();
+    free_[direction].pop_back();
+    next_direction_ = direction + 1;
+    return true;
+  }
+  stall(blocked ? StallReason::kLink : StallReason::kCredits);
+  return false;
+}
+
+bool NativePort::issue(bool partial) {
+  const bool stays = machine_.topology.resources() == 1 || machine_.config.collections.home == Home::kLocal;
+  bool moved = false;
+  // When only partial collections are left, one at a time: the next look at the links may fill the others.
+  for (int budget = partial ? 1 : 64; budget > 0 && !resource_.idle(); --budget) {
+    PacketId id;
+    Packet* packet = &local_;
+    if (!stays) {
+      if (!free_packet(id)) return moved;
+      packet = &machine_.packet(id);
+    }
+    const Resource::Offer offer = resource_.offer(partial, *packet);
+    if (offer != Resource::Offer::kPacket) {
+      if (!stays) free_[packet->direction].push_back(id);
+      if (offer == Resource::Offer::kStorage) stall(StallReason::kStorage);
+      return moved;
+    }
+    moved = true;
+    if (packet->kind == PacketKind::kTest) resource_.test(*packet);
+    if (stays || machine_.topology.hops(*packet) == 0) {
+      resource_.retire(*packet);
+      if (!stays) free_[packet->direction].push_back(id);
+    } else {
+      leave(id);
+    }
+  }
+  return moved;
+}
+
+void NativePort::flush_completed(bool all) {
+  HitBatch& done = resource_.completed();
+  if (done.empty() || (!all && done.size() < kCompletedBatch)) return;
+  if (sink_ != nullptr)
+    sink_->record({.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
+  machine_.control.freed(resource_.id(), done.size());
+  HitBatch fresh = machine_.completed.fresh();
+  done.swap(fresh);
+  machine_.completed.push(std::move(fresh));
+}
+
+// ---- the end, good or bad
+
+bool NativePort::drained() const {
+  const bool hands_empty =
+      std::all_of(exits_.begin(), exits_.end(), [](const Exit& exit) { return exit.in_hand.empty(); });
+  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_head_ == waiting_.size() &&
+         resource_.packets_in_flight() == 0 && resource_.free_slots() == resource_.rays().slots();
+}
+
+std::string NativePort::describe() const {
+  std::string text = fmt::format("resource {}: {} of {} slots free, {} collections with {} memberships, {} packets out",
+                                 resource_.id().value, resource_.free_slots(), resource_.rays().slots(),
+                                 resource_.collections().collections(), resource_.collections().memberships(),
+                                 resource_.packets_in_flight());
+  std::size_t rays = 0;
+  for (std::size_t i = waiting_head_; i < waiting_.size(); ++i) rays += waiting_[i].rays.size();
+  if (rays > 0) text += fmt::format(", {} new rays wait", rays);
+  for (const Exit& exit : exits_) {
+    if (exit.in_hand.empty()) continue;
+    const Packet& packet = machine_.packet(exit.in_hand.front());
+    text += fmt::format("; packet {} of resource {}", exit.in_hand.front().value, packet.owner.value);
+    if (!packet.members.empty())
+      text += fmt::format(" (first ray {}:{})", resource_.rays().layout().owner(packet.members[0].ray).value,
+                          resource_.rays().layout().slot(packet.members[0].ray));
+    text += fmt::format(" waits for a place in the link to resource {} (depth {}, {} more in hand)",
+                        exit.link->to().value, exit.link->capacity(), exit.in_hand.size() - 1);
+  }
+  return text;
+}
+
+}  // namespace carousel::ringbus

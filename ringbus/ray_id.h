@@ -1,0 +1,50 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "core/ids.h"
+
+namespace carousel::ringbus {
+
+#ifdef CAROUSEL_CHECKED
+inline constexpr bool kChecked = true;
+#else
+inline constexpr bool kChecked = false;
+#endif
+
+/// How often a slot has been handed out; empty unless the build is checked.
+template <bool kPresent>
+struct Generation {
+  std::uint32_t count = 0;
+  friend bool operator==(Generation, Generation) = default;
+};
+template <>
+struct Generation<false> {
+  friend bool operator==(Generation, Generation) = default;
+};
+
+/// Names a ray by where it lives. The split of the bits into owner and slot is RayIdLayout's.
+struct RayId {
+  std::uint32_t bits = 0;
+  [[no_unique_address]] Generation<kChecked> generation;
+};
+
+/// Slot in the low bits, owner above it. Needs bit_width(resources - 1) + bit_width(slots - 1) <= 32.
+class RayIdLayout {
+ public:
+  explicit RayIdLayout(std::uint32_t slots_per_resource) : slot_bits_(std::bit_width(slots_per_resource - 1)) {}
+
+  RayId make(ResourceId owner, std::uint32_t slot) const {
+    RayId id;
+    id.bits = static_cast<std::uint32_t>(std::uint64_t{owner.value} << slot_bits_) | slot;
+    return id;
+  }
+  ResourceId owner(RayId id) const { return ResourceId(static_cast<std::uint32_t>(std::uint64_t{id.bits} >> slot_bits_)); }
+  std::uint32_t slot(RayId id) const { return id.bits & static_cast<std::uint32_t>((std::uint64_t{1} << slot_bits_) - 1); }
+
+ private:
+  int slot_bits_;
+};
+
+}  // namespace carousel::ringbus

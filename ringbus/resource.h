@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "accel/accel.h"
+#include "core/config.h"
+#include "core/workload.h"
+#include "ringbus/collection_store.h"
+#include "ringbus/events.h"
+#include "ringbus/packet.h"
+#include "ringbus/ray_stacks.h"
+#include "ringbus/ray_store.h"
+
+namespace carousel::ringbus {
+
+/// Collection blocks that must stay free so that draining deepest first cannot run out (DESIGN.md section 4):
+/// a packet retired at each level leaves at most width - 1 more blocks than it took, and one more strip's worth
+/// is in flight.
+std::uint32_t reserve_blocks(const CollectionsConfig& config, int width, int max_depth);
+
+/// A compute resource without a clock: its slice of the rays, its testers and its share of the collections. An
+/// engine decides when each call happens; one thread at a time.
+class Resource {
+ public:
+  /// Keeps references. `sink` may be null.
+  Resource(ResourceId id, const Config& config, const accel::Accel& accel, float scene_size, EventSink* sink);
+
+  ResourceId id() const { return id_; }
+
+  /// How many new rays may be admitted now, limited by free slots and by collection storage.
+  std::size_t admissible() const;
+  std::size_t free_slots() const { return store_.free_slots(); }
+  /// Gives rays slots and lets them join the root's collection. Needs rays.size() <= admissible().
+  void admit(std::span<const RayRequest> rays);
+
+  enum class Offer { kNothing, kPacket, kStorage };
+  /// Fills `packet` from the next collection: by policy, among the ready ones, or with `partial` among all.
+  /// kStorage: there is one, but its children might not find room until packets in flight have been retired.
+  Offer offer(bool partial, Packet& packet);
+
+  /// Tests the packet's members that live here and writes the answers into it.
+  void test(Packet& packet);
+  /// Takes back a packet of its own: hits join the children's collections.
+  void retire(Packet& packet);
+  /// Takes the members of a membership packet that has reached its home.
+  void join(Packet& packet);
+
+  /// Completed rays, for the engine to take away.
+  HitBatch& completed() { return completed_; }
+
+  bool idle() const { return collections_.empty() && issuing_.rays.empty(); }
+  const RayStore& rays() const { return store_; }
+  const CollectionStore& collections() const { return collections_; }
+  std::uint32_t packets_in_flight() const { return in_flight_; }
+
+ private:
+  /// In single-shape mode: the block whose shapes are being sent out, one a packet.
+  struct Issuing {
+    std::vector<RayId> rays;
+    accel::NodeKey key;
+    std::uint16_t depth = 0;
+    float entry = 0;
+    std::uint32_t next_shape = 0, shapes = 0;
+  };
+
+  bool is_treelet(accel::NodeKey key) const;
+  /// Tests a ray waits for when it joins `key`: one a packet that will carry it there.
+  std::int32_t tests_of(accel::NodeKey key, int strip_size) const;
+  ResourceId home_of(accel::NodeKey key) const;
+  std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const;
+  bool fits(std::uint32_t needed, std::uint32_t freed) const;
+  std::optional<CollectionId> choose(bool partial, bool& storage);
+  void fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std::span<const RayId> rays,
+            std::uint32_t lanes);
+
+  void gather_local(const Packet& packet);
+  void test_spread(Packet& packet);
+  void test_ordered(Packet& packet);
+  void settle(std::uint32_t slot, std::int32_t pending_change);
+  void complete(std::uint32_t slot);
+  void retire_spread(Packet& packet);
+  void retire_ordered(Packet& packet);
+  void record(const Event& event) {
+    if (sink_ != nullptr) [[unlikely]] sink_->record(event);
+  }
+
+  ResourceId id_;
+  const Config& config_;
+  const accel::Accel& accel_;
+  EventSink* sink_;
+  bool ordered_, treelets_, single_, bounded_;
+  std::uint32_t floor_blocks_;
+  RayStore store_;
+  CollectionStore collections_;
+  std::optional<RayStacks> stacks_;
+  Issuing issuing_;
+  std::uint32_t in_flight_ = 0, reserved_blocks_ = 0;
+  HitBatch completed_;
+
+  // Scratch of the calls, kept so that nothing is allocated per packet.
+  std::vector<std::uint32_t> local_slots_, local_members_;
+  std::vector<std::uint8_t> masks_;
+  std::vector<float> entries_;
+  std::vector<RayId> ids_;
+  TestCounts tests_;
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,96 @@
+// What a packet's visit does: the rays that live here are tested, everything else passes through untouched.
+#include <algorithm>
+#include <bit>
+
+#include "accel/kernels.h"
+#include "ringbus/resource.h"
+
+namespace carousel::ringbus {
+
+void Resource::gather_local(const Packet& packet) {
+  local_slots_.clear();
+  local_members_.clear();
+  for (std::uint32_t i = 0; i < packet.members.size(); ++i) {
+    if (!store_.owns(packet.members[i].ray)) continue;
+    local_slots_.push_back(store_.slot(packet.members[i].ray));
+    local_members_.push_back(i);
+  }
+}
+
+void Resource::test(Packet& packet) {
+  gather_local(packet);
+  tests_ = TestCounts{};
+  if (!local_slots_.empty()) {
+    if (ordered_)
+      test_ordered(packet);
+    else
+      test_spread(packet);
+  }
+  record({.kind = EventKind::kTest, .resource = id_, .key = packet.key,
+          .rays = static_cast<std::uint32_t>(local_slots_.size()), .tests = tests_, .members = packet.members});
+}
+
+void Resource::test_spread(Packet& packet) {
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size()};
+  if (is_treelet(packet.key) || !packet.key.ref.is_inner()) {
+    if (is_treelet(packet.key))
+      accel::trace_subtree(accel_, packet.key, members, tests_);
+    else
+      accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
+    for (const std::uint32_t slot : local_slots_) settle(slot, -1);
+    return;
+  }
+  masks_.resize(local_slots_.size());
+  accel::test_strip(accel_, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr}, tests_);
+  if (!single_) {
+    for (std::size_t i = 0; i < local_slots_.size(); ++i) {
+      packet.members[local_members_[i]].mask = masks_[i];
+      settle(local_slots_[i], std::popcount(masks_[i]) - 1);
+    }
+    return;
+  }
+  // One shape a packet: a hit child brings as many tests as it has shapes (DESIGN.md section 4).
+  const int lane = std::countr_zero(packet.lanes);
+  const accel::Node& node = accel_.nodes[packet.key.ref.node()];
+  const std::int32_t below = tests_of(accel_.child_key(packet.key, lane), node.strip_size[lane]);
+  for (std::size_t i = 0; i < local_slots_.size(); ++i) {
+    packet.members[local_members_[i]].mask = masks_[i];
+    settle(local_slots_[i], (masks_[i] != 0 ? below : 0) - 1);
+  }
+}
+
+void Resource::test_ordered(Packet& packet) {
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size()};
+  if (packet.key.ref.is_inner()) {
+    masks_.resize(local_slots_.size());
+    entries_.resize(accel::kMaxWidth * local_slots_.size());
+    accel::test_strip(accel_, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, entries_.data()},
+                      tests_);
+  } else {
+    masks_.assign(local_slots_.size(), 0);
+    accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
+  }
+  for (std::size_t i = 0; i < local_slots_.size(); ++i) {
+    const std::uint32_t slot = local_slots_[i];
+    const float* entry = entries_.data() + accel::kMaxWidth * i;
+    // Farthest first, so that the nearest ends on top; lanes break ties to keep the order a function of the ray.
+    std::uint8_t mask = masks_[i];
+    while (mask != 0) {
+      int farthest = std::countr_zero(mask);
+      for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+        const int lane = std::countr_zero(rest);
+        if (entry[lane] >= entry[farthest]) farthest = lane;
+      }
+      mask &= static_cast<std::uint8_t>(~(1u << farthest));
+      stacks_->push(slot, {accel_.child_key(packet.key, farthest), entry[farthest],
+                           static_cast<std::uint16_t>(packet.depth + 1), true});
+    }
+    const RayRecord& ray = store_.record(slot);
+    const bool done = (ray.tag.flags & accel::kRayDone) != 0;
+    const NextNode next = done ? NextNode{} : stacks_->pop(slot, ray.hit.t);
+    packet.next[local_members_[i]] = next;
+    if (!next.any) settle(slot, -1);
+  }
+}
+
+}  // namespace carousel::ringbus
