@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "accel/accel.h"
+#include "core/config.h"
+#include "core/error.h"
+
+namespace carousel::ringbus {
+
+/// Whether the links of a machine can fill up and stop, said before it runs (DESIGN.md section 4).
+struct DeadlockVerdict {
+  bool can_deadlock = false;
+  std::string rule;   ///< the rule that protects it, with its numbers; or what is missing
+};
+DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
+
+/// Ray IDs of collection storage a resource needs so that bounded storage (`when_full: reserve`) cannot block:
+/// twice the reserve that deepest-first draining uses, since new rays are admitted only above half free; for
+/// ordered traversal a block a slot. 0 with `when_full: spill`.
+std::int64_t minimum_capacity(const Config& config, int width, int max_depth);
+
+/// The rules that need the built structure. Positions are left to the caller, who knows the file.
+std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel& accel);
+
+}  // namespace carousel::ringbus

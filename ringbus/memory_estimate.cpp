@@ -1,0 +1,34 @@
+#include "ringbus/memory_estimate.h"
+
+#include <algorithm>
+
+#include "core/workload.h"
+#include "ringbus/packet.h"
+#include "ringbus/topology.h"
+
+namespace carousel::ringbus {
+
+MemoryEstimate estimate_memory(const Config& config, int max_depth) {
+  const auto u = [](std::int64_t x) { return static_cast<std::uint64_t>(x); };
+  const std::uint64_t resources = u(config.topology.resources), slots = u(config.rays.slots_per_resource);
+  const std::uint64_t packet_rays = u(config.packets.rays);
+  const bool ordered = config.collections.traversal == Traversal::kOrdered;
+  const std::uint64_t next = ordered ? sizeof(NextNode) : 0;
+  MemoryEstimate e;
+  e.ray_store = resources * slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));
+  if (ordered) {
+    const std::uint64_t entries = u(config.bvh.width - 1) * u(max_depth) + 1;
+    e.ray_stacks = resources * slots * (entries * sizeof(NextNode) + sizeof(std::uint16_t));
+  }
+  // An ID, and a block's share of a collection, its place in the table and its list links.
+  const std::uint64_t blocks = u(config.collections.capacity) / packet_rays + 1;
+  e.collections = resources * blocks * (packet_rays * sizeof(RayId) + 128);
+  const std::uint64_t directions = config.topology.shape == TopologyShape::kBidirectional ? 2 : 1;
+  const std::uint64_t packets = resources * directions * packets_in_flight(config.topology) + resources;
+  e.packets = packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));
+  // A completed ray may cause two, and both wait while slots are taken.
+  e.rays_waiting = resources * slots * (2 * sizeof(RayRequest) + sizeof(RayResult));
+  return e;
+}
+
+}  // namespace carousel::ringbus
