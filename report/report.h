@@ -1,0 +1,147 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace carousel::report {
+
+// The report of one run (DESIGN.md section 9, a contract): plain structs, filled by app/. Units and meanings
+// stand in report/report_fields.h. What is std::optional is left out of the file when absent, which is how an
+// engine without a simulated clock leaves out what needs one.
+
+struct Program {
+  std::string version, commit, compiler, build_type;
+  bool checked = false;
+};
+
+struct Bounds {
+  std::array<double, 3> lo{}, hi{};
+};
+
+struct SceneSummary {
+  std::string name;
+  std::uint64_t triangles = 0, instanced_triangles = 0, meshes = 0, instances = 0, materials = 0,
+                textures = 0;
+  std::uint64_t lights = 0, cameras = 0;
+  Bounds bounds;
+  std::vector<std::string> warnings;
+};
+
+struct Engine {
+  std::string kind;
+  bool deterministic = false;
+  std::string reason;
+};
+
+struct RaysByKind {
+  std::uint64_t camera = 0, bounce = 0, shadow = 0;
+};
+
+struct Rays {
+  std::uint64_t emitted = 0, completed = 0, lost = 0, restarted = 0;
+  RaysByKind by_kind;
+};
+
+struct Throughput {
+  double packets_per_ray = 0, hops_per_ray = 0, tests_per_ray = 0;
+};
+
+struct TestKind {
+  std::uint64_t count = 0;
+  double per_ray = 0;
+};
+
+struct Tests {
+  TestKind box, plane, triangle, bundle, transforms;
+};
+
+struct Packets {
+  std::uint64_t issued = 0, retired = 0, hops = 0;
+  double rays_mean = 0, local_fraction = 0, bubble_fraction = 0;
+};
+
+struct Collections {
+  std::uint64_t created = 0, peak = 0;
+  double fullness_mean = 0;
+  std::uint64_t memberships_peak = 0, spilled = 0;
+};
+
+struct Stalls {
+  std::uint64_t credits = 0, link = 0, slots = 0, storage = 0, reserve = 0;
+};
+
+struct Resource {
+  std::uint64_t resource = 0;
+  std::uint64_t rays_admitted = 0, rays_completed = 0;
+  std::uint64_t packets_issued = 0, packets_retired = 0, packets_seen = 0, bubbles = 0, hops = 0;
+  std::uint64_t rays_tested = 0, box_tests = 0, triangle_tests = 0, transforms = 0;
+  std::uint64_t collections_created = 0, collections_peak = 0, memberships_peak = 0, spilled = 0;
+  Stalls stalls;
+};
+
+struct Link {
+  std::uint64_t from = 0, to = 0, depth = 0, packets = 0;
+  double occupancy_mean = 0;
+  std::uint64_t occupancy_max = 0, stalled = 0;
+};
+
+struct Effect {
+  std::string name;
+  bool on = false;
+  std::string why;
+};
+
+struct Shading {
+  std::uint64_t workers = 0, shaded = 0, saturated = 0;
+  std::vector<Effect> effects;
+};
+
+struct Verify {
+  std::uint64_t compared = 0, mismatches = 0;
+  std::string example;
+};
+
+struct Digest {
+  std::string hits;
+  std::optional<std::string> image;
+};
+
+struct Machine {
+  std::string cpu, system;
+  std::uint64_t cores = 0, memory_bytes = 0;
+};
+
+struct Host {
+  std::uint64_t threads = 0;
+  double wall_seconds = 0, rays_per_second = 0, scene_seconds = 0, build_seconds = 0;
+  std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
+  std::vector<std::string> simd;
+  Machine machine;
+};
+
+struct Report {
+  std::int64_t schema_version = 1;
+  bool incomplete = false;
+  Program carousel;
+  nlohmann::ordered_json config = nlohmann::ordered_json::object();
+  SceneSummary scene;
+  Engine engine;
+  Rays rays;
+  std::optional<Throughput> throughput;
+  std::optional<Tests> tests;
+  std::optional<Packets> packets;
+  std::optional<Collections> collections;
+  std::optional<std::vector<Resource>> resources;
+  std::optional<std::vector<Link>> links;
+  Shading shading;
+  std::optional<Verify> verify;
+  Digest digest;
+  Host host;
+};
+
+}  // namespace carousel::report

@@ -1,0 +1,222 @@
+#pragma once
+
+#include "report/report.h"
+
+namespace carousel::report {
+
+// The one description of the report: key, unit and meaning of every field. The JSON writer and the schema are
+// visitors of it. A visitor V offers
+//   field(key, value, unit, meaning)      numbers, switches, texts, lists of texts, triples
+//   section(key, value, meaning)          structs; lists of structs; either of them optional
+//   any(key, value, meaning)              JSON that has a schema of its own
+// Counts that depend on scheduling differ from run to run in the native engine with several threads.
+
+template <class V>
+void describe(V& v, Program& r) {
+  v.field("version", r.version, "", "version of the program");
+  v.field("commit", r.commit, "", "commit it was built from");
+  v.field("compiler", r.compiler, "", "compiler and its version");
+  v.field("build_type", r.build_type, "", "CMake's build type");
+  v.field("checked", r.checked, "", "whether every invariant was checked while running");
+}
+
+template <class V>
+void describe(V& v, Bounds& r) {
+  v.field("lo", r.lo, "scene units", "least corner");
+  v.field("hi", r.hi, "scene units", "greatest corner");
+}
+
+template <class V>
+void describe(V& v, SceneSummary& r) {
+  v.field("name", r.name, "", "file or built-in scene");
+  v.field("triangles", r.triangles, "triangles", "of all meshes");
+  v.field("instanced_triangles", r.instanced_triangles, "triangles", "of all instances");
+  v.field("meshes", r.meshes, "meshes", "meshes");
+  v.field("instances", r.instances, "instances", "placements of meshes");
+  v.field("materials", r.materials, "materials", "materials");
+  v.field("textures", r.textures, "textures", "textures");
+  v.field("lights", r.lights, "lights", "point, spot and directional lights");
+  v.field("cameras", r.cameras, "cameras", "cameras");
+  v.section("bounds", r.bounds, "world-space box around all instances");
+  v.field("warnings", r.warnings, "", "what was passed over on import");
+}
+
+template <class V>
+void describe(V& v, Engine& r) {
+  v.field("kind", r.kind, "", "native or cycle");
+  v.field("deterministic", r.deterministic, "",
+          "whether everything outside of host is the same in every run");
+  v.field("reason", r.reason, "", "why");
+}
+
+template <class V>
+void describe(V& v, RaysByKind& r) {
+  v.field("camera", r.camera, "rays", "from the camera");
+  v.field("bounce", r.bounce, "rays", "from a surface, closest hit");
+  v.field("shadow", r.shadow, "rays", "from a surface, any hit");
+}
+
+template <class V>
+void describe(V& v, Rays& r) {
+  v.field("emitted", r.emitted, "rays", "that shading produced");
+  v.field("completed", r.completed, "rays", "that shading got back");
+  v.field("lost", r.lost, "rays", "emitted and never completed; 0 in a complete run");
+  v.field("restarted", r.restarted, "rays", "traced again from the root");
+  v.section("by_kind", r.by_kind, "emitted rays by kind");
+}
+
+template <class V>
+void describe(V& v, Throughput& r) {
+  v.field("packets_per_ray", r.packets_per_ray, "packets/ray", "packets issued for each completed ray");
+  v.field("hops_per_ray", r.hops_per_ray, "hops/ray", "links crossed by packets for each completed ray");
+  v.field("tests_per_ray", r.tests_per_ray, "tests/ray",
+          "box, plane, triangle and bundle tests for each ray");
+}
+
+template <class V>
+void describe(V& v, TestKind& r) {
+  v.field("count", r.count, "tests", "in all");
+  v.field("per_ray", r.per_ray, "tests/ray", "for each completed ray");
+}
+
+template <class V>
+void describe(V& v, Tests& r) {
+  v.section("box", r.box, "ray against box");
+  v.section("plane", r.plane, "ray against cull plane");
+  v.section("triangle", r.triangle, "ray against triangle");
+  v.section("bundle", r.bundle, "bundle of rays against box");
+  v.section("transforms", r.transforms, "rays brought from world to model space");
+}
+
+template <class V>
+void describe(V& v, Packets& r) {
+  v.field("issued", r.issued, "packets", "that left their owner's collections");
+  v.field("retired", r.retired, "packets", "that came back; equal to issued in a complete run");
+  v.field("hops", r.hops, "hops", "links crossed");
+  v.field("rays_mean", r.rays_mean, "rays", "members of an issued packet");
+  v.field("local_fraction", r.local_fraction, "",
+          "of a packet's members, those that live where it is looked at");
+  v.field("bubble_fraction", r.bubble_fraction, "", "of the visits of packets, those without a local ray");
+}
+
+template <class V>
+void describe(V& v, Collections& r) {
+  v.field("created", r.created, "collections", "in all");
+  v.field("peak", r.peak, "collections", "at once, the resources' peaks added up");
+  v.field("fullness_mean", r.fullness_mean, "", "rays of issued packets as a part of packets.rays");
+  v.field("memberships_peak", r.memberships_peak, "ray IDs", "at once, the resources' peaks added up");
+  v.field("spilled", r.spilled, "ray IDs", "stored beyond the capacity");
+}
+
+template <class V>
+void describe(V& v, Stalls& r) {
+  v.field("credits", r.credits, "attempts", "no packet was free to issue with");
+  v.field("link", r.link, "attempts", "the outgoing link was full");
+  v.field("slots", r.slots, "attempts", "new rays waited for slots");
+  v.field("storage", r.storage, "attempts", "too few collection blocks were free");
+  v.field("reserve", r.reserve, "attempts", "the reserve was entered: one packet at a time, deepest first");
+}
+
+template <class V>
+void describe(V& v, Resource& r) {
+  v.field("resource", r.resource, "", "number of the resource");
+  v.field("rays_admitted", r.rays_admitted, "rays", "that got a slot here");
+  v.field("rays_completed", r.rays_completed, "rays", "handed over to shading");
+  v.field("packets_issued", r.packets_issued, "packets", "from its collections");
+  v.field("packets_retired", r.packets_retired, "packets", "of its own that came back");
+  v.field("packets_seen", r.packets_seen, "packets", "looked at, its own and others'");
+  v.field("bubbles", r.bubbles, "packets", "seen without a local ray");
+  v.field("hops", r.hops, "packets", "sent on to a neighbour");
+  v.field("rays_tested", r.rays_tested, "rays", "members of packets tested here");
+  v.field("box_tests", r.box_tests, "tests", "ray against box");
+  v.field("triangle_tests", r.triangle_tests, "tests", "ray against triangle");
+  v.field("transforms", r.transforms, "rays", "brought to model space");
+  v.field("collections_created", r.collections_created, "collections", "in all");
+  v.field("collections_peak", r.collections_peak, "collections", "at once");
+  v.field("memberships_peak", r.memberships_peak, "ray IDs", "in collections at once");
+  v.field("spilled", r.spilled, "ray IDs", "stored beyond the capacity");
+  v.section("stalls", r.stalls, "what could not proceed at once");
+}
+
+template <class V>
+void describe(V& v, Link& r) {
+  v.field("from", r.from, "", "resource that sends");
+  v.field("to", r.to, "", "resource that receives");
+  v.field("depth", r.depth, "packets", "room of the queue");
+  v.field("packets", r.packets, "packets", "carried");
+  v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting, seen at sends");
+  v.field("occupancy_max", r.occupancy_max, "packets", "waiting, seen at sends");
+  v.field("stalled", r.stalled, "attempts", "sends that found the queue full");
+}
+
+template <class V>
+void describe(V& v, Effect& r) {
+  v.field("name", r.name, "", "name of the effect");
+  v.field("on", r.on, "", "whether it was computed");
+  v.field("why", r.why, "", "what called for it, or that nothing did");
+}
+
+template <class V>
+void describe(V& v, Shading& r) {
+  v.field("workers", r.workers, "workers", "shader workers");
+  v.field("shaded", r.shaded, "rays", "completed rays shaded");
+  v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
+  v.section("effects", r.effects, "effects of light");
+}
+
+template <class V>
+void describe(V& v, Verify& r) {
+  v.field("compared", r.compared, "rays", "traced again, depth first");
+  v.field("mismatches", r.mismatches, "rays", "whose hit differs in a bit");
+  v.field("example", r.example, "", "one of them, or nothing");
+}
+
+template <class V>
+void describe(V& v, Digest& r) {
+  v.field("hits", r.hits, "", "128 bits over all rays and their hits, in any order");
+  v.field("image", r.image, "", "hash of the linear picture; absent when no picture was made");
+}
+
+template <class V>
+void describe(V& v, Machine& r) {
+  v.field("cpu", r.cpu, "", "processor");
+  v.field("system", r.system, "", "operating system");
+  v.field("cores", r.cores, "cores", "hardware threads");
+  v.field("memory_bytes", r.memory_bytes, "bytes", "of the machine");
+}
+
+template <class V>
+void describe(V& v, Host& r) {
+  v.field("threads", r.threads, "threads", "worker threads");
+  v.field("wall_seconds", r.wall_seconds, "s", "of the simulation, without loading and building");
+  v.field("rays_per_second", r.rays_per_second, "rays/s", "completed rays over wall_seconds");
+  v.field("scene_seconds", r.scene_seconds, "s", "to load or generate the scene");
+  v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure");
+  v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
+  v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");
+  v.field("simd", r.simd, "", "instruction sets of the test kernels, the one used first");
+  v.section("machine", r.machine, "what it ran on");
+}
+
+template <class V>
+void describe(V& v, Report& r) {
+  v.field("schema_version", r.schema_version, "", "version of these keys");
+  v.field("incomplete", r.incomplete, "", "whether the run was interrupted; counts are then partial");
+  v.section("carousel", r.carousel, "the program");
+  v.any("config", r.config, "resolved configuration; see carousel schema config");
+  v.section("scene", r.scene, "what was rendered");
+  v.section("engine", r.engine, "how it was simulated");
+  v.section("rays", r.rays, "rays; emitted = completed + lost");
+  v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
+  v.section("tests", r.tests, "tests done");
+  v.section("packets", r.packets, "packets");
+  v.section("collections", r.collections, "rays waiting for a node");
+  v.section("resources", r.resources, "each resource");
+  v.section("links", r.links, "each link");
+  v.section("shading", r.shading, "shader workers");
+  v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
+  v.section("digest", r.digest, "equal digests mean equal hits and an equal picture");
+  v.section("host", r.host, "all that depends on the host and on time");
+}
+
+}  // namespace carousel::report

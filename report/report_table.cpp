@@ -1,0 +1,149 @@
+#include "report/report_table.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "report/number_text.h"
+#include "report/ratio.h"
+
+namespace carousel::report {
+
+namespace {
+
+class Table {
+ public:
+  /// A line that begins with a name on the left; an empty name continues the last one.
+  template <class... Args>
+  void line(std::string_view name, fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(out_), "{:<13}", name);
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+    out_ += '\n';
+  }
+  void gap() { out_ += '\n'; }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+};
+
+/// Least, mean and greatest over the resources: what balance looks like without a line for each.
+template <class Value>
+void spread_line(Table& table, std::string_view name, const std::vector<Resource>& resources,
+                 const Value& value) {
+  std::uint64_t least = value(resources.front()), most = least, sum = 0;
+  for (const Resource& resource : resources) {
+    least = std::min(least, value(resource));
+    most = std::max(most, value(resource));
+    sum += value(resource);
+  }
+  const double mean = ratio(sum, resources.size());
+  table.line("", "{:<18} {:>14} {:>14} {:>14}   {:.2f}", name, grouped(least),
+             grouped(static_cast<std::uint64_t>(mean + 0.5)), grouped(most), ratio(double(most), mean));
+}
+
+void resource_lines(Table& table, const std::vector<Resource>& resources) {
+  table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean",
+             fmt::format("{} of them", resources.size()), "least", "mean", "most");
+  spread_line(table, "rays", resources, [](const Resource& r) { return r.rays_completed; });
+  spread_line(table, "rays tested", resources, [](const Resource& r) { return r.rays_tested; });
+  spread_line(table, "box tests", resources, [](const Resource& r) { return r.box_tests; });
+  spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.triangle_tests; });
+  spread_line(table, "packets issued", resources, [](const Resource& r) { return r.packets_issued; });
+  spread_line(table, "packets seen", resources, [](const Resource& r) { return r.packets_seen; });
+  Stalls stalls;
+  for (const Resource& r : resources) {
+    stalls.credits += r.stalls.credits;
+    stalls.link += r.stalls.link;
+    stalls.slots += r.stalls.slots;
+    stalls.storage += r.stalls.storage;
+    stalls.reserve += r.stalls.reserve;
+  }
+  table.line("stalls", "credits {}   link {}   slots {}   storage {}   reserve {}", grouped(stalls.credits),
+             grouped(stalls.link), grouped(stalls.slots), grouped(stalls.storage), grouped(stalls.reserve));
+}
+
+void link_line(Table& table, const std::vector<Link>& links) {
+  std::uint64_t packets = 0, stalled = 0, occupancy = 0, depth = 0;
+  double mean = 0;
+  for (const Link& link : links) {
+    packets += link.packets;
+    stalled += link.stalled;
+    occupancy = std::max(occupancy, link.occupancy_max);
+    depth = std::max(depth, link.depth);
+    mean += link.occupancy_mean * static_cast<double>(link.packets);
+  }
+  table.line("links", "{} of depth {}   {} packets   occupancy {:.1f} mean, {} most   {} refused",
+             links.size(), depth, grouped(packets), ratio(mean, double(packets)), occupancy,
+             grouped(stalled));
+}
+
+void test_line(Table& table, const Tests& t) {
+  std::string rare;
+  for (const auto& [name, test] : {std::pair{"plane", t.plane}, std::pair{"bundle", t.bundle}})
+    if (test.count > 0) rare += fmt::format("   {} {:.2f}", name, test.per_ray);
+  table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray,
+             t.triangle.per_ray, t.transforms.per_ray, rare);
+}
+
+void packet_lines(Table& table, const Report& report) {
+  if (const auto& p = report.packets) {
+    table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(p->issued),
+               grouped(p->retired), ratio(p->issued, report.rays.completed), ratio(p->hops, p->issued));
+    table.line("", "{:.1f} rays each   {} of them local where seen   {} of visits without any", p->rays_mean,
+               percent(p->local_fraction), percent(p->bubble_fraction));
+  }
+  if (const auto& c = report.collections) {
+    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled",
+               grouped(c->created), grouped(c->peak), percent(c->fullness_mean), grouped(c->memberships_peak),
+               grouped(c->spilled));
+  }
+}
+
+std::string image_text(const nlohmann::ordered_json& config) {
+  const auto image = config.find("image");
+  if (image == config.end()) return "";
+  return fmt::format("   {} x {} pixels, {} samples", image->value("width", 0), image->value("height", 0),
+                     image->value("samples", 0));
+}
+
+std::string ring_text(const nlohmann::ordered_json& config) {
+  const auto topology = config.find("topology");
+  if (topology == config.end()) return "";
+  return fmt::format(": {} resources, {}", topology->value("resources", 0), topology->value("shape", ""));
+}
+
+}  // namespace
+
+std::string report_table(const Report& report) {
+  Table table;
+  if (report.incomplete) table.line("INCOMPLETE", "the run was interrupted; what follows is what was done");
+  table.line("scene", "{}: {} triangles, {} instances{}", report.scene.name, grouped(report.scene.triangles),
+             grouped(report.scene.instances), image_text(report.config));
+  table.line("engine", "{}{} on {} threads, {} shader workers", report.engine.kind, ring_text(report.config),
+             report.host.threads, report.shading.workers);
+  table.gap();
+  const Rays& rays = report.rays;
+  table.line("rays", "{} emitted   {} completed   {} lost", grouped(rays.emitted), grouped(rays.completed),
+             grouped(rays.lost));
+  table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera),
+             grouped(rays.by_kind.bounce), grouped(rays.by_kind.shadow));
+  table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
+             scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
+             seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
+  if (report.tests) test_line(table, *report.tests);
+  packet_lines(table, report);
+  if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
+  if (report.links && !report.links->empty()) link_line(table, *report.links);
+  table.gap();
+  if (report.verify)
+    table.line("verify", "{} rays traced again, {} mismatches{}", grouped(report.verify->compared),
+               grouped(report.verify->mismatches),
+               report.verify->example.empty() ? "" : "; " + report.verify->example);
+  table.line("digest", "hits {}{}", report.digest.hits,
+             report.digest.image ? "   image " + *report.digest.image : "");
+  return table.take();
+}
+
+}  // namespace carousel::report
