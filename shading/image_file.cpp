@@ -2,12 +2,14 @@
 
 #include <memory>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "shading/srgb.h"
 #include "shading/tone_curve.h"
@@ -16,44 +18,20 @@ namespace carousel::shading {
 
 namespace {
 
-/// Removes what was not renamed.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::filesystem::path& target) : target_(target), path_(target) {
-    // The format is told from the extension, so that stays last.
-    path_.replace_filename(target.stem().string() + ".tmp" + target.extension().string());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    std::error_code ignored;
-    if (!renamed_) std::filesystem::remove(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
-  void rename() {
-    std::error_code error;
-    std::filesystem::rename(path_, target_, error);
-    if (error) throw FileError(fmt::format("cannot write {}: {}", target_.string(), error.message()));
-    renamed_ = true;
-  }
-
- private:
-  std::filesystem::path target_, path_;
-  bool renamed_ = false;
-};
-
-void write(const std::filesystem::path& path, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-           const void* pixels) {
-  TemporaryFile temporary(path);
+/// Encodes in memory, so that AtomicFile can do the writing. `format` is a file extension.
+void write(const std::filesystem::path& path, const std::string& format, const OIIO::ImageSpec& spec,
+           OIIO::TypeDesc type, const void* pixels) {
   auto fail = [&](const std::string& why) {
-    throw FileError(fmt::format("cannot write {}: {}", path.string(), why));
+    throw FileError(fmt::format("cannot encode {}: {}", path.string(), why));
   };
-  const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(temporary.path().string());
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create("image." + format, &memory);
   if (!file) fail(OIIO::geterror());
-  if (!file->open(temporary.path().string(), spec)) fail(file->geterror());
+  if (!file->open("image." + format, spec)) fail(file->geterror());
   if (!file->write_image(type, pixels)) fail(file->geterror());
   if (!file->close()) fail(file->geterror());
-  temporary.rename();
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace
@@ -69,7 +47,7 @@ void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint
   }
   OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  write(path, spec, OIIO::TypeDesc::UINT8, pixels.data());
+  write(path, "png", spec, OIIO::TypeDesc::UINT8, pixels.data());
 }
 
 void write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
@@ -77,7 +55,7 @@ void write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint
   OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::FLOAT);
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("compression", "zip");
-  write(path, spec, OIIO::TypeDesc::FLOAT, rgb.data());
+  write(path, "exr", spec, OIIO::TypeDesc::FLOAT, rgb.data());
 }
 
 }  // namespace carousel::shading

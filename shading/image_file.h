@@ -6,8 +6,8 @@
 
 namespace carousel::shading {
 
-// Both write beside the target and rename, so that no half-written picture is ever found under its name.
-// `rgb` is linear, row-major from the top left, 3 * width * height floats. Throw FileError.
+// Both write whole files or nothing (core/atomic_file.h), whatever the extension of `path` is. `rgb` is
+// linear, row-major from the top left, 3 * width * height floats. Throw FileError.
 
 /// For looking at: exposure 1, tone_curve(), sRGB, 8 bit.
 void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
