@@ -11,15 +11,11 @@
 namespace carousel::accel {
 
 int Accel::strip_size(NodeKey key) const {
-  if (key.ref.is_inner()) return nodes[key.ref.node()].count;
-  int triangles = 0;
-  for (std::uint32_t b = 0; b < key.ref.blocks(); ++b)
-    for (const std::uint32_t p : blocks[key.ref.first_block() + b].primitive) triangles += p != kNoPrimitive;
-  return triangles;
+  return key.ref.is_inner() ? nodes[key.ref.node()].count : static_cast<int>(key.ref.triangles());
 }
 
 std::uint32_t Accel::triangles_below(NodeKey key) const {
-  return key.ref.is_inner() ? nodes[key.ref.node()].triangles : static_cast<std::uint32_t>(strip_size(key));
+  return key.ref.is_inner() ? nodes[key.ref.node()].triangles : key.ref.triangles();
 }
 
 namespace {
@@ -31,7 +27,7 @@ struct PlacedBlas {
 
   NodeRef place(NodeRef ref) const {
     return ref.is_inner() ? NodeRef::inner(ref.node() + first_node)
-                          : NodeRef::leaf(ref.first_block() + first_block, ref.blocks());
+                          : NodeRef::leaf(ref.first_block() + first_block, ref.triangles());
   }
 };
 

@@ -53,8 +53,7 @@ Blas build_blas(const scene::Mesh& mesh, const BvhConfig& config, Executor& exec
     const std::uint32_t first_block = static_cast<std::uint32_t>(fills.size());
     for (std::uint32_t i = 0; i < leaf.count; i += kBlockTriangles)
       fills.push_back({leaf.first + i, std::min<std::uint32_t>(kBlockTriangles, leaf.count - i)});
-    const std::uint32_t blocks = static_cast<std::uint32_t>(fills.size()) - first_block;
-    return WideLeaf{NodeRef::leaf(first_block, blocks), static_cast<std::uint8_t>(leaf.count), leaf.count};
+    return WideLeaf{NodeRef::leaf(first_block, leaf.count), static_cast<std::uint8_t>(leaf.count), leaf.count};
   };
   blas.nodes.reserve(primitives.size() / 8 + 1);
   blas.tree = collapse(binary, static_cast<int>(config.width), make_leaf, blas.nodes);

@@ -22,31 +22,40 @@ namespace carousel::accel::HWY_NAMESPACE {
 struct DepthFirstStack {
   struct Entry {
     float entry;
-    NodeRef ref;
+    std::uint32_t ref;   // bits of a NodeRef, which would be initialised: 512 times a call for nothing
   };
   static constexpr int kCapacity = 512;
   Entry entries[kCapacity];
 };
 
-/// Everything testing below one instance (or in the world) needs of a ray.
+/// Everything testing below one instance needs of a ray. Refers to the slab form, which outlives it: copying
+/// what was just written piece by piece would stall on the stores.
 struct FrameRay {
-  SlabRay slab;
+  const SlabRay& slab;
   WatertightRay watertight;
   std::uint32_t instance;
   float instance_entry;
 
-  FrameRay(const Ray& ray, std::uint32_t i, float entry)
-      : slab(ray), watertight(ray), instance(i), instance_entry(entry) {}
+  FrameRay(const SlabRay& s, const Ray& ray, std::uint32_t i, float entry)
+      : slab(s), watertight(ray), instance(i), instance_entry(entry) {}
 };
 
-/// The ray below instance `index`: in model space, with the entry into the instance's world box.
-HWY_INLINE FrameRay enter_instance(const InstanceNode& node, std::uint32_t index, const Ray& world,
-                                   const SlabRay& world_slab, TestCounts& counts) {
+/// Calls `body(frame)` with the ray as it is below instance `index`: in model space.
+template <class Body>
+HWY_INLINE bool in_instance(const InstanceNode& node, std::uint32_t index, const Ray& world, const SlabRay& world_slab,
+                            float entry, TestCounts& counts, const Body& body) {
+  if (node.transform.identity) return body(FrameRay(world_slab, world, index, entry));
+  ++counts.transforms;
+  const Ray model = node.transform.to_model(world);
+  const SlabRay model_slab(model);
+  return body(FrameRay(model_slab, model, index, entry));
+}
+
+/// Entry into the world box of an instance, which has been hit on the way here.
+HWY_INLINE float instance_entry(const InstanceNode& node, const SlabRay& world) {
   float entry;
-  // The box has been hit on the way here; only the entry is wanted.
-  slab(world_slab, node.world, kInfinity, entry);
-  if (!node.transform.identity) ++counts.transforms;
-  return FrameRay(node.transform.to_model(world), index, entry);
+  slab(world, node.world, kInfinity, entry);
+  return entry;
 }
 
 HWY_INLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay& ray, Hit& hit) {
@@ -58,60 +67,67 @@ HWY_INLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes,
 }
 
 /// Visits everything below `root`. `visit_other(ref)` tests what is not an inner node and returns true to stop.
+/// Adds the boxes tested to `boxes`.
 template <class VisitOther>
-HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const SlabRay& ray, const Hit& hit,
-                            DepthFirstStack& stack, TestCounts& counts, const VisitOther& visit_other) {
-  int top = 0;
+HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const SlabRay& slab_ray, const Hit& hit,
+                            DepthFirstStack& stack, std::uint64_t& boxes, const VisitOther& visit_other) {
+  const SlabLanes ray(slab_ray);
+  const Node* const nodes = accel.nodes.data();
+  DepthFirstStack::Entry* top = stack.entries;
   NodeRef ref = root;
+  std::uint64_t tested = 0;
   for (;;) {
     while (ref.is_inner()) {
-      const Node& node = accel.nodes[ref.node()];
+      const Node& node = nodes[ref.node()];
       alignas(64) float entry[kMaxWidth];
-      counts.box += node.count;
+      tested += node.count;
       std::uint32_t mask = slab_node(node, ray, hit.t, entry);
       if (mask == 0) goto pop;
       const int first = std::countr_zero(mask);
       mask &= mask - 1;
-      DepthFirstStack::Entry nearest{entry[first], node.child[first]};
-      if (HWY_LIKELY(mask == 0)) {
-        ref = nearest.ref;
+      if (mask == 0) {
+        ref = node.child[first];
         continue;
       }
-      const int bottom = top;
+      const int second = std::countr_zero(mask);
+      mask &= mask - 1;
+      // Which of the two is nearer is a coin toss no predictor guesses: selected without a branch.
+      const bool swap = entry[second] < entry[first];
+      const int near_lane = swap ? second : first, far_lane = swap ? first : second;
+      DepthFirstStack::Entry nearest{entry[near_lane], node.child[near_lane].bits()};
+      DepthFirstStack::Entry* const bottom = top;
+      *top++ = {entry[far_lane], node.child[far_lane].bits()};
       for (; mask != 0; mask &= mask - 1) {
         const int lane = std::countr_zero(mask);
-        DepthFirstStack::Entry other{entry[lane], node.child[lane]};
+        DepthFirstStack::Entry other{entry[lane], node.child[lane].bits()};
         if (other.entry < nearest.entry) std::swap(other, nearest);
-        int at = top++;
-        for (; at > bottom && stack.entries[at - 1].entry < other.entry; --at)
-          stack.entries[at] = stack.entries[at - 1];
-        stack.entries[at] = other;
+        DepthFirstStack::Entry* at = top++;
+        for (; at > bottom && at[-1].entry < other.entry; --at) *at = at[-1];
+        *at = other;
       }
-      ref = nearest.ref;
+      ref = NodeRef::from_bits(nearest.ref);
     }
-    if (visit_other(ref)) return true;
+    if (visit_other(ref)) {
+      boxes += tested;
+      return true;
+    }
   pop:
     do {
-      if (top == 0) return false;
+      if (top == stack.entries) {
+        boxes += tested;
+        return false;
+      }
       --top;
-    } while (stack.entries[top].entry > hit.t);
-    ref = stack.entries[top].ref;
+    } while (top->entry > hit.t);
+    ref = NodeRef::from_bits(top->ref);
   }
 }
 
-HWY_INLINE int leaf_triangles(const Accel& accel, NodeRef leaf) {
-  int triangles = 0;
-  for (std::uint32_t b = 0; b < leaf.blocks(); ++b)
-    for (int l = 0; l < kBlockTriangles; ++l)
-      triangles += accel.blocks[leaf.first_block() + b].primitive[l] != kNoPrimitive;
-  return triangles;
-}
-
 /// Below one instance. True when a shadow ray is settled.
-HWY_INLINE bool trace_instance(const Accel& accel, NodeRef root, const FrameRay& ray, bool any_hit, Hit& hit,
+HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef root, const FrameRay& ray, bool any_hit, Hit& hit,
                                DepthFirstStack& stack, TestCounts& counts) {
-  return depth_first(accel, root, ray.slab, hit, stack, counts, [&](NodeRef leaf) {
-    counts.triangle += static_cast<std::uint64_t>(leaf_triangles(accel, leaf));
+  return depth_first(accel, root, ray.slab, hit, stack, counts.box, [&](NodeRef leaf) HWY_ATTR {
+    counts.triangle += leaf.triangles();
     return test_leaf(accel, leaf, ~0u, ray, hit) && any_hit;
   });
 }

@@ -46,7 +46,7 @@ void TestBoxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMe
     counts.transforms += move;
     counts.box += boxes;
     alignas(64) float entry[kMaxWidth];
-    const std::uint32_t mask = slab_node(node, ray, record.hit.t, entry) & lanes;
+    const std::uint32_t mask = slab_node(node, SlabLanes(ray), record.hit.t, entry) & lanes;
     hits.masks[i] = static_cast<std::uint8_t>(mask);
     for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
@@ -60,15 +60,15 @@ void TestBoxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMe
 void TestTriangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
                    TestCounts& counts) {
   const InstanceNode& instance = accel.instances[key.instance];
-  const int triangles = leaf_triangles(accel, key.ref);
-  lanes &= static_cast<std::uint32_t>((std::uint64_t{1} << triangles) - 1);
+  lanes &= (1u << key.ref.triangles()) - 1;
   const std::uint64_t tested = static_cast<std::uint64_t>(std::popcount(lanes));
   for (std::size_t i = 0; i < members.count; ++i) {
     RayRecord& record = member(members, i);
     if (record.tag.flags & kRayDone) continue;
-    const FrameRay ray = enter_instance(instance, key.instance, record.ray, SlabRay(record.ray), counts);
+    const SlabRay world(record.ray);
     counts.triangle += tested;
-    test_leaf(accel, key.ref, lanes, ray, record.hit);
+    in_instance(instance, key.instance, record.ray, world, instance_entry(instance, world), counts,
+                [&](const FrameRay& ray) HWY_ATTR { return test_leaf(accel, key.ref, lanes, ray, record.hit); });
     settle(record);
   }
 }
@@ -89,16 +89,25 @@ void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, Te
     if (record.tag.flags & kRayDone) continue;
     const bool any_hit = record.tag.kind == RayKind::kShadow;
     const SlabRay world(record.ray);
+    const auto below_instance = [&](std::uint32_t index, NodeRef root, float entry) HWY_ATTR {
+      return in_instance(accel.instances[index], index, record.ray, world, entry, counts,
+                         [&](const FrameRay& ray) HWY_ATTR {
+                           return trace_instance(accel, root, ray, any_hit, record.hit, model_stack, counts);
+                         });
+    };
     if (key.instance != kNoInstance) {
-      const FrameRay ray =
-          enter_instance(accel.instances[key.instance], key.instance, record.ray, world, counts);
-      trace_instance(accel, key.ref, ray, any_hit, record.hit, model_stack, counts);
+      below_instance(key.instance, key.ref, instance_entry(accel.instances[key.instance], world));
+    } else if (accel.nodes[key.ref.node()].count == 1) {
+      // Only the root of a world of one instance has one child: eight lanes for its box would be a waste.
+      const std::uint32_t index = accel.nodes[key.ref.node()].child[0].instance_index();
+      float entry;
+      ++counts.box;
+      if (slab(world, accel.instances[index].world, record.hit.t, entry))
+        below_instance(index, accel.instances[index].root, entry);
     } else {
-      depth_first(accel, key.ref, world, record.hit, world_stack, counts, [&](NodeRef ref) {
+      depth_first(accel, key.ref, world, record.hit, world_stack, counts.box, [&](NodeRef ref) HWY_ATTR {
         const std::uint32_t index = ref.instance_index();
-        const InstanceNode& instance = accel.instances[index];
-        const FrameRay ray = enter_instance(instance, index, record.ray, world, counts);
-        return trace_instance(accel, instance.root, ray, any_hit, record.hit, model_stack, counts);
+        return below_instance(index, accel.instances[index].root, instance_entry(accel.instances[index], world));
       });
     }
     settle(record);

@@ -12,7 +12,7 @@ inline constexpr int kMaxWidth = 8;
 inline constexpr int kBlockTriangles = 4;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
-/// Names a shape of the structure in 32 bits: an inner node, a leaf (1 to 4 consecutive triangle blocks), or,
+/// Names a shape of the structure in 32 bits: an inner node, a leaf (1 to 16 triangles in consecutive blocks), or,
 /// below the top level only, an instance.
 class NodeRef {
  public:
@@ -20,8 +20,8 @@ class NodeRef {
 
   constexpr NodeRef() = default;
   static constexpr NodeRef inner(std::uint32_t node) { return NodeRef(node); }
-  static constexpr NodeRef leaf(std::uint32_t first_block, std::uint32_t blocks) {
-    return NodeRef(1u << 30 | (blocks - 1) << 28 | first_block);
+  static constexpr NodeRef leaf(std::uint32_t first_block, std::uint32_t triangles) {
+    return NodeRef(1u << 30 | (triangles - 1) << 26 | first_block);
   }
   static constexpr NodeRef instance(std::uint32_t index) { return NodeRef(2u << 30 | index); }
   static constexpr NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
@@ -29,8 +29,9 @@ class NodeRef {
   constexpr Kind kind() const { return static_cast<Kind>(bits_ >> 30); }
   constexpr bool is_inner() const { return bits_ < (1u << 30); }
   constexpr std::uint32_t node() const { return bits_; }
-  constexpr std::uint32_t first_block() const { return bits_ & 0x0fffffffu; }
-  constexpr std::uint32_t blocks() const { return ((bits_ >> 28) & 3u) + 1; }
+  constexpr std::uint32_t first_block() const { return bits_ & 0x03ffffffu; }
+  constexpr std::uint32_t triangles() const { return ((bits_ >> 26) & 15u) + 1; }
+  constexpr std::uint32_t blocks() const { return (triangles() + 3) / 4; }
   constexpr std::uint32_t instance_index() const { return bits_ & 0x3fffffffu; }
   constexpr std::uint32_t bits() const { return bits_; }
   friend constexpr bool operator==(NodeRef, NodeRef) = default;
@@ -40,8 +41,8 @@ class NodeRef {
   std::uint32_t bits_ = 0;
 };
 inline constexpr std::uint32_t kMaxNodes = 1u << 30;
-inline constexpr std::uint32_t kMaxBlocks = 1u << 28;
-inline constexpr std::uint32_t kMaxLeafBlocks = 4;
+inline constexpr std::uint32_t kMaxBlocks = 1u << 26;
+inline constexpr std::uint32_t kMaxLeafTriangles = 16;
 
 /// A node where it stands in the world: what a collection gathers for and a packet names. `instance` is
 /// kNoInstance above the instances.

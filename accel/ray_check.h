@@ -18,21 +18,21 @@ inline bool valid(const Ray& ray) {
 
 /// The record of a ray that has been tested against nothing yet. A ray that is not valid gets a range that ends
 /// before it starts, which every box misses.
-inline RayRecord start_record(const RayRequest& request) {
-  RayRecord record;
+inline void start_record(const RayRequest& request, RayRecord& record) {
   record.ray = request.ray;
   record.tag = request.tag;
   record.tag.flags = 0;
+  record.hit = Hit{};
   record.hit.t = valid(request.ray) ? request.ray.tmax : -kInfinity;
-  return record;
 }
 
-/// What the workload gets of a completed record; a miss in its one canonical form.
-inline RayResult finish_record(const RayRecord& record) {
-  RayResult result{record.ray, record.hit, record.tag};
+/// Appends what the workload gets of a completed record; a miss in its one canonical form.
+inline void finish_record(const RayRecord& record, HitBatch& out) {
+  RayResult& result = out.emplace_back();
+  result.ray = record.ray;
+  if (record.hit.valid()) result.hit = record.hit;
+  result.tag = record.tag;
   result.tag.flags = 0;
-  if (!result.hit.valid()) result.hit = Hit{};
-  return result;
 }
 
 }  // namespace carousel::accel

@@ -12,9 +12,9 @@ void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, 
   std::array<RayRecord, kChunk> records;
   for (std::size_t begin = 0; begin < rays.size(); begin += kChunk) {
     const std::size_t count = std::min(kChunk, rays.size() - begin);
-    for (std::size_t i = 0; i < count; ++i) records[i] = start_record(rays[begin + i]);
+    for (std::size_t i = 0; i < count; ++i) start_record(rays[begin + i], records[i]);
     trace_subtree(accel, accel.root_key(), {records.data(), nullptr, count}, counts);
-    for (std::size_t i = 0; i < count; ++i) out.push_back(finish_record(records[i]));
+    for (std::size_t i = 0; i < count; ++i) finish_record(records[i], out);
   }
 }
 

@@ -39,24 +39,46 @@ HWY_INLINE V keep_min(V a, V b) {
 #endif
 }
 
+/// A SlabRay in registers: one for a whole traversal.
+struct SlabLanes {
+  using Tag = hn::CappedTag<float, kMaxWidth>;
+  using Vec = hn::Vec<Tag>;
+  Vec origin_x, origin_y, origin_z, near_x, near_y, near_z, far_x, far_y, far_z, tmin;
+  std::uint32_t near_row[3], far_row[3];
+
+  HWY_INLINE explicit SlabLanes(const SlabRay& ray) {
+    const Tag d;
+    origin_x = hn::Set(d, ray.origin[0]), origin_y = hn::Set(d, ray.origin[1]), origin_z = hn::Set(d, ray.origin[2]);
+    near_x = hn::Set(d, ray.inverse_near[0]), near_y = hn::Set(d, ray.inverse_near[1]);
+    near_z = hn::Set(d, ray.inverse_near[2]), far_x = hn::Set(d, ray.inverse_far[0]);
+    far_y = hn::Set(d, ray.inverse_far[1]), far_z = hn::Set(d, ray.inverse_far[2]);
+    tmin = hn::Set(d, ray.tmin);
+    for (int axis = 0; axis < 3; ++axis) {
+      near_row[axis] = ray.near_row[axis];
+      far_row[axis] = ray.far_row[axis];
+    }
+  }
+};
+
 /// One ray against the eight boxes of a node: bit l of the result when lane l is entered before tmax; all
 /// eight entries (never below tmin) are stored.
-HWY_INLINE std::uint32_t slab_node(const Node& node, const SlabRay& ray, float tmax, float* HWY_RESTRICT entry) {
-  const hn::CappedTag<float, kMaxWidth> d;
+HWY_INLINE std::uint32_t slab_node(const Node& node, const SlabLanes& ray, float tmax, float* HWY_RESTRICT entry) {
+  const SlabLanes::Tag d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const char* const planes = reinterpret_cast<const char*>(&node.plane[0][0]);
+  const auto plane = [&](std::uint32_t row, std::size_t i) HWY_ATTR {
+    return hn::Load(d, reinterpret_cast<const float*>(planes + row) + i);
+  };
   std::uint32_t mask = 0;
   for (std::size_t i = 0; i < kMaxWidth; i += kLanes) {
-    auto near = hn::Set(d, ray.tmin);
+    auto near = ray.tmin;
     auto far = hn::Set(d, tmax);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto origin = hn::Set(d, ray.origin[axis]);
-      const auto n = hn::Mul(hn::Sub(hn::Load(d, node.plane[ray.near_row[axis]] + i), origin),
-                             hn::Set(d, ray.inverse_near[axis]));
-      const auto f = hn::Mul(hn::Sub(hn::Load(d, node.plane[ray.far_row[axis]] + i), origin),
-                             hn::Set(d, ray.inverse_far[axis]));
-      near = keep_max(n, near);
-      far = keep_min(f, far);
-    }
+    near = keep_max(hn::Mul(hn::Sub(plane(ray.near_row[0], i), ray.origin_x), ray.near_x), near);
+    far = keep_min(hn::Mul(hn::Sub(plane(ray.far_row[0], i), ray.origin_x), ray.far_x), far);
+    near = keep_max(hn::Mul(hn::Sub(plane(ray.near_row[1], i), ray.origin_y), ray.near_y), near);
+    far = keep_min(hn::Mul(hn::Sub(plane(ray.far_row[1], i), ray.origin_y), ray.far_y), far);
+    near = keep_max(hn::Mul(hn::Sub(plane(ray.near_row[2], i), ray.origin_z), ray.near_z), near);
+    far = keep_min(hn::Mul(hn::Sub(plane(ray.far_row[2], i), ray.origin_z), ray.far_z), far);
     hn::Store(near, d, entry + i);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(d, hn::Le(near, far), bits);

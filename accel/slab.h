@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
+#include "accel/node.h"
 #include "core/aabb.h"
 #include "core/ray.h"
 
@@ -16,28 +18,36 @@ namespace carousel::accel {
 inline constexpr float kFarWidening = 1.0f + 0x1p-20f;   // 16 u
 
 /// A ray as the slab test wants it. A box hit by it is hit by every box around it, entered no later: each
-/// operation is monotone in the plane.
+/// operation is monotone in the plane. The arrays are written a register at a time (x, y, z, unused).
 struct SlabRay {
-  float origin[3];
-  float inverse_near[3];
-  float inverse_far[3];      ///< widened by kFarWidening
-  std::uint32_t near_row[3]; ///< rows of Node::plane
+  static constexpr std::uint32_t kRowBytes = sizeof(Node::plane[0]);
+
+  alignas(16) float origin[4];
+  alignas(16) float inverse_near[4];
+  alignas(16) float inverse_far[4];   ///< widened by kFarWidening
+  std::uint32_t near_row[3];          ///< byte offsets of rows of Node::plane: row axis, or axis + 3
   std::uint32_t far_row[3];
   float tmin;
 
   explicit SlabRay(const Ray& ray) : tmin(ray.tmin) {
+    using Float4 = float __attribute__((vector_size(16)));
+    using Int4 = std::int32_t __attribute__((vector_size(16)));
+    const Float4 o{ray.origin.x, ray.origin.y, ray.origin.z, 0.0f};
+    const Float4 d{ray.direction.x, ray.direction.y, ray.direction.z, 1.0f};
+    const Float4 inverse = 1.0f / d;
+    const Float4 far = inverse * kFarWidening;
+    // The reciprocal of a denormal overflows: a finite stand-in for the near planes, too early rather than too
+    // late, and infinity for the far ones. A zero keeps its infinity.
+    constexpr float kMax = std::numeric_limits<float>::max();
+    const Int4 overflow = (d != 0.0f) & ((inverse > kMax) | (inverse < -kMax));
+    const Float4 near = overflow ? (d < 0.0f ? Float4{} - kMax : Float4{} + kMax) : inverse;
+    std::memcpy(origin, &o, sizeof(o));
+    std::memcpy(inverse_near, &near, sizeof(near));
+    std::memcpy(inverse_far, &far, sizeof(far));
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const float d = ray.direction[static_cast<int>(axis)];
-      origin[axis] = ray.origin[static_cast<int>(axis)];
-      const bool negative = std::signbit(d);
-      near_row[axis] = negative ? axis + 3 : axis;
-      far_row[axis] = negative ? axis : axis + 3;
-      inverse_near[axis] = 1.0f / d;
-      inverse_far[axis] = inverse_near[axis] * kFarWidening;
-      // The reciprocal of a denormal overflows: a finite stand-in for the near planes, too early rather than
-      // too late, and infinity for the far ones.
-      if (d != 0.0f && std::isinf(inverse_near[axis]))
-        inverse_near[axis] = std::copysign(std::numeric_limits<float>::max(), d);
+      const bool negative = std::signbit(ray.direction[static_cast<int>(axis)]);
+      near_row[axis] = (negative ? axis + 3 : axis) * kRowBytes;
+      far_row[axis] = (negative ? axis : axis + 3) * kRowBytes;
     }
   }
 };
@@ -47,8 +57,8 @@ struct SlabRay {
 inline bool slab(const SlabRay& ray, const Aabb& box, float tmax, float& entry) {
   float near = ray.tmin, far = tmax;
   for (int axis = 0; axis < 3; ++axis) {
-    const float near_plane = ray.near_row[axis] < 3 ? box.lo[axis] : box.hi[axis];
-    const float far_plane = ray.far_row[axis] < 3 ? box.lo[axis] : box.hi[axis];
+    const float near_plane = ray.near_row[axis] < 3 * SlabRay::kRowBytes ? box.lo[axis] : box.hi[axis];
+    const float far_plane = ray.far_row[axis] < 3 * SlabRay::kRowBytes ? box.lo[axis] : box.hi[axis];
     const float n = (near_plane - ray.origin[axis]) * ray.inverse_near[axis];
     const float f = (far_plane - ray.origin[axis]) * ray.inverse_far[axis];
     near = n > near ? n : near;

@@ -24,9 +24,12 @@ struct WatertightRay {
       kx = ky;
       ky = swap;
     }
-    sx = d[kx] / d[kz];
-    sy = d[ky] / d[kz];
-    sz = 1.0f / d[kz];
+    // One division for all three.
+    using Float4 = float __attribute__((vector_size(16)));
+    const Float4 shear = Float4{d[kx], d[ky], 1.0f, 1.0f} / d[kz];
+    sx = shear[0];
+    sy = shear[1];
+    sz = shear[2];
   }
 };
 

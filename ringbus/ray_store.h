@@ -20,11 +20,10 @@ class RayStore {
     if constexpr (kChecked) generations_.resize(slots);
   }
 
-  /// Needs a free slot. The ID is valid until the slot is freed.
-  RayId allocate(const RayRecord& record) {
+  /// Needs a free slot; its record is the caller's to fill. The ID is valid until the slot is freed.
+  RayId allocate() {
     const std::uint32_t slot = free_.back();
     free_.pop_back();
-    records_[slot] = record;
     RayId id = layout_.make(owner_, slot);
     if constexpr (kChecked) id.generation.count = ++generations_[slot];
     ++allocated_;

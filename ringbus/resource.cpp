@@ -72,10 +72,10 @@ void Resource::admit(std::span<const RayRequest> rays) {
   const std::int32_t tests = tests_of(root, accel_.strip_size(root));
   ids_.clear();
   for (const RayRequest& request : rays) {
-    RayRecord record = accel::start_record(request);
-    record.pending = tests;
-    const RayId id = store_.allocate(record);
+    const RayId id = store_.allocate();
     const std::uint32_t slot = store_.slot(id);
+    accel::start_record(request, store_.record(slot));
+    store_.record(slot).pending = tests;
     if (ordered_) stacks_->clear(slot);
     if (tests == 0)
       complete(slot);   // the scene is empty
@@ -174,7 +174,7 @@ void Resource::settle(std::uint32_t slot, std::int32_t pending_change) {
 }
 
 void Resource::complete(std::uint32_t slot) {
-  completed_.push_back(accel::finish_record(store_.record(slot)));
+  accel::finish_record(store_.record(slot), completed_);
   store_.free(slot);
 }
 
