@@ -137,7 +137,7 @@ class AccelBuilder {
     }
     int tlas_depth = 1;
     if (primitives.size() <= 1) {
-      accel_.root = NodeRef::inner(static_cast<std::uint32_t>(accel_.nodes.size()));
+      accel_.root = {kNoInstance, NodeRef::inner(static_cast<std::uint32_t>(accel_.nodes.size()))};
       accel_.nodes.emplace_back();
       if (!primitives.empty()) add_only_child(accel_.nodes.back(), primitives[0].index);
     } else {
@@ -149,7 +149,7 @@ class AccelBuilder {
         return WideLeaf{NodeRef::instance(index), node.strip_size, node.triangles};
       };
       const WideTree tree = collapse(binary, accel_.width, make_leaf, accel_.nodes);
-      accel_.root = tree.root;
+      accel_.root = {kNoInstance, tree.root};
       tlas_depth = tree.depth;
     }
     accel_.max_depth = tlas_depth + blas_depth;
@@ -157,6 +157,9 @@ class AccelBuilder {
 
   void add_only_child(Node& root, std::uint32_t instance) {
     const InstanceNode& node = accel_.instances[instance];
+    // Without a transform the world box is the union of the boxes below it: passing one of those implies it, no
+    // earlier entered, so it decides nothing and rays may start below it.
+    if (node.transform.identity) accel_.root = {instance, node.root};
     root.count = 1;
     root.triangles = node.triangles;
     root.child[0] = NodeRef::instance(instance);

@@ -22,13 +22,13 @@ struct InstanceNode {
 };
 
 /// Two levels: a TLAS over instances and a BLAS a mesh, all nodes in one array and all triangles in another.
-/// Immutable once built; any thread may read. The root is always an inner node, with no children when the
+/// Immutable once built; any thread may read. The top level's root is an inner node, with no children when the
 /// scene is empty.
 struct Accel {
   std::vector<Node> nodes;
   std::vector<TriangleBlock> blocks;
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
-  NodeRef root;
+  NodeKey root;                          ///< as root_key()
   int width = kMaxWidth;                 ///< children a node at most
   int max_depth = 0;                     ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
   std::size_t baked_instances = 0;       ///< singular transforms, stored as world-space triangles
@@ -37,7 +37,8 @@ struct Accel {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) +
            instances.size() * sizeof(InstanceNode);
   }
-  NodeKey root_key() const { return {kNoInstance, root}; }
+  /// Where every ray starts: the top level's root, or the root of the only instance.
+  NodeKey root_key() const { return root; }
   /// The node a child lane leads to; an instance child leads to the root of its BLAS.
   NodeKey child_key(NodeKey parent, int lane) const {
     const NodeRef ref = nodes[parent.ref.node()].child[lane];

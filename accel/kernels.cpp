@@ -15,10 +15,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-// Records of one packet lie scattered in the store; the next one is fetched while this one is tested.
+// Records of one packet lie scattered in the store; those to come are fetched while this one is tested.
 HWY_INLINE RayRecord& member(const RayMembers& members, std::size_t i) {
   if (members.slots == nullptr) return members.records[i];
-  if (i + 2 < members.count) __builtin_prefetch(&members.records[members.slots[i + 2]], 1);
+  if (i + 4 < members.count) __builtin_prefetch(&members.records[members.slots[i + 4]], 1);
   return members.records[members.slots[i]];
 }
 
@@ -97,13 +97,6 @@ void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, Te
     };
     if (key.instance != kNoInstance) {
       below_instance(key.instance, key.ref, instance_entry(accel.instances[key.instance], world));
-    } else if (accel.nodes[key.ref.node()].count == 1) {
-      // Only the root of a world of one instance has one child: eight lanes for its box would be a waste.
-      const std::uint32_t index = accel.nodes[key.ref.node()].child[0].instance_index();
-      float entry;
-      ++counts.box;
-      if (slab(world, accel.instances[index].world, record.hit.t, entry))
-        below_instance(index, accel.instances[index].root, entry);
     } else {
       depth_first(accel, key.ref, world, record.hit, world_stack, counts.box, [&](NodeRef ref) HWY_ATTR {
         const std::uint32_t index = ref.instance_index();
@@ -161,8 +154,10 @@ void select_simd_target(SimdTarget target) {
   if (std::find(available.begin(), available.end(), wanted) == available.end()) {
     std::string names;
     for (const std::string& name : simd_targets()) names += (names.empty() ? "" : ", ") + name;
-    throw ConfigError({{{}, "engine.simd", std::string("this machine or build has no ") + hwy::TargetName(wanted) +
-                                               "; it has " + names}});
+    ConfigIssue issue;
+    issue.key_path = "engine.simd";
+    issue.message = std::string("this machine or build has no ") + hwy::TargetName(wanted) + "; it has " + names;
+    throw ConfigError({issue});
   }
   hwy::SetSupportedTargetsForTest(wanted);
   hwy::GetChosenTarget().DeInit();

@@ -29,7 +29,7 @@ struct SlabRay {
   std::uint32_t far_row[3];
   float tmin;
 
-  explicit SlabRay(const Ray& ray) : tmin(ray.tmin) {
+  [[gnu::always_inline]] explicit SlabRay(const Ray& ray) : tmin(ray.tmin) {
     using Float4 = float __attribute__((vector_size(16)));
     using Int4 = std::int32_t __attribute__((vector_size(16)));
     const Float4 o{ray.origin.x, ray.origin.y, ray.origin.z, 0.0f};
@@ -54,7 +54,7 @@ struct SlabRay {
 
 /// One box, one ray, operation for operation what slab_node() does in a lane.
 /// Returns whether it is hit before tmax; `entry` is the entry distance, not below tmin.
-inline bool slab(const SlabRay& ray, const Aabb& box, float tmax, float& entry) {
+[[gnu::always_inline]] inline bool slab(const SlabRay& ray, const Aabb& box, float tmax, float& entry) {
   float near = ray.tmin, far = tmax;
   for (int axis = 0; axis < 3; ++axis) {
     const float near_plane = ray.near_row[axis] < 3 * SlabRay::kRowBytes ? box.lo[axis] : box.hi[axis];

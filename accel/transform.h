@@ -15,7 +15,7 @@ struct InstanceTransform {
   Vec3 translation{0};
   bool identity = true;        ///< no arithmetic at all
 
-  Ray to_model(const Ray& world) const {
+  [[gnu::always_inline]] Ray to_model(const Ray& world) const {
     if (identity) return world;
     Ray model = world;
     const Vec3 p{world.origin.x - translation.x, world.origin.y - translation.y, world.origin.z - translation.z};

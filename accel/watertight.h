@@ -13,7 +13,7 @@ struct WatertightRay {
   int kx, ky, kz;
   float sx, sy, sz;
 
-  explicit WatertightRay(const Ray& ray) : origin{ray.origin.x, ray.origin.y, ray.origin.z} {
+  [[gnu::always_inline]] explicit WatertightRay(const Ray& ray) : origin{ray.origin.x, ray.origin.y, ray.origin.z} {
     const Vec3& d = ray.direction;
     const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
     kz = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);

@@ -41,15 +41,16 @@ std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel&
   const std::int64_t needed = minimum_capacity(config, accel.width, accel.max_depth);
   if (config.collections.capacity >= needed) return {};
   const bool ordered = config.collections.traversal == Traversal::kOrdered;
-  return {{{},
-           "collections.capacity",
-           fmt::format("expected at least {} ray IDs with when_full: reserve ({}), found {}; or use when_full: spill",
-                       needed,
-                       ordered ? fmt::format("ordered: a block of packets.rays = {} for each of {} slots",
-                                             config.packets.rays, config.rays.slots_per_resource)
-                               : fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep",
-                                             config.packets.rays, accel.width, accel.max_depth),
-                       config.collections.capacity)}};
+  ConfigIssue issue;
+  issue.key_path = "collections.capacity";
+  issue.message = fmt::format(
+      "expected at least {} ray IDs with when_full: reserve ({}), found {}; or use when_full: spill", needed,
+      ordered ? fmt::format("ordered: a block of packets.rays = {} for each of {} slots", config.packets.rays,
+                            config.rays.slots_per_resource)
+              : fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep", config.packets.rays,
+                            accel.width, accel.max_depth),
+      config.collections.capacity);
+  return {issue};
 }
 
 }  // namespace carousel::ringbus

@@ -13,15 +13,21 @@ inline constexpr bool kChecked = true;
 inline constexpr bool kChecked = false;
 #endif
 
-/// How often a slot has been handed out; empty unless the build is checked.
+/// How often a slot has been handed out or freed; empty unless the build is checked.
 template <bool kPresent>
-struct Generation {
-  std::uint32_t count = 0;
-  friend bool operator==(Generation, Generation) = default;
+class Generation {
+ public:
+  std::uint32_t get() const { return count_; }
+  void set(std::uint32_t count) { count_ = count; }
+
+ private:
+  std::uint32_t count_ = 0;
 };
 template <>
-struct Generation<false> {
-  friend bool operator==(Generation, Generation) = default;
+class Generation<false> {
+ public:
+  std::uint32_t get() const { return 0; }
+  void set(std::uint32_t) {}
 };
 
 /// Names a ray by where it lives. The split of the bits into owner and slot is RayIdLayout's.

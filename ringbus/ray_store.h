@@ -25,7 +25,7 @@ class RayStore {
     const std::uint32_t slot = free_.back();
     free_.pop_back();
     RayId id = layout_.make(owner_, slot);
-    if constexpr (kChecked) id.generation.count = ++generations_[slot];
+    if constexpr (kChecked) id.generation.set(++generations_[slot]);
     ++allocated_;
     return id;
   }
@@ -38,10 +38,10 @@ class RayStore {
   std::uint32_t slot(RayId id) const {
     const std::uint32_t slot = layout_.slot(id);
     if constexpr (kChecked) {
-      if (id.generation.count != generations_[slot])
+      if (id.generation.get() != generations_[slot])
         throw SimulationError("stale ray ID: resource " + std::to_string(owner_.value) + " slot " +
                               std::to_string(slot) + " is at generation " + std::to_string(generations_[slot]) +
-                              ", the ID at " + std::to_string(id.generation.count));
+                              ", the ID at " + std::to_string(id.generation.get()));
     }
     return slot;
   }

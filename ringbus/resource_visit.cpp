@@ -1,11 +1,22 @@
 // What a packet's visit does: the rays that live here are tested, everything else passes through untouched.
-#include <algorithm>
+#include <array>
 #include <bit>
 
 #include "accel/kernels.h"
 #include "ringbus/resource.h"
 
 namespace carousel::ringbus {
+
+namespace {
+
+// The baseline instruction set has no population count, and a call for eight bits is dear.
+constexpr std::array<std::int8_t, 256> kBitCount = [] {
+  std::array<std::int8_t, 256> counts{};
+  for (std::size_t i = 1; i < counts.size(); ++i) counts[i] = static_cast<std::int8_t>(counts[i / 2] + (i & 1));
+  return counts;
+}();
+
+}  // namespace
 
 void Resource::gather_local(const Packet& packet) {
   local_slots_.clear();
@@ -45,7 +56,7 @@ void Resource::test_spread(Packet& packet) {
   if (!single_) {
     for (std::size_t i = 0; i < local_slots_.size(); ++i) {
       packet.members[local_members_[i]].mask = masks_[i];
-      settle(local_slots_[i], std::popcount(masks_[i]) - 1);
+      settle(local_slots_[i], kBitCount[masks_[i]] - 1);
     }
     return;
   }
