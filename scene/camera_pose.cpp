@@ -24,16 +24,26 @@ Camera look_at(Vec3 position, Vec3 target, float yfov, Vec3 up) {
 }
 
 Camera fitted_camera(const Aabb& bounds) {
-  const Vec3 centre = bounds.empty() ? Vec3{0} : bounds.centre();
-  const DVec3 extent = bounds.empty() ? DVec3{2} : DVec3(bounds.hi) - DVec3(bounds.lo);
-  const double yfov = 0.7;
-  // Far enough for the bounding sphere, and for the camera to differ from the centre after rounding.
+  const Aabb box = bounds.empty() ? Aabb{Vec3(-1), Vec3(1)} : bounds;
+  const Vec3 centre = box.centre();
+  const double yfov = 0.7, margin = 1.08;
+  const DVec3 back = glm::normalize(DVec3(0.45, 0.35, 1));
+  const Camera pose = look_at(Vec3(back), Vec3(0), static_cast<float>(yfov));
+  // The least distance at which every corner lies inside a square picture.
+  const double slope = std::tan(0.5 * yfov) / margin;
+  double distance = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const DVec3 p = DVec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                          corner & 4 ? box.hi.z : box.lo.z) - DVec3(centre);
+    const double aside = std::max(std::abs(glm::dot(p, DVec3(pose.right))), std::abs(glm::dot(p, DVec3(pose.up))));
+    distance = std::max(distance, glm::dot(p, back) + aside / slope);
+  }
+  // Far enough for the camera to differ from the centre after rounding, near enough to stay finite.
   const double magnitude = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z), 1e-20f});
-  const double radius = std::max(0.5 * glm::length(extent), 1e-4 * magnitude);
-  const double distance = std::min(radius / std::sin(0.5 * yfov), 1e38);
-  const DVec3 direction = glm::normalize(DVec3(0.45, 0.35, 1));
-  Camera camera = look_at(Vec3(DVec3(centre) + distance * direction), centre, static_cast<float>(yfov));
+  distance = std::clamp(distance, 1e-4 * magnitude, 1e38);
+  Camera camera = pose;
   camera.name = "fitted";
+  camera.position = Vec3(DVec3(centre) + distance * back);
   return camera;
 }
 

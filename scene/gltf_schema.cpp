@@ -161,6 +161,13 @@ class Checker {
 }  // namespace
 
 void check_schema(GltfDocument& document) {
+  // First, or an index into something that is no array would be blamed for it.
+  for (const SchemaRule& rule : gltf_schema()) {
+    const auto entry = document.json.find(rule.key);
+    if (rule.kind == SchemaKind::kObjects && entry != document.json.end() && !entry->is_array()) {
+      document.fail(json_path("", rule.key), "expected an array, " + found(*entry));
+    }
+  }
   document.json = Checker(document, document.json).object(document.json, gltf_schema(), "");
 }
 

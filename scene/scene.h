@@ -32,7 +32,7 @@ struct TextureUse {
   TextureId texture;
   std::uint8_t uv_set = 0;             ///< 0 or 1
   Vec2 offset{0, 0}, scale{1, 1};      ///< KHR_texture_transform: uv' = offset + R(rotation) * (scale * uv)
-  float rotation = 0;                  ///< radians, counter-clockwise
+  float rotation = 0;                  ///< radians; R(a) (u, v) = (cos a u + sin a v, -sin a u + cos a v)
 };
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
