@@ -32,10 +32,10 @@ Mesh make_room(MaterialId white, MaterialId left, MaterialId right) {
   const float x = 1, y = 2, back = -1.4f, front = 2.6f;
   Mesh room;
   room.name = "room";
-  add_quad(room, {-x, 0, front}, {x, 0, front}, {x, 0, back}, {-x, 0, back}, white);      // floor
-  add_quad(room, {-x, y, back}, {x, y, back}, {x, y, front}, {-x, y, front}, white);      // ceiling
-  add_quad(room, {-x, 0, back}, {x, 0, back}, {x, y, back}, {-x, y, back}, white);        // back
-  add_quad(room, {x, 0, front}, {-x, 0, front}, {-x, y, front}, {x, y, front}, white);    // front
+  add_quad(room, {-x, 0, front}, {x, 0, front}, {x, 0, back}, {-x, 0, back}, white);    // floor
+  add_quad(room, {-x, y, back}, {x, y, back}, {x, y, front}, {-x, y, front}, white);    // ceiling
+  add_quad(room, {-x, 0, back}, {x, 0, back}, {x, y, back}, {-x, y, back}, white);      // back
+  add_quad(room, {x, 0, front}, {-x, 0, front}, {-x, y, front}, {x, y, front}, white);  // front
   add_quad(room, {-x, 0, front}, {-x, 0, back}, {-x, y, back}, {-x, y, front}, left);
   add_quad(room, {x, 0, back}, {x, 0, front}, {x, y, front}, {x, y, back}, right);
   return room;
@@ -56,7 +56,7 @@ Scene make_cornell() {
 
   add_instance(scene, make_room(white, red, green), 0, {0, 0, 0});
 
-  Mesh light;   // a little below the ceiling: coplanar surfaces would fight
+  Mesh light;  // a little below the ceiling: coplanar surfaces would fight
   light.name = "lamp";
   add_quad(light, {-0.32f, 0, -0.27f}, {0.32f, 0, -0.27f}, {0.32f, 0, 0.27f}, {-0.32f, 0, 0.27f}, lamp);
   add_instance(scene, std::move(light), 0, {0, 1.995f, -0.45f});

@@ -44,7 +44,7 @@ void add_shapes(Scene& scene) {
   add("cream cone", [&](Mesh& m) { add_cone(m, 0.45f, 1.0f, 32, cream); });
   add("navy box", [&](Mesh& m) { add_box(m, {-0.5f, -0.3f, -0.2f}, {0.5f, 0.3f, 0.2f}, navy); });
   add("silver ball", [&](Mesh& m) { add_icosphere(m, {0, 0, 0}, 0.5f, 3, silver); });
-  add("half", [&](Mesh& m) {   // asymmetric, so that mirroring shows
+  add("half", [&](Mesh& m) {  // asymmetric, so that mirroring shows
     add_box(m, {-0.5f, -0.5f, -0.15f}, {-0.2f, 0.5f, 0.15f}, coral);
     add_box(m, {-0.2f, -0.5f, -0.15f}, {0.5f, -0.2f, 0.15f}, cream);
   });
@@ -102,7 +102,8 @@ Scene make_instances(std::int64_t instances, std::int64_t seed) {
   scene.sky.radiance = {0.45f, 0.56f, 0.72f};
 
   const float away = std::max(disc, 2.5f);
-  scene.cameras.push_back(look_at({0.3f * away, 0.75f * away + 1, 1.55f * away}, {0, 0.8f, 0.08f * away}, 0.75f));
+  scene.cameras.push_back(
+      look_at({0.3f * away, 0.75f * away + 1, 1.55f * away}, {0, 0.8f, 0.08f * away}, 0.75f));
   scene.cameras.back().name = "near";
   scene.cameras.push_back(look_at({60 * away, 30 * away, 75 * away}, {0, 1, 0}, 0.022f));
   scene.cameras.back().name = "100 radii away";

@@ -12,11 +12,11 @@ namespace carousel::scene {
 
 namespace {
 
-constexpr float kSize = 20;      // edge of the square, scene units
+constexpr float kSize = 20;  // edge of the square, scene units
 constexpr float kHeight = 4.0f;
 
-/// Gradient noise on the integer lattice, about -1 to 1: Perlin, "Improving Noise", SIGGRAPH 2002, with a hash
-/// in place of the permutation table.
+/// Gradient noise on the integer lattice, about -1 to 1: Perlin, "Improving Noise", SIGGRAPH 2002, with a
+/// hash in place of the permutation table.
 class Noise {
  public:
   explicit Noise(std::int64_t seed) : seed_(static_cast<std::uint64_t>(seed)) {}
@@ -35,8 +35,8 @@ class Noise {
   static float fade(float t) { return t * t * t * (t * (6 * t - 15) + 10); }
 
   float gradient(std::int32_t x, std::int32_t z, float u, float v) const {
-    const std::uint64_t key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 |
-                              static_cast<std::uint32_t>(z);
+    const std::uint64_t key =
+        static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 | static_cast<std::uint32_t>(z);
     HashRandom random(seed_, key);
     const float gx = random.uniform(-1, 1), gz = random.uniform(-1, 1);
     const float length = std::max(std::sqrt(gx * gx + gz * gz), 1e-3f);
@@ -69,7 +69,8 @@ Vec4 color_of(float height, float slope, float grain) {
       snow{0.85f, 0.88f, 0.93f};
   const float h = height / kHeight + 0.05f * grain;
   Vec3 color = glm::mix(grass, meadow, glm::smoothstep(0.0f, 0.3f, h));
-  color = glm::mix(color, rock, std::max(glm::smoothstep(0.28f, 0.42f, h), glm::smoothstep(0.2f, 0.42f, slope)));
+  color =
+      glm::mix(color, rock, std::max(glm::smoothstep(0.28f, 0.42f, h), glm::smoothstep(0.2f, 0.42f, slope)));
   color = glm::mix(color, snow, glm::smoothstep(0.42f, 0.52f, h) * (1 - glm::smoothstep(0.3f, 0.5f, slope)));
   return Vec4(color * (1 + 0.15f * grain), 1);
 }
@@ -100,7 +101,9 @@ Scene make_terrain(std::int64_t triangles, std::int64_t seed) {
       mesh.positions.push_back({place(i), height_at(noise, place(i), place(j), step), place(j)});
     }
   }
-  const auto height = [&](std::uint32_t i, std::uint32_t j) { return mesh.positions[std::size_t{j} * row + i].y; };
+  const auto height = [&](std::uint32_t i, std::uint32_t j) {
+    return mesh.positions[std::size_t{j} * row + i].y;
+  };
   for (std::uint32_t j = 0; j < row; ++j) {
     for (std::uint32_t i = 0; i < row; ++i) {
       const std::uint32_t i0 = i > 0 ? i - 1 : 0, i1 = std::min(i + 1, cells);

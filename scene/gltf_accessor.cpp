@@ -4,15 +4,13 @@
 #include <cmath>
 #include <cstring>
 
-#include "scene/gltf_checks.h"
-
 namespace carousel::scene {
 
 namespace {
 
 int components_of(const std::string& type) {
   if (type == "SCALAR") return 1;
-  const int n = type.back() - '0';   // VECn or MATn
+  const int n = type.back() - '0';  // VECn or MATn
   return type[0] == 'V' ? n : n * n;
 }
 
@@ -24,7 +22,7 @@ std::size_t element_size(const std::string& type, Component component) {
 }
 
 template <class T>
-T load(const unsigned char* from) {   // glTF and the machines we build for are little-endian
+T load(const unsigned char* from) {  // glTF and the machines we build for are little-endian
   T value;
   std::memcpy(&value, from, sizeof value);
   return value;
@@ -48,17 +46,22 @@ float to_float(const unsigned char* from, Component component, bool normalized) 
       const float v = load<std::uint16_t>(from);
       return normalized ? v / 65535.0f : v;
     }
-    case Component::kUnsignedInt: return static_cast<float>(load<std::uint32_t>(from));
-    case Component::kFloat: return load<float>(from);
+    case Component::kUnsignedInt:
+      return static_cast<float>(load<std::uint32_t>(from));
+    case Component::kFloat:
+      return load<float>(from);
   }
   return 0;
 }
 
 std::uint32_t to_integer(const unsigned char* from, Component component) {
   switch (component) {
-    case Component::kUnsignedByte: return load<std::uint8_t>(from);
-    case Component::kUnsignedShort: return load<std::uint16_t>(from);
-    default: return load<std::uint32_t>(from);
+    case Component::kUnsignedByte:
+      return load<std::uint8_t>(from);
+    case Component::kUnsignedShort:
+      return load<std::uint16_t>(from);
+    default:
+      return load<std::uint32_t>(from);
   }
 }
 
@@ -66,9 +69,15 @@ std::uint32_t to_integer(const unsigned char* from, Component component) {
 
 std::size_t size_of(Component component) {
   switch (component) {
-    case Component::kByte: case Component::kUnsignedByte: return 1;
-    case Component::kShort: case Component::kUnsignedShort: return 2;
-    case Component::kUnsignedInt: case Component::kFloat: return 4;
+    case Component::kByte:
+    case Component::kUnsignedByte:
+      return 1;
+    case Component::kShort:
+    case Component::kUnsignedShort:
+      return 2;
+    case Component::kUnsignedInt:
+    case Component::kFloat:
+      return 4;
   }
   return 4;
 }
@@ -101,22 +110,24 @@ AccessorTable::Accessor AccessorTable::parse(const Json& json, const std::string
   const std::size_t size = element_size(out.type, out.component);
   if (json.contains("bufferView")) {
     out.views.push_back(json["bufferView"].get<std::size_t>());
-    out.base = locate(out.views.back(), json.value("byteOffset", std::uint64_t{0}), out.count, size, true, path);
+    out.base =
+        locate(out.views.back(), json.value("byteOffset", std::uint64_t{0}), out.count, size, true, path);
   }
   if (!json.contains("sparse")) return out;
   const Json& sparse = json["sparse"];
   Sparse parsed;
   parsed.count = sparse["count"].get<std::uint64_t>();
   if (parsed.count > out.count) {
-    document_.fail(json_path(json_path(path, "sparse"), "count"),
-                   "expected at most the accessor's " + std::to_string(out.count) + ", found " + std::to_string(parsed.count));
+    document_.fail(json_path(json_path(path, "sparse"), "count"), "expected at most the accessor's " +
+                                                                      std::to_string(out.count) + ", found " +
+                                                                      std::to_string(parsed.count));
   }
   parsed.index_component = static_cast<Component>(sparse["indices"]["componentType"].get<int>());
   const auto part = [&](const char* key, std::size_t part_size) {
     const Json& entry = sparse[key];
     out.views.push_back(entry["bufferView"].get<std::size_t>());
-    return locate(out.views.back(), entry.value("byteOffset", std::uint64_t{0}), parsed.count, part_size, false,
-                  json_path(json_path(path, "sparse"), key));
+    return locate(out.views.back(), entry.value("byteOffset", std::uint64_t{0}), parsed.count, part_size,
+                  false, json_path(json_path(path, "sparse"), key));
   };
   parsed.indices = part("indices", size_of(parsed.index_component));
   parsed.values = part("values", size);
@@ -125,7 +136,8 @@ AccessorTable::Accessor AccessorTable::parse(const Json& json, const std::string
 }
 
 AccessorTable::Strided AccessorTable::locate(std::size_t view, std::uint64_t offset, std::uint64_t count,
-                                             std::size_t size, bool may_stride, const std::string& path) const {
+                                             std::size_t size, bool may_stride,
+                                             const std::string& path) const {
   const Json& json = document_.json["bufferViews"][view];
   const auto length = json["byteLength"].get<std::uint64_t>();
   const auto stride = may_stride ? json.value("byteStride", size) : size;
@@ -140,76 +152,8 @@ AccessorTable::Strided AccessorTable::locate(std::size_t view, std::uint64_t off
                              " on reach outside buffer view " + std::to_string(view) + ", which has " +
                              std::to_string(length) + " bytes");
   }
-  return {json["buffer"].get<std::size_t>(), static_cast<std::size_t>(json.value("byteOffset", std::uint64_t{0}) + offset),
-          stride};
-}
-
-void AccessorTable::check_use(std::size_t index, AccessorUse use, const std::string& path) const {
-  const Accessor& accessor = accessors_[index];
-  struct Allowed {
-    std::vector<std::string> types;
-    bool floating, small_normalized, quantized_any, quantized_normalized;
-  };
-  // small_normalized: unsigned (colours, texture coordinates) or signed (rotations) bytes and shorts.
-  const auto allowed = [&]() -> Allowed {
-    switch (use) {
-      case AccessorUse::kPosition: return {{"VEC3"}, true, false, true, true};
-      case AccessorUse::kNormal: return {{"VEC3"}, true, false, false, true};
-      case AccessorUse::kTexCoord: return {{"VEC2"}, true, true, true, true};
-      case AccessorUse::kColor: return {{"VEC3", "VEC4"}, true, true, false, false};
-      case AccessorUse::kTranslation: case AccessorUse::kScale: return {{"VEC3"}, true, false, false, false};
-      case AccessorUse::kRotation: return {{"VEC4"}, true, true, false, false};
-      case AccessorUse::kIndices: return {{"SCALAR"}, false, false, false, false};
-    }
-    return {};
-  }();
-  const bool is_signed = accessor.component == Component::kByte || accessor.component == Component::kShort;
-  const bool is_small = size_of(accessor.component) < 4;
-  const std::string found = "accessor " + std::to_string(index) + " has " + (accessor.normalized ? "normalised " : "") +
-                            accessor.type + " of " + name_of(accessor.component);
-  if (std::ranges::find(allowed.types, accessor.type) == allowed.types.end()) {
-    document_.fail(path, "expected " + allowed.types[0] + (allowed.types.size() > 1 ? " or " + allowed.types[1] : "") +
-                             " elements; " + found);
-  }
-  const bool core =
-      use == AccessorUse::kIndices
-          ? !is_signed && accessor.component != Component::kFloat && !accessor.normalized
-          : (accessor.component == Component::kFloat && allowed.floating) ||
-                (is_small && accessor.normalized && allowed.small_normalized &&
-                 is_signed == (use == AccessorUse::kRotation));
-  // Normals are quantised to signed components only; positions and texture coordinates to any small one.
-  const bool quantized = is_small && (use == AccessorUse::kNormal ? is_signed && accessor.normalized
-                                      : accessor.normalized ? allowed.quantized_normalized
-                                                            : allowed.quantized_any);
-  if (!core && !(quantized && quantized_)) {
-    document_.fail(path, quantized ? found + ", which needs the extension KHR_mesh_quantization"
-                                   : "the component type is not allowed here: " + found);
-  }
-  // Zeros need no bytes in the file, so nothing else bounds how many of them an accessor asks for.
-  const std::uint64_t stored = accessor.sparse ? accessor.sparse->count : 0;
-  if (!accessor.base && accessor.count > 65536 + 1024 * stored) {
-    document_.fail(path, "accessor " + std::to_string(index) + " asks for " + std::to_string(accessor.count) +
-                             " elements and stores " + std::to_string(stored));
-  }
-  for (const std::size_t view : accessor.views) {
-    const Json& json = document_.json["bufferViews"][view];
-    if (buffers_[json["buffer"].get<std::size_t>()].empty()) {
-      document_.fail(path, "the data of accessor " + std::to_string(index) + " is not in the file: buffer " +
-                               json["buffer"].dump() + " holds none" + compression_note(json));
-    }
-  }
-}
-
-const char* name_of(Component component) {
-  switch (component) {
-    case Component::kByte: return "BYTE";
-    case Component::kUnsignedByte: return "UNSIGNED_BYTE";
-    case Component::kShort: return "SHORT";
-    case Component::kUnsignedShort: return "UNSIGNED_SHORT";
-    case Component::kUnsignedInt: return "UNSIGNED_INT";
-    case Component::kFloat: return "FLOAT";
-  }
-  return "?";
+  return {json["buffer"].get<std::size_t>(),
+          static_cast<std::size_t>(json.value("byteOffset", std::uint64_t{0}) + offset), stride};
 }
 
 const unsigned char* AccessorTable::element(const Strided& where, std::uint64_t index) const {
@@ -239,7 +183,7 @@ std::vector<T> AccessorTable::read(std::size_t index, const Convert& convert) co
   const Accessor& accessor = accessors_[index];
   const auto width = static_cast<std::size_t>(accessor.components);
   const std::size_t size = size_of(accessor.component);
-  std::vector<T> out(static_cast<std::size_t>(accessor.count) * width);   // zero where there is no base
+  std::vector<T> out(static_cast<std::size_t>(accessor.count) * width);  // zero where there is no base
   const auto put = [&](const Strided& where, std::uint64_t from, std::size_t to) {
     const unsigned char* at = element(where, from);
     for (std::size_t c = 0; c < width; ++c) out[to * width + c] = convert(at + c * size, accessor);
@@ -262,8 +206,9 @@ std::vector<float> AccessorTable::floats(std::size_t index, const std::string& p
   if (bad != out.end()) {
     const auto at = static_cast<std::size_t>(bad - out.begin());
     const auto width = static_cast<std::size_t>(accessors_[index].components);
-    document_.fail(path, "component " + std::to_string(at % width) + " of element " + std::to_string(at / width) +
-                             " of accessor " + std::to_string(index) + " is " + (std::isnan(*bad) ? "NaN" : "infinite"));
+    document_.fail(path, "component " + std::to_string(at % width) + " of element " +
+                             std::to_string(at / width) + " of accessor " + std::to_string(index) + " is " +
+                             (std::isnan(*bad) ? "NaN" : "infinite"));
   }
   return out;
 }

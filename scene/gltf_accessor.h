@@ -26,8 +26,13 @@ const char* name_of(Component component);
 
 /// What an accessor is used for; decides which element and component types are allowed.
 enum class AccessorUse {
-  kPosition, kNormal, kTexCoord, kColor,          // mesh attributes
-  kTranslation, kRotation, kScale,                // EXT_mesh_gpu_instancing
+  kPosition,
+  kNormal,
+  kTexCoord,
+  kColor,  // mesh attributes
+  kTranslation,
+  kRotation,
+  kScale,  // EXT_mesh_gpu_instancing
   kIndices
 };
 
@@ -41,12 +46,13 @@ class AccessorTable {
   /// Components of one element: 1 to 4, more for matrices.
   int components(std::size_t accessor) const { return accessors_[accessor].components; }
 
-  /// Throws SceneError at `path` (where the accessor is referred to) unless its type fits the use, or when its
-  /// data is not in the file.
+  /// Throws SceneError at `path` (where the accessor is referred to) unless its type fits the use, or when
+  /// its data is not in the file.
   void check_use(std::size_t accessor, AccessorUse use, const std::string& path) const;
 
-  /// All elements, count * components floats; normalised integers become -1..1 or 0..1, exactly rounded. Throws
-  /// SceneError at `path` for the first one that is not finite, and at the accessor for bad sparse indices.
+  /// All elements, count * components floats; normalised integers become -1..1 or 0..1, exactly rounded.
+  /// Throws SceneError at `path` for the first one that is not finite, and at the accessor for bad sparse
+  /// indices.
   std::vector<float> floats(std::size_t accessor, const std::string& path) const;
   /// All elements of a scalar integer accessor.
   std::vector<std::uint32_t> integers(std::size_t accessor) const;
@@ -69,7 +75,7 @@ class AccessorTable {
     bool normalized = false;
     std::optional<Strided> base;
     std::optional<Sparse> sparse;
-    std::vector<std::size_t> views;   ///< every buffer view it reads
+    std::vector<std::size_t> views;  ///< every buffer view it reads
   };
 
   Accessor parse(const Json& json, const std::string& path) const;
@@ -81,9 +87,9 @@ class AccessorTable {
   std::vector<T> read(std::size_t accessor, const Convert& convert) const;
 
   const GltfDocument& document_;
-  std::vector<std::span<const unsigned char>> buffers_;   ///< empty: without data
+  std::vector<std::span<const unsigned char>> buffers_;  ///< empty: without data
   std::vector<Accessor> accessors_;
-  bool quantized_ = false;   ///< KHR_mesh_quantization is used
+  bool quantized_ = false;  ///< KHR_mesh_quantization is used
 };
 
 }  // namespace carousel::scene

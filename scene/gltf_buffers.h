@@ -12,11 +12,12 @@ namespace carousel::scene {
 
 using Bytes = std::vector<unsigned char>;
 
-/// Finds the bytes that buffers and images name. Addresses are data: URIs (base64) or relative paths that stay
-/// within the folder of the file or the two above it; nothing is ever fetched.
+/// Finds the bytes that buffers and images name. Addresses are data: URIs (base64) or relative paths that
+/// stay within the folder of the file or the two above it; nothing is ever fetched.
 class GltfResources {
  public:
-  /// `folder` is where relative paths start; absent for a scene from memory, which then must embed everything.
+  /// `folder` is where relative paths start; absent for a scene from memory, which then must embed
+  /// everything.
   GltfResources(const GltfDocument& document, std::optional<std::filesystem::path> folder)
       : document_(document), folder_(std::move(folder)) {}
 
@@ -34,8 +35,8 @@ class GltfResources {
   std::optional<std::filesystem::path> folder_;
 };
 
-/// Decodes base64 (RFC 4648; padding may be missing), at most `most_bytes` of it. Nothing when a character does
-/// not belong there.
+/// Decodes base64 (RFC 4648; padding may be missing), at most `most_bytes` of it. Nothing when a character
+/// does not belong there.
 std::optional<Bytes> decode_base64(std::string_view text, std::uint64_t most_bytes);
 
 }  // namespace carousel::scene

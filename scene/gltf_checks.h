@@ -10,9 +10,9 @@ namespace carousel::scene {
 /// it was parsed, before check_schema.
 void check_extensions(const GltfDocument& document, const WarningSink& warn);
 
-/// What the schema cannot say, for the JSON after check_schema: buffer views lie inside their buffers, an image
-/// has one source, indices are stored somewhere, cameras and spot lights have their details, animation channels name a sampler, and the
-/// nodes form trees of which scenes name the roots. Throws SceneError.
+/// What the schema cannot say, for the JSON after check_schema: buffer views lie inside their buffers, an
+/// image has one source, indices are stored somewhere, cameras and spot lights have their details, animation
+/// channels name a sampler, and the nodes form trees of which scenes name the roots. Throws SceneError.
 void check_links(const GltfDocument& document);
 
 /// " (compressed with ...)" when a compression extension of the buffer view or primitive `owner` explains

@@ -11,12 +11,13 @@ namespace carousel::scene {
 namespace {
 
 constexpr std::size_t kDeepestNesting = 128;
-constexpr std::uint32_t kGlbMagic = 0x46546c67;   // "glTF"
+constexpr std::uint32_t kGlbMagic = 0x46546c67;  // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 
 std::uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
   std::uint32_t value = 0;
-  for (int i = 3; i >= 0; --i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + static_cast<std::size_t>(i)]);
+  for (int i = 3; i >= 0; --i)
+    value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + static_cast<std::size_t>(i)]);
   return value;
 }
 
@@ -28,12 +29,25 @@ class NestingScan {
   void run() {
     for (at_ = 0; at_ < text_.size(); ++at_) {
       switch (text_[at_]) {
-        case '"': skip_string(); break;
-        case '{': case '[': open(); break;
-        case '}': case ']': if (!levels_.empty()) levels_.pop_back(); break;
-        case ':': if (!levels_.empty()) levels_.back().key = last_string_; break;
-        case ',': if (!levels_.empty()) ++levels_.back().index; break;
-        default: break;
+        case '"':
+          skip_string();
+          break;
+        case '{':
+        case '[':
+          open();
+          break;
+        case '}':
+        case ']':
+          if (!levels_.empty()) levels_.pop_back();
+          break;
+        case ':':
+          if (!levels_.empty()) levels_.back().key = last_string_;
+          break;
+        case ',':
+          if (!levels_.empty()) ++levels_.back().index;
+          break;
+        default:
+          break;
       }
     }
   }
@@ -54,7 +68,7 @@ class NestingScan {
   void open() {
     if (levels_.size() == kDeepestNesting) {
       std::string path;
-      for (std::size_t i = 0; i < 6; ++i) {   // enough to find the place; the rest is more of the same
+      for (std::size_t i = 0; i < 6; ++i) {  // enough to find the place; the rest is more of the same
         path = levels_[i].is_array ? json_path(path, levels_[i].index)
                                    : json_path(path, levels_[i].key.substr(0, 64));
       }
@@ -70,9 +84,11 @@ class NestingScan {
 };
 
 std::string_view split_glb(GltfDocument& document, std::span<const std::byte> bytes) {
-  if (bytes.size() < 12) document.fail("", "GLB header is cut off: 12 bytes expected, " + std::to_string(bytes.size()) + " found");
+  if (bytes.size() < 12)
+    document.fail("", "GLB header is cut off: 12 bytes expected, " + std::to_string(bytes.size()) + " found");
   const std::uint32_t version = read_u32(bytes, 4), length = read_u32(bytes, 8);
-  if (version != 2) document.fail("", "GLB container version " + std::to_string(version) + "; only version 2 is read");
+  if (version != 2)
+    document.fail("", "GLB container version " + std::to_string(version) + "; only version 2 is read");
   if (length > bytes.size()) {
     document.fail("", "GLB header gives a length of " + std::to_string(length) + " bytes, the file has " +
                           std::to_string(bytes.size()));
@@ -100,7 +116,8 @@ std::string_view split_glb(GltfDocument& document, std::span<const std::byte> by
 void check_version(const GltfDocument& document) {
   const Json& json = document.json;
   const auto asset = json.find("asset");
-  if (asset == json.end() || !asset->is_object()) document.fail("/asset", "missing: this is not a glTF 2.0 file");
+  if (asset == json.end() || !asset->is_object())
+    document.fail("/asset", "missing: this is not a glTF 2.0 file");
   const auto check = [&](const char* key, bool required) {
     const std::string path = json_path("/asset", key);
     const auto entry = asset->find(key);
@@ -122,14 +139,19 @@ void check_version(const GltfDocument& document) {
 std::string json_path(const std::string& path, std::string_view key) {
   std::string out = path + '/';
   for (const char c : key) {
-    if (c == '~') out += "~0";
-    else if (c == '/') out += "~1";
-    else out += c;
+    if (c == '~')
+      out += "~0";
+    else if (c == '/')
+      out += "~1";
+    else
+      out += c;
   }
   return out;
 }
 
-std::string json_path(const std::string& path, std::size_t index) { return path + '/' + std::to_string(index); }
+std::string json_path(const std::string& path, std::size_t index) {
+  return path + '/' + std::to_string(index);
+}
 
 void GltfDocument::fail(const std::string& path, const std::string& message) const {
   throw SceneError(file, path, message);

@@ -18,10 +18,10 @@ std::string json_path(const std::string& path, std::size_t index);
 
 /// A glTF file taken apart, before anything in it is believed.
 struct GltfDocument {
-  std::string file;                           ///< how messages name it
-  Json json;                                  ///< an object; `asset.version` is 2.x
+  std::string file;  ///< how messages name it
+  Json json;         ///< an object; `asset.version` is 2.x
   bool is_glb = false;
-  std::span<const std::byte> binary_chunk;    ///< of a .glb; refers to the bytes that were parsed
+  std::span<const std::byte> binary_chunk;  ///< of a .glb; refers to the bytes that were parsed
 
   [[noreturn]] void fail(const std::string& path, const std::string& message) const;
 };
@@ -32,7 +32,8 @@ struct GltfDocument {
 GltfDocument parse_document(std::span<const std::byte> bytes, const std::string& file);
 
 /// What an import may create in all: vertices, triangles and instances count one each. Accessors without data
-/// and accessors shared by many meshes let a small file ask for any amount; no real file comes near the limit.
+/// and accessors shared by many meshes let a small file ask for any amount; no real file comes near the
+/// limit.
 class ImportBudget {
  public:
   ImportBudget(const GltfDocument& document, std::uint64_t bytes_read)

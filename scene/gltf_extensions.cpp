@@ -13,7 +13,8 @@ constexpr std::array<std::string_view, 6> kRead = {
     "EXT_mesh_gpu_instancing", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
     "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
 /// Their uncompressed fallback is used where a file has one; without it the importer says so by name.
-constexpr std::array<std::string_view, 2> kFallback = {"EXT_meshopt_compression", "KHR_draco_mesh_compression"};
+constexpr std::array<std::string_view, 2> kFallback = {"EXT_meshopt_compression",
+                                                       "KHR_draco_mesh_compression"};
 
 bool has_morph_targets(const Json& json) {
   const auto meshes = json.find("meshes");
@@ -39,10 +40,11 @@ void check_extensions(const GltfDocument& document, const WarningSink& warn) {
   if (has_entries(json, "extensionsRequired")) {
     const Json& required = json["extensionsRequired"];
     for (std::size_t i = 0; i < required.size(); ++i) {
-      if (!required[i].is_string()) continue;   // the schema check says it better
+      if (!required[i].is_string()) continue;  // the schema check says it better
       const auto& name = required[i].get_ref<const std::string&>();
       if (std::ranges::find(kRead, name) == kRead.end()) {
-        document.fail(json_path("/extensionsRequired", i), "the file requires " + name + ", which Carousel does not read");
+        document.fail(json_path("/extensionsRequired", i),
+                      "the file requires " + name + ", which Carousel does not read");
       }
     }
   }
@@ -52,7 +54,9 @@ void check_extensions(const GltfDocument& document, const WarningSink& warn) {
     for (const Json& entry : json["extensionsUsed"]) {
       if (!entry.is_string()) continue;
       const auto& name = entry.get_ref<const std::string&>();
-      if (std::ranges::find(kRead, name) != kRead.end() || std::ranges::find(kFallback, name) != kFallback.end()) continue;
+      if (std::ranges::find(kRead, name) != kRead.end() ||
+          std::ranges::find(kFallback, name) != kFallback.end())
+        continue;
       ignored += (ignored.empty() ? "" : ", ") + name;
     }
   }

@@ -22,7 +22,8 @@ namespace carousel::scene {
 
 namespace {
 
-/// Reads the meshes that instances name (by the file's indices) and renames them to ours, in the file's order.
+/// Reads the meshes that instances name (by the file's indices) and renames them to ours, in the file's
+/// order.
 void read_used_meshes(MeshReader& reader, std::size_t file_meshes, Scene& scene) {
   std::vector<std::optional<MeshId>> ids(file_meshes);
   for (const Instance& instance : scene.instances) ids[instance.mesh.value] = MeshId(0);
@@ -34,8 +35,8 @@ void read_used_meshes(MeshReader& reader, std::size_t file_meshes, Scene& scene)
   for (Instance& instance : scene.instances) instance.mesh = *ids[instance.mesh.value];
 }
 
-Scene import(std::span<const std::byte> bytes, const std::string& file, std::optional<std::filesystem::path> folder,
-             const WarningSink& warn) {
+Scene import(std::span<const std::byte> bytes, const std::string& file,
+             std::optional<std::filesystem::path> folder, const WarningSink& warn) {
   GltfDocument document = parse_document(bytes, file);
   check_extensions(document, warn);
   check_schema(document);
@@ -80,7 +81,8 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn) {
   }
 }
 
-Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name, const WarningSink& warn) {
+Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name,
+                            const WarningSink& warn) {
   try {
     return import(bytes, name, std::nullopt, warn);
   } catch (const std::bad_alloc&) {

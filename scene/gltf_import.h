@@ -10,8 +10,8 @@
 
 namespace carousel::scene {
 
-/// Reads a glTF 2.0 file (.gltf or .glb, told apart by content). The scene's sky is black; the caller sets it.
-/// Throws SceneError naming file, JSON path and what is wrong, for whatever bytes the file holds.
+/// Reads a glTF 2.0 file (.gltf or .glb, told apart by content). The scene's sky is black; the caller sets
+/// it. Throws SceneError naming file, JSON path and what is wrong, for whatever bytes the file holds.
 Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn = {});
 
 /// The same from memory; `name` stands for the file in messages. Buffers and images must be embedded.

@@ -22,7 +22,7 @@ void check_buffer_views(const GltfDocument& document) {
     const auto buffer = views[i]["buffer"].get<std::size_t>();
     const auto size = buffers[buffer]["byteLength"].get<std::uint64_t>();
     const auto offset = views[i].value("byteOffset", std::uint64_t{0});
-    const auto length = views[i]["byteLength"].get<std::uint64_t>();   // all at most 2^53: sums do not wrap
+    const auto length = views[i]["byteLength"].get<std::uint64_t>();  // all at most 2^53: sums do not wrap
     if (offset + length > size) {
       document.fail(path, "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
                               " lie outside buffer " + std::to_string(buffer) + ", which has " +
@@ -30,7 +30,8 @@ void check_buffer_views(const GltfDocument& document) {
     }
     const int stride = views[i].value("byteStride", 0);
     if (stride % 4 != 0) {
-      document.fail(json_path(path, "byteStride"), "expected a multiple of 4, found " + std::to_string(stride));
+      document.fail(json_path(path, "byteStride"),
+                    "expected a multiple of 4, found " + std::to_string(stride));
     }
   }
 }
@@ -55,8 +56,8 @@ void check_details(const GltfDocument& document) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
       if (channels[c]["sampler"].get<std::size_t>() >= samplers) {
         document.fail(json_path(json_path(json_path(json_path("/animations", a), "channels"), c), "sampler"),
-                      "expected an index into this animation's samplers, which has " + std::to_string(samplers) +
-                          " entries, found " + channels[c]["sampler"].dump());
+                      "expected an index into this animation's samplers, which has " +
+                          std::to_string(samplers) + " entries, found " + channels[c]["sampler"].dump());
       }
     }
   }
@@ -77,7 +78,8 @@ void check_primitives(const GltfDocument& document) {
     for (std::size_t p = 0; p < primitives.size(); ++p) {
       const std::string path = json_path(json_path(json_path("/meshes", m), "primitives"), p);
       const std::string note = compression_note(primitives[p]);
-      if (primitives[p].contains("indices")) check(primitives[p]["indices"], json_path(path, "indices"), note);
+      if (primitives[p].contains("indices"))
+        check(primitives[p]["indices"], json_path(path, "indices"), note);
       if (note.empty()) continue;
       for (const auto& [name, index] : primitives[p]["attributes"].items()) {
         check(index, json_path(json_path(path, "attributes"), name), note);
@@ -101,7 +103,9 @@ void check_lights(const GltfDocument& document) {
   }
 }
 
-std::string node_name(std::size_t node) { return "node " + std::to_string(node); }
+std::string node_name(std::size_t node) {
+  return "node " + std::to_string(node);
+}
 
 /// Every node has at most one parent, and nobody is his own ancestor; then the roots span all nodes.
 void check_nodes(const GltfDocument& document) {
@@ -114,7 +118,8 @@ void check_nodes(const GltfDocument& document) {
       const std::string path = json_path(json_path(json_path("/nodes", i), "children"), c);
       if (child == i) document.fail(path, node_name(i) + " is its own child: the nodes form a cycle");
       if (parents[child]) {
-        document.fail(path, node_name(child) + " has several parents: " + node_name(*parents[child]) + " and " + node_name(i));
+        document.fail(path, node_name(child) + " has several parents: " + node_name(*parents[child]) +
+                                " and " + node_name(i));
       }
       parents[child] = i;
     }
@@ -138,7 +143,9 @@ void check_nodes(const GltfDocument& document) {
     for (std::size_t r = 0; r < roots.size(); ++r) {
       const auto root = roots[r].get<std::size_t>();
       const std::string path = json_path(json_path(json_path("/scenes", s), "nodes"), r);
-      if (parents[root]) document.fail(path, node_name(root) + " is not a root: it is a child of " + node_name(*parents[root]));
+      if (parents[root])
+        document.fail(path,
+                      node_name(root) + " is not a root: it is a child of " + node_name(*parents[root]));
       if (named[root]) document.fail(path, node_name(root) + " is named twice");
       named[root] = true;
     }

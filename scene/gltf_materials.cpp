@@ -10,7 +10,9 @@ namespace carousel::scene {
 
 namespace {
 
-float unit_range(double v) { return static_cast<float>(std::clamp(v, 0.0, 1.0)); }
+float unit_range(double v) {
+  return static_cast<float>(std::clamp(v, 0.0, 1.0));
+}
 
 Wrap wrap_of(int mode) {
   if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::kClamp;
@@ -24,7 +26,8 @@ float number_in(const tinygltf::Value& object, const char* key, float fallback) 
 Vec2 pair_in(const tinygltf::Value& object, const char* key, Vec2 fallback) {
   if (!object.Has(key)) return fallback;
   const tinygltf::Value& pair = object.Get(key);
-  return {static_cast<float>(pair.Get(0).GetNumberAsDouble()), static_cast<float>(pair.Get(1).GetNumberAsDouble())};
+  return {static_cast<float>(pair.Get(0).GetNumberAsDouble()),
+          static_cast<float>(pair.Get(1).GetNumberAsDouble())};
 }
 
 class MaterialReader {
@@ -36,14 +39,16 @@ class MaterialReader {
     const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
     Material to;
     to.name = from.name;
-    for (int c = 0; c < 4; ++c) to.base_color[c] = unit_range(pbr.baseColorFactor[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < 4; ++c)
+      to.base_color[c] = unit_range(pbr.baseColorFactor[static_cast<std::size_t>(c)]);
     to.base_color_texture = use(pbr.baseColorTexture);
     to.metallic = unit_range(pbr.metallicFactor);
     to.roughness = unit_range(pbr.roughnessFactor);
     to.metallic_roughness_texture = use(pbr.metallicRoughnessTexture);
     const float strength = emissive_strength(from);
     for (int c = 0; c < 3; ++c) {
-      to.emissive[c] = std::min(unit_range(from.emissiveFactor[static_cast<std::size_t>(c)]) * strength, 3e38f);
+      to.emissive[c] =
+          std::min(unit_range(from.emissiveFactor[static_cast<std::size_t>(c)]) * strength, 3e38f);
     }
     to.emissive_texture = use(from.emissiveTexture);
     to.normal_texture = use(from.normalTexture);
@@ -59,7 +64,8 @@ class MaterialReader {
   void warn_of_dropped_uses() const {
     if (!warn_ || dropped_.empty()) return;
     std::string text;
-    for (const auto& [reason, count] : dropped_) text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + reason;
+    for (const auto& [reason, count] : dropped_)
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + reason;
     warn_(document_.file + ": texture uses ignored: " + text);
   }
 
@@ -95,7 +101,8 @@ class MaterialReader {
   }
 
   TextureId texture(int index) {
-    const auto [entry, fresh] = textures_.try_emplace(index, static_cast<std::uint32_t>(scene_.textures.size()));
+    const auto [entry, fresh] =
+        textures_.try_emplace(index, static_cast<std::uint32_t>(scene_.textures.size()));
     if (fresh) {
       const tinygltf::Texture& from = model_.model.textures[static_cast<std::size_t>(index)];
       Texture to;
@@ -129,7 +136,8 @@ class MaterialReader {
 
 void read_materials(const GltfDocument& document, GltfModel& model, Scene& scene, const WarningSink& warn) {
   MaterialReader reader(document, model, scene, warn);
-  for (const tinygltf::Material& material : model.model.materials) scene.materials.push_back(reader.material(material));
+  for (const tinygltf::Material& material : model.model.materials)
+    scene.materials.push_back(reader.material(material));
   Material fallback;
   fallback.name = "default";
   scene.materials.push_back(fallback);

@@ -101,8 +101,8 @@ struct MeshReader::Cache {
   Attributes attributes;
 };
 
-MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                       ImportBudget& budget, MaterialId default_material)
+MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& model,
+                       const AccessorTable& accessors, ImportBudget& budget, MaterialId default_material)
     : document_(document),
       model_(model),
       accessors_(accessors),
@@ -112,7 +112,8 @@ MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& mode
 
 MeshReader::~MeshReader() = default;
 
-const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitive& primitive, const std::string& path) {
+const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitive& primitive,
+                                                        const std::string& path) {
   if (cache_->key != primitive.attributes) {
     cache_->key.clear();
     cache_->attributes = read_attributes(primitive, path);
@@ -121,12 +122,14 @@ const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitiv
   return cache_->attributes;
 }
 
-MeshReader::Attributes MeshReader::picked(const Attributes& from, const std::vector<std::uint32_t>& vertices) {
+MeshReader::Attributes MeshReader::picked(const Attributes& from,
+                                          const std::vector<std::uint32_t>& vertices) {
   return {pick(from.positions, vertices), pick(from.normals, vertices), pick(from.uv0, vertices),
           pick(from.uv1, vertices), pick(from.colors, vertices)};
 }
 
-MeshReader::Attributes MeshReader::read_attributes(const tinygltf::Primitive& primitive, const std::string& path) const {
+MeshReader::Attributes MeshReader::read_attributes(const tinygltf::Primitive& primitive,
+                                                   const std::string& path) const {
   const std::string attributes = json_path(path, "attributes");
   const auto vertices = accessors_.count(static_cast<std::size_t>(primitive.attributes.at("POSITION")));
   const auto read = [&](const char* name, AccessorUse use, int& width) -> std::vector<float> {
@@ -136,8 +139,9 @@ MeshReader::Attributes MeshReader::read_attributes(const tinygltf::Primitive& pr
     const std::string where = json_path(attributes, name);
     accessors_.check_use(accessor, use, where);
     if (accessors_.count(accessor) != vertices) {
-      document_.fail(where, "accessor " + std::to_string(accessor) + " has " + std::to_string(accessors_.count(accessor)) +
-                                " elements, POSITION has " + std::to_string(vertices));
+      document_.fail(where, "accessor " + std::to_string(accessor) + " has " +
+                                std::to_string(accessors_.count(accessor)) + " elements, POSITION has " +
+                                std::to_string(vertices));
     }
     width = accessors_.components(accessor);
     return accessors_.floats(accessor, where);
@@ -166,11 +170,12 @@ void MeshReader::add_vertices(Mesh& mesh, const Attributes& more) {
   append(mesh.colors, more.colors, before, after, Vec4(1));
 }
 
-std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive& primitive, std::uint64_t vertices,
-                                                      const std::string& path) {
+std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive& primitive,
+                                                      std::uint64_t vertices, const std::string& path) {
   std::vector<std::uint32_t> order;
   const bool indexed = primitive.indices >= 0;
-  const std::string where = indexed ? json_path(path, "indices") : json_path(json_path(path, "attributes"), "POSITION");
+  const std::string where =
+      indexed ? json_path(path, "indices") : json_path(json_path(path, "attributes"), "POSITION");
   if (indexed) {
     const auto accessor = static_cast<std::size_t>(primitive.indices);
     accessors_.check_use(accessor, AccessorUse::kIndices, where);
@@ -188,7 +193,8 @@ std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive&
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   }
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0) {
-    document_.fail(where, "a list of triangles needs a multiple of 3 vertices, found " + std::to_string(order.size()));
+    document_.fail(
+        where, "a list of triangles needs a multiple of 3 vertices, found " + std::to_string(order.size()));
   }
   return as_triangle_list(primitive.mode, order);
 }
@@ -203,7 +209,7 @@ Mesh MeshReader::read(std::size_t index) {
   const bool any_normals = std::ranges::any_of(source.primitives, [&](const tinygltf::Primitive& p) {
     return usable(p) && p.attributes.contains("NORMAL");
   });
-  std::map<std::map<std::string, int>, std::uint32_t> bases;   // first vertex of those taken as a whole
+  std::map<std::map<std::string, int>, std::uint32_t> bases;  // first vertex of those taken as a whole
   for (std::size_t p = 0; p < source.primitives.size(); ++p) {
     const tinygltf::Primitive& primitive = source.primitives[p];
     const std::string path = json_path(json_path(json_path("/meshes", index), "primitives"), p);
@@ -215,7 +221,7 @@ Mesh MeshReader::read(std::size_t index) {
     std::vector<std::uint32_t> triangles = read_triangles(primitive, whole.positions.size(), path);
     const std::size_t before = mesh.positions.size();
     std::uint32_t base = static_cast<std::uint32_t>(before);
-    if (any_normals && whole.normals.empty()) {   // flat: every corner a vertex of its own
+    if (any_normals && whole.normals.empty()) {  // flat: every corner a vertex of its own
       budget_.spend(triangles.size(), path);
       Attributes flat = picked(whole, triangles);
       std::iota(triangles.begin(), triangles.end(), 0u);
@@ -224,7 +230,7 @@ Mesh MeshReader::read(std::size_t index) {
         flat.normals.insert(flat.normals.end(), 3, n);
       }
       add_vertices(mesh, flat);
-    } else if (whole.positions.size() / 2 > triangles.size()) {   // a few out of many: only those it uses
+    } else if (whole.positions.size() / 2 > triangles.size()) {  // a few out of many: only those it uses
       std::vector<std::uint32_t> used = triangles;
       std::ranges::sort(used);
       used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -242,9 +248,10 @@ Mesh MeshReader::read(std::size_t index) {
     if (mesh.positions.size() > 0xffffffffu) document_.fail(path, "the mesh has more than 2^32 vertices");
     for (std::uint32_t& v : triangles) v += base;
     mesh.indices.insert(mesh.indices.end(), triangles.begin(), triangles.end());
-    mesh.triangle_materials.resize(mesh.triangle_count(), primitive.material >= 0
-                                                              ? MaterialId(static_cast<std::uint32_t>(primitive.material))
-                                                              : default_material_);
+    mesh.triangle_materials.resize(mesh.triangle_count(),
+                                   primitive.material >= 0
+                                       ? MaterialId(static_cast<std::uint32_t>(primitive.material))
+                                       : default_material_);
   }
   repair_normals(mesh);
   return mesh;

@@ -19,9 +19,9 @@ class MeshReader {
              ImportBudget& budget, MaterialId default_material);
   ~MeshReader();
 
-  /// The triangles of all primitives in order; strips and fans become lists. Primitives with the same attributes
-  /// share their vertices. Where only some primitives have normals, the others get flat ones. Points, lines and
-  /// primitives without positions are skipped and counted. Throws SceneError.
+  /// The triangles of all primitives in order; strips and fans become lists. Primitives with the same
+  /// attributes share their vertices. Where only some primitives have normals, the others get flat ones.
+  /// Points, lines and primitives without positions are skipped and counted. Throws SceneError.
   Mesh read(std::size_t mesh);
 
   std::size_t skipped_primitives() const { return skipped_; }

@@ -57,8 +57,8 @@ bool read_address(Bytes* out, std::string*, const std::string& address, void* us
   return true;
 }
 
-bool take_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int, const unsigned char* bytes,
-                int size, void* user) {
+bool take_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int,
+                const unsigned char* bytes, int size, void* user) {
   Feed& feed = *static_cast<Feed*>(user);
   const auto i = static_cast<std::size_t>(index);
   if (!feed.needed.at(i)) return true;
@@ -68,7 +68,8 @@ bool take_image(tinygltf::Image*, const int index, std::string*, std::string*, i
   } catch (const std::runtime_error& e) {
     feed.document.fail(json_path("/images", i), std::string("the image is ") + e.what());
   }
-  feed.out.images[i].name = image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
+  feed.out.images[i].name =
+      image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
   return true;
 }
 
@@ -134,7 +135,8 @@ GltfModel read_model(const GltfDocument& document, const GltfResources& resource
                          [](const std::string& name, void*) { return name; }, read_address, nullptr, &feed});
   std::string error, warning;
   try {
-    if (reader.LoadASCIIFromString(&out.model, &error, &warning, text.data(), static_cast<unsigned int>(text.size()), "")) {
+    if (reader.LoadASCIIFromString(&out.model, &error, &warning, text.data(),
+                                   static_cast<unsigned int>(text.size()), "")) {
       return out;
     }
   } catch (const SceneError&) {

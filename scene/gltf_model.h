@@ -16,9 +16,10 @@ namespace carousel::scene {
 /// A checked document as tinygltf reads it.
 struct GltfModel {
   tinygltf::Model model;
-  std::vector<bool> buffer_has_data;   ///< one a buffer; a buffer without data holds one byte that means nothing
-  std::vector<Image> images;           ///< one an image; empty where no material needs it
-  std::uint64_t bytes_read = 0;        ///< of buffers and images
+  std::vector<bool>
+      buffer_has_data;           ///< one a buffer; a buffer without data holds one byte that means nothing
+  std::vector<Image> images;     ///< one an image; empty where no material needs it
+  std::uint64_t bytes_read = 0;  ///< of buffers and images
 };
 
 /// Runs tinygltf over a document that passed check_schema and check_links. All bytes it gets are ours: files

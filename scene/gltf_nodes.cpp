@@ -38,13 +38,15 @@ class NodeReader {
       if (node.mesh >= 0) add_instances(node, world, path);
       if (node.camera >= 0) add_camera(node, world, path);
       add_light(node, world, path);
-      for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) stack.push_back({*child, world});
+      for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+        stack.push_back({*child, world});
     }
   }
 
  private:
   void add_instance(const tinygltf::Node& node, const DMat4& world, const std::string& path) {
-    scene_.instances.push_back({MeshId(static_cast<std::uint32_t>(node.mesh)), rounded(document_, world, path)});
+    scene_.instances.push_back(
+        {MeshId(static_cast<std::uint32_t>(node.mesh)), rounded(document_, world, path)});
   }
 
   void add_instances(const tinygltf::Node& node, const DMat4& world, const std::string& path) {
@@ -62,7 +64,8 @@ class NodeReader {
       if (count && *count != accessors_.count(accessor)) {
         document_.fail(json_path(where, name), "accessor " + std::to_string(accessor) + " has " +
                                                    std::to_string(accessors_.count(accessor)) +
-                                                   " elements, other attributes have " + std::to_string(*count));
+                                                   " elements, other attributes have " +
+                                                   std::to_string(*count));
       }
       count = accessors_.count(accessor);
     }
@@ -84,7 +87,9 @@ class NodeReader {
       double rotation[4] = {0, 0, 0, 1};
       for (std::size_t c = 0; c < 4 && !rotations.empty(); ++c) rotation[c] = rotations[4 * i + c];
       const auto local = compose_trs(triple(translations, i, 0), rotation, triple(scales, i, 1));
-      if (!local) document_.fail(json_path(where, "ROTATION"), "the quaternion of instance " + std::to_string(i) + " has length zero");
+      if (!local)
+        document_.fail(json_path(where, "ROTATION"),
+                       "the quaternion of instance " + std::to_string(i) + " has length zero");
       add_instance(node, world * *local, path);
     }
   }
@@ -115,7 +120,8 @@ class NodeReader {
       }
     } else {
       to.yfov = static_cast<float>(from.perspective.yfov);
-      if (from.perspective.aspectRatio > 0) to.aspect_ratio = static_cast<float>(from.perspective.aspectRatio);
+      if (from.perspective.aspectRatio > 0)
+        to.aspect_ratio = static_cast<float>(from.perspective.aspectRatio);
       to.znear = static_cast<float>(from.perspective.znear);
     }
     scene_.cameras.push_back(to);

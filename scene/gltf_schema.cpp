@@ -11,19 +11,24 @@ namespace {
 
 std::string found(const Json& value) {
   switch (value.type()) {
-    case Json::value_t::object: return "found an object";
-    case Json::value_t::array: return "found an array of " + std::to_string(value.size());
+    case Json::value_t::object:
+      return "found an object";
+    case Json::value_t::array:
+      return "found an array of " + std::to_string(value.size());
     case Json::value_t::string: {
       const auto& text = value.get_ref<const std::string&>();
-      return text.size() <= 40 ? "found \"" + text + '"' : "found a string of " + std::to_string(text.size()) + " bytes";
+      return text.size() <= 40 ? "found \"" + text + '"'
+                               : "found a string of " + std::to_string(text.size()) + " bytes";
     }
-    default: return "found " + value.dump();
+    default:
+      return "found " + value.dump();
   }
 }
 
 /// 12 rather than 12.0 where a number is whole.
 std::string shown(double value) {
-  if (std::abs(value) < 1e15 && value == std::floor(value)) return std::to_string(static_cast<std::int64_t>(value));
+  if (std::abs(value) < 1e15 && value == std::floor(value))
+    return std::to_string(static_cast<std::int64_t>(value));
   return Json(value).dump();
 }
 
@@ -64,17 +69,22 @@ class Checker {
           if (!v.is_string()) fail(v, p, "a string");
           return v;
         });
-      case SchemaKind::kName: return name(value, rule, path);
-      case SchemaKind::kInteger: return integer(value, rule.min, rule.max, path);
-      case SchemaKind::kChoice: return choice(value, rule, path);
-      case SchemaKind::kNumber: return number(value, rule, path);
+      case SchemaKind::kName:
+        return name(value, rule, path);
+      case SchemaKind::kInteger:
+        return integer(value, rule.min, rule.max, path);
+      case SchemaKind::kChoice:
+        return choice(value, rule, path);
+      case SchemaKind::kNumber:
+        return number(value, rule, path);
       case SchemaKind::kNumbers: {
         if (value.is_array() && rule.length != 0 && value.size() != rule.length) {
           fail(value, path, "an array of " + std::to_string(rule.length) + " numbers");
         }
         return each(value, path, [&](const Json& v, const std::string& p) { return number(v, rule, p); });
       }
-      case SchemaKind::kIndex: return index(value, rule, path);
+      case SchemaKind::kIndex:
+        return index(value, rule, path);
       case SchemaKind::kIndices:
         return each(value, path, [&](const Json& v, const std::string& p) { return index(v, rule, p); });
       case SchemaKind::kIndexMap: {
@@ -83,9 +93,11 @@ class Checker {
         for (const auto& [key, v] : value.items()) out[key] = index(v, rule, json_path(path, key));
         return out;
       }
-      case SchemaKind::kObject: return object(value, *rule.child, path);
+      case SchemaKind::kObject:
+        return object(value, *rule.child, path);
       case SchemaKind::kObjects:
-        return each(value, path, [&](const Json& v, const std::string& p) { return object(v, *rule.child, p); });
+        return each(value, path,
+                    [&](const Json& v, const std::string& p) { return object(v, *rule.child, p); });
     }
     return {};
   }
@@ -100,7 +112,8 @@ class Checker {
   }
 
   Json name(const Json& value, const SchemaRule& rule, const std::string& path) const {
-    if (value.is_string() && std::ranges::find(rule.names, value.get_ref<const std::string&>()) != rule.names.end()) {
+    if (value.is_string() &&
+        std::ranges::find(rule.names, value.get_ref<const std::string&>()) != rule.names.end()) {
       return value;
     }
     std::string expected = "one of";
@@ -114,8 +127,9 @@ class Checker {
       const double v = value.get<double>();
       if (v == std::floor(v) && v >= min && v <= max) return static_cast<std::int64_t>(v);
     }
-    fail(value, path, max >= 9e15 ? "an integer of at least " + shown(min)
-                                  : "an integer from " + shown(min) + " to " + shown(max));
+    fail(value, path,
+         max >= 9e15 ? "an integer of at least " + shown(min)
+                     : "an integer from " + shown(min) + " to " + shown(max));
   }
 
   Json choice(const Json& value, const SchemaRule& rule, const std::string& path) const {
@@ -133,8 +147,9 @@ class Checker {
   Json number(const Json& value, const SchemaRule& rule, const std::string& path) const {
     if (!value.is_number()) fail(value, path, "a number");
     const double v = value.get<double>();
-    if (!(v >= rule.min && v <= rule.max)) fail(value, path, "a number from " + shown(rule.min) + " to " + shown(rule.max));
-    return v;   // always a double: tinygltf cuts large integers in extensions down to 32 bits
+    if (!(v >= rule.min && v <= rule.max))
+      fail(value, path, "a number from " + shown(rule.min) + " to " + shown(rule.max));
+    return v;  // always a double: tinygltf cuts large integers in extensions down to 32 bits
   }
 
   Json index(const Json& value, const SchemaRule& rule, const std::string& path) const {
@@ -143,8 +158,9 @@ class Checker {
       const double v = value.get<double>();
       if (v == std::floor(v) && v >= 0 && v < static_cast<double>(size)) return static_cast<std::int64_t>(v);
     }
-    fail(value, path, "an index into " + std::string(rule.refers_to) + ", which has " + std::to_string(size) +
-                          (size == 1 ? " entry" : " entries"));
+    fail(value, path,
+         "an index into " + std::string(rule.refers_to) + ", which has " + std::to_string(size) +
+             (size == 1 ? " entry" : " entries"));
   }
 
   std::size_t size_of(const char* array_path) const {

@@ -9,13 +9,19 @@ namespace {
 
 using K = SchemaKind;
 
-constexpr double kMostBytes = 9007199254740992.0;    // 2^53: exact in a double, far beyond any file
-constexpr double kMostSparse = 2147483647.0;         // tinygltf keeps these in an int
-constexpr double kHalfPi = 1.5707963705062866, kPi = 3.1415927410125732;   // rounded up to floats
+constexpr double kMostBytes = 9007199254740992.0;  // 2^53: exact in a double, far beyond any file
+constexpr double kMostSparse = 2147483647.0;       // tinygltf keeps these in an int
+constexpr double kHalfPi = 1.5707963705062866, kPi = 3.1415927410125732;  // rounded up to floats
 
-SchemaRule flag(const char* key) { return {.key = key, .kind = K::kBoolean}; }
-SchemaRule text(const char* key, bool required = false) { return {.key = key, .kind = K::kString, .required = required}; }
-SchemaRule texts(const char* key) { return {.key = key, .kind = K::kStrings}; }
+SchemaRule flag(const char* key) {
+  return {.key = key, .kind = K::kBoolean};
+}
+SchemaRule text(const char* key, bool required = false) {
+  return {.key = key, .kind = K::kString, .required = required};
+}
+SchemaRule texts(const char* key) {
+  return {.key = key, .kind = K::kStrings};
+}
 SchemaRule integer(const char* key, double min, double max, bool required = false) {
   return {.key = key, .kind = K::kInteger, .required = required, .min = min, .max = max};
 }
@@ -25,11 +31,15 @@ SchemaRule choice(const char* key, std::vector<int> choices, bool required = fal
 SchemaRule name_of(const char* key, std::vector<std::string> names, bool required = false) {
   return {.key = key, .kind = K::kName, .required = required, .names = std::move(names)};
 }
-SchemaRule number(const char* key) { return {.key = key, .kind = K::kNumber}; }
+SchemaRule number(const char* key) {
+  return {.key = key, .kind = K::kNumber};
+}
 SchemaRule number(const char* key, double min, double max, bool required = false) {
   return {.key = key, .kind = K::kNumber, .required = required, .min = min, .max = max};
 }
-SchemaRule numbers(const char* key, std::size_t length) { return {.key = key, .kind = K::kNumbers, .length = length}; }
+SchemaRule numbers(const char* key, std::size_t length) {
+  return {.key = key, .kind = K::kNumbers, .length = length};
+}
 SchemaRule index(const char* key, const char* refers_to, bool required = false) {
   return {.key = key, .kind = K::kIndex, .required = required, .refers_to = refers_to};
 }
@@ -118,8 +128,12 @@ const Schema kOrthographic{number("xmag"), number("ymag"), number("znear", 0, kL
 const Schema kCamera{text("name"), name_of("type", {"perspective", "orthographic"}, true),
                      object("perspective", kPerspective), object("orthographic", kOrthographic)};
 const Schema kSpot{number("innerConeAngle", 0, kHalfPi), number("outerConeAngle", 0, kHalfPi)};
-const Schema kLight{text("name"), name_of("type", {"directional", "point", "spot"}, true), numbers("color", 3),
-                    number("intensity", 0, kLargest), number("range", 0, kLargest), object("spot", kSpot)};
+const Schema kLight{text("name"),
+                    name_of("type", {"directional", "point", "spot"}, true),
+                    numbers("color", 3),
+                    number("intensity", 0, kLargest),
+                    number("range", 0, kLargest),
+                    object("spot", kSpot)};
 const Schema kLights{objects("lights", kLight, true)};
 const Schema kRootExtensions{object("KHR_lights_punctual", kLights)};
 
@@ -128,9 +142,15 @@ const Schema kNodeLight{index("light", "/extensions/KHR_lights_punctual/lights",
 const Schema kNodeInstancing{index_map("attributes", "/accessors")};
 const Schema kNodeExtensions{object("KHR_lights_punctual", kNodeLight),
                              object("EXT_mesh_gpu_instancing", kNodeInstancing)};
-const Schema kNode{text("name"), indices("children", "/nodes"), index("mesh", "/meshes"),
-                   index("camera", "/cameras"), index("skin", "/skins"), numbers("matrix", 16),
-                   numbers("translation", 3), numbers("rotation", 4), numbers("scale", 3),
+const Schema kNode{text("name"),
+                   indices("children", "/nodes"),
+                   index("mesh", "/meshes"),
+                   index("camera", "/cameras"),
+                   index("skin", "/skins"),
+                   numbers("matrix", 16),
+                   numbers("translation", 3),
+                   numbers("rotation", 4),
+                   numbers("scale", 3),
                    object("extensions", kNodeExtensions)};
 const Schema kScene{text("name"), indices("nodes", "/nodes")};
 
@@ -142,16 +162,20 @@ const Schema kChannel{integer("sampler", 0, kMostSparse, true), object("target",
 const Schema kAnimationSampler{index("input", "/accessors", true), index("output", "/accessors", true)};
 const Schema kAnimation{objects("channels", kChannel, true), objects("samplers", kAnimationSampler, true)};
 
-const Schema kRoot{object("asset", kAsset, true), texts("extensionsUsed"), texts("extensionsRequired"),
-                   index("scene", "/scenes"), objects("scenes", kScene), objects("nodes", kNode),
-                   objects("meshes", kMesh), objects("materials", kMaterial), objects("textures", kTexture),
-                   objects("images", kImage), objects("samplers", kSampler), objects("cameras", kCamera),
-                   objects("accessors", kAccessor), objects("bufferViews", kBufferView),
-                   objects("buffers", kBuffer), objects("skins", kSkin), objects("animations", kAnimation),
-                   object("extensions", kRootExtensions)};
+const Schema kRoot{object("asset", kAsset, true),     texts("extensionsUsed"),
+                   texts("extensionsRequired"),       index("scene", "/scenes"),
+                   objects("scenes", kScene),         objects("nodes", kNode),
+                   objects("meshes", kMesh),          objects("materials", kMaterial),
+                   objects("textures", kTexture),     objects("images", kImage),
+                   objects("samplers", kSampler),     objects("cameras", kCamera),
+                   objects("accessors", kAccessor),   objects("bufferViews", kBufferView),
+                   objects("buffers", kBuffer),       objects("skins", kSkin),
+                   objects("animations", kAnimation), object("extensions", kRootExtensions)};
 
 }  // namespace
 
-const Schema& gltf_schema() { return kRoot; }
+const Schema& gltf_schema() {
+  return kRoot;
+}
 
 }  // namespace carousel::scene

@@ -8,7 +8,7 @@
 namespace carousel::scene {
 
 std::optional<DMat4> compose_trs(const DVec3& translation, const double (&rotation)[4], const DVec3& scale) {
-  const glm::dquat q(rotation[3], rotation[0], rotation[1], rotation[2]);   // w first
+  const glm::dquat q(rotation[3], rotation[0], rotation[1], rotation[2]);  // w first
   const double length = std::sqrt(glm::dot(q, q));
   if (!(length > 1e-12) || !std::isfinite(length)) return std::nullopt;
   const glm::dmat3 r = glm::mat3_cast(q / length);
@@ -23,7 +23,8 @@ DMat4 node_transform(const GltfDocument& document, const tinygltf::Node& node, c
       for (int r = 0; r < 4; ++r) m[c][r] = node.matrix[static_cast<std::size_t>(4 * c + r)];
     }
     const double off = std::abs(m[0][3]) + std::abs(m[1][3]) + std::abs(m[2][3]) + std::abs(m[3][3] - 1);
-    if (!(off < 1e-6)) document.fail(json_path(path, "matrix"), "the last row must be 0 0 0 1: not an affine transform");
+    if (!(off < 1e-6))
+      document.fail(json_path(path, "matrix"), "the last row must be 0 0 0 1: not an affine transform");
     m[0][3] = m[1][3] = m[2][3] = 0;
     m[3][3] = 1;
     return m;

@@ -14,8 +14,8 @@ namespace carousel::scene {
 /// T * R * S in double; the quaternion (x, y, z, w) is normalised first. Nothing when it has no direction.
 std::optional<DMat4> compose_trs(const DVec3& translation, const double (&rotation)[4], const DVec3& scale);
 
-/// The local transform of a node. Throws SceneError at `path`: a matrix that is no affine map, a quaternion of
-/// length zero.
+/// The local transform of a node. Throws SceneError at `path`: a matrix that is no affine map, a quaternion
+/// of length zero.
 DMat4 node_transform(const GltfDocument& document, const tinygltf::Node& node, const std::string& path);
 
 /// Rounds to single precision, once. Throws SceneError at `path` when an entry is not finite there.

@@ -21,7 +21,8 @@ const char* format_of(std::span<const unsigned char> bytes) {
   constexpr std::array<unsigned char, 8> kPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   constexpr std::array<unsigned char, 3> kJpeg = {0xff, 0xd8, 0xff};
   if (bytes.size() > kPng.size() && std::memcmp(bytes.data(), kPng.data(), kPng.size()) == 0) return "png";
-  if (bytes.size() > kJpeg.size() && std::memcmp(bytes.data(), kJpeg.data(), kJpeg.size()) == 0) return "jpeg";
+  if (bytes.size() > kJpeg.size() && std::memcmp(bytes.data(), kJpeg.data(), kJpeg.size()) == 0)
+    return "jpeg";
   return nullptr;
 }
 
@@ -33,8 +34,9 @@ Image decode_image(std::span<const unsigned char> encoded) {
 
   OIIO::Filesystem::IOMemReader reader(encoded.data(), encoded.size());
   OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);   // glTF's alpha is coverage beside colour, not premultiplied
-  // Not ImageInput::open(name, config, proxy): seen with OpenImageIO 2.4, it opens a file of that name instead.
+  config.attribute("oiio:UnassociatedAlpha", 1);  // glTF's alpha is coverage beside colour, not premultiplied
+  // Not ImageInput::open(name, config, proxy): seen with OpenImageIO 2.4, it opens a file of that name
+  // instead.
   auto input = OIIO::ImageInput::create(format);
   if (!input) throw std::runtime_error("a format this OpenImageIO does not read: " + OIIO::geterror());
   OIIO::ImageSpec spec;

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "scene/load_scene.h"
 
 namespace carousel::scene {
 namespace {
@@ -86,7 +85,8 @@ TEST(Builtin, SmoothNormalsAgreeWithTheWinding) {
       if (mesh.normals.empty()) continue;
       for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
         const std::uint32_t a = mesh.indices[t], b = mesh.indices[t + 1], c = mesh.indices[t + 2];
-        const Vec3 face = glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+        const Vec3 face =
+            glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
         ASSERT_GT(glm::dot(face, mesh.normals[a] + mesh.normals[b] + mesh.normals[c]), 0.0f) << t / 3;
       }
     }
@@ -107,7 +107,7 @@ TEST(Builtin, TriangleCountIsAboutWhatWasAskedFor) {
 
 TEST(Builtin, InstancesAreAsManyAsAskedForAndSomeMirrored) {
   const Scene scene = make_instances(1000, 1);
-  EXPECT_EQ(scene.instances.size(), 1001u);   // and the ground
+  EXPECT_EQ(scene.instances.size(), 1001u);  // and the ground
   const auto mirrored = std::ranges::count_if(
       scene.instances, [](const Instance& i) { return glm::determinant(i.world_from_model.linear) < 0; });
   EXPECT_EQ(mirrored, 250);
@@ -131,43 +131,6 @@ TEST(Builtin, CountsOutOfRangeAreRefused) {
   config = config_of(BuiltinScene::kInstances);
   config.instances = std::int64_t{1} << 40;
   EXPECT_THROW(make_builtin(config), ConfigError);
-}
-
-TEST(LoadScene, ConfigSkyReplacesTheBuiltinOne) {
-  SceneConfig config = config_of(BuiltinScene::kSpheres);
-  EXPECT_GT(load_scene(config, ".").sky.radiance.z, 0.0f);
-  config.sky = SkyConfig{{1, 0.5f, 0.25f}, 2};
-  EXPECT_EQ(load_scene(config, ".").sky.radiance, Vec3(2, 1, 0.5f));
-}
-
-TEST(LoadScene, NeitherOrBothOfFileAndBuiltinIsRefused) {
-  SceneConfig config;
-  EXPECT_THROW(load_scene(config, "."), ConfigError);
-  config = config_of(BuiltinScene::kCornell);
-  config.file = "a.glb";
-  EXPECT_THROW(load_scene(config, "."), ConfigError);
-}
-
-TEST(LoadScene, CameraBeyondTheLastIsRefusedWithTheRange) {
-  SceneConfig config = config_of(BuiltinScene::kCornell);
-  config.camera = 1;
-  try {
-    load_scene(config, ".");
-    FAIL();
-  } catch (const ConfigError& e) {
-    EXPECT_STREQ(e.what(), "scene.camera: expected 0 to 0 (the cameras of this scene), found 1");
-  }
-}
-
-TEST(LoadScene, MissingFileNamesBothPlaces) {
-  SceneConfig config;
-  config.file = "nowhere.glb";
-  try {
-    load_scene(config, "configs");
-    FAIL();
-  } catch (const SceneError& e) {
-    EXPECT_STREQ(e.what(), "nowhere.glb: no such file; looked in 'configs' and in the working directory");
-  }
 }
 
 }  // namespace

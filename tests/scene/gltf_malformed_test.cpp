@@ -1,6 +1,7 @@
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include <unistd.h>
 
 #include "tests/scene/gltf_builder.h"
 
@@ -29,7 +30,8 @@ TEST(GltfMalformed, EmptyAndGarbage) {
 
 TEST(GltfMalformed, DeeplyNestedExtrasDoNotOverflowTheStack) {
   const std::size_t deep = 300000;
-  expect_text_refused(with_extras(std::string(deep, '[') + std::string(deep, ']')), "/extras/0/0/0/0/0", "nested more than 128 levels deep");
+  expect_text_refused(with_extras(std::string(deep, '[') + std::string(deep, ']')), "/extras/0/0/0/0/0",
+                      "nested more than 128 levels deep");
   std::string objects;
   for (std::size_t i = 0; i < deep; ++i) objects += "{\"a\":";
   expect_text_refused(with_extras(objects), "/extras/a/a/a/a/a", "nested more than 128 levels deep");
@@ -66,7 +68,9 @@ TEST(GltfMalformed, OptionalExtensionIsIgnoredWithOneWarning) {
   b.push("materials", {{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", "nonsense"}}}}}});
   std::vector<std::string> warnings;
   b.load([&](const std::string& w) { warnings.push_back(w); });
-  EXPECT_EQ(warnings, std::vector<std::string>{"test.gltf: optional extensions ignored: KHR_materials_clearcoat, VENDOR_unheard_of"});
+  EXPECT_EQ(warnings,
+            std::vector<std::string>{
+                "test.gltf: optional extensions ignored: KHR_materials_clearcoat, VENDOR_unheard_of"});
 }
 
 TEST(GltfMalformed, SkinsMorphTargetsAndAnimationsAreIgnoredWithOneWarning) {
@@ -76,22 +80,27 @@ TEST(GltfMalformed, SkinsMorphTargetsAndAnimationsAreIgnoredWithOneWarning) {
   b.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", 0}}});
   std::vector<std::string> warnings;
   b.load([&](const std::string& w) { warnings.push_back(w); });
-  EXPECT_EQ(warnings, std::vector<std::string>{"test.gltf: ignored, the base pose is shown: skins, morph targets"});
+  EXPECT_EQ(warnings,
+            std::vector<std::string>{"test.gltf: ignored, the base pose is shown: skins, morph targets"});
 }
 
 TEST(GltfMalformed, OptionalCompressionWithoutFallbackIsRefusedByName) {
   GltfBuilder draco = GltfBuilder::square();
   draco.json["extensionsUsed"] = {"KHR_draco_mesh_compression"};
-  draco.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}, {"attributes", Json::object()}};
-  EXPECT_NO_THROW(draco.load());   // the accessors have data of their own
+  draco.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", 0}, {"attributes", Json::object()}};
+  EXPECT_NO_THROW(draco.load());  // the accessors have data of their own
   draco.json["accessors"][1].erase("bufferView");
-  expect_refused(draco, "/meshes/0/primitives/0/indices", "accessor 1 has no data (it is compressed with KHR_draco_mesh_compression");
+  expect_refused(draco, "/meshes/0/primitives/0/indices",
+                 "accessor 1 has no data (it is compressed with KHR_draco_mesh_compression");
 
   GltfBuilder meshopt = GltfBuilder::square();
   meshopt.json["extensionsUsed"] = {"EXT_meshopt_compression"};
-  meshopt.json["buffers"] = Json::array({{{"byteLength", 60}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
+  meshopt.json["buffers"] = Json::array(
+      {{{"byteLength", 60}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
   meshopt.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0}};
-  expect_refused(meshopt, "/meshes/0/primitives/0/attributes/POSITION", "buffer 0 holds none (it is compressed with EXT_meshopt_compression");
+  expect_refused(meshopt, "/meshes/0/primitives/0/attributes/POSITION",
+                 "buffer 0 holds none (it is compressed with EXT_meshopt_compression");
 }
 
 TEST(GltfMalformed, NodeCycles) {
@@ -122,15 +131,17 @@ TEST(GltfMalformed, SceneRoots) {
 }
 
 TEST(GltfMalformed, OutOfRangeIndicesOfEveryKind) {
-  const auto refuse = [](const std::string& pointer, const Json& value, const std::string& array, const std::string& size) {
+  const auto refuse = [](const std::string& pointer, const Json& value, const std::string& array,
+                         const std::string& size) {
     GltfBuilder b = GltfBuilder::square();
     b.push("materials", {{"normalTexture", {{"index", 0}}}});
     b.push("textures", {{"source", 0}, {"sampler", 0}});
     b.push("samplers", Json::object());
     b.push("images", {{"bufferView", 0}});
     b.push("skins", {{"joints", {0}}, {"skeleton", 0}, {"inverseBindMatrices", 0}});
-    b.push("animations", {{"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}})},
-                          {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
+    b.push("animations",
+           {{"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}})},
+            {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
     b.json["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({{{"type", "point"}}});
     b.json["nodes"][0]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}},
                                         {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", 0}}}}}};
@@ -138,7 +149,8 @@ TEST(GltfMalformed, OutOfRangeIndicesOfEveryKind) {
                                         {"indices", {{"bufferView", 0}, {"componentType", 5125}}},
                                         {"values", {{"bufferView", 0}}}};
     b.json[Json::json_pointer(pointer)] = value;
-    expect_refused(b, pointer, "expected an index into " + array + ", which has " + size + ", found " + value.dump());
+    expect_refused(b, pointer,
+                   "expected an index into " + array + ", which has " + size + ", found " + value.dump());
   };
   for (const Json& bad : {Json(99), Json(-1), Json(1.5), Json(4294967296.0 * 4)}) {
     refuse("/scene", bad, "/scenes", "1 entry");
@@ -146,8 +158,10 @@ TEST(GltfMalformed, OutOfRangeIndicesOfEveryKind) {
     refuse("/nodes/0/mesh", bad, "/meshes", "1 entry");
     refuse("/nodes/0/skin", bad, "/skins", "1 entry");
     refuse("/nodes/0/camera", bad, "/cameras", "0 entries");
-    refuse("/nodes/0/extensions/KHR_lights_punctual/light", bad, "/extensions/KHR_lights_punctual/lights", "1 entry");
-    refuse("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION", bad, "/accessors", "2 entries");
+    refuse("/nodes/0/extensions/KHR_lights_punctual/light", bad, "/extensions/KHR_lights_punctual/lights",
+           "1 entry");
+    refuse("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION", bad, "/accessors",
+           "2 entries");
     refuse("/meshes/0/primitives/0/indices", bad, "/accessors", "2 entries");
     refuse("/meshes/0/primitives/0/material", bad, "/materials", "1 entry");
     refuse("/meshes/0/primitives/0/attributes/POSITION", bad, "/accessors", "2 entries");
@@ -173,7 +187,8 @@ TEST(GltfMalformed, ChildAndAnimationSamplerOutOfRange) {
   GltfBuilder a = GltfBuilder::square();
   a.push("animations", {{"channels", Json::array({{{"sampler", 1}, {"target", {{"path", "scale"}}}}})},
                         {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
-  expect_refused(a, "/animations/0/channels/0/sampler", "this animation's samplers, which has 1 entries, found 1");
+  expect_refused(a, "/animations/0/channels/0/sampler",
+                 "this animation's samplers, which has 1 entries, found 1");
 }
 
 TEST(GltfMalformed, WrongTypes) {
@@ -226,7 +241,8 @@ TEST(GltfMalformed, BufferViewOutsideItsBuffer) {
   GltfBuilder b = GltfBuilder::square();
   b.json["bufferViews"][0]["byteOffset"] = 40;
   expect_refused(b, "/bufferViews/0", "bytes 40 to 88 lie outside buffer 0, which has 60");
-  b.json["bufferViews"][0] = {{"buffer", 0}, {"byteOffset", 9007199254740991.0}, {"byteLength", 9007199254740991.0}};
+  b.json["bufferViews"][0] = {
+      {"buffer", 0}, {"byteOffset", 9007199254740991.0}, {"byteLength", 9007199254740991.0}};
   expect_refused(b, "/bufferViews/0", "lie outside buffer 0");
 }
 
@@ -241,7 +257,8 @@ TEST(GltfMalformed, ImageViewOutsideItsBuffer) {
 
 TEST(GltfMalformed, BufferShorterThanAnnounced) {
   GltfBuilder b = GltfBuilder::square();
-  b.json["buffers"] = Json::array({{{"byteLength", 60}, {"uri", "data:;base64," + GltfBuilder::base64(std::vector<std::byte>(59))}}});
+  b.json["buffers"] = Json::array(
+      {{{"byteLength", 60}, {"uri", "data:;base64," + GltfBuilder::base64(std::vector<std::byte>(59))}}});
   expect_refused(b, "/buffers/0/byteLength", "60 bytes are announced, the data has 59");
 }
 
@@ -264,12 +281,15 @@ TEST(GltfMalformed, BufferAddresses) {
   refuse("data:;base64,$$$$", "not proper base64");
   GltfBuilder b = GltfBuilder::square();
   b.json["buffers"] = Json::array({{{"byteLength", 60}}});
-  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION", "the data of accessor 0 is not in the file: buffer 0 holds none");
+  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION",
+                 "the data of accessor 0 is not in the file: buffer 0 holds none");
 }
 
 TEST(GltfMalformed, GlbContainer) {
   const std::vector<std::byte> good = GltfBuilder::square().glb();
-  const auto load = [](const std::vector<std::byte>& bytes) { return [&bytes] { load_gltf_from_memory(bytes, "test.glb"); }; };
+  const auto load = [](const std::vector<std::byte>& bytes) {
+    return [&bytes] { load_gltf_from_memory(bytes, "test.glb"); };
+  };
   EXPECT_NO_THROW(load(good)());
   const auto change = [&](std::size_t at, std::uint8_t value, const std::string& message) {
     std::vector<std::byte> bad = good;
@@ -323,7 +343,8 @@ TEST_F(GltfFiles, MissingAndTruncatedBuffersAreNamed) {
   const std::string file = (folder_ / "a.gltf").string();
   expect_scene_error([&] { load_gltf(file); }, "/buffers/0/uri", "'gone.bin': no such file");
   write("gone.bin", "short");
-  expect_scene_error([&] { load_gltf(file); }, "/buffers/0/byteLength", "60 bytes are announced, the data has 5");
+  expect_scene_error([&] { load_gltf(file); }, "/buffers/0/byteLength",
+                     "60 bytes are announced, the data has 5");
   try {
     load_gltf(file);
   } catch (const SceneError& e) {

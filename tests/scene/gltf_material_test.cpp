@@ -11,7 +11,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::vector<unsigned char> encode(const char* format, int width, int height, int channels, const std::vector<unsigned char>& pixels) {
+std::vector<unsigned char> encode(const char* format, int width, int height, int channels,
+                                  const std::vector<unsigned char>& pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput writer(bytes);
   auto output = OIIO::ImageOutput::create(format);
@@ -63,8 +64,8 @@ TEST(ImageDecode, TruncatedAndForeignDataAreRefused) {
 
 TEST(ImageDecode, SizesThatTheBytesCannotHoldAreRefused) {
   std::vector<unsigned char> bytes = encode("png", 1, 1, 1, {7});
-  bytes[18] = 0x1f;   // width 0x1f01 ...
-  bytes[22] = 0x1f;   // ... and height, big-endian, in IHDR
+  bytes[18] = 0x1f;  // width 0x1f01 ...
+  bytes[22] = 0x1f;  // ... and height, big-endian, in IHDR
   EXPECT_THROW(decode_image(bytes), std::runtime_error);
 }
 
@@ -81,12 +82,14 @@ TEST(GltfTexture, ImageInADataUriIsDecoded) {
   GltfBuilder b = textured({1});
   const std::vector<unsigned char> png = encode("png", 1, 1, 3, {9, 8, 7});
   const auto* first = reinterpret_cast<const std::byte*>(png.data());
-  b.json["images"][0] = {{"uri", "data:image/png;base64," + GltfBuilder::base64({first, first + png.size()})}};
+  b.json["images"][0] = {
+      {"uri", "data:image/png;base64," + GltfBuilder::base64({first, first + png.size()})}};
   EXPECT_EQ(b.load().images.at(0).rgba, (std::vector<std::uint8_t>{9, 8, 7, 255}));
 }
 
 TEST(GltfTexture, BrokenImageIsNamed) {
-  expect_refused(textured(std::vector<unsigned char>(64, 'x')), "/images/0", "the image is neither PNG nor JPEG");
+  expect_refused(textured(std::vector<unsigned char>(64, 'x')), "/images/0",
+                 "the image is neither PNG nor JPEG");
   std::vector<unsigned char> cut = encode("png", 64, 64, 3, std::vector<unsigned char>(64 * 64 * 3, 77));
   cut.resize(cut.size() / 2);
   expect_refused(textured(cut), "/images/0", "the image is broken");
@@ -113,7 +116,9 @@ TEST(GltfTexture, SamplerTransformAndUvSet) {
   b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {
       {"index", 0},
       {"texCoord", 3},
-      {"extensions", {{"KHR_texture_transform", {{"offset", {0.25, 3000000000.0}}, {"scale", {2, 3}}, {"rotation", 1}, {"texCoord", 1}}}}}};
+      {"extensions",
+       {{"KHR_texture_transform",
+         {{"offset", {0.25, 3000000000.0}}, {"scale", {2, 3}}, {"rotation", 1}, {"texCoord", 1}}}}}};
   const Scene scene = b.load();
   const TextureUse use = scene.materials[0].base_color_texture.value();
   EXPECT_EQ(use.uv_set, 1);
@@ -134,19 +139,24 @@ TEST(GltfTexture, UsesThatCannotBeReadAreDroppedWithOneWarning) {
   const Scene scene = b.load([&](const std::string& w) { warnings.push_back(w); });
   EXPECT_FALSE(scene.materials[0].normal_texture);
   EXPECT_FALSE(scene.materials[0].emissive_texture);
-  EXPECT_EQ(warnings, std::vector<std::string>{"test.gltf: texture uses ignored: 1 with a texture coordinate set beyond 1, "
-                                               "1 without a PNG or JPEG source"});
+  EXPECT_EQ(warnings, std::vector<std::string>{
+                          "test.gltf: texture uses ignored: 1 with a texture coordinate set beyond 1, "
+                          "1 without a PNG or JPEG source"});
 }
 
 TEST(GltfMaterial, FactorsFlagsAndExtensions) {
   GltfBuilder b = GltfBuilder::square();
-  b.push("materials", {{"name", "lamp"},
-                       {"pbrMetallicRoughness", {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.25}}},
-                       {"emissiveFactor", {1, 0.5, 0}},
-                       {"alphaMode", "MASK"},
-                       {"alphaCutoff", 0.75},
-                       {"doubleSided", true},
-                       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}, {"KHR_materials_unlit", Json::object()}}}});
+  b.push("materials",
+         {{"name", "lamp"},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.25}}},
+          {"emissiveFactor", {1, 0.5, 0}},
+          {"alphaMode", "MASK"},
+          {"alphaCutoff", 0.75},
+          {"doubleSided", true},
+          {"extensions",
+           {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+            {"KHR_materials_unlit", Json::object()}}}});
   const Scene scene = b.load();
   const Material& m = scene.materials.at(0);
   EXPECT_EQ(m.name, "lamp");

@@ -17,17 +17,20 @@ TEST(GltfMesh, PrimitivesAreConcatenatedInOrderWithTheirMaterials) {
   const Scene scene = b.load();
   const Mesh& mesh = scene.meshes[0];
   EXPECT_EQ(mesh.triangle_count(), 4u);
-  EXPECT_EQ(mesh.positions.size(), 4u);   // equal attributes are shared
-  EXPECT_EQ(mesh.triangle_materials, (std::vector<MaterialId>{MaterialId(1), MaterialId(1), MaterialId(2), MaterialId(2)}));
+  EXPECT_EQ(mesh.positions.size(), 4u);  // equal attributes are shared
+  EXPECT_EQ(mesh.triangle_materials,
+            (std::vector<MaterialId>{MaterialId(1), MaterialId(1), MaterialId(2), MaterialId(2)}));
   EXPECT_EQ(scene.materials[2].name, "default");
 }
 
 TEST(GltfMesh, FewTrianglesOfManyVerticesKeepOnlyTheirOwn) {
   GltfBuilder b;
   std::vector<float> line;
-  for (int i = 0; i < 100; ++i) line.insert(line.end(), {static_cast<float>(i), static_cast<float>(i * i), 0});
+  for (int i = 0; i < 100; ++i)
+    line.insert(line.end(), {static_cast<float>(i), static_cast<float>(i * i), 0});
   const int positions = b.floats(line, "VEC3", 3);
-  b.mesh({{"POSITION", positions}}, b.accessor(b.view(std::vector<std::uint8_t>{90, 10, 50}), 5121, 3, "SCALAR"));
+  b.mesh({{"POSITION", positions}},
+         b.accessor(b.view(std::vector<std::uint8_t>{90, 10, 50}), 5121, 3, "SCALAR"));
   const Mesh mesh = b.load().meshes[0];
   EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{10, 100, 0}, {50, 2500, 0}, {90, 8100, 0}}));
   EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{2, 0, 1}));
@@ -47,7 +50,8 @@ TEST(GltfMesh, PrimitiveWithoutNormalsBesideOneWithThemGetsFlatOnes) {
 
 TEST(GltfMesh, ZeroNormalBecomesTheMeanOfItsFaces) {
   GltfBuilder b = GltfBuilder::square();
-  b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.floats({0, 0, 0, 0, 2, 0, 0, 2, 0, 0, 2, 0}, "VEC3", 3);
+  b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      b.floats({0, 0, 0, 0, 2, 0, 0, 2, 0, 0, 2, 0}, "VEC3", 3);
   const Mesh mesh = b.load().meshes[0];
   EXPECT_EQ(mesh.normals[0], Vec3(0, 0, 1));
   EXPECT_EQ(mesh.normals[1], Vec3(0, 1, 0));
@@ -74,7 +78,8 @@ TEST(GltfMesh, PointsAndLinesAreSkippedWithOneWarning) {
   std::vector<std::string> warnings;
   const Scene scene = b.load([&](const std::string& w) { warnings.push_back(w); });
   EXPECT_EQ(scene.meshes[0].triangle_count(), 2u);
-  EXPECT_EQ(warnings, std::vector<std::string>{"test.gltf: 4 primitives skipped: points, lines or without positions"});
+  EXPECT_EQ(warnings,
+            std::vector<std::string>{"test.gltf: 4 primitives skipped: points, lines or without positions"});
 }
 
 TEST(GltfMesh, SceneWithoutTrianglesIsRefused) {

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 
 TEST(GltfNode, MatrixAndTrsGiveTheSameTransform) {
   GltfBuilder b = GltfBuilder::square();
-  const double h = std::sqrt(0.5);   // 90 degrees around z
+  const double h = std::sqrt(0.5);  // 90 degrees around z
   b.json["nodes"][0].update({{"translation", {1, 2, 3}}, {"rotation", {0, 0, h, h}}, {"scale", {2, 3, 4}}});
   b.node({{"mesh", 0}, {"matrix", {0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 1, 2, 3, 1}}});
   const Scene scene = b.load();
@@ -81,7 +81,8 @@ TEST(GltfNode, LongChainsOfNodesLoad) {
   GltfBuilder b = GltfBuilder::square();
   b.json["scenes"][0]["nodes"] = Json::array();
   int child = 0;
-  for (int i = 0; i < 50000; ++i) child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
+  for (int i = 0; i < 50000; ++i)
+    child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
   b.json["scenes"][0]["nodes"].push_back(child);
   EXPECT_EQ(b.load().instances[0].world_from_model.translation.z, 50000);
 }
@@ -89,16 +90,18 @@ TEST(GltfNode, LongChainsOfNodesLoad) {
 TEST(GltfNode, GpuInstancingIsExpandedInPlace) {
   GltfBuilder b = GltfBuilder::square();
   const int t = b.floats({1, 0, 0, 2, 0, 0}, "VEC3", 3);
-  const int r = b.accessor(b.view(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, 32767, 0}), 5122, 2, "VEC4", true);
+  const int r =
+      b.accessor(b.view(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, 32767, 0}), 5122, 2, "VEC4", true);
   const int s = b.floats({1, 1, 1, -2, 3, 1}, "VEC3", 3);
   b.json["nodes"][0]["translation"] = {0, 5, 0};
-  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t}, {"ROTATION", r}, {"SCALE", s}};
+  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", t}, {"ROTATION", r}, {"SCALE", s}};
   b.node({{"mesh", 0}});
   const Scene scene = b.load();
   ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.instances[0].world_from_model.translation, Vec3(1, 5, 0));
   EXPECT_EQ(scene.instances[1].world_from_model.translation, Vec3(2, 5, 0));
-  const Mat3& m = scene.instances[1].world_from_model.linear;   // half a turn around z, then scale
+  const Mat3& m = scene.instances[1].world_from_model.linear;  // half a turn around z, then scale
   EXPECT_EQ(m[0], Vec3(2, 0, 0));
   EXPECT_EQ(m[1], Vec3(0, -3, 0));
   EXPECT_EQ(scene.instances[2].world_from_model.translation, Vec3(0, 0, 0));
@@ -107,8 +110,10 @@ TEST(GltfNode, GpuInstancingIsExpandedInPlace) {
 TEST(GltfNode, RefusesGpuInstancingOfDifferentLengths) {
   GltfBuilder b = GltfBuilder::square();
   const int t = b.floats({1, 0, 0, 2, 0, 0}, "VEC3", 3), s = b.floats({1, 1, 1}, "VEC3", 3);
-  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t}, {"SCALE", s}};
-  expect_refused(b, "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION", "accessor 2 has 2 elements, other attributes have 1");
+  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t},
+                                                                               {"SCALE", s}};
+  expect_refused(b, "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION",
+                 "accessor 2 has 2 elements, other attributes have 1");
 }
 
 TEST(GltfNode, RefusesGpuInstancingOfHugeCount) {
@@ -122,7 +127,8 @@ TEST(GltfNode, RefusesGpuInstancingWithZeroQuaternion) {
   GltfBuilder b = GltfBuilder::square();
   const int r = b.floats({0, 0, 0, 1, 0, 0, 0, 0}, "VEC4", 4);
   b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"ROTATION", r}};
-  expect_refused(b, "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/ROTATION", "the quaternion of instance 1 has length zero");
+  expect_refused(b, "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/ROTATION",
+                 "the quaternion of instance 1 has length zero");
 }
 
 TEST(GltfNode, RefusesZeroQuaternion) {
@@ -147,7 +153,9 @@ TEST(GltfNode, RefusesTransformsThatOverflow) {
 
 TEST(GltfCamera, PerspectiveTakesPoseFromTheNodeWithoutItsScale) {
   GltfBuilder b = GltfBuilder::square();
-  b.push("cameras", {{"type", "perspective"}, {"name", "main"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 1.5}}}});
+  b.push("cameras", {{"type", "perspective"},
+                     {"name", "main"},
+                     {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 1.5}}}});
   const double h = std::sqrt(0.5);
   b.node({{"camera", 0}, {"translation", {1, 2, 3}}, {"rotation", {0, h, 0, h}}, {"scale", {-2, 2, 2}}});
   const Camera c = b.load().cameras.at(0);
@@ -155,7 +163,7 @@ TEST(GltfCamera, PerspectiveTakesPoseFromTheNodeWithoutItsScale) {
   EXPECT_EQ(c.position, Vec3(1, 2, 3));
   EXPECT_NEAR(glm::distance(c.back, Vec3(1, 0, 0)), 0, 1e-6);
   EXPECT_NEAR(glm::distance(c.up, Vec3(0, 1, 0)), 0, 1e-6);
-  EXPECT_NEAR(glm::dot(glm::cross(c.right, c.up), c.back), 1, 1e-6);   // right-handed though mirrored
+  EXPECT_NEAR(glm::dot(glm::cross(c.right, c.up), c.back), 1, 1e-6);  // right-handed though mirrored
   EXPECT_FLOAT_EQ(c.yfov, 0.5f);
   EXPECT_FLOAT_EQ(c.aspect_ratio.value(), 1.5f);
   EXPECT_EQ(c.name, "main");
@@ -163,7 +171,8 @@ TEST(GltfCamera, PerspectiveTakesPoseFromTheNodeWithoutItsScale) {
 
 TEST(GltfCamera, OrthographicKeepsItsMagnification) {
   GltfBuilder b = GltfBuilder::square();
-  b.push("cameras", {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0}, {"zfar", 10}}}});
+  b.push("cameras", {{"type", "orthographic"},
+                     {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0}, {"zfar", 10}}}});
   b.node({{"camera", 0}});
   const Camera c = b.load().cameras.at(0);
   EXPECT_EQ(c.projection, Camera::Projection::kOrthographic);
@@ -201,14 +210,14 @@ TEST(GltfCamera, RefusesCamerasFlattenedByTheirNode) {
 TEST(GltfLight, PointSpotAndDirectional) {
   GltfBuilder b = GltfBuilder::square();
   b.json["extensionsUsed"] = {"KHR_lights_punctual"};
-  b.json["extensions"]["KHR_lights_punctual"]["lights"] = Json::array(
-      {{{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 10}, {"range", 4}},
-       {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}},
-       {{"type", "directional"}, {"intensity", 3}}});
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] =
+      Json::array({{{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 10}, {"range", 4}},
+                   {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}},
+                   {{"type", "directional"}, {"intensity", 3}}});
   const double h = std::sqrt(0.5);
   const auto light = [](int i) { return Json{{"KHR_lights_punctual", {{"light", i}}}}; };
   b.node({{"translation", {1, 2, 3}}, {"extensions", light(0)}});
-  b.node({{"rotation", {-h, 0, 0, h}}, {"extensions", light(1)}});   // down
+  b.node({{"rotation", {-h, 0, 0, h}}, {"extensions", light(1)}});  // down
   b.node({{"extensions", light(2)}});
   const Scene scene = b.load();
   ASSERT_EQ(scene.lights.size(), 3u);
@@ -228,7 +237,8 @@ TEST(GltfLight, RefusesSpotWithoutConesAndUnknownKinds) {
   b.json["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({{{"type", "spot"}}});
   expect_refused(b, "/extensions/KHR_lights_punctual/lights/0/spot", "missing");
   b.json["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "area";
-  expect_refused(b, "/extensions/KHR_lights_punctual/lights/0/type", "expected one of directional point spot, found \"area\"");
+  expect_refused(b, "/extensions/KHR_lights_punctual/lights/0/type",
+                 "expected one of directional point spot, found \"area\"");
 }
 
 }  // namespace
