@@ -32,7 +32,7 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
 
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
   if (config.collections.when_full == WhenFull::kSpill) return 0;
-  if (config.collections.traversal == Traversal::kOrdered) return config.rays.slots_per_resource * config.packets.rays;
+  if (config.collections.traversal == Traversal::kOrdered) return config.packets.rays;
   const std::int64_t reserve = reserve_blocks(config.collections, width, max_depth);
   return 2 * (reserve + width + 1) * config.packets.rays;
 }
@@ -45,8 +45,7 @@ std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel&
   issue.key_path = "collections.capacity";
   issue.message = fmt::format(
       "expected at least {} ray IDs with when_full: reserve ({}), found {}; or use when_full: spill", needed,
-      ordered ? fmt::format("ordered: a block of packets.rays = {} for each of {} slots", config.packets.rays,
-                            config.rays.slots_per_resource)
+      ordered ? fmt::format("one block of packets.rays = {}", config.packets.rays)
               : fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep", config.packets.rays,
                             accel.width, accel.max_depth),
       config.collections.capacity);

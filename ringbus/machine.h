@@ -26,6 +26,7 @@ struct Machine {
   std::uint32_t packets_per_direction;   ///< of one resource
   std::vector<Packet> packets;           ///< by owner, then direction
   std::vector<std::unique_ptr<Link>> links;   ///< as topology.wires()
+  std::vector<std::unique_ptr<RayStore>> stores;   ///< by resource
   RayControl control;
   CompletedQueue completed;
 };

@@ -135,6 +135,8 @@ class NativeRun {
     out.rays_emitted = count_.emitted;
     out.rays_completed = count_.completed;
     out.wall_seconds = wall_seconds;
+    out.slots_used = machine_.control.slots_used();
+    out.slot_waits = machine_.control.slot_waits();
     for (std::size_t r = 0; r < ports_.size(); ++r) {
       if (sinks_[r]) out.resources.push_back(sinks_[r]->statistics());
       out.collections.push_back(ports_[r]->resource().collections().statistics());

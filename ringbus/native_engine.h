@@ -35,7 +35,8 @@ struct RunResult {
   bool complete = true;                       ///< false: stopped early
   std::uint64_t rays_emitted = 0, rays_completed = 0;
   double wall_seconds = 0;
-  std::uint64_t packet_rays_capacity = 0;     ///< packets.rays
+  std::uint64_t slots_used = 0;               ///< times a slot was handed out; beyond the slots: reuse
+  std::uint64_t slot_waits = 0;               ///< times new rays had to wait for free slots
   std::vector<ResourceStatistics> resources;  ///< empty without statistics
   std::vector<CollectionStore::Statistics> collections;
   std::vector<LinkResult> links;

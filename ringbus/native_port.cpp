@@ -10,14 +10,14 @@ namespace carousel::ringbus {
 namespace {
 
 constexpr std::size_t kReceiveBatch = 8;     // packets taken from a link at once: one index update for all
-constexpr std::size_t kCompletedBatch = 512; // rays handed to shading at once
+constexpr std::size_t kCompletedBatch = 512; // rays handed to shading at once, at most a quarter of the slots
 
 }  // namespace
 
 NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventSink* sink)
     : machine_(machine),
       sink_(sink),
-      resource_(id, machine.config, machine.accel, scene_size, sink),
+      resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], sink),
       exit_of_(machine.topology.resources()),
       free_(machine.topology.directions()) {
   const std::vector<Topology::Wire>& wires = machine.topology.wires();
@@ -105,14 +105,14 @@ void NativePort::forward(PacketId id) {
 void NativePort::come_home(PacketId id) {
   Packet& packet = machine_.packet(id);
   if (packet.kind == PacketKind::kRays) {
+    // The IDs of the rays that found a slot, and the rays nobody had room for. They wait here and give the packet
+    // back, so that rays in flight can go on.
     take_rays(packet);
-    if (!packet.requests.empty()) {
-      // Nobody had room. They wait here and give the packet back, so that rays in flight can go on.
-      RayGroup left;
-      left.rays.swap(packet.requests);
-      left.addresses.swap(packet.addresses);
-      waiting_.push_back(std::move(left));
-    }
+    RayGroup group;
+    for (const PacketMember& member : packet.members) group.ids.push_back(member.ray);
+    group.rays.swap(packet.requests);
+    group.addresses.swap(packet.addresses);
+    if (!group.ids.empty() || !group.rays.empty()) waiting_.push_back(std::move(group));
   } else {
     resource_.retire(packet);
   }
@@ -131,47 +131,50 @@ void NativePort::leave(PacketId id) {
 
 bool NativePort::admit() {
   machine_.control.collect(resource_.id(), waiting_);
-  if (waiting_head_ == waiting_.size()) return false;
-  const bool moved = machine_.control.rays_travel() ? send_rays_round() : admit_groups();
-  if (waiting_head_ == waiting_.size()) {
-    waiting_.clear();
-    waiting_head_ = 0;
-  }
-  return moved;
-}
-
-bool NativePort::admit_groups() {
+  if (waiting_.empty()) return false;
   bool moved = false;
-  while (waiting_head_ < waiting_.size()) {
-    RayBatch& rays = waiting_[waiting_head_].rays;
-    const std::size_t count = std::min(rays.size(), resource_.admissible());
-    if (count == 0) {
-      stall(resource_.free_slots() == 0 ? StallReason::kSlots : StallReason::kStorage);
-      return moved;
-    }
-    resource_.admit(std::span(rays).first(count));
-    moved = true;
-    if (count == rays.size())
-      ++waiting_head_;
-    else
-      rays.erase(rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(count));
+  arrived_.swap(waiting_);
+  for (RayGroup& group : arrived_) {
+    if (!group.ids.empty()) moved |= admit_ids(group.ids);
+    if (!group.rays.empty()) moved |= send_round(group);
+    if (!group.ids.empty() || !group.rays.empty()) waiting_.push_back(std::move(group));
   }
+  arrived_.clear();
   return moved;
 }
 
-bool NativePort::take_rays(Packet& packet) {
+/// Admits a prefix of `ids` and removes it.
+bool NativePort::admit_ids(std::vector<RayId>& ids) {
+  const std::size_t count = std::min(ids.size(), resource_.admissible());
+  if (count < ids.size()) stall(StallReason::kStorage);
+  if (count == 0) return false;
+  resource_.admit(std::span(ids).first(count));
+  ids.erase(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
+  return true;
+}
+
+/// Gives the rays of a ray packet the slots there are here, this resource's share of them, and writes down their
+/// IDs. With `home: local` they start from here; otherwise the packet carries the IDs back to its owner.
+void NativePort::take_rays(Packet& packet) {
   const bool addressed = !packet.addresses.empty();
-  // First takers leave the rest of the ring its share: the rays left over the resources left, counting this one.
+  // The rest of the ring is left its share: the rays left over the resources left, counting this one.
   std::size_t share = packet.requests.size();
-  if (!addressed && packet.hops_left > 0) share = (share + packet.hops_left) / (packet.hops_left + 1);
+  if (!addressed) share = (share + packet.hops_left) / (packet.hops_left + 1);
   if (packet.hops_left > 0) --packet.hops_left;
-  const std::size_t room = std::min(share, resource_.admissible());
-  RayBatch taken;
-  std::size_t kept = 0;
+  const bool stays = machine_.config.collections.home == Home::kLocal;
+  RayGroup own;
+  std::size_t kept = 0, taken = 0;
   for (std::size_t i = 0; i < packet.requests.size(); ++i) {
-    if (taken.size() < room && (!addressed || packet.addresses[i] == resource_.id())) {
-      taken.push_back(packet.requests[i]);
-      continue;
+    if (taken < share && (!addressed || packet.addresses[i] == resource_.id())) {
+      if (const std::optional<RayId> id = machine_.control.load(resource_.id(), packet.requests[i])) {
+        ++taken;
+        if (stays)
+          own.ids.push_back(*id);
+        else
+          packet.members.push_back({*id, 0});
+        continue;
+      }
+      share = taken;   // no slot is left
     }
     packet.requests[kept] = packet.requests[i];
     if (addressed) packet.addresses[kept] = packet.addresses[i];
@@ -179,52 +182,45 @@ bool NativePort::take_rays(Packet& packet) {
   }
   packet.requests.resize(kept);
   if (addressed) packet.addresses.resize(kept);
-  if (taken.empty()) return false;
-  resource_.admit(taken);
-  machine_.control.taken(resource_.id(), taken.size());
-  return true;
+  if (!own.ids.empty()) waiting_.push_back(std::move(own));
 }
 
-bool NativePort::send_rays_round() {
-  bool moved = false;
-  while (waiting_head_ < waiting_.size()) {
-    RayGroup& group = waiting_[waiting_head_];
-    const bool room = group.addresses.empty()
-                          ? machine_.control.has_room(nullptr)
-                          : std::any_of(group.addresses.begin(), group.addresses.end(),
-                                        [&](ResourceId r) { return machine_.control.has_room(&r); });
-    if (!room) {
-      stall(StallReason::kSlots);
-      return moved;
-    }
-    PacketId id;
-    Packet* packet = &local_;
-    const bool travels = machine_.topology.resources() > 1;
-    // The last packet is left to rays that are under way: only they can free the slots that new ones wait for.
-    if (travels && !resource_.idle() && resource_.packets_in_flight() == 0) return moved;
-    if (travels) {
-      if (!free_packet(id)) return moved;
-      packet = &machine_.packet(id);
-    }
-    packet->kind = PacketKind::kRays;
-    packet->requests = std::move(group.rays);
-    packet->addresses = std::move(group.addresses);
-    packet->members.clear();
-    packet->hops_left = static_cast<std::uint32_t>(machine_.topology.resources() - 1);
-    group = RayGroup{};
-    ++waiting_head_;
-    moved |= take_rays(*packet);
-    if (travels) {
-      moved = true;
-      leave(id);
-    } else if (!packet->requests.empty()) {
-      group.rays = std::move(packet->requests);
-      group.addresses = std::move(packet->addresses);
-      --waiting_head_;
-      return moved;
-    }
+/// Sends a group's rays round the ring to look for slots; they are taken out of the group. Refused when nobody
+/// has room for them, or no packet is to be had.
+bool NativePort::send_round(RayGroup& group) {
+  const bool room = group.addresses.empty()
+                        ? machine_.control.free_slots() > 0
+                        : std::any_of(group.addresses.begin(), group.addresses.end(),
+                                      [&](ResourceId r) { return machine_.control.free_slots(r) > 0; });
+  if (!room) {
+    stall(StallReason::kSlots);
+    return false;
   }
-  return moved;
+  const bool travels = machine_.topology.resources() > 1;
+  // The last packet is left to rays that are under way: only they can free the slots that new ones wait for.
+  if (travels && !resource_.idle() && resource_.packets_in_flight() == 0) return false;
+  PacketId id;
+  Packet* packet = &local_;
+  if (travels) {
+    if (!free_packet(id)) return false;
+    packet = &machine_.packet(id);
+  }
+  packet->kind = PacketKind::kRays;
+  packet->requests = std::move(group.rays);
+  packet->addresses = std::move(group.addresses);
+  packet->members.clear();
+  packet->hops_left = static_cast<std::uint32_t>(machine_.topology.resources() - 1);
+  group.rays.clear();
+  group.addresses.clear();
+  take_rays(*packet);
+  if (travels) {
+    leave(id);
+  } else {
+    group.rays = std::move(packet->requests);
+    group.addresses = std::move(packet->addresses);
+    for (const PacketMember& member : packet->members) group.ids.push_back(member.ray);
+  }
+  return true;
 }
 
 // ---- issuing
@@ -286,10 +282,12 @@ bool NativePort::issue(bool partial) {
 
 void NativePort::flush_completed(bool all) {
   HitBatch& done = resource_.completed();
-  if (done.empty() || (!all && done.size() < kCompletedBatch)) return;
+  const std::size_t enough = std::min<std::size_t>(kCompletedBatch, resource_.rays().slots() / 4 + 1);
+  if (done.empty() || (!all && done.size() < enough)) return;
   if (sink_ != nullptr)
     sink_->record({.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
-  machine_.control.freed(resource_.id(), done.size());
+  machine_.control.free(resource_.id(), resource_.freed_slots());
+  resource_.freed_slots().clear();
   HitBatch fresh = machine_.completed.fresh();
   done.swap(fresh);
   machine_.completed.push(std::move(fresh));
@@ -300,17 +298,19 @@ void NativePort::flush_completed(bool all) {
 bool NativePort::drained() const {
   const bool hands_empty =
       std::all_of(exits_.begin(), exits_.end(), [](const Exit& exit) { return exit.in_hand.empty(); });
-  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_head_ == waiting_.size() &&
-         resource_.packets_in_flight() == 0 && resource_.free_slots() == resource_.rays().slots();
+  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_.empty() &&
+         resource_.packets_in_flight() == 0 &&
+         machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
 }
 
 std::string NativePort::describe() const {
   std::string text = fmt::format("resource {}: {} of {} slots free, {} collections with {} memberships, {} packets out",
-                                 resource_.id().value, resource_.free_slots(), resource_.rays().slots(),
+                                 resource_.id().value, machine_.control.free_slots(resource_.id()),
+                                 resource_.rays().slots(),
                                  resource_.collections().collections(), resource_.collections().memberships(),
                                  resource_.packets_in_flight());
   std::size_t rays = 0;
-  for (std::size_t i = waiting_head_; i < waiting_.size(); ++i) rays += waiting_[i].rays.size();
+  for (const RayGroup& group : waiting_) rays += group.rays.size() + group.ids.size();
   if (rays > 0) text += fmt::format(", {} new rays wait", rays);
   for (const Exit& exit : exits_) {
     if (exit.in_hand.empty()) continue;

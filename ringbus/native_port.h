@@ -43,11 +43,11 @@ class NativePort {
   void come_home(PacketId id);
   void forward(PacketId id);
   void leave(PacketId id);
-  bool take_rays(Packet& packet);
 
   bool admit();
-  bool admit_groups();
-  bool send_rays_round();
+  bool admit_ids(std::vector<RayId>& ids);
+  bool send_round(RayGroup& group);
+  void take_rays(Packet& packet);
 
   bool issue(bool partial);
   bool may_inject(std::size_t exit) const;
@@ -77,7 +77,7 @@ class NativePort {
   std::atomic<std::uint32_t> out_{0};           // own packets under way; written by the owner
   Packet local_;                                // never travels: collections that are tested on the spot
   std::vector<RayGroup> waiting_;               // new rays, oldest first
-  std::size_t waiting_head_ = 0;
+  std::vector<RayGroup> arrived_;               // scratch of admit()
 };
 
 }  // namespace carousel::ringbus

@@ -4,60 +4,90 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/config.h"
 #include "core/ids.h"
 #include "core/workload.h"
+#include "ringbus/ray_store.h"
 
 namespace carousel::ringbus {
 
-/// A group of new rays on its way to a resource.
+/// New rays on their way to a resource's root collection: IDs once they have slots, or the rays themselves when
+/// they are to look for slots on their way round the ring.
 struct RayGroup {
+  std::vector<RayId> ids;
   RayBatch rays;
   std::vector<ResourceId> addresses;   ///< addressed placement: one a ray; otherwise empty
 };
 
-/// Gives new rays a place: cuts batches into groups of one packet and hands each group to a resource, which
-/// gives its rays slots (balanced, round_robin) or sends them round the ring for all to take their share
-/// (first_taker, addressed). Any thread may call.
+/// Gives new rays a slot and an ID, in slots that completed rays freed. The rays of one group (as many as a
+/// packet carries) are spread over the resources, so that every packet finds work everywhere, and the group's
+/// IDs go to one resource, which issues it from its root collection; with `home: local` a whole group lives
+/// where it is issued. With first_taker and addressed placement the rays travel instead, and resources ask for
+/// slots as packets pass. Any thread may call.
 class RayControl {
  public:
-  RayControl(const Config& config);
+  /// `stores` by resource; `initial_tests` is what a ray waits for at the root.
+  RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores, std::int32_t initial_tests);
 
-  /// Places a batch. The rays wait at their resource until it has slots for them.
+  /// Places a batch, behind those that still wait for slots.
   void submit(const RayBatch& rays);
-  /// Takes the groups that wait at `resource`, oldest first, into `out` (appended).
+  /// Places waiting rays as far as slots allow. Returns whether any was placed.
+  bool place_waiting();
+  /// Takes the groups for `resource`, oldest first, into `out` (appended).
   void collect(ResourceId resource, std::vector<RayGroup>& out);
-  /// `resource` took `rays` new rays that travelled to it.
-  void taken(ResourceId resource, std::size_t rays) { load(resource).fetch_add(static_cast<std::int64_t>(rays), std::memory_order_relaxed); }
-  /// `resource` freed `rays` slots.
-  void freed(ResourceId resource, std::size_t rays) { load(resource).fetch_sub(static_cast<std::int64_t>(rays), std::memory_order_relaxed); }
+
+  /// A slot of `resource` for a ray that has travelled there; nothing when it has none.
+  std::optional<RayId> load(ResourceId resource, const RayRequest& request);
+  /// Gives back slots that completed rays no longer need.
+  void free(ResourceId resource, std::span<const std::uint32_t> slots);
 
   bool rays_travel() const { return rays_travel_; }
-  /// Whether a travelling ray bound for `address` (for anyone, when null) would probably find a slot.
-  bool has_room(const ResourceId* address) const;
-  /// Rays placed and not yet completed at `resource`.
-  std::int64_t load_of(ResourceId resource) const { return inboxes_[resource.value].load.load(std::memory_order_relaxed); }
+  /// Relaxed: an estimate unless nothing runs.
+  std::size_t free_slots(ResourceId resource) const { return slots_[resource.value].count.load(std::memory_order_relaxed); }
+  std::size_t free_slots() const;
+  /// How often rays had to wait because there were too few free slots.
+  std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
+  /// How often a slot was handed out.
+  std::uint64_t slots_used() const { return slots_used_.load(std::memory_order_relaxed); }
 
  private:
+  struct alignas(128) SlotList {
+    std::mutex mutex;
+    std::vector<std::uint32_t> free;   // last freed, first used: its record is still in cache
+    std::atomic<std::size_t> count{0};
+  };
   struct alignas(128) Inbox {
     std::mutex mutex;
     std::vector<RayGroup> groups;
-    // Relaxed throughout: an estimate that steers placement, it guards no data.
-    std::atomic<std::int64_t> load{0};
     std::atomic<bool> any{false};
   };
-  std::atomic<std::int64_t>& load(ResourceId r) { return inboxes_[r.value].load; }
-  ResourceId choose();
+
+  std::size_t place(std::span<const RayRequest> rays);
+  std::size_t load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  std::size_t place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  void send(ResourceId resource, RayGroup&& group);
+  ResourceId next_resource() { return ResourceId(turn_++ % resources_); }
+  ResourceId emptiest() const;
 
   Placement placement_;
-  bool rays_travel_;
-  std::size_t group_rays_;
-  std::int64_t slots_;
-  std::atomic<std::uint32_t> turn_{0};
+  bool rays_travel_, local_;
   std::uint32_t resources_;
+  std::size_t group_rays_, enough_slots_;
+  std::int32_t initial_tests_;
+  std::span<const std::unique_ptr<RayStore>> stores_;
+  std::unique_ptr<SlotList[]> slots_;
   std::unique_ptr<Inbox[]> inboxes_;
+  std::atomic<std::uint64_t> slot_waits_{0}, slots_used_{0};
+
+  std::mutex waiting_mutex_;      // guards the three below
+  RayBatch waiting_;              // oldest at waiting_head_
+  std::size_t waiting_head_ = 0;
+  std::uint32_t turn_ = 0;
+  std::atomic<bool> any_waiting_{false};
 };
 
 }  // namespace carousel::ringbus

@@ -8,7 +8,8 @@
 namespace carousel::ringbus {
 
 std::uint32_t reserve_blocks(const CollectionsConfig& config, int width, int max_depth) {
-  if (config.traversal == Traversal::kOrdered) return 0;   // a ray is in one collection: blocks <= slots
+  // A ray is in one collection at a time, and admission counts a block for each.
+  if (config.traversal == Traversal::kOrdered) return 0;
   return static_cast<std::uint32_t>((width - 1) * (max_depth + 1) + width);
 }
 
@@ -28,31 +29,36 @@ CollectionStore::Settings collection_settings(const Config& config, const accel:
 
 }  // namespace
 
-Resource::Resource(ResourceId id, const Config& config, const accel::Accel& accel, float scene_size, EventSink* sink)
-    : id_(id),
-      config_(config),
+Resource::Resource(const Config& config, const accel::Accel& accel, float scene_size, RayStore& store,
+                   EventSink* sink)
+    : config_(config),
       accel_(accel),
       sink_(sink),
       ordered_(config.collections.traversal == Traversal::kOrdered),
-      treelets_(config.collections.traversal == Traversal::kTreelet),
       single_(config.packets.shapes == PacketShapes::kSingle),
       bounded_(config.collections.when_full == WhenFull::kReserve),
       floor_blocks_(reserve_blocks(config.collections, accel.width, accel.max_depth)),
-      store_(id, static_cast<std::uint32_t>(config.rays.slots_per_resource)),
+      store_(store),
       collections_(collection_settings(config, accel, scene_size)) {
   if (ordered_) stacks_.emplace(store_.slots(), accel.width, accel.max_depth);
 }
 
-bool Resource::is_treelet(accel::NodeKey key) const {
-  return treelets_ && accel_.triangles_below(key) <= static_cast<std::uint64_t>(config_.bvh.treelet_triangles);
+bool Resource::is_treelet(const Config& config, const accel::Accel& accel, accel::NodeKey key) {
+  return config.collections.traversal == Traversal::kTreelet &&
+         accel.triangles_below(key) <= static_cast<std::uint64_t>(config.bvh.treelet_triangles);
 }
 
-std::int32_t Resource::tests_of(accel::NodeKey key, int strip_size) const {
-  return !single_ || is_treelet(key) ? 1 : strip_size;
+std::int32_t Resource::tests_of(const Config& config, const accel::Accel& accel, accel::NodeKey key, int strip_size) {
+  // An empty scene's root has no shapes, but its packet must come round all the same.
+  return config.packets.shapes == PacketShapes::kStrip || is_treelet(config, accel, key) ? 1 : std::max(1, strip_size);
+}
+
+std::int32_t Resource::initial_tests(const Config& config, const accel::Accel& accel) {
+  return tests_of(config, accel, accel.root_key(), accel.strip_size(accel.root_key()));
 }
 
 ResourceId Resource::home_of(accel::NodeKey key) const {
-  if (config_.collections.home != Home::kHash) return id_;
+  if (config_.collections.home != Home::kHash) return id();
   return ResourceId(static_cast<std::uint32_t>(((key.bits() * 0x9e3779b97f4a7c15ull) >> 33) %
                                                static_cast<std::uint64_t>(config_.topology.resources)));
 }
@@ -60,32 +66,24 @@ ResourceId Resource::home_of(accel::NodeKey key) const {
 // ---- admission
 
 std::size_t Resource::admissible() const {
-  if (!bounded_ || ordered_) return store_.free_slots();
-  // Only above half free: what new rays put into the root's collection must never crowd out their children.
-  const std::int64_t room = collections_.free_blocks() - reserved_blocks_ -
-                            std::max<std::int64_t>(floor_blocks_, config_.collections.capacity / config_.packets.rays / 2);
-  return room <= 0 ? 0 : std::min(store_.free_slots(), static_cast<std::size_t>(room) * static_cast<std::size_t>(config_.packets.rays));
+  constexpr std::size_t kAny = std::size_t{1} << 31;
+  if (!bounded_) return kAny;
+  const std::int64_t block_rays = config_.packets.rays;
+  const std::int64_t blocks = config_.collections.capacity / block_rays;
+  // Ordered rays may each end up alone in a block. Otherwise only above half free: what new rays put into the
+  // root's collection must never crowd out their children.
+  if (ordered_) return static_cast<std::size_t>(std::max<std::int64_t>(0, blocks - custody_));
+  const std::int64_t room =
+      collections_.free_blocks() - reserved_blocks_ - std::max<std::int64_t>(floor_blocks_, blocks / 2);
+  return room <= 0 ? 0 : static_cast<std::size_t>(room * block_rays);
 }
 
-void Resource::admit(std::span<const RayRequest> rays) {
-  const accel::NodeKey root = accel_.root_key();
-  const std::int32_t tests = tests_of(root, accel_.strip_size(root));
-  ids_.clear();
-  for (const RayRequest& request : rays) {
-    const RayId id = store_.allocate();
-    const std::uint32_t slot = store_.slot(id);
-    accel::start_record(request, store_.record(slot));
-    store_.record(slot).pending = tests;
-    if (ordered_) stacks_->clear(slot);
-    if (tests == 0)
-      complete(slot);   // the scene is empty
-    else
-      ids_.push_back(id);
-  }
+void Resource::admit(std::span<const RayId> rays) {
   const std::size_t block = static_cast<std::size_t>(config_.packets.rays);
-  for (std::size_t i = 0; i < ids_.size(); i += block)
-    collections_.add(root, 0, 0.0f, std::span(ids_).subspan(i, std::min(block, ids_.size() - i)));
-  record({.kind = EventKind::kAdmit, .resource = id_, .rays = static_cast<std::uint32_t>(rays.size())});
+  for (std::size_t i = 0; i < rays.size(); i += block)
+    collections_.add(accel_.root_key(), 0, 0.0f, rays.subspan(i, std::min(block, rays.size() - i)));
+  custody_ += static_cast<std::uint32_t>(rays.size());
+  record({.kind = EventKind::kAdmit, .resource = id(), .rays = static_cast<std::uint32_t>(rays.size())});
 }
 
 // ---- issuing
@@ -109,7 +107,7 @@ std::optional<CollectionId> Resource::choose(bool partial, bool& storage) {
     storage = true;
     return std::nullopt;
   }
-  record({.kind = EventKind::kStall, .resource = id_, .reason = StallReason::kReserve});
+  record({.kind = EventKind::kStall, .resource = id(), .reason = StallReason::kReserve});
   return collections_.deepest();
 }
 
@@ -124,8 +122,8 @@ Resource::Offer Resource::offer(bool partial, Packet& packet) {
     collections_.take(*chosen, issuing_.rays);
     issuing_.next_shape = 0;
     // Memberships that move to another home are not tested here; treelets are tested whole.
-    const bool one = !single_ || is_treelet(issuing_.key) || home_of(issuing_.key) != id_;
-    issuing_.shapes = one ? 1 : static_cast<std::uint32_t>(accel_.strip_size(issuing_.key));
+    const bool one = !single_ || is_treelet(issuing_.key) || home_of(issuing_.key) != id();
+    issuing_.shapes = one ? 1 : static_cast<std::uint32_t>(std::max(1, accel_.strip_size(issuing_.key)));
   } else if (in_flight_ > 0 && !fits(blocks_needed(issuing_.key, 0), 0)) {
     return Offer::kStorage;
   }
@@ -137,8 +135,8 @@ Resource::Offer Resource::offer(bool partial, Packet& packet) {
 void Resource::fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std::span<const RayId> rays,
                     std::uint32_t lanes) {
   packet.home = home_of(key);
-  packet.kind = packet.home == id_ ? PacketKind::kTest : PacketKind::kMemberships;
-  packet.owner = id_;
+  packet.kind = packet.home == id() ? PacketKind::kTest : PacketKind::kMemberships;
+  packet.owner = id();
   packet.key = key;
   packet.depth = depth;
   packet.lanes = lanes;
@@ -156,7 +154,7 @@ void Resource::fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std
   if (ordered_) packet.next.assign(rays.size(), NextNode{});
   reserved_blocks_ += packet.reserved_blocks;
   ++in_flight_;
-  record({.kind = EventKind::kIssue, .resource = id_, .key = key, .rays = static_cast<std::uint32_t>(rays.size()),
+  record({.kind = EventKind::kIssue, .resource = id(), .key = key, .rays = static_cast<std::uint32_t>(rays.size()),
           .members = packet.members});
 }
 
@@ -167,7 +165,7 @@ void Resource::settle(std::uint32_t slot, std::int32_t pending_change) {
   record.pending += pending_change;
   if constexpr (kChecked) {
     if (record.pending < 0)
-      throw SimulationError("resource " + std::to_string(id_.value) + " slot " + std::to_string(slot) +
+      throw SimulationError("resource " + std::to_string(id().value) + " slot " + std::to_string(slot) +
                             ": more answers than pending tests");
   }
   if (record.pending == 0) complete(slot);
@@ -175,7 +173,9 @@ void Resource::settle(std::uint32_t slot, std::int32_t pending_change) {
 
 void Resource::complete(std::uint32_t slot) {
   accel::finish_record(store_.record(slot), completed_);
-  store_.free(slot);
+  if (ordered_) stacks_->clear(slot);
+  store_.retire(slot);
+  freed_slots_.push_back(slot);
 }
 
 }  // namespace carousel::ringbus

@@ -26,15 +26,18 @@ std::uint32_t reserve_blocks(const CollectionsConfig& config, int width, int max
 class Resource {
  public:
   /// Keeps references. `sink` may be null.
-  Resource(ResourceId id, const Config& config, const accel::Accel& accel, float scene_size, EventSink* sink);
+  Resource(const Config& config, const accel::Accel& accel, float scene_size, RayStore& store, EventSink* sink);
 
-  ResourceId id() const { return id_; }
+  /// How many tests a new ray waits for at the root.
+  static std::int32_t initial_tests(const Config& config, const accel::Accel& accel);
 
-  /// How many new rays may be admitted now, limited by free slots and by collection storage.
+  ResourceId id() const { return store_.owner(); }
+
+  /// How many rays may join the root's collection now, limited by collection storage.
   std::size_t admissible() const;
-  std::size_t free_slots() const { return store_.free_slots(); }
-  /// Gives rays slots and lets them join the root's collection. Needs rays.size() <= admissible().
-  void admit(std::span<const RayRequest> rays);
+  /// Lets rays that have been loaded, here or elsewhere, join the root's collection.
+  /// Needs rays.size() <= admissible().
+  void admit(std::span<const RayId> rays);
 
   enum class Offer { kNothing, kPacket, kStorage };
   /// Fills `packet` from the next collection: by policy, among the ready ones, or with `partial` among all.
@@ -48,8 +51,9 @@ class Resource {
   /// Takes the members of a membership packet that has reached its home.
   void join(Packet& packet);
 
-  /// Completed rays, for the engine to take away.
+  /// Completed rays and the slots they leave, for the engine to take away.
   HitBatch& completed() { return completed_; }
+  std::vector<std::uint32_t>& freed_slots() { return freed_slots_; }
 
   bool idle() const { return collections_.empty() && issuing_.rays.empty(); }
   const RayStore& rays() const { return store_; }
@@ -66,9 +70,10 @@ class Resource {
     std::uint32_t next_shape = 0, shapes = 0;
   };
 
-  bool is_treelet(accel::NodeKey key) const;
+  bool is_treelet(accel::NodeKey key) const { return is_treelet(config_, accel_, key); }
+  static bool is_treelet(const Config& config, const accel::Accel& accel, accel::NodeKey key);
   /// Tests a ray waits for when it joins `key`: one a packet that will carry it there.
-  std::int32_t tests_of(accel::NodeKey key, int strip_size) const;
+  static std::int32_t tests_of(const Config& config, const accel::Accel& accel, accel::NodeKey key, int strip_size);
   ResourceId home_of(accel::NodeKey key) const;
   std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const;
   bool fits(std::uint32_t needed, std::uint32_t freed) const;
@@ -87,18 +92,19 @@ class Resource {
     if (sink_ != nullptr) [[unlikely]] sink_->record(event);
   }
 
-  ResourceId id_;
   const Config& config_;
   const accel::Accel& accel_;
   EventSink* sink_;
-  bool ordered_, treelets_, single_, bounded_;
+  bool ordered_, single_, bounded_;
   std::uint32_t floor_blocks_;
-  RayStore store_;
+  RayStore& store_;
   CollectionStore collections_;
   std::optional<RayStacks> stacks_;
   Issuing issuing_;
   std::uint32_t in_flight_ = 0, reserved_blocks_ = 0;
+  std::uint32_t custody_ = 0;   // rays in its collections or in its packets
   HitBatch completed_;
+  std::vector<std::uint32_t> freed_slots_;
 
   // Scratch of the calls, kept so that nothing is allocated per packet.
   std::vector<std::uint32_t> local_slots_, local_members_;

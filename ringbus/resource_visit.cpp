@@ -37,7 +37,7 @@ void Resource::test(Packet& packet) {
     else
       test_spread(packet);
   }
-  record({.kind = EventKind::kTest, .resource = id_, .key = packet.key,
+  record({.kind = EventKind::kTest, .resource = id(), .key = packet.key,
           .rays = static_cast<std::uint32_t>(local_slots_.size()), .tests = tests_, .members = packet.members});
 }
 
@@ -63,7 +63,7 @@ void Resource::test_spread(Packet& packet) {
   // One shape a packet: a hit child brings as many tests as it has shapes (DESIGN.md section 4).
   const int lane = std::countr_zero(packet.lanes);
   const accel::Node& node = accel_.nodes[packet.key.ref.node()];
-  const std::int32_t below = tests_of(accel_.child_key(packet.key, lane), node.strip_size[lane]);
+  const std::int32_t below = tests_of(config_, accel_, accel_.child_key(packet.key, lane), node.strip_size[lane]);
   for (std::size_t i = 0; i < local_slots_.size(); ++i) {
     packet.members[local_members_[i]].mask = masks_[i];
     settle(local_slots_[i], (masks_[i] != 0 ? below : 0) - 1);

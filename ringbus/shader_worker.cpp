@@ -15,7 +15,10 @@ ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, Ra
       count_(count),
       slots_(machine.config.topology.resources * machine.config.rays.slots_per_resource) {}
 
-bool ShaderWorker::step() { return shade() || generate(); }
+bool ShaderWorker::step() {
+  const bool placed = machine_.control.place_waiting();
+  return shade() || generate() || placed;
+}
 
 bool ShaderWorker::shade() {
   std::optional<HitBatch> batch = machine_.completed.pop();
