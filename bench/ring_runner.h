@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+#include "accel/accel.h"
+#include "bench/ray_sets.h"
+#include "core/config.h"
+#include "ringbus/native_engine.h"
+
+namespace carousel::bench {
+
+/// What all ring contestants have in common.
+struct RingSettings {
+  std::int64_t slots = 65536;             ///< rays.slots_per_resource
+  std::int64_t packet_rays = 256;         ///< packets.rays
+  std::int64_t ready = 256;               ///< collections.ready
+  std::int64_t capacity = 1 << 20;        ///< collections.capacity, ray IDs
+  std::int64_t treelet_triangles = 2048;  ///< bvh.treelet_triangles
+  std::int64_t link_depth = 16;           ///< topology.link.depth
+  Policy policy = Policy::kNearest;
+  Select select = Select::kStrict;
+  QueueKind queue = QueueKind::kSpscRing;
+};
+
+/// One way to run the ring.
+struct RingForm {
+  Traversal traversal = Traversal::kTreelet;
+  Home home = Home::kLocal;
+  std::int64_t resources = 1;
+  bool statistics = false;
+};
+
+struct RingRun {
+  ringbus::RunResult result;
+  double to_first_packet_seconds = 0;  ///< from the call to the first ray asked for
+};
+
+/// The configuration of a run on `threads` threads, with as many shader workers.
+Config ring_config(const RingSettings& settings, const RingForm& form, int threads);
+
+/// Traces the set on the native ring. Throws SimulationError when the ring breaks.
+RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings& settings,
+                 const RingForm& form, const RaySet& rays, int threads, HitList& hits);
+
+}  // namespace carousel::bench
