@@ -15,11 +15,11 @@ inline constexpr std::int64_t kFixedPointMax = std::int64_t{1} << 48;
 /// Nearest fixed-point value, halves away from zero. What lies outside +-kFixedPointMax, infinities included,
 /// becomes the nearer limit and NaN becomes 0; each such value adds 1 to `saturated`.
 inline std::int64_t to_fixed_point(float value, std::uint64_t& saturated) {
-  const double scaled = static_cast<double>(value) * kFixedPointOne;   // exact: a power of two
+  const double scaled = static_cast<double>(value) * kFixedPointOne;  // exact: a power of two
   if (!(std::abs(scaled) <= static_cast<double>(kFixedPointMax))) {
     ++saturated;
     if (scaled > 0) return kFixedPointMax;
-    return scaled < 0 ? -kFixedPointMax : 0;   // NaN compares false with everything
+    return scaled < 0 ? -kFixedPointMax : 0;  // NaN compares false with everything
   }
   return static_cast<std::int64_t>(scaled + (scaled < 0 ? -0.5 : 0.5));
 }

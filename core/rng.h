@@ -1,8 +1,8 @@
 #pragma once
 
 // Counter-based random numbers: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers:
-// as easy as 1, 2, 3", SC 2011. Philox4x32 with 10 rounds; a number is a pure function of its key and counter,
-// so it does not depend on who asks for it, or when.
+// as easy as 1, 2, 3", SC 2011. Philox4x32 with 10 rounds; a number is a pure function of its key and
+// counter, so it does not depend on who asks for it, or when.
 
 #include <array>
 #include <cstdint>
@@ -27,7 +27,9 @@ constexpr PhiloxCounter philox4x32(PhiloxCounter counter, PhiloxKey key) {
 }
 
 /// A float in [0, 1) from the upper 24 bits, every value exactly representable.
-constexpr float unit_float(std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
+constexpr float unit_float(std::uint32_t word) {
+  return static_cast<float>(word >> 8) * 0x1p-24f;
+}
 
 /// What a random number belongs to. Decisions are numbered by fixed enumerators (`dimension`), never by a
 /// running counter, so an absent decision does not shift the others.

@@ -14,7 +14,7 @@ namespace carousel::shading {
 
 namespace {
 
-constexpr float kLeast = 1e-6f;       // a mirror loses nothing: 0 / 0 otherwise
+constexpr float kLeast = 1e-6f;  // a mirror loses nothing: 0 / 0 otherwise
 constexpr float kWideAlpha = 0.3f;
 
 }  // namespace
@@ -34,16 +34,17 @@ Bsdf::Bsdf(const MaterialPoint& material, const Vec3& wo) : wo_(wo) {
   // Light between several microfacets meets Fresnel's factor several times: not linear in F0, so the two
   // kinds of surface are mixed after, not before.
   auto scattered_back = [&](const Vec3& f0) {
-    const Vec3 fresnel = (20.0f * f0 + 1.0f) * (1.0f / 21.0f);   // Schlick's, averaged over the cosine
+    const Vec3 fresnel = (20.0f * f0 + 1.0f) * (1.0f / 21.0f);  // Schlick's, averaged over the cosine
     return fresnel * fresnel * mean.metal / (Vec3{1} - fresnel * (1.0f - mean.metal));
   };
-  const Vec3 returned = glm::mix(scattered_back(Vec3{kDielectricF0}), scattered_back(material.base_color),
-                                 material.metallic);
+  const Vec3 returned =
+      glm::mix(scattered_back(Vec3{kDielectricF0}), scattered_back(material.base_color), material.metallic);
   multiple_ = returned * (kInvPi * (1.0f - view.metal) / std::max(1.0f - mean.metal, kLeast));
 
   const float weight = schlick_weight(wo.z);
   const float specular = luminance(f0_ + (Vec3{1} - f0_) * weight) * view.metal;
-  const float matte = luminance(albedo) * (1.0f - view.dielectric) + luminance(returned) * (1.0f - view.metal);
+  const float matte =
+      luminance(albedo) * (1.0f - view.dielectric) + luminance(returned) * (1.0f - view.metal);
   const float all = specular + matte;
   // Never so little that a bright lobe is left to rare samples of the other.
   specular_share_ = all > 0.0f ? std::clamp(specular / all, 0.1f, 0.9f) : 0.5f;
@@ -73,6 +74,8 @@ Vec3 Bsdf::sample(float lobe, const Vec2& u) const {
   return 2.0f * glm::dot(wo_, h) * h - wo_;
 }
 
-bool Bsdf::is_wide(float lobe) const { return lobe >= specular_share_ || alpha_ >= kWideAlpha; }
+bool Bsdf::is_wide(float lobe) const {
+  return lobe >= specular_share_ || alpha_ >= kWideAlpha;
+}
 
 }  // namespace carousel::shading

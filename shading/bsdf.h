@@ -42,10 +42,10 @@ class Bsdf {
 
  private:
   Vec3 wo_, f0_;
-  Vec3 diffuse_;         // base albedo / pi, times what the view direction lets through
-  Vec3 multiple_;        // the lobe of light reflected several times, likewise
+  Vec3 diffuse_;   // base albedo / pi, times what the view direction lets through
+  Vec3 multiple_;  // the lobe of light reflected several times, likewise
   float alpha_;
-  float specular_share_; // probability of sampling the GGX lobe
+  float specular_share_;  // probability of sampling the GGX lobe
 };
 
 }  // namespace carousel::shading

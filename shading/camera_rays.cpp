@@ -44,9 +44,8 @@ Ray CameraRays::ray(std::uint32_t x, std::uint32_t y, const CameraDraw& draw) co
     local = local * focus_distance_ - Vec3{lens.x, lens.y, 0.0f};
   }
   local = glm::normalize(local);
-  ray.direction =
-      glm::normalize(camera_.right * local.x + camera_.up * local.y + camera_.back * local.z);
-  ray.tmin = camera_.znear / -local.z;   // znear is measured along the view axis
+  ray.direction = glm::normalize(camera_.right * local.x + camera_.up * local.y + camera_.back * local.z);
+  ray.tmin = camera_.znear / -local.z;  // znear is measured along the view axis
   return ray;
 }
 

@@ -14,7 +14,8 @@ namespace carousel::shading {
 /// aspect; orthographic keeps the camera's whole window in view.
 class CameraRays {
  public:
-  CameraRays(const scene::Camera& camera, const CameraConfig& lens, std::uint32_t width, std::uint32_t height);
+  CameraRays(const scene::Camera& camera, const CameraConfig& lens, std::uint32_t width,
+             std::uint32_t height);
 
   /// Row 0 is the top of the image.
   Ray ray(std::uint32_t x, std::uint32_t y, const CameraDraw& draw) const;
@@ -22,7 +23,7 @@ class CameraRays {
  private:
   scene::Camera camera_;
   float lens_radius_, focus_distance_;
-  float half_width_, half_height_;   // of the window: at distance 1, or in scene units if orthographic
+  float half_width_, half_height_;  // of the window: at distance 1, or in scene units if orthographic
   float inv_width_, inv_height_;
 };
 

@@ -11,8 +11,9 @@ namespace carousel::shading {
 /// One triangle of one instance that gives off light.
 struct EmissiveTriangle {
   std::uint32_t instance = 0, primitive = 0;
-  float area = 0;    ///< world
-  float flux = 0;    ///< estimated luminance, all emitting sides; 0 if nothing was found by sampling its texture
+  float area = 0;  ///< world
+  float flux =
+      0;  ///< estimated luminance, all emitting sides; 0 if nothing was found by sampling its texture
 };
 
 /// Every emissive triangle of a scene, instance by instance, in the order of the mesh.
@@ -28,8 +29,8 @@ class EmissiveTriangles {
 
  private:
   std::vector<EmissiveTriangle> triangles_;
-  std::vector<std::uint32_t> first_;                // by instance; empty if the scene has none
-  std::vector<std::vector<std::uint32_t>> rank_;    // by mesh and primitive; empty for meshes without any
+  std::vector<std::uint32_t> first_;              // by instance; empty if the scene has none
+  std::vector<std::vector<std::uint32_t>> rank_;  // by mesh and primitive; empty for meshes without any
 };
 
 }  // namespace carousel::shading

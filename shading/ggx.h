@@ -22,7 +22,9 @@ inline constexpr float kMinAlpha = 1e-3f;
 inline constexpr float kDielectricF0 = 0.04f;
 
 /// glTF: alpha is the square of the perceptual roughness.
-inline float ggx_alpha(float roughness) { return std::max(roughness * roughness, kMinAlpha); }
+inline float ggx_alpha(float roughness) {
+  return std::max(roughness * roughness, kMinAlpha);
+}
 
 /// Density of microfacet normals; written with h.x and h.y, since 1 - h.z^2 cancels for narrow lobes.
 inline float ggx_distribution(const Vec3& h, float alpha) {

@@ -10,8 +10,8 @@ namespace carousel::shading {
 namespace {
 
 struct Integral {
-  float full = 0;      // with F = 1
-  float schlick = 0;   // weighted by (1 - cos)^5
+  float full = 0;     // with F = 1
+  float schlick = 0;  // weighted by (1 - cos)^5
 };
 
 Integral integrate(float cos_theta, float alpha) {
@@ -60,7 +60,8 @@ GgxAlbedo::GgxAlbedo() {
     for (int c = 0; c < kSize; ++c) {
       const float x = std::max(float(c) / (kSize - 1), 0.01f);
       const Integral integral = integrate(x * x, alpha);
-      directional_[r][c] = {integral.full, kDielectricF0 * (integral.full - integral.schlick) + integral.schlick};
+      directional_[r][c] = {integral.full,
+                            kDielectricF0 * (integral.full - integral.schlick) + integral.schlick};
     }
     const float metal = cosine_mean([&](float cos_theta) { return at(directional_[r], cos_theta).metal; });
     // The multiple-scattering term of bsdf.cpp for F0 = 0.04.

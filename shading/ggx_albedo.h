@@ -13,8 +13,8 @@ class GgxAlbedo {
   static const GgxAlbedo& table();
 
   struct Pair {
-    float metal = 0;        ///< F = 1: the albedo of the bare lobe
-    float dielectric = 0;   ///< F0 = 0.04, what it loses given back: what a diffuse base below is denied
+    float metal = 0;       ///< F = 1: the albedo of the bare lobe
+    float dielectric = 0;  ///< F0 = 0.04, what it loses given back: what a diffuse base below is denied
   };
   /// Share of light arriving from (or leaving to) direction cosine `cos_theta` that is reflected.
   Pair directional(float cos_theta, float alpha) const;
@@ -28,7 +28,7 @@ class GgxAlbedo {
   using Row = std::array<Pair, kSize>;
   static Pair at(const Row& row, float cos_theta);
 
-  std::array<Row, kSize> directional_;   // [roughness][cosine]
+  std::array<Row, kSize> directional_;  // [roughness][cosine]
   std::array<Pair, kSize> average_;
 };
 

@@ -16,6 +16,8 @@ inline Vec3 sample_cosine(const Vec2& u) {
   const Vec2 d = square_to_disk(u);
   return {d.x, d.y, std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
 }
-inline float cosine_pdf(float cos_theta) { return cos_theta * kInvPi; }
+inline float cosine_pdf(float cos_theta) {
+  return cos_theta * kInvPi;
+}
 
 }  // namespace carousel::shading

@@ -21,7 +21,7 @@ class LightChoice {
   float probability(std::uint32_t item) const;
 
  private:
-  std::vector<std::uint32_t> thresholds_;   // item i owns words [thresholds_[i], thresholds_[i + 1])
+  std::vector<std::uint32_t> thresholds_;  // item i owns words [thresholds_[i], thresholds_[i + 1])
 };
 
 }  // namespace carousel::shading

@@ -18,7 +18,9 @@ namespace {
 /// sliver-shaped light does not make the light shadow itself.
 constexpr float kShortOfLight = 0.9999f;
 
-float finite_weight(float flux) { return flux > 0.0f && flux < kInfinity ? flux : 0.0f; }
+float finite_weight(float flux) {
+  return flux > 0.0f && flux < kInfinity ? flux : 0.0f;
+}
 
 }  // namespace
 
@@ -41,12 +43,14 @@ LightSample LightSet::sample(const LightDraw& draw, const Vec3& origin, SpawnOff
   const std::uint32_t index = choice_.choose(draw.choice);
   const float probability = choice_.probability(index);
   if (index >= scene_.lights.size()) {
-    return sample_triangle(triangles_.all()[index - scene_.lights.size()], probability, draw.point, origin, offset);
+    return sample_triangle(triangles_.all()[index - scene_.lights.size()], probability, draw.point, origin,
+                           offset);
   }
   const PunctualSample light = sample_punctual(scene_.lights[index], origin);
   const bool directional = std::isinf(light.distance);
   return {directional ? light.to_light : scene_.lights[index].position - origin,
-          directional ? kInfinity : kShortOfLight, light.to_light, light.irradiance * (1.0f / probability), 0.0f};
+          directional ? kInfinity : kShortOfLight, light.to_light, light.irradiance * (1.0f / probability),
+          0.0f};
 }
 
 LightSample LightSet::sample_triangle(const EmissiveTriangle& light, float probability, const Vec2& u,
@@ -79,7 +83,8 @@ LightSample LightSet::sample_triangle(const EmissiveTriangle& light, float proba
   return s;
 }
 
-float LightSet::triangle_pdf(std::uint32_t instance, std::uint32_t primitive, float t, float cos_light) const {
+float LightSet::triangle_pdf(std::uint32_t instance, std::uint32_t primitive, float t,
+                             float cos_light) const {
   if (choice_.empty() || !(cos_light > 0.0f)) return 0.0f;
   const std::uint32_t index = triangles_.index_of(scene_, instance, primitive);
   const float area = triangles_.all()[index].area;

@@ -15,11 +15,11 @@ namespace carousel::shading {
 
 /// A way to the light: what a shadow ray has to be asked before `radiance` may be counted.
 struct LightSample {
-  Vec3 direction{0};    ///< of the shadow ray, not normalised; origin is where sample() was asked from
-  float tmax = 0;       ///< just short of the light
-  Vec3 wi{0};           ///< unit direction
-  Vec3 radiance{0};     ///< arriving radiance (irradiance for punctual lights) over the density; 0: no light
-  float pdf = 0;        ///< density per solid angle; 0 for lights that no other ray can hit
+  Vec3 direction{0};  ///< of the shadow ray, not normalised; origin is where sample() was asked from
+  float tmax = 0;     ///< just short of the light
+  Vec3 wi{0};         ///< unit direction
+  Vec3 radiance{0};   ///< arriving radiance (irradiance for punctual lights) over the density; 0: no light
+  float pdf = 0;      ///< density per solid angle; 0 for lights that no other ray can hit
 };
 
 /// Everything that next-event estimation chooses from: punctual lights and emissive triangles, in proportion
@@ -42,7 +42,7 @@ class LightSet {
 
   const scene::Scene& scene_;
   EmissiveTriangles triangles_;
-  LightChoice choice_;   // punctual lights first, then triangles
+  LightChoice choice_;  // punctual lights first, then triangles
 };
 
 }  // namespace carousel::shading

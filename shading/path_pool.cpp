@@ -7,7 +7,8 @@ namespace carousel::shading {
 PathPool::PathPool(std::size_t states, std::uint64_t paths, std::size_t max_depth)
     : max_depth_(max_depth), paths_(paths) {
   // Never more states than there are paths for them.
-  const auto count = static_cast<std::size_t>(std::clamp<std::uint64_t>(paths, 1, std::max<std::size_t>(states, 1)));
+  const auto count =
+      static_cast<std::size_t>(std::clamp<std::uint64_t>(paths, 1, std::max<std::size_t>(states, 1)));
   states_ = std::make_unique<PathState[]>(count);
   shadow_ = std::make_unique<Vec3[]>(count * max_depth);
   free_.resize(count);
@@ -17,8 +18,8 @@ PathPool::PathPool(std::size_t states, std::uint64_t paths, std::size_t max_dept
 
 PathPool::Admission PathPool::admit(std::size_t max, std::vector<std::uint32_t>& indices) {
   const std::scoped_lock lock(mutex_);
-  const auto count = static_cast<std::size_t>(
-      std::min<std::uint64_t>({max, free_.size(), paths_ - admitted_}));
+  const auto count =
+      static_cast<std::size_t>(std::min<std::uint64_t>({max, free_.size(), paths_ - admitted_}));
   const Admission admission{admitted_, count};
   indices.insert(indices.end(), free_.rbegin(), free_.rbegin() + static_cast<std::ptrdiff_t>(count));
   free_.resize(free_.size() - count);

@@ -19,9 +19,14 @@ class PathPool {
   /// `paths` paths are to be traced in all, at most `states` (at least 1) at a time.
   PathPool(std::size_t states, std::uint64_t paths, std::size_t max_depth);
 
+  /// Memory a state takes, for estimates.
+  static constexpr std::size_t bytes_per_state(std::size_t max_depth) {
+    return sizeof(PathState) + max_depth * sizeof(Vec3) + sizeof(std::uint32_t);
+  }
+
   struct Admission {
-    std::uint64_t first = 0;   ///< ordinal of the first admitted path; the others follow
-    std::size_t count = 0;     ///< states appended to `indices`
+    std::uint64_t first = 0;  ///< ordinal of the first admitted path; the others follow
+    std::size_t count = 0;    ///< states appended to `indices`
   };
   /// Admits the next at most `max` paths, as far as states are free. Any thread; takes one lock.
   Admission admit(std::size_t max, std::vector<std::uint32_t>& indices);
@@ -39,8 +44,8 @@ class PathPool {
   std::unique_ptr<PathState[]> states_;
   std::unique_ptr<Vec3[]> shadow_;
   std::mutex mutex_;
-  std::vector<std::uint32_t> free_;   // guarded by mutex_
-  std::uint64_t admitted_ = 0;        // guarded by mutex_
+  std::vector<std::uint32_t> free_;  // guarded by mutex_
+  std::uint64_t admitted_ = 0;       // guarded by mutex_
 };
 
 }  // namespace carousel::shading

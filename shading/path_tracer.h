@@ -48,10 +48,10 @@ class PathTracer : public Workload {
   // Results, for when the frame is done and the workers are joined.
 
   struct Counts {
-    std::array<std::uint64_t, kRayKinds> emitted{};     ///< rays by RayKind
+    std::array<std::uint64_t, kRayKinds> emitted{};  ///< rays by RayKind
     std::array<std::uint64_t, kRayKinds> completed{};
-    std::uint64_t saturated = 0;   ///< radiance values that were not finite or beyond fixed point's range
-    std::uint64_t paths = 0;       ///< committed to the film
+    std::uint64_t saturated = 0;  ///< radiance values that were not finite or beyond fixed point's range
+    std::uint64_t paths = 0;      ///< committed to the film
   };
   Counts counts() const;
   HitsDigest hits_digest() const;
@@ -84,7 +84,7 @@ class PathTracer : public Workload {
   Film film_;
   std::unique_ptr<Worker[]> workers_;
   std::size_t worker_count_;
-  std::atomic<std::uint64_t> generated_{0};   // camera rays that generate() calls have appended
+  std::atomic<std::uint64_t> generated_{0};  // camera rays that generate() calls have appended
   RayRecorder* recorder_ = nullptr;
 };
 

@@ -13,9 +13,9 @@ namespace carousel::shading {
 
 /// Light arriving at `point` from a punctual light, as KHR_lights_punctual defines it.
 struct PunctualSample {
-  Vec3 to_light{0};     ///< unit
-  float distance = 0;   ///< infinite for directional lights
-  Vec3 irradiance{0};   ///< on a plane facing the light; zero outside of range or cone
+  Vec3 to_light{0};    ///< unit
+  float distance = 0;  ///< infinite for directional lights
+  Vec3 irradiance{0};  ///< on a plane facing the light; zero outside of range or cone
 };
 
 inline PunctualSample sample_punctual(const scene::PunctualLight& light, const Vec3& point) {
@@ -46,10 +46,12 @@ inline PunctualSample sample_punctual(const scene::PunctualLight& light, const V
 inline Vec3 punctual_flux(const scene::PunctualLight& light, float scene_radius) {
   using Kind = scene::PunctualLight::Kind;
   switch (light.kind) {
-    case Kind::kDirectional: return light.intensity * (kPi * scene_radius * scene_radius);
+    case Kind::kDirectional:
+      return light.intensity * (kPi * scene_radius * scene_radius);
     case Kind::kSpot:
       return light.intensity * (2.0f * kPi * (1.0f - 0.5f * (light.inner_cone_cos + light.outer_cone_cos)));
-    case Kind::kPoint: break;
+    case Kind::kPoint:
+      break;
   }
   return light.intensity * (4.0f * kPi);
 }

@@ -10,10 +10,14 @@ namespace carousel::shading {
 namespace {
 
 constexpr float kBelowOne = 0x1.fffffep-1f;
-constexpr std::uint32_t kStratifiedBounces = 2;
+constexpr std::uint32_t kStratifiedBounces = 1;
 
-constexpr std::uint32_t index(Dimension dimension) { return static_cast<std::uint32_t>(dimension); }
-constexpr std::uint32_t block_of(Dimension dimension) { return index(dimension) / 4; }
+constexpr std::uint32_t index(Dimension dimension) {
+  return static_cast<std::uint32_t>(dimension);
+}
+constexpr std::uint32_t block_of(Dimension dimension) {
+  return index(dimension) / 4;
+}
 
 /// The i-th element of a permutation of [0, length), chosen by `pattern`: a hash that is a bijection on the
 /// next power of two, walked until it lands inside. A. Kensler, "Correlated multi-jittered sampling", Pixar
@@ -113,7 +117,8 @@ std::uint32_t Sampler::pattern(const RandomKey& key, std::uint32_t dimension) co
     h *= 0xc2b2ae35u;
     return h ^ h >> 16;
   };
-  const std::uint32_t seed = static_cast<std::uint32_t>(seed_) ^ static_cast<std::uint32_t>(seed_ >> 32) * 0x9e3779b9u;
+  const std::uint32_t seed =
+      static_cast<std::uint32_t>(seed_) ^ static_cast<std::uint32_t>(seed_ >> 32) * 0x9e3779b9u;
   return mix(mix(seed + key.pixel * 0x9e3779b9u) + (key.bounce << 8 | dimension) * 0x7feb352du);
 }
 

@@ -9,13 +9,13 @@ namespace carousel::shading {
 
 /// Random numbers in [0, 1) that start a path.
 struct CameraDraw {
-  Vec2 pixel;   ///< position within the pixel, from its top left
+  Vec2 pixel;  ///< position within the pixel, from its top left
   Vec2 lens;
 };
 
 /// Random numbers that choose a light and a point on it.
 struct LightDraw {
-  std::uint32_t choice = 0;   ///< all 32 bits: there may be millions of lights
+  std::uint32_t choice = 0;  ///< all 32 bits: there may be millions of lights
   Vec2 point;
   float roulette = 0;
 };
@@ -27,8 +27,8 @@ struct DirectionDraw {
 };
 
 /// The random numbers of a frame's paths: pure functions of (seed, pixel, sample, bounce, dimension). The
-/// samples of one pixel are stratified against each other up to the second surface, where most of the noise
-/// comes from; beyond it they are independent.
+/// samples of one pixel are stratified against each other up to the first surface, where it shows; beyond it
+/// they are independent, which is cheaper.
 class Sampler {
  public:
   /// `samples` is the number of samples a pixel, at least 1.

@@ -1,5 +1,6 @@
 #include "shading/spawn_point.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -43,6 +44,19 @@ float offset_by_ulps(float p, float n) {
 
 }  // namespace
 
+/// What the intersection kernel itself may be off along the normal, in the space it works in. Its weights are
+/// areas, off by a few u L^2 where L is the distance of the vertices; divided by the triangle's own area and
+/// multiplied by L that makes u L (L / h), h the least height: much for slivers, whose t really is that far
+/// off. The direction cancels out, since the projected area shrinks as the ray turns away from the normal.
+double kernel_error(const TriangleGeometry& g, const DVec3& p) {
+  const DVec3 e0 = g.model[1] - g.model[0], e1 = g.model[2] - g.model[1], e2 = g.model[0] - g.model[2];
+  double far = 0;
+  for (const DVec3& v : g.model) far = std::max(far, glm::dot(v - p, v - p));
+  const double longest = std::max({glm::dot(e0, e0), glm::dot(e1, e1), glm::dot(e2, e2)});
+  const double area2 = glm::length(glm::cross(e0, e1));
+  return area2 > 0.0 ? gamma(2) * std::sqrt(far) * (longest / area2) : 0.0;
+}
+
 double spawn_distance(const TriangleGeometry& g) {
   // Everything is measured along the normal n: a model-space error e moves the plane distance by at most
   // |R^T n| . |e|, which is far less than |n| . |R| |e| where R shears.
@@ -51,12 +65,15 @@ double spawn_distance(const TriangleGeometry& g) {
   const DVec3 point = std::abs(g.weights[0]) * glm::abs(g.model[0]) +
                       std::abs(g.weights[1]) * glm::abs(g.model[1]) +
                       std::abs(g.weights[2]) * glm::abs(g.model[2]);
-  double distance = gamma(7) * glm::dot(model_n, point);   // the barycentric point in float
+  double distance = gamma(7) * glm::dot(model_n, point);  // the barycentric point in float
+  distance +=
+      kernel_error(g, g.weights[0] * g.model[0] + g.weights[1] * g.model[1] + g.weights[2] * g.model[2]) *
+      glm::length(model_n);
 
   const bool identity = g.linear == DMat3(1.0) && g.translation == DVec3(0.0);
   if (identity) return distance;
   const DMat3 abs_linear{glm::abs(g.linear[0]), glm::abs(g.linear[1]), glm::abs(g.linear[2])};
-  distance += gamma(4) * glm::dot(n, abs_linear * point + glm::abs(g.translation));   // R p + T in float
+  distance += gamma(4) * glm::dot(n, abs_linear * point + glm::abs(g.translation));  // R p + T in float
   // The way back, R^-1 (o - T): the difference, the entries of the inverse, three products and two sums.
   const DMat3 inverse = glm::inverse(g.linear);
   const DMat3 abs_inverse{glm::abs(inverse[0]), glm::abs(inverse[1]), glm::abs(inverse[2])};
@@ -67,12 +84,14 @@ double spawn_distance(const TriangleGeometry& g) {
 Vec3 spawn_point(const TriangleGeometry& g, Side side, SpawnOffset offset) {
   const DVec3 n = side == Side::kFront ? g.normal : -g.normal;
   switch (offset) {
-    case SpawnOffset::kEpsilon: return Vec3(g.position) + 1e-4f * Vec3(n);
+    case SpawnOffset::kEpsilon:
+      return Vec3(g.position) + 1e-4f * Vec3(n);
     case SpawnOffset::kUlp: {
       const Vec3 p(g.position), normal(n);
       return {offset_by_ulps(p.x, normal.x), offset_by_ulps(p.y, normal.y), offset_by_ulps(p.z, normal.z)};
     }
-    case SpawnOffset::kBound: break;
+    case SpawnOffset::kBound:
+      break;
   }
   const DVec3 p = g.position + spawn_distance(g) * n;
   return {round_outwards(p.x, n.x), round_outwards(p.y, n.y), round_outwards(p.z, n.z)};

@@ -22,7 +22,8 @@ const std::vector<Vec2>& uv_set(const scene::Mesh& mesh, const scene::TextureUse
   return use.uv_set == 0 ? mesh.uv0 : mesh.uv1;
 }
 
-Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use, Encoding encoding) {
+Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use,
+            Encoding encoding) {
   const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
   const Vec2 uv = uvs.empty() ? Vec2{0, 0} : interpolate(uvs, p);
   return lookup(scene, use.texture, transform_uv(use, uv), encoding);
@@ -46,7 +47,8 @@ Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeome
   const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
   if (uvs.empty()) return n;
   const Vec2 uv0 = transform_uv(use, uvs[p.vertices[0]]);
-  const Vec2 d1 = transform_uv(use, uvs[p.vertices[1]]) - uv0, d2 = transform_uv(use, uvs[p.vertices[2]]) - uv0;
+  const Vec2 d1 = transform_uv(use, uvs[p.vertices[1]]) - uv0,
+             d2 = transform_uv(use, uvs[p.vertices[2]]) - uv0;
   const float determinant = d1.x * d2.y - d1.y * d2.x;
   if (determinant == 0.0f) return n;
   const Vec3 e1(g.linear * (g.model[1] - g.model[0])), e2(g.linear * (g.model[2] - g.model[0]));
@@ -63,11 +65,13 @@ Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeome
 
 }  // namespace
 
-TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
-                             float v) {
+TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
+                             float u, float v) {
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh.value];
   const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t{primitive};
-  return {&mesh, &scene.materials[mesh.triangle_materials[primitive].value], {corner[0], corner[1], corner[2]},
+  return {&mesh,
+          &scene.materials[mesh.triangle_materials[primitive].value],
+          {corner[0], corner[1], corner[2]},
           {1.0f - u - v, u, v}};
 }
 
@@ -114,7 +118,7 @@ Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const Tri
   }
   if (p.material->normal_texture) n = bend(scene, p, g, n);
   if (!front) n = -n;
-  if (glm::dot(n, facing) < 0.0f) n = -n;   // normals modelled against the winding
+  if (glm::dot(n, facing) < 0.0f) n = -n;  // normals modelled against the winding
 
   constexpr float kLeastCosine = 0.01f;
   const float cosine = glm::dot(n, wo);

@@ -14,13 +14,13 @@ namespace carousel::shading {
 struct TrianglePoint {
   const scene::Mesh* mesh;
   const scene::Material* material;
-  std::array<std::uint32_t, 3> vertices;   ///< indices into the mesh's arrays
-  std::array<float, 3> weights;            ///< barycentric
+  std::array<std::uint32_t, 3> vertices;  ///< indices into the mesh's arrays
+  std::array<float, 3> weights;           ///< barycentric
 };
 
 /// `u` weighs vertex 1 and `v` vertex 2.
-TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
-                             float v);
+TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
+                             float u, float v);
 
 /// What the base colour texture, its factor and the vertex colour multiply to. For unlit materials all there
 /// is.
@@ -36,7 +36,9 @@ Vec3 emitted(const scene::Scene& scene, const TrianglePoint& point);
 bool is_emissive(const scene::Material& material);
 
 /// The front side emits, and the back if the material is double-sided.
-inline bool emits(const scene::Material& material, bool front) { return front || material.double_sided; }
+inline bool emits(const scene::Material& material, bool front) {
+  return front || material.double_sided;
+}
 
 /// The normal to shade with, in world space and on the side of `wo`: interpolated, bent by the normal map,
 /// and turned until `wo` is above its horizon. `facing` is the geometric normal on the side of `wo`.

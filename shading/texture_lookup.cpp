@@ -13,13 +13,15 @@ namespace {
 /// The texel a whole coordinate falls on.
 std::uint32_t wrapped(std::int64_t i, std::int64_t size, scene::Wrap wrap) {
   switch (wrap) {
-    case scene::Wrap::kClamp: return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, size - 1));
+    case scene::Wrap::kClamp:
+      return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, size - 1));
     case scene::Wrap::kMirror: {
       std::int64_t m = i % (2 * size);
       if (m < 0) m += 2 * size;
       return static_cast<std::uint32_t>(m < size ? m : 2 * size - 1 - m);
     }
-    case scene::Wrap::kRepeat: break;
+    case scene::Wrap::kRepeat:
+      break;
   }
   const std::int64_t m = i % size;
   return static_cast<std::uint32_t>(m < 0 ? m + size : m);
@@ -36,7 +38,9 @@ Vec3 texel(const scene::Image& image, std::uint32_t x, std::uint32_t y, Encoding
 
 /// Coordinates beyond this have no fraction left in float, and would overflow the integers below.
 constexpr float kFarthest = 0x1p24f;
-bool usable(float x) { return x > -kFarthest && x < kFarthest; }
+bool usable(float x) {
+  return x > -kFarthest && x < kFarthest;
+}
 
 }  // namespace
 

@@ -9,8 +9,8 @@
 namespace carousel::shading {
 
 Vec3 tone_curve(const Vec3& radiance) {
-  constexpr float kF90 = 0.04f;                  // what a dielectric's reflection adds; taken off the toe
-  constexpr float kStart = 0.8f - kF90;          // where compression begins
+  constexpr float kF90 = 0.04f;          // what a dielectric's reflection adds; taken off the toe
+  constexpr float kStart = 0.8f - kF90;  // where compression begins
   constexpr float kDesaturation = 0.15f;
   Vec3 color = glm::max(radiance, Vec3{0});
   const float least = std::min({color.x, color.y, color.z});

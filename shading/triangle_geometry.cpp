@@ -26,8 +26,9 @@ TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t inst
   }
   g.mirrored = determinant < 0.0;
   g.weights = {1.0 - double{u} - double{v}, double{u}, double{v}};
-  g.position = g.linear * (g.weights[0] * g.model[0] + g.weights[1] * g.model[1] + g.weights[2] * g.model[2]) +
-               g.translation;
+  g.position =
+      g.linear * (g.weights[0] * g.model[0] + g.weights[1] * g.model[1] + g.weights[2] * g.model[2]) +
+      g.translation;
 
   const DVec3 cross = glm::cross(g.linear * (g.model[1] - g.model[0]), g.linear * (g.model[2] - g.model[0]));
   const double length = glm::length(cross);

@@ -11,14 +11,14 @@ namespace carousel::shading {
 /// A point of a triangle of an instance, and all that leaving it needs. Computed in double from the float
 /// vertices and barycentrics: cheap beside a ray's traversal, and then slivers have a normal too.
 struct TriangleGeometry {
-  std::array<DVec3, 3> model;   ///< vertices in the space in which `linear` and `translation` apply
+  std::array<DVec3, 3> model;  ///< vertices in the space in which `linear` and `translation` apply
   DMat3 linear{1.0};
   DVec3 translation{0};
-  std::array<double, 3> weights;   ///< barycentric
-  DVec3 position;                  ///< world
-  DVec3 normal;                    ///< world, unit, on the front (counter-clockwise) side
-  double area = 0;                 ///< world; 0 for a degenerate triangle, whose normal is then +z
-  bool mirrored = false;           ///< the instance turns the winding; `normal` has that undone
+  std::array<double, 3> weights;  ///< barycentric
+  DVec3 position;                 ///< world
+  DVec3 normal;                   ///< world, unit, on the front (counter-clockwise) side
+  double area = 0;                ///< world; 0 for a degenerate triangle, whose normal is then +z
+  bool mirrored = false;          ///< the instance turns the winding; `normal` has that undone
 };
 
 /// `u` weighs vertex 1 and `v` vertex 2 of triangle `primitive`. An instance whose linear part is singular is

@@ -12,16 +12,19 @@ struct SinCos {
 /// another implementation of sinf and cosf on machines with fused multiply-add, whose last bit may differ.
 inline SinCos sin_cos_turns(float turns) {
   const float nearest = std::floor(turns * 4.0f + 0.5f);
-  const float x = (turns - nearest * 0.25f) * 6.28318531f;   // in [-pi/4, pi/4]
+  const float x = (turns - nearest * 0.25f) * 6.28318531f;  // in [-pi/4, pi/4]
   const float xx = x * x;
-  const float s =
-      x + x * xx * (-1.0f / 6 + xx * (1.0f / 120 + xx * (-1.0f / 5040 + xx * (1.0f / 362880))));
+  const float s = x + x * xx * (-1.0f / 6 + xx * (1.0f / 120 + xx * (-1.0f / 5040 + xx * (1.0f / 362880))));
   const float c = 1.0f + xx * (-0.5f + xx * (1.0f / 24 + xx * (-1.0f / 720 + xx * (1.0f / 40320))));
   switch (static_cast<int>(nearest) & 3) {
-    case 0: return {s, c};
-    case 1: return {c, -s};
-    case 2: return {-s, -c};
-    default: return {-c, s};
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
   }
 }
 

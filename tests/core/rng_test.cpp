@@ -47,7 +47,7 @@ TEST(UnitFloat, IsEvenlySpread) {
   for (std::uint32_t i = 0; i < 16000; ++i) {
     for (const std::uint32_t word : random_block({3, i, 0, 0}, 0)) ++bins[std::size_t(unit_float(word) * 16)];
   }
-  for (const int count : bins) EXPECT_NEAR(count, 4000, 5 * 63);   // 5 standard deviations
+  for (const int count : bins) EXPECT_NEAR(count, 4000, 5 * 63);  // 5 standard deviations
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ inline void run_frame(Workload& workload, const BruteForceTracer& tracer, std::s
   RayBatch rays;
   HitBatch hits;
   bool finished = false;
-  std::size_t done = 0;   // rays before this one are traced
+  std::size_t done = 0;  // rays before this one are traced
   while (!finished || done < rays.size()) {
     if (done == rays.size()) {
       rays.clear();

@@ -43,7 +43,7 @@ TEST(CameraRays, OrthographicRaysAreParallelAndKeepTheWindow) {
   camera.projection = scene::Camera::Projection::kOrthographic;
   camera.xmag = 4;
   camera.ymag = 1;
-  const CameraRays rays(camera, {}, 100, 50);   // a window of 8 x 2 in an image of 2 : 1
+  const CameraRays rays(camera, {}, 100, 50);  // a window of 8 x 2 in an image of 2 : 1
   const Ray a = rays.ray(0, 0, {{0, 0}, {0, 0}}), b = rays.ray(99, 49, {{1, 1}, {0, 0}});
   EXPECT_EQ(a.direction, b.direction);
   EXPECT_NEAR(a.origin.x, -4, 1e-5f);
@@ -54,7 +54,8 @@ TEST(CameraRays, OrthographicRaysAreParallelAndKeepTheWindow) {
 TEST(CameraRays, LensRaysMeetInTheFocalPlane) {
   const CameraConfig lens{0.5f, 3.0f};
   const CameraRays rays(scene::Camera{}, lens, 64, 64);
-  const Ray a = rays.ray(10, 20, {{0.5f, 0.5f}, {0.1f, 0.9f}}), b = rays.ray(10, 20, {{0.5f, 0.5f}, {0.8f, 0.3f}});
+  const Ray a = rays.ray(10, 20, {{0.5f, 0.5f}, {0.1f, 0.9f}}),
+            b = rays.ray(10, 20, {{0.5f, 0.5f}, {0.8f, 0.3f}});
   EXPECT_NE(a.origin, b.origin);
   EXPECT_LE(glm::length(a.origin), 0.25f + 1e-6f);
   const Vec3 pa = a.origin + a.direction * (-3.0f / a.direction.z);

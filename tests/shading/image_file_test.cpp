@@ -78,7 +78,8 @@ TEST(ToneCurve, KeepsMidtonesAndNeverLeavesTheDisplay) {
 TEST(Film, AveragesOverSamples) {
   Film film(2, 1, 4);
   std::uint64_t saturated = 0;
-  film.add(1, to_fixed_point(1.0f, saturated), to_fixed_point(2.0f, saturated), to_fixed_point(-1.0f, saturated));
+  film.add(1, to_fixed_point(1.0f, saturated), to_fixed_point(2.0f, saturated),
+           to_fixed_point(-1.0f, saturated));
   film.add(1, to_fixed_point(3.0f, saturated), 0, 0);
   EXPECT_EQ(film.linear_rgb(), (std::vector<float>{0, 0, 0, 1, 0.5f, -0.25f}));
 }

@@ -39,14 +39,14 @@ double sampled_irradiance(const LightSet& lights, const Vec3& p, const Vec3& n) 
 TEST(LightSet, RectangleGivesTheFormFactorsIrradiance) {
   scene::Scene scene = empty_scene();
   const std::uint32_t light = add_material(scene, lamp(Vec3{1}));
-  add_quad(scene, {-1, 2, -0.5f}, {1, 2, -0.5f}, {1, 2, 0.5f}, {-1, 2, 0.5f}, light);   // looks down
+  add_quad(scene, {-1, 2, -0.5f}, {1, 2, -0.5f}, {1, 2, 0.5f}, {-1, 2, 0.5f}, light);  // looks down
   const LightSet lights(scene);
   const std::vector<DVec3> polygon{{-1, 2, -0.5}, {1, 2, -0.5}, {1, 2, 0.5}, {-1, 2, 0.5}};
   for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{1.5f, 0.5f, -1}, Vec3{0.3f, 1.7f, 0.2f}}) {
     const double expected = polygon_irradiance(polygon, DVec3(p), {0, 1, 0});
     EXPECT_NEAR(sampled_irradiance(lights, p, {0, 1, 0}), expected, 0.01 * expected);
   }
-  EXPECT_EQ(sampled_irradiance(lights, {0, 3, 0}, {0, -1, 0}), 0.0);   // nothing behind it
+  EXPECT_EQ(sampled_irradiance(lights, {0, 3, 0}, {0, -1, 0}), 0.0);  // nothing behind it
 }
 
 TEST(LightSet, InstancedAndMirroredTrianglesGiveTheFormFactorsIrradiance) {
@@ -56,7 +56,8 @@ TEST(LightSet, InstancedAndMirroredTrianglesGiveTheFormFactorsIrradiance) {
   add_mesh(scene, {{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}}, {0, 1, 2}, light, placement);
   const LightSet lights(scene);
   std::vector<DVec3> polygon;
-  for (const Vec3& v : scene.meshes[0].positions) polygon.emplace_back(placement.linear * v + placement.translation);
+  for (const Vec3& v : scene.meshes[0].positions)
+    polygon.emplace_back(placement.linear * v + placement.translation);
   const double expected = polygon_irradiance(polygon, {0, 0, 0}, {0, 1, 0});
   EXPECT_NEAR(sampled_irradiance(lights, {0, 0, 0}, {0, 1, 0}), expected, 0.01 * expected);
 }
@@ -130,7 +131,8 @@ TEST(LightSet, ASceneWithoutLightIsEmpty) {
 }
 
 TEST(LightSet, BounceRaysAndShadowRaysFindTheSameLight) {
-  // A big lamp close above a glossy floor: with two surfaces both techniques count, with one only shadow rays.
+  // A big lamp close above a glossy floor: with two surfaces both techniques count, with one only shadow
+  // rays.
   for (const float roughness : {0.3f, 1.0f}) {
     scene::Scene scene = empty_scene();
     scene::Material floor = matte({0.6f, 0.6f, 0.6f});

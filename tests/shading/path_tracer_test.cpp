@@ -17,7 +17,7 @@ namespace {
 
 Config small_image() {
   Config config;
-  config.image = {21, 21, 8, 6, 7};   // tiles cut at the right and below
+  config.image = {21, 21, 8, 6, 7};  // tiles cut at the right and below
   return config;
 }
 

@@ -15,7 +15,8 @@ namespace carousel::shading {
 namespace {
 
 TEST(PixelOrder, VisitsEveryPathOnce) {
-  for (const auto& [width, height, samples] : {std::tuple{1u, 1u, 1u}, {16u, 8u, 3u}, {21u, 13u, 2u}, {3u, 50u, 1u}}) {
+  for (const auto& [width, height, samples] :
+       {std::tuple{1u, 1u, 1u}, {16u, 8u, 3u}, {21u, 13u, 2u}, {3u, 50u, 1u}}) {
     const PixelOrder order(width, height, samples);
     std::vector<bool> seen(order.count());
     for (std::uint64_t i = 0; i < order.count(); ++i) {
@@ -48,7 +49,7 @@ TEST(Sampler, SamplesOfAPixelFallIntoDifferentStrata) {
       std::vector<std::uint32_t> choices;
       for (std::uint32_t s = 0; s < count; ++s) {
         ++rows[std::size_t(sampler.camera(pixel, s).pixel.y * float(count))];
-        ++lobes[std::size_t(sampler.direction(pixel, s, 1).lobe * float(count))];
+        ++lobes[std::size_t(sampler.direction(pixel, s, 0).lobe * float(count))];
         choices.push_back(sampler.light(pixel, s, 0).choice);
       }
       EXPECT_EQ(*std::max_element(rows.begin(), rows.end()), 1);

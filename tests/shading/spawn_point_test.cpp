@@ -16,12 +16,18 @@ using Quad = __float128;
 struct QVec {
   Quad x, y, z;
 };
-QVec operator-(const QVec& a, const QVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+QVec operator-(const QVec& a, const QVec& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 QVec cross(const QVec& a, const QVec& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Quad dot(const QVec& a, const QVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-QVec to_quad(const Vec3& v) { return {v.x, v.y, v.z}; }
+Quad dot(const QVec& a, const QVec& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+QVec to_quad(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
 QVec transform(const scene::Affine& m, const Vec3& p) {
   auto row = [&](int r) -> Quad {
     return Quad(m.linear[0][r]) * p.x + Quad(m.linear[1][r]) * p.y + Quad(m.linear[2][r]) * p.z +
@@ -67,10 +73,14 @@ class Cases {
     float u = uniform(0, 1), v = uniform(0, 1);
     if (u + v > 1) u = 1 - u, v = 1 - v;
     switch (std::uniform_int_distribution<int>(0, 5)(random_)) {
-      case 0: return {u, 0};
-      case 1: return {0, v};
-      case 2: return {0, 0};
-      default: return {u, v};
+      case 0:
+        return {u, 0};
+      case 1:
+        return {0, v};
+      case 2:
+        return {0, 0};
+      default:
+        return {u, v};
     }
   }
 
@@ -80,7 +90,7 @@ class Cases {
 
 void expect_right_sides(const scene::Scene& scene, const Vec2& b) {
   const TriangleGeometry g = triangle_geometry(scene, 0, 0, b.x, b.y);
-  if (g.area == 0.0) return;   // vertices rounded onto a line; there is no plane
+  if (g.area == 0.0) return;  // vertices rounded onto a line; there is no plane
   const Vec3 front = spawn_point(g, Side::kFront, SpawnOffset::kBound);
   const Vec3 back = spawn_point(g, Side::kBack, SpawnOffset::kBound);
   ASSERT_GT(plane_side(scene, front), 0.0);
@@ -147,7 +157,8 @@ TEST(SpawnPoint, SidesFollowTheWindingThroughMirroredInstances) {
   scene::Scene scene = empty_scene();
   add_material(scene, matte(Vec3{1}));
   // glTF turns the winding of a mirrored instance: its front looks where the mirror image's front looks.
-  add_mesh(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, 0, {Mat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), Vec3{0}});
+  add_mesh(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, 0,
+           {Mat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), Vec3{0}});
   const TriangleGeometry g = triangle_geometry(scene, 0, 0, 0.25f, 0.25f);
   EXPECT_EQ(g.normal, DVec3(0, 0, 1));
   EXPECT_TRUE(g.mirrored);

@@ -43,7 +43,7 @@ TEST(TextureLookup, WrapsAsTheSamplerSays) {
   EXPECT_EQ(at(four_texels(scene::Wrap::kClamp, false), 1.25f, -0.25f), Vec3(1, 0, 0));
   EXPECT_EQ(at(four_texels(scene::Wrap::kMirror, false), 1.25f, 0.25f), Vec3(1, 0, 0));
   EXPECT_EQ(at(four_texels(scene::Wrap::kMirror, false), -0.25f, 0.25f), Vec3(0, 0, 0));
-  EXPECT_EQ(at(four_texels(scene::Wrap::kRepeat, true), 0.0f, 0.25f), Vec3(0.5f, 0, 0));   // across the seam
+  EXPECT_EQ(at(four_texels(scene::Wrap::kRepeat, true), 0.0f, 0.25f), Vec3(0.5f, 0, 0));  // across the seam
   EXPECT_EQ(at(four_texels(scene::Wrap::kClamp, true), 0.0f, 0.25f), Vec3(0, 0, 0));
 }
 
@@ -72,7 +72,7 @@ TEST(TransformUv, ScalesThenRotatesThenMoves) {
   use.scale = {2, 3};
   EXPECT_EQ(transform_uv(use, {1, 1}), Vec2(12, 23));
   use.rotation = 1.57079633f;
-  const Vec2 turned = transform_uv(use, {1, 0});   // (2, 0) turned by 90 degrees
+  const Vec2 turned = transform_uv(use, {1, 0});  // (2, 0) turned by 90 degrees
   EXPECT_NEAR(turned.x, 10, 1e-5f);
   EXPECT_NEAR(turned.y, 18, 1e-5f);
 }

@@ -19,8 +19,8 @@ namespace carousel::shading {
 inline void run_unruly_frame(Workload& workload, const BruteForceTracer& tracer, std::size_t workers,
                              std::size_t batch, std::uint32_t seed) {
   std::mutex mutex;
-  RayBatch bag;                               // guarded by mutex
-  std::atomic<std::size_t> unshaded{0};       // rays in the bag or being traced or shaded
+  RayBatch bag;                          // guarded by mutex
+  std::atomic<std::size_t> unshaded{0};  // rays in the bag or being traced or shaded
   std::atomic<bool> finished{false};
   auto work = [&](std::uint32_t id) {
     std::minstd_rand random(seed + id);
