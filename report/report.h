@@ -120,7 +120,7 @@ struct Host {
   std::uint64_t threads = 0;
   double wall_seconds = 0, rays_per_second = 0, scene_seconds = 0, build_seconds = 0;
   std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
-  std::vector<std::string> simd;
+  std::string simd;
   Machine machine;
 };
 

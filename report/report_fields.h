@@ -188,13 +188,14 @@ void describe(V& v, Machine& r) {
 template <class V>
 void describe(V& v, Host& r) {
   v.field("threads", r.threads, "threads", "worker threads");
-  v.field("wall_seconds", r.wall_seconds, "s", "of the simulation, without loading and building");
+  v.field("wall_seconds", r.wall_seconds, "s",
+          "of the simulation, verification included, loading and building not");
   v.field("rays_per_second", r.rays_per_second, "rays/s", "completed rays over wall_seconds");
   v.field("scene_seconds", r.scene_seconds, "s", "to load or generate the scene");
   v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure");
   v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");
-  v.field("simd", r.simd, "", "instruction sets of the test kernels, the one used first");
+  v.field("simd", r.simd, "", "instruction set of the test kernels");
   v.section("machine", r.machine, "what it ran on");
 }
 

@@ -29,7 +29,7 @@ inline Report sample_report() {
   r.shading = {2, 990, 0, {{"shadow", true, "one light"}}};
   r.verify = {990, 1, "pixel 3"};
   r.digest = {"0123", "4567"};
-  r.host = {4, 2.0, 495, 0.01, 0.2, 1 << 20, 64 << 20, {"avx2", "scalar"}, {"cpu", "linux", 4, 1ull << 34}};
+  r.host = {4, 2.0, 495, 0.01, 0.2, 1 << 20, 64 << 20, "avx2", {"cpu", "linux", 4, 1ull << 34}};
   return r;
 }
 

@@ -1,0 +1,175 @@
+#include "app/build_report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "accel/kernels.h"
+#include "app/effects.h"
+#include "app/machine_info.h"
+#include "core/config_enums.h"
+#include "core/config_write.h"
+#include "core/version.h"
+#include "report/ratio.h"
+
+namespace carousel::app {
+
+using report::ratio;
+
+namespace {
+
+report::Program program() {
+  const BuildInfo build = build_info();
+  return {build.version, build.commit, build.compiler, build.build_type, build.checked};
+}
+
+report::SceneSummary summary(const Prepared& p) {
+  const scene::Scene& s = p.scene;
+  report::SceneSummary out;
+  out.name = s.name;
+  out.triangles = s.unique_triangle_count();
+  out.instanced_triangles = s.instanced_triangle_count();
+  out.meshes = s.meshes.size();
+  out.instances = s.instances.size();
+  out.materials = s.materials.size();
+  out.textures = s.textures.size();
+  out.lights = s.lights.size();
+  out.cameras = s.cameras.size();
+  if (const Aabb box = s.bounds(); !box.empty()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      out.bounds.lo[static_cast<std::size_t>(axis)] = shortest(box.lo[axis]);
+      out.bounds.hi[static_cast<std::size_t>(axis)] = shortest(box.hi[axis]);
+    }
+  }
+  out.warnings = p.warnings;
+  return out;
+}
+
+report::Tests tests(const TestCounts& counts, std::uint64_t rays) {
+  const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
+  return {kind(counts.box), kind(counts.plane), kind(counts.triangle), kind(counts.bundle),
+          kind(counts.transforms)};
+}
+
+report::Resource resource(std::size_t number, const ringbus::ResourceStatistics& s,
+                          const ringbus::CollectionStore::Statistics& c) {
+  using ringbus::StallReason;
+  const auto stalls = [&](StallReason reason) { return s.stalls[static_cast<std::size_t>(reason)]; };
+  report::Resource out;
+  out.resource = number;
+  out.rays_admitted = s.rays_admitted;
+  out.rays_completed = s.rays_completed;
+  out.packets_issued = s.packets_issued;
+  out.packets_retired = s.packets_retired;
+  out.packets_seen = s.visits;
+  out.bubbles = s.bubbles;
+  out.hops = s.hops;
+  out.rays_tested = s.local_rays;
+  out.box_tests = s.tests.box;
+  out.triangle_tests = s.tests.triangle;
+  out.transforms = s.tests.transforms;
+  out.collections_created = c.created;
+  out.collections_peak = c.peak;
+  out.memberships_peak = c.memberships_peak;
+  out.spilled = c.spilled;
+  out.stalls = {stalls(StallReason::kCredits), stalls(StallReason::kLink), stalls(StallReason::kSlots),
+                stalls(StallReason::kStorage), stalls(StallReason::kReserve)};
+  return out;
+}
+
+/// The parts that come from the resources' event counts.
+void add_ring(report::Report& r, const ringbus::RunResult& result, const PacketsConfig& config) {
+  const std::uint64_t rays = result.rays_completed;
+  ringbus::ResourceStatistics sum;
+  report::Collections collections;
+  r.resources.emplace();
+  for (std::size_t i = 0; i < result.resources.size(); ++i) {
+    const ringbus::CollectionStore::Statistics& c = result.collections[i];
+    sum += result.resources[i];
+    collections.created += c.created;
+    collections.peak += c.peak;
+    collections.memberships_peak += c.memberships_peak;
+    collections.spilled += c.spilled;
+    r.resources->push_back(resource(i, result.resources[i], c));
+  }
+  collections.fullness_mean =
+      ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.rays));
+  r.tests = tests(sum.tests, rays);
+  r.packets = report::Packets{sum.packets_issued,
+                              sum.packets_retired,
+                              sum.hops,
+                              ratio(sum.packet_rays, sum.packets_issued),
+                              ratio(sum.local_rays, sum.seen_rays),
+                              ratio(sum.bubbles, sum.visits)};
+  r.collections = collections;
+  const std::uint64_t done = sum.tests.box + sum.tests.plane + sum.tests.triangle + sum.tests.bundle;
+  r.throughput =
+      report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(done, rays)};
+  r.links.emplace();
+  for (const ringbus::LinkResult& link : result.links) {
+    const ringbus::LinkStatistics& s = link.statistics;
+    r.links->push_back({link.from.value, link.to.value, link.depth, s.packets,
+                        ratio(s.occupancy_sum, s.samples), s.occupancy_max, s.refusals});
+  }
+}
+
+report::Host host(const Prepared& p, const ringbus::RunResult& result) {
+  report::Host out;
+  const auto most =
+      static_cast<std::size_t>(std::max(p.config().topology.resources, p.config().shading.workers));
+  out.threads = std::min(p.threads, most);  // more would have nothing to step
+  out.wall_seconds = result.wall_seconds;
+  out.rays_per_second = ratio(static_cast<double>(result.rays_completed), result.wall_seconds);
+  out.scene_seconds = p.scene_seconds;
+  out.build_seconds = p.build_seconds;
+  out.accel_bytes = p.accel.size_bytes();
+  out.peak_memory_bytes = peak_memory_bytes();
+  out.simd = accel::simd_targets().front();   // only the chosen one is left after a choice
+  out.machine = machine_info();
+  return out;
+}
+
+report::Verify verify(const accel::VerifyingWorkload& verifying) {
+  report::Verify out{verifying.compared(), verifying.mismatches(), ""};
+  if (const auto& example = verifying.example()) {
+    const Hit &got = example->got.hit, &expected = example->expected.hit;
+    out.example = fmt::format(
+        "path {} bounce {}: instance {} primitive {} t {}, expected instance {} primitive {} t {}",
+        example->got.tag.path, example->got.tag.bounce, got.instance, got.primitive, got.t, expected.instance,
+        expected.primitive, expected.t);
+  }
+  return out;
+}
+
+}  // namespace
+
+report::Report build_report(const Prepared& prepared, const Frame& frame, const ringbus::RunResult& result,
+                            const accel::VerifyingWorkload* verifying) {
+  const Config& config = prepared.config();
+  report::Report r;
+  r.incomplete = !result.complete;
+  r.carousel = program();
+  r.config = config_json(config);
+  r.scene = summary(prepared);
+  r.host = host(prepared, result);
+  const bool alone = r.host.threads == 1;
+  r.engine = {
+      std::string(enum_name(config.engine.kind)), alone,
+      alone ? "one thread steps everything in a fixed order"
+            : "threads run on the wall clock: counts of packets and tests depend on their timing; rays, "
+              "hits and picture do not"};
+  const auto emitted = frame.emitted();
+  r.rays = {result.rays_emitted,
+            result.rays_completed,
+            result.rays_emitted - result.rays_completed,
+            0,
+            {emitted[0], emitted[1], emitted[2]}};
+  if (!result.resources.empty()) add_ring(r, result, config.packets);
+  r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
+               effects_of(prepared.scene, config)};
+  if (verifying) r.verify = verify(*verifying);
+  r.digest = {frame.hits_digest(), frame.image_digest()};
+  return r;
+}
+
+}  // namespace carousel::app

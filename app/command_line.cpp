@@ -1,0 +1,155 @@
+#include "app/command_line.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "app/check_command.h"
+#include "app/exit_status.h"
+#include "app/output.h"
+#include "app/run_command.h"
+#include "app/schema_command.h"
+#include "app/version_text.h"
+#include "core/edit_distance.h"
+#include "core/error.h"
+
+namespace carousel::app {
+
+namespace {
+
+const std::vector<std::string> kCommands{"run", "check", "schema"};
+
+void log_to_stderr(bool quiet) {
+  // Replaces the logger, so that tests may call main() again.
+  spdlog::drop("carousel");
+  auto logger = spdlog::stderr_color_mt("carousel");
+  logger->set_pattern("%^%l%$: %v");
+  logger->set_level(quiet ? spdlog::level::err : spdlog::level::info);
+  spdlog::set_default_logger(std::move(logger));
+}
+
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
+  const auto near = nearest_name(name, known);
+  return near ? fmt::format("; did you mean {}?", *near) : "";
+}
+
+/// What CLI11 has no words for: the nearest command or option.
+std::string usage_hint(const CLI::App& program, int argc, const char* const* argv) {
+  if (argc < 2) return fmt::format("expected a command: {}", fmt::join(kCommands, ", "));
+  const std::string first = argv[1];
+  const bool known = std::find(kCommands.begin(), kCommands.end(), first) != kCommands.end();
+  if (!first.empty() && first[0] != '-' && !known)
+    return fmt::format("unknown command {}{}; known are {}", first, did_you_mean(first, kCommands),
+                       fmt::join(kCommands, ", "));
+  const CLI::App* command = known ? program.get_subcommand(first) : &program;
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command->get_options())
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (argument.substr(0, 2) == "--" && std::find(options.begin(), options.end(), argument) == options.end())
+      return fmt::format("unknown option {}{}", argument, did_you_mean(argument, options));
+  }
+  return "";
+}
+
+struct Arguments {
+  RunArguments run;
+  CheckArguments check;
+  SchemaArguments schema;
+};
+
+void add_config_options(CLI::App& command, ConfigArguments& arguments) {
+  command.add_option("config", arguments.config, "configuration, YAML or JSON")->required();
+  command
+      .add_option("--set", arguments.sets, "key.path=value: set a key of the configuration; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+}
+
+void add_commands(CLI::App& program, Arguments& arguments) {
+  program.require_subcommand(1);
+  program.set_version_flag("--version", version_text);
+
+  CLI::App* run = program.add_subcommand("run", "one simulation");
+  RunArguments& r = arguments.run;
+  add_config_options(*run, r);
+  run->add_option("--out", r.out, "folder for report and picture (default out/<config name>)")
+      ->type_name("DIR");
+  run->add_flag("--hits", r.hits, "write hits.csv, one row a ray");
+  run->add_option("--dump-rays", r.dump_rays,
+                  "write all rays as CSV, to be read by workload: {rays_from: FILE}")
+      ->type_name("FILE");
+  run->add_flag("--json", r.json, "print the report as JSON instead of the table");
+  run->add_flag("--quiet", r.quiet, "print nothing but errors (and the report with --json)");
+  run->add_flag("--force", r.force, "run although the topology can deadlock");
+
+  CLI::App* check =
+      program.add_subcommand("check", "validate, print the resolved config, say whether it can deadlock");
+  add_config_options(*check, arguments.check);
+
+  CLI::App* schema = program.add_subcommand("schema", "JSON Schema of the files");
+  schema->add_option("file", arguments.schema.file, "config or report")
+      ->required()
+      ->check(CLI::IsMember({"config", "report"}));
+  schema->add_flag("--markdown", arguments.schema.markdown, "config only: every key as a Markdown table");
+}
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App program{"Carousel simulates ray-tracing hardware in which rays stay put and shapes travel.",
+                   "carousel"};
+  Arguments arguments;
+  add_commands(program, arguments);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    std::ostringstream text;
+    program.exit(success, text, text);
+    print_result(text.str());
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    const std::string hint = usage_hint(program, argc, argv);
+    spdlog::error("{}\ncarousel --help tells the usage", hint.empty() ? error.what() : hint);
+    return kUsage;
+  }
+  log_to_stderr(arguments.run.quiet);
+  if (program.got_subcommand("run")) return run_command(arguments.run);
+  if (program.got_subcommand("check")) return check_command(arguments.check);
+  return schema_command(arguments.schema);
+}
+
+}  // namespace
+
+int main(int argc, const char* const* argv) {
+  log_to_stderr(false);
+  try {
+    return run_command_line(argc, argv);
+  } catch (const ConfigError& error) {
+    for (const ConfigIssue& issue : error.issues()) spdlog::error("{}", issue.text());
+    return kUsage;
+  } catch (const SceneError& error) {
+    spdlog::error("{}", error.what());
+    return kUsage;
+  } catch (const FileError& error) {
+    spdlog::error("{}", error.what());
+    return kUsage;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("not enough memory; carousel check says what the configuration needs");
+    return kUsage;
+  } catch (const SimulationError& error) {
+    spdlog::error("{}", error.what());
+    return kBroken;
+  } catch (const std::exception& error) {
+    spdlog::error("internal error: {}", error.what());
+    return kBroken;
+  }
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace carousel::app {
+
+/// The program: parses the command line, runs the command, maps what went wrong to an exit status.
+int main(int argc, const char* const* argv);
+
+}  // namespace carousel::app

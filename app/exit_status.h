@@ -1,0 +1,13 @@
+#pragma once
+
+namespace carousel::app {
+
+/// DESIGN.md section 7, a contract.
+enum ExitStatus : int {
+  kDone = 0,
+  kBroken = 1,  ///< an invariant broke, a simulation got stuck, a verification failed
+  kUsage = 2,   ///< bad usage, config, scene or file; check: also a topology that can deadlock
+  kInterrupted = 130,
+};
+
+}  // namespace carousel::app

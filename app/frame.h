@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/prepare.h"
+#include "app/ray_list_workload.h"
+#include "shading/path_tracer.h"
+
+namespace carousel::app {
+
+/// The rays of a run, whichever the configuration asks for: a picture's or a file's.
+class Frame {
+ public:
+  /// Reads the file of `rays_from`. Keeps references to `prepared`. Throws ConfigError and FileError.
+  explicit Frame(const Prepared& prepared);
+
+  Workload& workload();
+  void set_recorder(shading::RayRecorder* recorder);
+  /// Rays that no other ray causes: what the progress is measured by.
+  std::uint64_t first_rays() const;
+
+  // Results, for when the workers are joined.
+
+  std::array<std::uint64_t, kRayKinds> emitted() const;  ///< by RayKind
+  std::uint64_t saturated() const;
+  std::string hits_digest() const;
+  /// Absent when the rays make no picture.
+  std::optional<std::string> image_digest() const;
+  /// image.png and image.exr, if there is a picture.
+  void write_images(const std::filesystem::path& folder) const;
+
+ private:
+  std::unique_ptr<shading::PathTracer> tracer_;  // one of the two
+  std::unique_ptr<RayListWorkload> list_;
+  std::uint64_t first_rays_;
+};
+
+}  // namespace carousel::app

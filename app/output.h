@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+namespace carousel::app {
+
+/// Writes results to stdout. Throws FileError when they do not arrive (disk full).
+void print_result(std::string_view text);
+
+}  // namespace carousel::app

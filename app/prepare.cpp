@@ -1,0 +1,86 @@
+#include "app/prepare.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include <spdlog/spdlog.h>
+
+#include "accel/kernels.h"
+#include "app/machine_info.h"
+#include "app/memory_need.h"
+#include "core/executor.h"
+#include "ringbus/deadlock.h"
+#include "scene/load_scene.h"
+
+namespace carousel::app {
+
+namespace {
+
+/// Runs `body`; what it finds wrong with the configuration gets its place in the user's files.
+template <class Body>
+auto with_positions(const KeyPositions& positions, const Body& body) {
+  try {
+    return body();
+  } catch (const ConfigError& error) {
+    std::vector<ConfigIssue> issues = error.issues();
+    for (ConfigIssue& issue : issues)
+      if (issue.position.file.empty()) issue.position = positions.find(issue.key_path);
+    throw ConfigError(std::move(issues));
+  }
+}
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void load_scene(Prepared& p) {
+  const Stopwatch watch;
+  p.scene = scene::load_scene(p.config().scene, p.config_folder, [&](const std::string& warning) {
+    spdlog::warn("{}", warning);
+    p.warnings.push_back(warning);
+  });
+  p.scene_seconds = watch.seconds();
+}
+
+void build_accel(Prepared& p) {
+  const Stopwatch watch;
+  accel::select_simd_target(p.config().engine.simd);
+  const auto executor = make_tbb_executor(p.threads);
+  p.accel = accel::build(p.scene, p.config().bvh, *executor);
+  p.build_seconds = watch.seconds();
+  if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
+    throw ConfigError(std::move(issues));
+}
+
+}  // namespace
+
+Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits) {
+  Prepared p;
+  p.located = load_located_config(arguments.config, arguments.sets, options);
+  p.config_folder = std::filesystem::path(arguments.config).parent_path();
+  const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
+  p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(cores));
+  const KeyPositions& positions = p.located.positions;
+  require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
+  with_positions(positions, [&] {
+    load_scene(p);
+    build_accel(p);
+  });
+  require_fit(estimate(p.config(), keep_hits, p.scene, p.accel), usable_memory_bytes(), positions);
+  return p;
+}
+
+std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file) {
+  std::error_code ignored;
+  const std::filesystem::path beside = config_folder / file;
+  return std::filesystem::exists(beside, ignored) ? beside : std::filesystem::path(file);
+}
+
+}  // namespace carousel::app

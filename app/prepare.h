@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "accel/accel.h"
+#include "core/config_parse.h"
+#include "scene/scene.h"
+
+namespace carousel::app {
+
+/// What the commands that take a configuration share.
+struct ConfigArguments {
+  std::string config;
+  std::vector<std::string> sets;
+};
+
+/// A configuration with its scene and acceleration structure, ready to run.
+struct Prepared {
+  LocatedConfig located;
+  std::filesystem::path config_folder;
+  std::size_t threads = 1;  ///< engine.threads, or the machine's cores
+  scene::Scene scene;
+  std::vector<std::string> warnings;  ///< of the import
+  accel::Accel accel;
+  double scene_seconds = 0, build_seconds = 0;
+
+  const Config& config() const { return located.config; }
+};
+
+/// Loads all of it. What would not fit the machine is refused before it is loaded. Throws ConfigError,
+/// SceneError and FileError; warnings go to the log.
+Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits);
+
+/// A file that a configuration names: in the configuration's folder, else in the working one.
+std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file);
+
+}  // namespace carousel::app

@@ -1,0 +1,100 @@
+#include "app/run_command.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include <glm/geometric.hpp>
+#include <spdlog/spdlog.h>
+
+#include "accel/verifying_workload.h"
+#include "app/build_report.h"
+#include "app/counting_workload.h"
+#include "app/exit_status.h"
+#include "app/frame.h"
+#include "app/hit_recorder.h"
+#include "app/interrupt.h"
+#include "app/output.h"
+#include "core/atomic_file.h"
+#include "core/config_write.h"
+#include "report/progress_line.h"
+#include "report/ratio.h"
+#include "report/report_json.h"
+#include "report/report_table.h"
+#include "ringbus/native_engine.h"
+
+namespace carousel::app {
+
+namespace {
+
+std::filesystem::path out_folder(const RunArguments& arguments) {
+  if (!arguments.out.empty()) return arguments.out;
+  return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
+}
+
+/// Scale of entry distances, for the policy `nearest`.
+float scene_size(const scene::Scene& scene) {
+  const Aabb box = scene.bounds();
+  return box.empty() ? 1.0f : glm::length(box.extent());
+}
+
+ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& workload,
+                            const InterruptScope& interrupt, bool quiet) {
+  CountingWorkload counting(workload);
+  std::optional<report::ProgressLine> line;
+  if (!quiet) line.emplace(stderr);
+  ringbus::RunOptions options;
+  options.threads = p.threads;
+  options.stop = interrupt.token();
+  options.progress = [&](std::uint64_t completed) {
+    if (line) line->update(report::ratio(counting.generated(), frame.first_rays()), completed);
+  };
+  return ringbus::run_native(p.config(), p.accel, scene_size(p.scene), counting, options);
+}
+
+void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
+                 const Frame& frame, const report::Report& report, HitRecorder* recorder) {
+  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
+  frame.write_images(folder);
+  if (recorder) {
+    const std::vector<report::HitRow> rows = recorder->take();
+    if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
+    if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
+  }
+  // Last: who finds a report finds the files it speaks of.
+  write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  const InterruptScope interrupt;
+  const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
+  const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits);
+  if (!p.config().vary.empty()) spdlog::warn("vary is for sweeps; run takes the values outside of it");
+
+  Frame frame(p);
+  std::optional<HitRecorder> recorder;
+  if (keep_hits) frame.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
+  std::optional<accel::VerifyingWorkload> verifying;
+  if (p.config().verify == Verify::kReference) verifying.emplace(frame.workload(), p.accel);
+  Workload& workload = verifying ? *verifying : frame.workload();
+
+  const ringbus::RunResult result = simulate(p, frame, workload, interrupt, arguments.quiet);
+  const report::Report report = build_report(p, frame, result, verifying ? &*verifying : nullptr);
+  const std::filesystem::path folder = out_folder(arguments);
+  write_files(folder, arguments, p, frame, report, recorder ? &*recorder : nullptr);
+
+  if (arguments.json)
+    print_result(report::report_json(report).dump(2) + "\n");
+  else if (!arguments.quiet)
+    print_result(report::report_table(report) + "files        " + folder.string() + "\n");
+  if (report.incomplete) spdlog::warn("interrupted; report and picture are partial");
+  if (report.verify && report.verify->mismatches > 0)
+    spdlog::error("verification failed: {} of {} rays differ from the reference tracer",
+                  report.verify->mismatches, report.verify->compared);
+  if (report.incomplete) return kInterrupted;
+  return report.verify && report.verify->mismatches > 0 ? kBroken : kDone;
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+namespace carousel::app {
+
+struct SchemaArguments {
+  std::string file;       ///< config | report
+  bool markdown = false;  ///< config only
+};
+
+/// `carousel schema`. Returns the exit status.
+int schema_command(const SchemaArguments& arguments);
+
+}  // namespace carousel::app

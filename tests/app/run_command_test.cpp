@@ -1,0 +1,159 @@
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/config_parse.h"
+#include "core/config_write.h"
+#include "report/report_json.h"
+#include "tests/app/program.h"
+#include "tests/json_schema_check.h"
+
+namespace carousel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const char* const kSmall =
+    "scene: {builtin: cornell}\nimage: {width: 16, height: 12, samples: 2}\n"
+    "engine: {threads: 2}\ntopology: {resources: 3}\n";
+
+TEST(RunCommand, LeavesPictureReportAndResolvedConfig) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  const Outcome outcome = program.run({"run", "small.yaml", "--set", "verify=reference"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("0 mismatches"));
+  EXPECT_THAT(outcome.out, HasSubstr("files        out/small\n"));
+  EXPECT_THAT(program.read("out/small/image.png"), HasSubstr("PNG"));
+  EXPECT_FALSE(program.read("out/small/image.exr").empty());
+
+  const Json report = Json::parse(program.read("out/small/report.json"));
+  EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
+  EXPECT_EQ(report["incomplete"], false);
+  EXPECT_EQ(report["rays"]["emitted"], report["rays"]["completed"]);
+  EXPECT_EQ(report["rays"]["by_kind"]["camera"], 16 * 12 * 2);
+  EXPECT_EQ(report["packets"]["issued"], report["packets"]["retired"]);
+  EXPECT_EQ(report["verify"]["compared"], report["rays"]["completed"]);
+  EXPECT_EQ(report["resources"].size(), 3u);
+  EXPECT_EQ(report["links"].size(), 3u);
+
+  const Config resolved = load_config(program.folder() / "out/small/config.resolved.yaml", {});
+  EXPECT_EQ(config_json(resolved), report["config"]);
+}
+
+TEST(RunCommand, TheResolvedConfigGivesTheSameDigests) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  ASSERT_EQ(program.run({"run", "small.yaml", "--out", "a"}).status, 0);
+  ASSERT_EQ(program
+                .run({"run", "a/config.resolved.yaml", "--out", "b", "--set", "topology.resources=1", "--set",
+                      "collections.traversal=ordered"})
+                .status,
+            0);
+  const Json a = Json::parse(program.read("a/report.json")), b = Json::parse(program.read("b/report.json"));
+  EXPECT_EQ(a["digest"], b["digest"]);
+  EXPECT_EQ(a["rays"], b["rays"]);
+}
+
+TEST(RunCommand, JsonPrintsTheReportAndQuietNothing) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  const Outcome json = program.run({"run", "small.yaml", "--json"});
+  EXPECT_EQ(json.out, program.read("out/small/report.json"));
+  const Outcome quiet = program.run({"run", "small.yaml", "--quiet"});
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_THAT(quiet.out, IsEmpty());
+  EXPECT_THAT(quiet.err, IsEmpty());
+}
+
+TEST(RunCommand, DumpedRaysReadBackToTheSameHits) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  ASSERT_EQ(program.run({"run", "small.yaml", "--hits", "--dump-rays", "rays.csv", "--out", "a"}).status, 0);
+  const Outcome again = program.run({"run", "small.yaml", "--hits", "--set", "workload={rays_from: rays.csv}",
+                                     "--out", "b", "--set", "verify=reference"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  const std::string hits = program.read("a/hits.csv");
+  EXPECT_GT(hits.size(), 1000u);
+  EXPECT_EQ(hits, program.read("b/hits.csv"));
+  const Json report = Json::parse(program.read("b/report.json"));
+  EXPECT_FALSE(report["digest"].contains("image"));
+  EXPECT_FALSE(std::filesystem::exists(program.folder() / "b/image.png"));
+}
+
+TEST(RunCommand, FindsRayFilesBesideTheConfig) {
+  const Program program;
+  std::filesystem::create_directory(program.folder() / "sub");
+  program.write("sub/rays.csv", "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n0,camera,0,0,0,0,0,1,0,inf\n");
+  program.write("sub/list.yaml", "scene: {builtin: cornell}\nworkload: {rays_from: rays.csv}\n");
+  EXPECT_EQ(program.run({"run", "sub/list.yaml", "--out", "o"}).status, 0);
+  EXPECT_EQ(Json::parse(program.read("o/report.json"))["rays"]["emitted"], 1);
+}
+
+TEST(RunCommand, WrongInputsAreNamedAndEndWithStatus2) {
+  const Program program;
+  program.write("bad.yaml", "scene: {builtin: cornell}\nimage: {width: 0}\npackets: {size: 3}\n");
+  Outcome outcome = program.run({"run", "bad.yaml"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("error: bad.yaml:2:16: image.width: expected an integer from 1 to 16384"));
+  EXPECT_THAT(outcome.err, HasSubstr("error: bad.yaml:3:11: packets.size: unknown key"));
+  EXPECT_THAT(outcome.out, IsEmpty());
+
+  outcome = program.run({"run", "nothing.yaml"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("error: nothing.yaml: cannot be read"));
+
+  program.write("small.yaml", kSmall);
+  outcome = program.run({"run", "small.yaml", "--set", "scene={file: missing.glb}"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("missing.glb"));
+
+  outcome = program.run({"run", "small.yaml", "--set", "scene.camera=7"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--set scene.camera=7: scene.camera:"));
+
+  outcome = program.run({"run", "small.yaml", "--set", "collections.capacity=64"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("--set collections.capacity=64: collections.capacity: expected at least"));
+
+  program.write("rays.csv", "ray,kind\n");
+  outcome = program.run({"run", "small.yaml", "--set", "workload={rays_from: rays.csv}"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("rays.csv:1:"));
+}
+
+TEST(RunCommand, FilesThatCannotBeWrittenEndWithStatus2) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  program.write("file", "not a folder");
+  const Outcome outcome = program.run({"run", "small.yaml", "--out", "file"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("error: cannot write file/"));
+  EXPECT_EQ(program.run({"run", "small.yaml", "--dump-rays", "/dev/full"}).status, 2);
+}
+
+TEST(RunCommand, AnInterruptLeavesAPartialReport) {
+  const Program program;
+  program.write("long.yaml",
+                "scene: {builtin: cornell}\nimage: {width: 2048, height: 2048, samples: 4096}\n");
+  const pid_t pid = program.start({"run", "long.yaml"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  kill(pid, SIGINT);
+  const Outcome outcome = program.wait(pid);
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("INCOMPLETE"));
+  const Json report = Json::parse(program.read("out/long/report.json"));
+  EXPECT_EQ(report["incomplete"], true);
+  EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace carousel
