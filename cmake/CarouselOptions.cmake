@@ -12,8 +12,9 @@ endif()
 target_compile_options(carousel_options INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
                        -Wno-psabi)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 warns of overlaps inside std::string's own operator+ (GCC bug 105651).
-  target_compile_options(carousel_options INTERFACE -Wno-restrict)
+  # GCC 12 warns of overlaps inside std::string's own operator+ (GCC bug 105651) and of uninitialised strings in
+  # vectors of structs (GCC bug 105562).
+  target_compile_options(carousel_options INTERFACE -Wno-restrict -Wno-maybe-uninitialized)
 endif()
 if(CAROUSEL_CHECKED)
   target_compile_definitions(carousel_options INTERFACE CAROUSEL_CHECKED=1)
