@@ -88,6 +88,17 @@ inline RayBatch mixed_rays(const scene::Scene& scene, std::size_t count, std::ui
   return rays;
 }
 
+/// The same without an end and from the start: at the ends of a range another tracer rounds otherwise.
+inline RayBatch whole_rays(const scene::Scene& scene, std::size_t count, std::uint64_t seed) {
+  RayBatch rays = mixed_rays(scene, count, seed);
+  for (RayRequest& r : rays) {
+    r.ray.tmin = 0;
+    r.ray.tmax = kInfinity;
+    r.tag.kind = RayKind::kCamera;
+  }
+  return rays;
+}
+
 inline HitBatch trace(const Accel& accel, const RayBatch& rays) {
   HitBatch hits;
   TestCounts counts;
