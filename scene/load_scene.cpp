@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "scene/builtin.h"
 #include "scene/gltf_import.h"
+#include "scene/key_light.h"
 
 namespace carousel::scene {
 
@@ -38,6 +39,10 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
                         "scene.camera",
                         "expected 0 to " + std::to_string(cameras - 1) +
                             " (the cameras of this scene), found " + std::to_string(config.camera)}});
+  }
+  if (!config.builtin && !config.sky && !has_light(scene)) {
+    scene.lights.push_back(key_light(scene.cameras[static_cast<std::size_t>(config.camera)]));
+    if (warn) warn(config.file + ": has no light; a sun was added (give scene.sky to have the sky alone)");
   }
   return scene;
 }

@@ -29,8 +29,10 @@ TEST(LoadScene, FileIsFoundBesideTheConfigAndGetsTheDefaultSky) {
   const Scene scene = load_scene(config, folder);
   EXPECT_EQ(scene.instanced_triangle_count(), 2u);
   EXPECT_EQ(scene.sky.radiance, Vec3(0.6f, 0.7f, 0.9f));
+  EXPECT_EQ(scene.lights.size(), 1u) << "a file without light gets a sun";
   config.sky = SkyConfig{{1, 1, 1}, 0};
   EXPECT_EQ(load_scene(config, folder).sky.radiance, Vec3(0));
+  EXPECT_TRUE(load_scene(config, folder).lights.empty()) << "a sky that was asked for is left alone";
   std::filesystem::remove_all(folder);
 }
 
