@@ -4,10 +4,13 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+
+#include "scene/png_check.h"
 
 namespace carousel::scene {
 
@@ -31,6 +34,10 @@ const char* format_of(std::span<const unsigned char> bytes) {
 Image decode_image(std::span<const unsigned char> encoded) {
   const char* format = format_of(encoded);
   if (format == nullptr) throw std::runtime_error("neither PNG nor JPEG");
+
+  if (std::string_view(format) == "png") {
+    if (const char* fault = png_fault(encoded)) throw std::runtime_error(std::string("broken: ") + fault);
+  }
 
   OIIO::Filesystem::IOMemReader reader(encoded.data(), encoded.size());
   OIIO::ImageSpec config;
