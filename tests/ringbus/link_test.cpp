@@ -1,0 +1,58 @@
+#include "ringbus/link.h"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "tests/ringbus/queue_kinds.h"
+
+namespace carousel::ringbus {
+namespace {
+
+TEST(Link, KnowsItsEndsAndDepth) {
+  for (const QueueKind kind : queue_kinds()) {
+    const auto link = make_link(kind, 7, ResourceId(2), ResourceId(5));
+    EXPECT_EQ(link->from(), ResourceId(2));
+    EXPECT_EQ(link->to(), ResourceId(5));
+    EXPECT_EQ(link->capacity(), 7u);
+    EXPECT_EQ(link->free_places(), 7u);
+  }
+}
+
+TEST(Link, RefusesWhenFull) {
+  for (const QueueKind kind : queue_kinds()) {
+    const auto link = make_link(kind, 3, ResourceId(0), ResourceId(1));
+    const std::array<PacketId, 2> two{PacketId(10), PacketId(11)};
+    EXPECT_EQ(link->try_send(two), 2u);
+    EXPECT_EQ(link->try_send(two), 1u);
+    EXPECT_EQ(link->try_send(two), 0u);
+    std::array<PacketId, 8> got;
+    EXPECT_EQ(link->try_receive(got), 3u);
+    EXPECT_EQ(got[0], PacketId(10));
+    EXPECT_EQ(got[1], PacketId(11));
+    EXPECT_EQ(got[2], PacketId(10));
+    EXPECT_EQ(link->try_receive(got), 0u);
+  }
+}
+
+TEST(Link, CountsWhatItsSenderSaw) {
+  for (const QueueKind kind : queue_kinds()) {
+    const auto link = make_link(kind, 4, ResourceId(0), ResourceId(1));
+    const std::array<PacketId, 3> three{PacketId(1), PacketId(2), PacketId(3)};
+    (void)link->try_send(three);   // 3 waiting
+    (void)link->try_send(three);   // 4 waiting, 2 refused
+    (void)link->try_send(three);   // 3 refused: no sample
+    std::array<PacketId, 3> got;
+    EXPECT_EQ(link->try_receive(got), 3u);
+    (void)link->try_send(std::span(three).first(1));   // 2 waiting
+    const LinkStatistics& s = link->statistics();
+    EXPECT_EQ(s.packets, 5u);
+    EXPECT_EQ(s.refusals, 5u);
+    EXPECT_EQ(s.occupancy_max, 4u);
+    EXPECT_EQ(s.occupancy_sum, 3u + 4u + 2u);
+    EXPECT_EQ(s.samples, 3u);
+  }
+}
+
+}  // namespace
+}  // namespace carousel::ringbus

@@ -1,0 +1,181 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "accel/accel.h"
+#include "accel/kernels.h"
+#include "accel/reference_tracer.h"
+#include "core/config_enums.h"
+#include "core/error.h"
+#include "core/executor.h"
+#include "ringbus/deadlock.h"
+#include "ringbus/native_engine.h"
+#include "scene/builtin.h"
+#include "tests/ringbus/queue_kinds.h"
+#include "tests/ringbus/scatter_workload.h"
+
+namespace carousel::ringbus {
+
+/// One machine to run a workload on: a configuration, and what is not in one.
+struct Cell {
+  Config config;
+  std::size_t threads = 1;
+  bool tight_storage = false;   ///< bounded collection storage at its least
+
+  std::string text() const {
+    const Config& c = config;
+    return fmt::format(
+        "resources {} {} visit {} flow {} queue {} depth {} slots {} placement {} packet rays {} {} ready {} {} {} {} "
+        "home {} {}{} width {} leaf {} treelet {} workers {} simd {} threads {}",
+        c.topology.resources, enum_name(c.topology.shape), enum_name(c.topology.visit), enum_name(c.topology.flow),
+        enum_name(c.topology.link.queue), c.topology.link.depth, c.rays.slots_per_resource, enum_name(c.rays.placement),
+        c.packets.rays, enum_name(c.packets.shapes), c.collections.ready, enum_name(c.collections.traversal),
+        enum_name(c.collections.policy), enum_name(c.collections.select), enum_name(c.collections.home),
+        enum_name(c.collections.when_full), tight_storage ? " tight" : "", c.bvh.width, c.bvh.leaf_triangles,
+        c.bvh.treelet_triangles, c.shading.workers, enum_name(c.engine.simd), threads);
+  }
+};
+
+/// Whether core/config_validate would accept the combination.
+inline bool possible(const Config& c) {
+  if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip) return false;
+  if (c.collections.home == Home::kHash && c.collections.when_full != WhenFull::kSpill) return false;
+  return c.topology.flow != Flow::kBubble || c.topology.link.depth >= 2;
+}
+
+/// A scene with its reference digest; structures are built once a (width, leaf size).
+class TestScene {
+ public:
+  TestScene(scene::Scene scene, std::uint32_t paths, std::uint8_t bounces, float away = 0.5f)
+      : scene_(std::move(scene)), bounds_(scene_.bounds()), paths_(paths), bounces_(bounces), away_(away) {
+    ScatterWorkload reference = workload();
+    accel::run_reference(accel(BvhConfig{}), reference);
+    digest_ = reference.digest();
+    rays_ = reference.rays();
+  }
+
+  const accel::Accel& accel(const BvhConfig& bvh) {
+    auto& built = accels_[{bvh.width, bvh.leaf_triangles}];
+    if (!built) built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor()));
+    return *built;
+  }
+  ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 7, away_); }
+  float size() const {
+    const Vec3 e = bounds_.extent();
+    return std::sqrt(e.x * e.x + e.y * e.y + e.z * e.z);
+  }
+  const HitsDigest& digest() const { return digest_; }
+  std::uint64_t rays() const { return rays_; }
+
+ private:
+  scene::Scene scene_;
+  Aabb bounds_;
+  std::uint32_t paths_;
+  std::uint8_t bounces_;
+  float away_;
+  std::map<std::pair<std::int64_t, std::int64_t>, std::unique_ptr<accel::Accel>> accels_;
+  HitsDigest digest_;
+  std::uint64_t rays_ = 0;
+};
+
+inline scene::Scene builtin_scene(BuiltinScene builtin, std::int64_t triangles, std::int64_t instances) {
+  SceneConfig config;
+  config.builtin = builtin;
+  config.triangles = triangles;
+  config.instances = instances;
+  return scene::make_builtin(config);
+}
+
+inline RunOptions on_threads(std::size_t threads) {
+  RunOptions options;
+  options.threads = threads;
+  return options;
+}
+
+/// What went wrong with a run, or nothing. `sum` gains what all resources did.
+struct Outcome {
+  std::string fault;
+  RunResult result;
+  ResourceStatistics sum;
+  std::uint64_t spilled = 0, refusals = 0;
+};
+
+/// Sets storage to what the cell asks for, runs it, and checks digest, counts and conservation.
+inline Outcome run_cell(TestScene& scene, Cell cell) {
+  const accel::Accel& accel = scene.accel(cell.config.bvh);
+  Config& c = cell.config;
+  if (c.collections.when_full == WhenFull::kSpill)
+    c.collections.capacity = 4 * c.packets.rays;
+  else
+    c.collections.capacity = minimum_capacity(c, accel.width, accel.max_depth) * (cell.tight_storage ? 1 : 50);
+  c.collections.capacity = std::max(c.collections.capacity, c.packets.rays);
+  ScatterWorkload workload = scene.workload();
+  RunOptions options;
+  options.threads = cell.threads;
+  Outcome out;
+  try {
+    accel::select_simd_target(c.engine.simd);
+    out.result = run_native(c, accel, scene.size(), workload, options);
+  } catch (const std::exception& error) {
+    out.fault = error.what();
+  }
+  accel::select_simd_target(SimdTarget::kAuto);
+  if (!out.fault.empty()) return out;
+  for (const ResourceStatistics& r : out.result.resources) out.sum += r;
+  for (const auto& s : out.result.collections) out.spilled += s.spilled;
+  for (const LinkResult& l : out.result.links) out.refusals += l.statistics.refusals;
+  const auto expect = [&](std::string_view what, auto got, auto wanted) {
+    if (got != wanted) out.fault += fmt::format("{}: {} instead of {}; ", what, got, wanted);
+  };
+  expect("digest", workload.digest().hex(), scene.digest().hex());
+  expect("rays", workload.rays(), scene.rays());
+  expect("rays shaded twice", workload.doubled(), 0u);
+  expect("completed", out.result.rays_completed, out.result.rays_emitted);
+  expect("complete", out.result.complete, true);
+  expect("admitted", out.sum.rays_admitted, scene.rays());
+  expect("handed over", out.sum.rays_completed, scene.rays());
+  expect("packets retired", out.sum.packets_retired, out.sum.packets_issued);
+  return out;
+}
+
+/// The SIMD targets of this build and machine.
+inline std::vector<SimdTarget> simd_targets() {
+  std::vector<SimdTarget> usable{SimdTarget::kAuto};
+  for (const SimdTarget target :
+       {SimdTarget::kScalar, SimdTarget::kSsse3, SimdTarget::kSse4, SimdTarget::kAvx2, SimdTarget::kAvx3}) {
+    try {
+      accel::select_simd_target(target);
+      usable.push_back(target);
+    } catch (const ConfigError&) {
+    }
+  }
+  accel::select_simd_target(SimdTarget::kAuto);
+  return usable;
+}
+
+/// How many random cells to run: `wanted`, times CAROUSEL_CELLS; fewer under ThreadSanitizer, which is slow.
+inline int cell_count(int wanted) {
+  if (const char* scale = std::getenv("CAROUSEL_CELLS")) wanted = static_cast<int>(wanted * std::atof(scale));
+#ifdef __SANITIZE_THREAD__
+  wanted /= 8;
+#endif
+  return std::max(1, wanted);
+}
+
+/// The first seed of random cells; CAROUSEL_SEED moves it, so that soak runs differ.
+inline std::uint32_t first_seed() {
+  const char* seed = std::getenv("CAROUSEL_SEED");
+  return seed != nullptr ? static_cast<std::uint32_t>(std::atoll(seed)) : 1u;
+}
+
+}  // namespace carousel::ringbus
