@@ -189,9 +189,13 @@ std::string kind_text(const Json& schema) {
 
 }  // namespace
 
-std::vector<std::string> config_key_paths() {
-  std::vector<std::string> paths;
-  walk(config_schema(), "", [&](const std::string& path, const Json&) { paths.push_back(path); });
+const std::vector<std::string>& config_key_paths() {
+  // Made once: a file may hold thousands of unknown keys.
+  static const std::vector<std::string> paths = [] {
+    std::vector<std::string> out;
+    walk(config_schema(), "", [&](const std::string& path, const Json&) { out.push_back(path); });
+    return out;
+  }();
   return paths;
 }
 

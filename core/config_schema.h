@@ -19,7 +19,7 @@ std::string config_markdown();
 namespace config {
 
 /// Every key path, sections included, in the order of the schema.
-std::vector<std::string> config_key_paths();
+const std::vector<std::string>& config_key_paths();
 
 /// The shortest key path whose last name is `key`.
 std::optional<std::string> config_path_ending_in(std::string_view key);

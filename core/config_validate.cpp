@@ -145,7 +145,7 @@ class Rules {
 
   void vary_names_keys() {
     if (c.vary.empty()) return;
-    const std::vector<std::string> known = config::config_key_paths();
+    const std::vector<std::string>& known = config::config_key_paths();
     for (const auto& [keys, values] : c.vary) {
       for (std::size_t begin = 0; begin <= keys.size();) {  // several keys vary together: "a.b,c.d"
         const std::size_t end = std::min(keys.find(',', begin), keys.size());

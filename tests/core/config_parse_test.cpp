@@ -101,6 +101,12 @@ bundles: {size: 4}
             }));
 }
 
+TEST(ConfigParse, ManyUnknownKeysTakeNoTime) {
+  std::string text;
+  for (int i = 0; i < 10'000; ++i) text += "unknown" + std::to_string(i) + ": 1\n";
+  EXPECT_EQ(issues_of(text).size(), 10'001u) << "each of them, and the missing scene";
+}
+
 TEST(ConfigParse, LoadsAFileAndNamesItInErrors) {
   const std::string path = testing::TempDir() + "carousel_config_parse_test.yaml";
   std::ofstream(path) << "scene: {builtin: cornell}\n";
