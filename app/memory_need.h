@@ -14,8 +14,8 @@ namespace carousel::app {
 
 /// Bytes a run needs, estimated.
 struct MemoryNeed {
-  std::uint64_t scene = 0;  ///< with what building takes on top
-  std::uint64_t accel = 0;
+  std::uint64_t scene = 0;
+  std::uint64_t accel = 0;  ///< before the scene is there: with what building takes on top
   ringbus::MemoryEstimate ring;
   std::uint64_t paths = 0;  ///< states of the paths in flight
   std::uint64_t film = 0;   ///< and the pictures made from it

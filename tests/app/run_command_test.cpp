@@ -1,5 +1,6 @@
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -140,12 +141,21 @@ TEST(RunCommand, FilesThatCannotBeWrittenEndWithStatus2) {
   EXPECT_EQ(program.run({"run", "small.yaml", "--dump-rays", "/dev/full"}).status, 2);
 }
 
+/// Whether the process catches SIGINT by now: until then an interrupt just ends it.
+bool catches_interrupts(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind("SigCgt:", 0) == 0) return std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1;
+  return false;
+}
+
 TEST(RunCommand, AnInterruptLeavesAPartialReport) {
   const Program program;
-  program.write("long.yaml",
-                "scene: {builtin: cornell}\nimage: {width: 2048, height: 2048, samples: 4096}\n");
+  program.write("long.yaml", "scene: {builtin: cornell}\nimage: {width: 256, height: 256, samples: 65536}\n");
   const pid_t pid = program.start({"run", "long.yaml"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  for (int i = 0; i < 600 && !catches_interrupts(pid); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   kill(pid, SIGINT);
   const Outcome outcome = program.wait(pid);
   EXPECT_EQ(outcome.status, 130) << outcome.err;
