@@ -25,8 +25,8 @@ struct InstanceNode {
 /// Immutable once built; any thread may read. The top level's root is an inner node, with no children when the
 /// scene is empty.
 struct Accel {
-  std::vector<Node> nodes;
-  std::vector<TriangleBlock> blocks;
+  NodeArray nodes;
+  BlockArray blocks;
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
   NodeKey root;                          ///< as root_key()
   int width = kMaxWidth;                 ///< children a node at most

@@ -13,8 +13,8 @@ namespace carousel::accel {
 
 /// Bottom-level structure of one mesh, with references into its own arrays.
 struct Blas {
-  std::vector<Node> nodes;
-  std::vector<TriangleBlock> blocks;
+  NodeArray nodes;
+  BlockArray blocks;
   WideTree tree;    ///< meaningless when the mesh has no triangles
   Aabb box;
 };

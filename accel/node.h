@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
+#include "core/huge_pages.h"
 #include "core/ray.h"
 
 namespace carousel::accel {
@@ -88,5 +90,8 @@ struct alignas(16) TriangleBlock {
   }
 };
 static_assert(sizeof(TriangleBlock) == 160);
+
+using NodeArray = std::vector<Node, HugePageAllocator<Node>>;
+using BlockArray = std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>>;
 
 }  // namespace carousel::accel

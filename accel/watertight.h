@@ -15,15 +15,14 @@ struct WatertightRay {
 
   [[gnu::always_inline]] explicit WatertightRay(const Ray& ray) : origin{ray.origin.x, ray.origin.y, ray.origin.z} {
     const Vec3& d = ray.direction;
+    // Selections and a table instead of branches, which bounce rays would mispredict.
     const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
-    kz = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
-    kx = kz == 2 ? 0 : kz + 1;
-    ky = kx == 2 ? 0 : kx + 1;
-    if (d[kz] < 0.0f) {   // keeps the winding
-      const int swap = kx;
-      kx = ky;
-      ky = swap;
-    }
+    const int larger = ay >= ax ? 1 : 0;
+    kz = az >= (larger ? ay : ax) ? 2 : larger;
+    static constexpr int kAfter[2][3][2] = {{{1, 2}, {2, 0}, {0, 1}}, {{2, 1}, {0, 2}, {1, 0}}};
+    const int* const after = kAfter[d[kz] < 0.0f][kz];   // swapped when the ray runs backwards: keeps the winding
+    kx = after[0];
+    ky = after[1];
     // One division for all three.
     using Float4 = float __attribute__((vector_size(16)));
     const Float4 shear = Float4{d[kx], d[ky], 1.0f, 1.0f} / d[kz];

@@ -14,7 +14,7 @@ std::uint32_t saturating_add(std::uint32_t a, std::uint32_t b) {
 class Collapse {
  public:
   Collapse(const std::vector<BinaryNode>& binary, int width,
-           const std::function<WideLeaf(const BinaryNode&)>& make_leaf, std::vector<Node>& nodes)
+           const std::function<WideLeaf(const BinaryNode&)>& make_leaf, NodeArray& nodes)
       : binary_(binary), width_(width), make_leaf_(make_leaf), nodes_(nodes) {}
 
   WideTree emit(std::uint32_t at) {
@@ -71,13 +71,13 @@ class Collapse {
   const std::vector<BinaryNode>& binary_;
   int width_;
   const std::function<WideLeaf(const BinaryNode&)>& make_leaf_;
-  std::vector<Node>& nodes_;
+  NodeArray& nodes_;
 };
 
 }  // namespace
 
 WideTree collapse(const std::vector<BinaryNode>& binary, int width,
-                  const std::function<WideLeaf(const BinaryNode&)>& make_leaf, std::vector<Node>& nodes) {
+                  const std::function<WideLeaf(const BinaryNode&)>& make_leaf, NodeArray& nodes) {
   return Collapse(binary, width, make_leaf, nodes).emit(0);
 }
 

@@ -26,6 +26,6 @@ struct WideTree {
 /// child of the largest area until it is full (Wald, Benthin, Boulos 2008, "Getting rid of packets").
 /// `make_leaf` is called once a leaf, in depth-first order. A tree that is one leaf has that leaf as its root.
 WideTree collapse(const std::vector<BinaryNode>& binary, int width,
-                  const std::function<WideLeaf(const BinaryNode&)>& make_leaf, std::vector<Node>& nodes);
+                  const std::function<WideLeaf(const BinaryNode&)>& make_leaf, NodeArray& nodes);
 
 }  // namespace carousel::accel

@@ -6,6 +6,7 @@
 
 #include "accel/ray_check.h"
 #include "core/error.h"
+#include "core/huge_pages.h"
 #include "core/workload.h"
 #include "ringbus/ray_id.h"
 
@@ -53,7 +54,7 @@ class RayStore {
  private:
   ResourceId owner_;
   RayIdLayout layout_;
-  std::vector<RayRecord> records_;
+  std::vector<RayRecord, HugePageAllocator<RayRecord>> records_;
   std::vector<std::uint32_t> generations_;   // odd while in use; checked builds only
 };
 
