@@ -8,6 +8,7 @@
 #include "accel/accel.h"
 #include "bench/embree_peer.h"
 #include "bench/ray_sets.h"
+#include "bench/results.h"
 #include "bench/ring_runner.h"
 #include "scene/scene.h"
 
@@ -24,14 +25,15 @@ inline constexpr const char* kTreeletOwners = "ring treelet, 2 owners";
 struct Contestant {
   std::string name;
   bool ours = true;  ///< must give the reference hits to the bit; others only nearly as many
-  std::function<void(const RaySet& rays, int threads, HitList& hits)> trace;
+  std::function<Work(const RaySet& rays, int threads, HitList& hits)> trace;
 };
 
 /// Which contestants take part.
 struct Field {
   bool all_forms =
-      false;         ///< the ring's other traversals, eight resources and statistics, and Embree 16-wide
-  std::string only;  ///< when not empty: those whose name holds this text, and no others
+      false;  ///< the ring's other traversals, eight resources and statistics, and Embree 16-wide
+  std::vector<std::string> variations;  ///< both treelet rings again with these changes (with_changes())
+  std::string only;                     ///< when not empty: those whose name holds this text, and no others
   EmbreeQuality quality = EmbreeQuality::kHigh;
   std::string frequency_level = "simd256";
 };
@@ -47,11 +49,12 @@ class Contest {
  private:
   void add(Contestant contestant);
   void add_depth_first();
-  void add_ring(const std::string& name, const RingForm& form, bool resource_a_thread);
+  void add_ring(const std::string& name, const RingSettings& settings, const RingForm& form,
+                bool resource_a_thread);
+  void add_treelet_rings(const std::string& suffix, const RingSettings& settings, bool statistics);
   void add_embree(const scene::Scene& scene, bool robust);
 
   const accel::Accel& accel_;
-  RingSettings ring_;
   Field field_;
   float scene_size_;
   std::vector<Contestant> contestants_;

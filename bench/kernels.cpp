@@ -36,7 +36,8 @@ struct Setting {
     accel = accel::build(scene, BvhConfig{}, *make_sequential_executor());
     for (const RaySet& set : make_ray_sets(scene, accel, kImageSide, 1)) {
       if (set.name != "shuffled") continue;
-      for (std::size_t i = 0; i < std::min(kRays, set.size); ++i) rays.push_back(accel::start_record(set[i]));
+      for (std::size_t i = 0; i < std::min(kRays, set.size); ++i)
+        accel::start_record(set[i], rays.emplace_back());
     }
     node = {0, accel.instances.at(0).root};
     for (leaf = node; leaf.ref.is_inner();) leaf = accel.child_key(leaf, 0);

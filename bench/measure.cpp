@@ -59,7 +59,7 @@ class SetMeasurement {
     // A contestant that loses a ray must not find the last one's answer in its place.
     hits_.assign(rays_.size, Hit{-1, 0, 0, 0, 0});
     const Stopwatch stopwatch;
-    entry.contestant->trace(rays_, entry.measurement.threads, hits_);
+    entry.measurement.work = entry.contestant->trace(rays_, entry.measurement.threads, hits_);
     const Elapsed elapsed = stopwatch.elapsed();
     const double million_rays = 1e-6 * static_cast<double>(rays_.size);
     entry.wall.push_back(million_rays / elapsed.wall);

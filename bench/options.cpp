@@ -50,7 +50,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_status) {
   app.add_flag("--quick", o.quick, "a smoke test: small scenes, few rays, one repetition, all contestants");
   app.add_option("--builtin", o.builtins, "built-in scenes: terrain, spheres, sliver")->delimiter(',');
   app.add_option("--triangles", o.sizes, "triangles of each")->delimiter(',')->check(CLI::Range(1, 1 << 28));
-  app.add_option("--scene", o.files, "glTF files, measured besides")->check(CLI::ExistingFile);
+  app.add_option("--scene", o.files, "glTF files to measure; besides built-in scenes if those are named too")
+      ->check(CLI::ExistingFile);
   app.add_option("--sets", o.sets, "ray sets: primary, shadow, bounce, shuffled, shuffled-any")
       ->delimiter(',')
       ->check(CLI::IsMember({"primary", "shadow", "bounce", "shuffled", "shuffled-any"}));
@@ -59,6 +60,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_status) {
   app.add_option("--threads", o.threads, "thread counts")->delimiter(',')->check(CLI::Range(1, 1024));
   app.add_option("--repetitions", o.repetitions, "interleaved rounds")->check(CLI::Range(1, 1000));
   app.add_flag("--all", o.field.all_forms, "every traversal, eight owners, statistics, Embree 16-wide");
+  app.add_option("--vary", o.field.variations,
+                 "both treelet rings again with a change, e.g. treelet=512;ready=128");
   app.add_option("--only", o.field.only, "only contestants whose name holds this text");
   app.add_flag("--no-build", no_build, "leave out the build times");
   app.add_flag("--embree-medium", medium, "Embree's medium build quality instead of high");
@@ -85,6 +88,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_status) {
     return std::nullopt;
   }
   if (medium) o.field.quality = EmbreeQuality::kMedium;
+  if (!o.files.empty() && app.count("--builtin") == 0) o.builtins.clear();
   o.build = !no_build;
   if (o.quick) make_quick(o);
   return o;

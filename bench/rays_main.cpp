@@ -55,8 +55,8 @@ SceneResult run_scene(const SceneChoice& choice, const Options& options) {
       continue;
     result.sets.push_back(measure(contest.contestants(), accel, rays, measure_options));
     const SetResult& set = result.sets.back();
-    fmt::print("\n{}: {} {} rays, {} hits, digest {}\n\n{}", result.name, set.rays, set.name, set.hits,
-               set.digest, set_table(set));
+    fmt::print("\n{}: {} {} rays, {} hits, digest {}\n\n{}\n{}", result.name, set.rays, set.name, set.hits,
+               set.digest, set_table(set), work_table(set));
     std::fflush(stdout);
   }
   return result;
@@ -81,8 +81,9 @@ std::string details(const std::vector<SceneResult>& scenes) {
     text += fmt::format("{}### {}\n\n{} triangles, {} instances.\n", text.empty() ? "" : "\n", scene.name,
                         scene.triangles, scene.instances);
     for (const SetResult& set : scene.sets)
-      text += fmt::format("\n**{}**, {}: {} rays, {} hits.\n\n{}", set.name,
-                          set.any_hit ? "any hit" : "closest hit", set.rays, set.hits, set_table(set));
+      text += fmt::format("\n**{}**, {}: {} rays, {} hits.\n\n{}\n{}", set.name,
+                          set.any_hit ? "any hit" : "closest hit", set.rays, set.hits, set_table(set),
+                          work_table(set));
   }
   return text;
 }

@@ -11,12 +11,20 @@ namespace carousel::bench {
 
 // What a run of bench_rays measured: one JSON file, from which the tables are drawn.
 
+/// What tracing took, a ray; 0 where it is not known (the ring tells with statistics only, Embree never).
+struct Work {
+  double box_tests = 0, triangle_tests = 0;
+  double memberships = 0;  ///< times it joined a collection
+  double packet_rays = 0;  ///< mean rays a packet
+};
+
 /// One contestant on one ray set with one number of threads.
 struct Measurement {
   std::string contestant;
   int threads = 1;
   Spread wall{};  ///< million rays a second
   Spread cpu{};   ///< million rays a second of CPU time
+  Work work{};
   std::uint64_t hits = 0;
   std::uint64_t disagreements =
       0;  ///< rays on whose hit the reference differs (Embree: on whether there is one)

@@ -1,10 +1,71 @@
 #include "bench/ring_runner.h"
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <string_view>
 
 #include "bench/list_workload.h"
+#include "core/config_enums.h"
+#include "core/error.h"
 
 namespace carousel::bench {
+
+namespace {
+
+[[noreturn]] void refuse(std::string_view key, std::string_view value) {
+  throw ConfigError({{{}, "--vary", "no setting " + std::string(key) + " of value " + std::string(value)}});
+}
+
+std::int64_t number(std::string_view key, std::string_view value) {
+  std::int64_t out = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), out);
+  if (error != std::errc{} || end != value.data() + value.size() || out < 1) refuse(key, value);
+  return out;
+}
+
+template <class E>
+E choice(std::string_view key, std::string_view value) {
+  for (const EnumName<E>& one : kEnumNames<E>)
+    if (one.name == value) return one.value;
+  refuse(key, value);
+}
+
+void change(RingSettings& s, std::string_view key, std::string_view value) {
+  if (key == "slots")
+    s.slots = number(key, value);
+  else if (key == "packet-rays")
+    s.packet_rays = number(key, value);
+  else if (key == "ready")
+    s.ready = number(key, value);
+  else if (key == "capacity")
+    s.capacity = number(key, value);
+  else if (key == "treelet")
+    s.treelet_triangles = number(key, value);
+  else if (key == "link-depth")
+    s.link_depth = number(key, value);
+  else if (key == "policy")
+    s.policy = choice<Policy>(key, value);
+  else if (key == "select")
+    s.select = choice<Select>(key, value);
+  else if (key == "queue")
+    s.queue = choice<QueueKind>(key, value);
+  else
+    refuse(key, value);
+}
+
+}  // namespace
+
+RingSettings with_changes(RingSettings settings, const std::string& changes) {
+  for (std::string_view rest = changes; !rest.empty();) {
+    const std::string_view one = rest.substr(0, rest.find(';'));
+    rest.remove_prefix(std::min(one.size() + 1, rest.size()));
+    const std::size_t equals = one.find('=');
+    if (equals == std::string_view::npos) refuse(one, "");
+    change(settings, one.substr(0, equals), one.substr(equals + 1));
+  }
+  return settings;
+}
 
 Config ring_config(const RingSettings& settings, const RingForm& form, int threads) {
   Config config;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "accel/accel.h"
 #include "bench/ray_sets.h"
@@ -21,6 +22,10 @@ struct RingSettings {
   Select select = Select::kStrict;
   QueueKind queue = QueueKind::kSpscRing;
 };
+
+/// Changes settings by the text "key=value;key=value", with the names of bench_rays' flags as keys: slots,
+/// packet-rays, ready, capacity, treelet, link-depth, policy, select, queue. Throws ConfigError.
+RingSettings with_changes(RingSettings settings, const std::string& changes);
 
 /// One way to run the ring.
 struct RingForm {

@@ -88,6 +88,19 @@ std::string set_table(const SetResult& set) {
   return table.text();
 }
 
+std::string work_table(const SetResult& set) {
+  Table table({"a ray", "box tests", "triangle tests", "collections joined", "rays a packet"});
+  bool any = false;
+  for (const Measurement& m : set.measurements) {
+    if (m.threads != set.measurements.front().threads || m.work.box_tests == 0) continue;
+    any = true;
+    table.add({m.contestant, fmt::format("{:.1f}", m.work.box_tests),
+               fmt::format("{:.1f}", m.work.triangle_tests), fmt::format("{:.1f}", m.work.memberships),
+               fmt::format("{:.1f}", m.work.packet_rays)});
+  }
+  return any ? table.text() : "";
+}
+
 std::string build_table(const std::vector<SceneResult>& scenes) {
   std::vector<std::string> header{"Mtriangles/s"};
   std::set<int> counts;

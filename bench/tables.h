@@ -31,6 +31,8 @@ std::string ratio_text(double a, double b);
 /// to Embree (robust, single rays) and to the depth-first tracer are of CPU time, which other programs on the
 /// machine disturb least; the ratio to fewer threads is of wall time, where waiting shows.
 std::string set_table(const SetResult& set);
+/// What tracing a ray took, for the contestants that tell; on one thread. Empty when none does.
+std::string work_table(const SetResult& set);
 /// What was built how fast, one row a scene and builder.
 std::string build_table(const std::vector<SceneResult>& scenes);
 
