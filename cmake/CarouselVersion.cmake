@@ -9,8 +9,6 @@ if(Git_FOUND)
     set(CAROUSEL_COMMIT ${described})
   endif()
 endif()
-add_library(carousel_version INTERFACE)
-target_compile_definitions(carousel_version INTERFACE
-  CAROUSEL_VERSION="${PROJECT_VERSION}" CAROUSEL_COMMIT="${CAROUSEL_COMMIT}"
-  CAROUSEL_COMPILER="${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"
-  CAROUSEL_BUILD_TYPE="${CMAKE_BUILD_TYPE}")
+# On the one file that uses them: a new commit recompiles nothing else.
+set_source_files_properties(core/version.cpp PROPERTIES COMPILE_DEFINITIONS
+  "CAROUSEL_VERSION=\"${PROJECT_VERSION}\";CAROUSEL_COMMIT=\"${CAROUSEL_COMMIT}\";CAROUSEL_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";CAROUSEL_BUILD_TYPE=\"${CMAKE_BUILD_TYPE}\"")
