@@ -114,6 +114,20 @@ TEST(Slab, DenormalDirectionsAreConservative) {
   EXPECT_TRUE(hits(ray({0, 0, -3}, {0, 0, tiny}), kUnit, entry));   // 2 / tiny is beyond every float
 }
 
+// Their reciprocal overflows, but the distance to a near plane need not.
+TEST(Slab, DenormalDirectionsEnterNoLaterThanExactly) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {-1.0f, 1.0f}) {
+      Ray r = ray(Vec3{0}, Vec3{0});
+      r.origin[axis] = -1.001f * sign;
+      r.direction[axis] = 2e-39f * sign;   // enters at 5e35
+      float entry = 0;
+      EXPECT_TRUE(hits(r, kUnit, entry, 1e38f));
+      EXPECT_LE(entry, 0.5e36f);
+    }
+  }
+}
+
 // What keeps pruning independent of the tree: every box around a hit box is hit, and entered no later.
 TEST(Slab, EnclosingBoxIsHitAndEnteredNoLater) {
   Random random(2);

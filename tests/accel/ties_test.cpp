@@ -110,6 +110,27 @@ TEST(Ties, EveryOrderOfVisitsGivesSameHit) {
   EXPECT_EQ(orders, 40320);
 }
 
+TEST(Ties, EveryOrderOfInstancesGivesSameHit) {
+  scene::Scene scene = empty_scene();
+  const std::uint32_t triangle = add_mesh(scene, soup(kTriangle));
+  for (int i = 0; i < 6; ++i) add_instance(scene, triangle, {Mat3(2.0f), {0.5f, 0.25f, 1}});
+  const Accel accel = build_sequential(scene);
+  const RayRequest ray = ray_to({0.6f, 0.2f, 3}, {0.02f, -0.1f, -1});
+  const Hit expected = trace_one(accel, ray);
+  ASSERT_TRUE(expected.valid());
+  ASSERT_EQ(expected.instance, 0u);
+  std::vector<std::uint32_t> order(6);
+  std::iota(order.begin(), order.end(), 0u);
+  do {
+    RayRecord record;
+    start_record(ray, record);
+    TestCounts counts;
+    for (const std::uint32_t i : order)
+      test_strip(accel, {i, accel.instances[i].root}, ~0u, {&record, nullptr, 1}, {}, counts);
+    ASSERT_TRUE(same_result({ray.ray, record.hit, ray.tag}, {ray.ray, expected, ray.tag}));
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
 // Triangles that touch: a shared vertex gives many triangles the same t, to the bit or nearly so.
 TEST(Ties, RaysAtSharedVerticesAgreeInAnyOrderOfSubtrees) {
   const scene::Scene scene = icosphere_scene(3);
