@@ -8,6 +8,7 @@
 #include <embree3/rtcore.h>
 
 #include "accel/kernels.h"
+#include "core/version.h"
 
 namespace carousel::bench {
 
@@ -56,9 +57,10 @@ MachineInfo machine_info() {
   info.cpu = cpu_model();
   info.threads = static_cast<int>(std::thread::hardware_concurrency());
   info.caches = caches();
-  info.commit = CAROUSEL_COMMIT;
-  info.compiler = CAROUSEL_COMPILER;
-  info.build_type = CAROUSEL_BUILD_TYPE;
+  const BuildInfo build = build_info();
+  info.commit = build.commit;
+  info.compiler = build.compiler;
+  info.build_type = build.build_type;
   info.simd = accel::simd_targets().front();
   info.embree = RTC_VERSION_STRING;
   info.date = utc_now();
