@@ -1,5 +1,6 @@
 #include "bench/contestants.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -17,7 +18,8 @@ Work work_of(const ringbus::RunResult& result) {
     return b == 0 ? 0 : static_cast<double>(a) / static_cast<double>(b);
   };
   return {ratio(sum.tests.box, sum.rays_completed), ratio(sum.tests.triangle, sum.rays_completed),
-          ratio(sum.memberships, sum.rays_completed), ratio(sum.packet_rays, sum.packets_issued)};
+          ratio(sum.memberships, sum.rays_completed), ratio(sum.packet_rays, sum.packets_issued),
+          result.complete ? 0 : std::max<std::uint64_t>(1, result.rays_completed)};
 }
 
 }  // namespace
@@ -39,8 +41,10 @@ Contest::Contest(const scene::Scene& scene, const accel::Accel& accel, const Rin
     add_ring("ring treelet, 8 owners", ring, {Traversal::kTreelet, Home::kIssuer, 8}, false);
     add_ring("ring spread, local", ring, {Traversal::kSpread, Home::kLocal}, true);
     add_ring("ring spread, 2 owners", ring, {Traversal::kSpread, Home::kIssuer, 2}, false);
-    add_ring("ring ordered, local", ring, {Traversal::kOrdered, Home::kLocal}, true);
-    add_ring("ring ordered, 2 owners", ring, {Traversal::kOrdered, Home::kIssuer, 2}, false);
+    // Nearest first gives ordered rays packets of a few members each.
+    const RingSettings ordered = with_changes(ring, "policy=fullest");
+    add_ring("ring ordered, local", ordered, {Traversal::kOrdered, Home::kLocal}, true);
+    add_ring("ring ordered, 2 owners", ordered, {Traversal::kOrdered, Home::kIssuer, 2}, false);
   }
   add_embree(scene, true);
   add_embree(scene, false);
@@ -70,7 +74,7 @@ void Contest::add_depth_first() {
            };
          });
          const double count = static_cast<double>(rays.size);
-         return Work{static_cast<double>(boxes) / count, static_cast<double>(triangles) / count, 0, 0};
+         return Work{static_cast<double>(boxes) / count, static_cast<double>(triangles) / count, 0, 0, 0};
        }});
 }
 

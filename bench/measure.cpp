@@ -11,6 +11,9 @@ namespace carousel::bench {
 
 namespace {
 
+/// A contestant that takes longer is run once.
+constexpr double kLongRunSeconds = 5;
+
 HitList reference_hits(const accel::Accel& accel, const RaySet& rays) {
   HitList hits;
   hits.reserve(rays.size);
@@ -48,6 +51,7 @@ struct Entry {
   const Contestant* contestant;
   Measurement measurement;
   std::vector<double> wall, cpu;
+  bool longsome = false;
 };
 
 class SetMeasurement {
@@ -61,10 +65,12 @@ class SetMeasurement {
     const Stopwatch stopwatch;
     entry.measurement.work = entry.contestant->trace(rays_, entry.measurement.threads, hits_);
     const Elapsed elapsed = stopwatch.elapsed();
-    const double million_rays = 1e-6 * static_cast<double>(rays_.size);
+    const std::uint64_t given_up = entry.measurement.work.given_up_after;
+    const double million_rays = 1e-6 * static_cast<double>(given_up > 0 ? given_up : rays_.size);
     entry.wall.push_back(million_rays / elapsed.wall);
     entry.cpu.push_back(million_rays / elapsed.cpu);
-    check(entry);
+    entry.longsome = elapsed.wall > kLongRunSeconds;
+    if (given_up == 0) check(entry);
   }
 
   SetResult result() const {
@@ -113,10 +119,11 @@ SetResult measure(const std::vector<Contestant>& contestants, const accel::Accel
   std::vector<Entry> entries;
   for (const Contestant& contestant : contestants)
     for (const int threads : options.threads)
-      entries.push_back({&contestant, {.contestant = contestant.name, .threads = threads}, {}, {}});
+      entries.push_back({&contestant, {.contestant = contestant.name, .threads = threads}, {}, {}, false});
   for (int repetition = 0; repetition < options.repetitions; ++repetition) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
       Entry& entry = entries[(i + static_cast<std::size_t>(repetition)) % entries.size()];
+      if (entry.longsome) continue;
       if (options.progress)
         options.progress(fmt::format("{} rays, round {} of {}: {}, {} threads", rays.name, repetition + 1,
                                      options.repetitions, entry.contestant->name, entry.measurement.threads));

@@ -5,7 +5,7 @@
 namespace carousel::bench {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Spread, median, min, max)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Work, box_tests, triangle_tests, memberships, packet_rays)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Work, box_tests, triangle_tests, memberships, packet_rays, given_up_after)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measurement, contestant, threads, wall, cpu, work, hits, disagreements)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SetResult, name, any_hit, rays, hits, digest, measurements)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BuildResult, builder, threads, mtris, bytes_per_triangle)

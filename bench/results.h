@@ -14,8 +14,9 @@ namespace carousel::bench {
 /// What tracing took, a ray; 0 where it is not known (the ring tells with statistics only, Embree never).
 struct Work {
   double box_tests = 0, triangle_tests = 0;
-  double memberships = 0;  ///< times it joined a collection
-  double packet_rays = 0;  ///< mean rays a packet
+  double memberships = 0;            ///< times it joined a collection
+  double packet_rays = 0;            ///< mean rays a packet
+  std::uint64_t given_up_after = 0;  ///< rays; 0 when all were traced
 };
 
 /// One contestant on one ray set with one number of threads.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <stop_token>
 #include <string_view>
 
 #include "bench/list_workload.h"
@@ -87,13 +88,19 @@ Config ring_config(const RingSettings& settings, const RingForm& form, int threa
 }
 
 RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings& settings,
-                 const RingForm& form, const RaySet& rays, int threads, HitList& hits) {
+                 const RingForm& form, const RaySet& rays, int threads, HitList& hits, double limit_seconds) {
   const Config config = ring_config(settings, form, threads);
   ringbus::RunOptions options;
   options.threads = static_cast<std::size_t>(threads);
   options.statistics = form.statistics;
   ListWorkload workload(rays, hits);
   const auto start = std::chrono::steady_clock::now();
+  std::stop_source stop;
+  options.stop = stop.get_token();
+  options.progress = [&](std::uint64_t) {
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > limit_seconds)
+      stop.request_stop();
+  };
   RingRun run;
   run.result = ringbus::run_native(config, accel, scene_size, workload, options);
   run.to_first_packet_seconds = std::chrono::duration<double>(workload.started() - start).count();

@@ -12,12 +12,12 @@ namespace carousel::bench {
 
 /// What all ring contestants have in common.
 struct RingSettings {
-  std::int64_t slots = 65536;             ///< rays.slots_per_resource
-  std::int64_t packet_rays = 256;         ///< packets.rays
-  std::int64_t ready = 256;               ///< collections.ready
-  std::int64_t capacity = 1 << 20;        ///< collections.capacity, ray IDs
-  std::int64_t treelet_triangles = 2048;  ///< bvh.treelet_triangles
-  std::int64_t link_depth = 16;           ///< topology.link.depth
+  std::int64_t slots = 65536;              ///< rays.slots_per_resource
+  std::int64_t packet_rays = 512;          ///< packets.rays
+  std::int64_t ready = 512;                ///< collections.ready
+  std::int64_t capacity = 1 << 20;         ///< collections.capacity, ray IDs
+  std::int64_t treelet_triangles = 32768;  ///< bvh.treelet_triangles
+  std::int64_t link_depth = 16;            ///< topology.link.depth
   Policy policy = Policy::kNearest;
   Select select = Select::kStrict;
   QueueKind queue = QueueKind::kSpscRing;
@@ -43,8 +43,10 @@ struct RingRun {
 /// The configuration of a run on `threads` threads, with as many shader workers.
 Config ring_config(const RingSettings& settings, const RingForm& form, int threads);
 
-/// Traces the set on the native ring. Throws SimulationError when the ring breaks.
+/// Traces the set on the native ring; stops after `limit_seconds`, with a result that is not complete. Throws
+/// SimulationError when the ring breaks.
 RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings& settings,
-                 const RingForm& form, const RaySet& rays, int threads, HitList& hits);
+                 const RingForm& form, const RaySet& rays, int threads, HitList& hits,
+                 double limit_seconds = 20);
 
 }  // namespace carousel::bench

@@ -76,10 +76,11 @@ std::string set_table(const SetResult& set) {
     std::vector<std::string> row{name};
     for (const int t : counts) {
       const Measurement* m = find(set, name, t);
-      row.insert(row.end(), {m == nullptr ? "" : spread_text(m->wall),
-                             m == nullptr ? "" : fmt::format("{:.2f}", m->cpu.median),
-                             ratio_text(cpu_rate(set, name, t), cpu_rate(set, kEmbreeRobust, t)),
-                             ratio_text(cpu_rate(set, name, t), cpu_rate(set, kDepthFirst, t))});
+      row.insert(row.end(),
+                 {m == nullptr ? "" : spread_text(m->wall) + (m->work.given_up_after > 0 ? " *" : ""),
+                  m == nullptr ? "" : fmt::format("{:.2f}", m->cpu.median),
+                  ratio_text(cpu_rate(set, name, t), cpu_rate(set, kEmbreeRobust, t)),
+                  ratio_text(cpu_rate(set, name, t), cpu_rate(set, kDepthFirst, t))});
       if (t != counts.front())
         row.push_back(ratio_text(wall_rate(set, name, t), wall_rate(set, name, counts.front())));
     }
