@@ -29,8 +29,8 @@ std::string ratio_text(double a, double b);
 
 /// Every contestant on one set: million rays a second of wall time with the spread, and of CPU time. Ratios
 /// to Embree (robust, single rays) and to the depth-first tracer are of CPU time, which other programs on the
-/// machine disturb least; the ratio to fewer threads is of wall time, where waiting shows. A star: given up before
-/// all rays were traced.
+/// machine disturb least; the ratio to fewer threads is of wall time, where waiting shows. A star: given up
+/// before all rays were traced.
 std::string set_table(const SetResult& set);
 /// What tracing a ray took, for the contestants that tell; on one thread. Empty when none does.
 std::string work_table(const SetResult& set);
