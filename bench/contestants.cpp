@@ -41,10 +41,8 @@ Contest::Contest(const scene::Scene& scene, const accel::Accel& accel, const Rin
     add_ring("ring treelet, 8 owners", ring, {Traversal::kTreelet, Home::kIssuer, 8}, false);
     add_ring("ring spread, local", ring, {Traversal::kSpread, Home::kLocal}, true);
     add_ring("ring spread, 2 owners", ring, {Traversal::kSpread, Home::kIssuer, 2}, false);
-    // Nearest first gives ordered rays packets of a few members each.
-    const RingSettings ordered = with_changes(ring, "policy=fullest");
-    add_ring("ring ordered, local", ordered, {Traversal::kOrdered, Home::kLocal}, true);
-    add_ring("ring ordered, 2 owners", ordered, {Traversal::kOrdered, Home::kIssuer, 2}, false);
+    add_ring("ring ordered, local", ring, {Traversal::kOrdered, Home::kLocal}, true);
+    add_ring("ring ordered, 2 owners", ring, {Traversal::kOrdered, Home::kIssuer, 2}, false);
   }
   add_embree(scene, true);
   add_embree(scene, false);
