@@ -1,4 +1,6 @@
 // A packet is back at its owner: its members move on to the collections of what they hit.
+#include <bit>
+
 #include "ringbus/resource.h"
 
 namespace carousel::ringbus {
@@ -21,15 +23,15 @@ void Resource::retire(Packet& packet) {
 }
 
 void Resource::retire_spread(Packet& packet) {
-  std::uint32_t any = 0;
-  for (const PacketMember& member : packet.members) any |= member.mask;
-  for (int lane = 0; any != 0; ++lane, any >>= 1) {
-    if ((any & 1) == 0) continue;
-    ids_.clear();
-    for (const PacketMember& member : packet.members)
-      if (member.mask >> lane & 1) ids_.push_back(member.ray);
+  for (const PacketMember& member : packet.members)
+    for (std::uint32_t rest = member.mask; rest != 0; rest &= rest - 1)
+      lane_ids_[static_cast<std::size_t>(std::countr_zero(rest))].push_back(member.ray);
+  for (int lane = 0; lane < accel::kMaxWidth; ++lane) {
+    std::vector<RayId>& ids = lane_ids_[static_cast<std::size_t>(lane)];
+    if (ids.empty()) continue;
     collections_.add(accel_.child_key(packet.key, lane), static_cast<std::uint16_t>(packet.depth + 1),
-                     packet.nearest[lane], ids_);
+                     packet.nearest[lane], ids);
+    ids.clear();
   }
 }
 

@@ -5,7 +5,8 @@
 namespace carousel::ringbus {
 
 namespace {
-constexpr std::int64_t kGenerateBatch = 4096;
+// Rays asked for at once: enough that resources find whole groups waiting when they come round again.
+constexpr std::int64_t kGenerateBatch = 65536;
 }
 
 ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count)
@@ -40,7 +41,9 @@ bool ShaderWorker::shade() {
 bool ShaderWorker::generate() {
   // Acquire: pairs with the release below, and is only a hint here.
   if (count_.source_finished.load(std::memory_order_acquire)) return false;
-  const std::int64_t room = std::min(slots_ - count_.outstanding.load(std::memory_order_relaxed), kGenerateBatch);
+  const std::int64_t workers = machine_.config.shading.workers;
+  const std::int64_t room = std::min({slots_ - count_.outstanding.load(std::memory_order_relaxed), kGenerateBatch,
+                                      slots_ / workers + 1});
   if (room <= 0) return false;
   // Counted before they exist, so that nobody sees the source finished with the last rays not yet counted.
   count_.outstanding.fetch_add(room, std::memory_order_relaxed);
