@@ -113,11 +113,50 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
   }
 }
 
+report::Rate rate(std::uint64_t rays, std::uint64_t cycles, std::int64_t clock_mhz) {
+  const double per_cycle = ratio(rays, cycles);
+  return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
+}
+
+report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles) {
+  using ringbus::cycle::TileState;
+  const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
+  const auto bank = [&](const ringbus::cycle::UnitLedger& ledger) {
+    return report::UnitCycles{ledger.busy,          in(TileState::kTesting) - ledger.busy,
+                              in(TileState::kMemory),  in(TileState::kLink),
+                              in(TileState::kCredits), in(TileState::kStorage),
+                              in(TileState::kIdle)};
+  };
+  return {bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.handler.busy, cycles - tile.handler.busy};
+}
+
+/// The parts that need a simulated clock.
+void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config) {
+  r.engine.cycles = c.cycles;
+  if (r.throughput) {
+    r.throughput->whole = rate(r.rays.completed, c.cycles, config.engine.clock_mhz);
+    if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);
+  }
+  for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i) (*r.resources)[i].units = units(c.tiles[i], c.cycles);
+  for (std::size_t i = 0; r.links && i < r.links->size(); ++i) {
+    const ringbus::cycle::UnitLedger& use = c.links[i].use;
+    (*r.links)[i].utilisation = ratio(use.busy, c.cycles);
+    (*r.links)[i].cycles = report::LinkCycles{use.busy, use.stalled, c.cycles - use.busy - use.stalled};
+  }
+  report::Memory& memory = r.memory.emplace();
+  for (const ringbus::cycle::CacheResult& cache : c.caches)
+    memory.caches.push_back({cache.requests, cache.lines, cache.hits, cache.merged, cache.misses,
+                             ratio(cache.hits, cache.lines)});
+  memory.dram_lines = c.memory_lines;
+  memory.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.memory.line_bytes);
+  memory.dram_busy_cycles = c.memory_busy;
+  memory.dram_utilisation = ratio(c.memory_busy, c.cycles);
+  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(config.shading.workers));
+}
+
 report::Host host(const Prepared& p, const ringbus::RunResult& result) {
   report::Host out;
-  const auto most =
-      static_cast<std::size_t>(std::max(p.config().topology.resources, p.config().shading.workers));
-  out.threads = std::min(p.threads, most);  // more would have nothing to step
+  out.threads = result.threads;
   out.wall_seconds = result.wall_seconds;
   out.rays_per_second = ratio(static_cast<double>(result.rays_completed), result.wall_seconds);
   out.scene_seconds = p.scene_seconds;
@@ -153,11 +192,13 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.scene = summary(prepared);
   r.host = host(prepared, result);
   const bool alone = r.host.threads == 1;
-  r.engine = {
-      std::string(enum_name(config.engine.kind)), alone,
-      alone ? "one thread steps everything in a fixed order"
+  r.engine.kind = enum_name(config.engine.kind);
+  r.engine.deterministic = alone || result.cycle.has_value();
+  r.engine.reason =
+      result.cycle ? "virtual time: nothing depends on the host's threads"
+      : alone ? "one thread steps everything in a fixed order"
             : "threads run on the wall clock: counts of packets and tests depend on their timing; rays, "
-              "hits and picture do not"};
+              "hits and picture do not";
   const auto emitted = frame.emitted();
   r.rays = {result.rays_emitted,
             result.rays_completed,
@@ -166,7 +207,8 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
             {emitted[0], emitted[1], emitted[2]}};
   if (!result.resources.empty()) add_ring(r, result, config.packets);
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
-               effects_of(prepared.scene, config)};
+               std::nullopt, effects_of(prepared.scene, config)};
+  if (result.cycle) add_cycles(r, *result.cycle, config);
   if (verifying) r.verify = verify(*verifying);
   r.digest = {frame.hits_digest(), frame.image_digest()};
   return r;

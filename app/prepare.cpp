@@ -66,7 +66,10 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   p.located = load_located_config(arguments.config, arguments.sets, options);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
-  p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(cores));
+  // A second thread pays for the cycle engine only where each has many resources (docs/performance.md).
+  const std::int64_t automatic =
+      p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
+  p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
   const KeyPositions& positions = p.located.positions;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {

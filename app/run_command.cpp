@@ -21,6 +21,7 @@
 #include "report/ratio.h"
 #include "report/report_json.h"
 #include "report/report_table.h"
+#include "ringbus/cycle_engine.h"
 #include "ringbus/native_engine.h"
 
 namespace carousel::app {
@@ -49,7 +50,8 @@ ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& wor
   options.progress = [&](std::uint64_t completed) {
     if (line) line->update(report::ratio(counting.generated(), frame.first_rays()), completed);
   };
-  return ringbus::run_native(p.config(), p.accel, scene_size(p.scene), counting, options);
+  const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
+  return run(p.config(), p.accel, scene_size(p.scene), counting, options);
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,

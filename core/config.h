@@ -125,6 +125,7 @@ struct PacketsConfig {
   PacketShapes shapes = PacketShapes::kStrip;
   PacketCarry carry = PacketCarry::kReference;
   PacketResults results = PacketResults::kMask;
+  std::int64_t ids_per_cycle = 16;
 };
 
 struct CollectionsConfig {

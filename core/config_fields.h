@@ -149,6 +149,8 @@ void describe(V& v, PacketsConfig& c) {
   v.choice("shapes", c.shapes, "a packet carries all shapes below one node, or a single one");
   v.choice("carry", c.carry, "a packet carries a reference to its shapes, or their data");
   v.choice("results", c.results, "how hits travel back to the packet's owner");
+  v.field("ids_per_cycle", c.ids_per_cycle, IntRange{1, 1024}, "ray IDs/cycle",
+          "of a packet that a resource looks at, to find its own or to gather hits");
 }
 
 template <class V>

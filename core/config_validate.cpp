@@ -20,7 +20,6 @@ class Rules {
 
   std::vector<ConfigIssue> check() {
     one_scene();
-    built_engine();
     built_shape();
     built_accuracy();
     built_planes_and_bundles();
@@ -60,7 +59,7 @@ class Rules {
       issue("scene.builtin", "expected either file or builtin, found both");
   }
 
-  void built_engine() { only("engine.kind", c.engine.kind, EngineKind::kNative); }
+  bool cycle() const { return c.engine.kind == EngineKind::kCycle; }
 
   void built_shape() {
     const TopologyShape shape = c.topology.shape;
@@ -68,8 +67,8 @@ class Rules {
         shape == TopologyShape::kPointToPoint)
       return;
     issue("topology.shape",
-          fmt::format("the native engine has no {}; expected ring, bidirectional or point_to_point",
-                      enum_name(shape)));
+          fmt::format("the {} engine has no {}; expected ring, bidirectional or point_to_point",
+                      enum_name(c.engine.kind), enum_name(shape)));
   }
 
   void built_accuracy() {
@@ -85,7 +84,16 @@ class Rules {
   }
 
   void built_packets() {
-    only("packets.carry", c.packets.carry, PacketCarry::kReference);
+    if (!cycle()) only("packets.carry", c.packets.carry, PacketCarry::kReference);
+    if (cycle() && c.packets.carry == PacketCarry::kData && c.memory.fetch != MemoryConfig::Fetch::kPacket)
+      issue("memory.fetch", fmt::format("a packet that carries its shapes' data gets them from its issuer; expected "
+                                        "packet, found {}",
+                                        enum_name(c.memory.fetch)));
+    if (cycle() && c.memory.fetch == MemoryConfig::Fetch::kMulticast)
+      issue("memory.fetch", "multicast is not built yet; expected packet or resource");
+    if (cycle() && c.rays.placement != Placement::kBalanced && c.rays.placement != Placement::kRoundRobin)
+      issue("rays.placement", fmt::format("the cycle engine has no {}; expected balanced or round_robin",
+                                          enum_name(c.rays.placement)));
     only("packets.results", c.packets.results, PacketResults::kMask);
   }
 

@@ -17,6 +17,7 @@ struct TestCounts {
     transforms += o.transforms;
     return *this;
   }
+  friend bool operator==(const TestCounts&, const TestCounts&) = default;
 };
 
 }  // namespace carousel

@@ -34,6 +34,7 @@ struct SceneSummary {
 
 struct Engine {
   std::string kind;
+  std::optional<std::uint64_t> cycles{};
   bool deterministic = false;
   std::string reason;
 };
@@ -47,8 +48,14 @@ struct Rays {
   RaysByKind by_kind;
 };
 
+/// Simulated speed; steady: between a quarter and three quarters of the rays.
+struct Rate {
+  double rays_per_kilocycle = 0, mrays_per_second_at_clock = 0;
+};
+
 struct Throughput {
   double packets_per_ray = 0, hops_per_ray = 0, tests_per_ray = 0;
+  std::optional<Rate> whole{}, steady{};
 };
 
 struct TestKind {
@@ -75,6 +82,16 @@ struct Stalls {
   std::uint64_t credits = 0, link = 0, slots = 0, storage = 0, reserve = 0;
 };
 
+/// Cycles of a group of equal units; the parts add up to the run.
+struct UnitCycles {
+  std::uint64_t busy = 0, other_units = 0, memory = 0, link = 0, credits = 0, storage = 0, idle = 0;
+};
+
+struct Units {
+  UnitCycles box, triangle, transform;
+  std::uint64_t handler_busy = 0, handler_idle = 0;
+};
+
 struct Resource {
   std::uint64_t resource = 0;
   std::uint64_t rays_admitted = 0, rays_completed = 0;
@@ -82,12 +99,30 @@ struct Resource {
   std::uint64_t rays_tested = 0, box_tests = 0, triangle_tests = 0, transforms = 0;
   std::uint64_t collections_created = 0, collections_peak = 0, memberships_peak = 0, spilled = 0;
   Stalls stalls;
+  std::optional<Units> units{};
+};
+
+struct LinkCycles {
+  std::uint64_t busy = 0, stalled = 0, idle = 0;
 };
 
 struct Link {
   std::uint64_t from = 0, to = 0, depth = 0, packets = 0;
   double occupancy_mean = 0;
   std::uint64_t occupancy_max = 0, stalled = 0;
+  std::optional<double> utilisation{};
+  std::optional<LinkCycles> cycles{};
+};
+
+struct Cache {
+  std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0;
+  double hit_fraction = 0;
+};
+
+struct Memory {
+  std::vector<Cache> caches;
+  std::uint64_t dram_lines = 0, dram_bytes = 0, dram_busy_cycles = 0;
+  double dram_utilisation = 0;
 };
 
 struct Effect {
@@ -98,6 +133,7 @@ struct Effect {
 
 struct Shading {
   std::uint64_t workers = 0, shaded = 0, saturated = 0;
+  std::optional<double> utilisation;
   std::vector<Effect> effects;
 };
 
@@ -138,6 +174,7 @@ struct Report {
   std::optional<Collections> collections;
   std::optional<std::vector<Resource>> resources;
   std::optional<std::vector<Link>> links;
+  std::optional<Memory> memory;
   Shading shading;
   std::optional<Verify> verify;
   Digest digest;

@@ -44,6 +44,7 @@ void describe(V& v, SceneSummary& r) {
 template <class V>
 void describe(V& v, Engine& r) {
   v.field("kind", r.kind, "", "native or cycle");
+  v.field("cycles", r.cycles, "cycles", "simulated, until everything had come to rest");
   v.field("deterministic", r.deterministic, "",
           "whether everything outside of host is the same in every run");
   v.field("reason", r.reason, "", "why");
@@ -66,11 +67,19 @@ void describe(V& v, Rays& r) {
 }
 
 template <class V>
+void describe(V& v, Rate& r) {
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "completed rays");
+  v.field("mrays_per_second_at_clock", r.mrays_per_second_at_clock, "Mrays/s", "at engine.clock_mhz");
+}
+
+template <class V>
 void describe(V& v, Throughput& r) {
   v.field("packets_per_ray", r.packets_per_ray, "packets/ray", "packets issued for each completed ray");
   v.field("hops_per_ray", r.hops_per_ray, "hops/ray", "links crossed by packets for each completed ray");
   v.field("tests_per_ray", r.tests_per_ray, "tests/ray",
           "box, plane, triangle and bundle tests for each ray");
+  v.section("whole", r.whole, "simulated speed from the first cycle to the last");
+  v.section("steady", r.steady, "without fill and drain: between a quarter and three quarters of the rays");
 }
 
 template <class V>
@@ -118,6 +127,26 @@ void describe(V& v, Stalls& r) {
 }
 
 template <class V>
+void describe(V& v, UnitCycles& r) {
+  v.field("busy", r.busy, "cycles", "a test was started, or the units' interval kept one from starting");
+  v.field("other_units", r.other_units, "cycles", "a packet was in test, in other units or on its way through");
+  v.field("memory", r.memory, "cycles", "waiting for shape data");
+  v.field("link", r.link, "cycles", "waiting for a packet to leave");
+  v.field("credits", r.credits, "cycles", "all packets were out");
+  v.field("storage", r.storage, "cycles", "too few collection blocks were free");
+  v.field("idle", r.idle, "cycles", "nothing to test");
+}
+
+template <class V>
+void describe(V& v, Units& r) {
+  v.section("box", r.box, "testers of boxes");
+  v.section("triangle", r.triangle, "testers of triangles");
+  v.section("transform", r.transform, "transform units");
+  v.field("handler_busy", r.handler_busy, "cycles", "looking through packets' IDs");
+  v.field("handler_idle", r.handler_idle, "cycles", "the rest");
+}
+
+template <class V>
 void describe(V& v, Resource& r) {
   v.field("resource", r.resource, "", "number of the resource");
   v.field("rays_admitted", r.rays_admitted, "rays", "that got a slot here");
@@ -136,6 +165,33 @@ void describe(V& v, Resource& r) {
   v.field("memberships_peak", r.memberships_peak, "ray IDs", "in collections at once");
   v.field("spilled", r.spilled, "ray IDs", "stored beyond the capacity");
   v.section("stalls", r.stalls, "what could not proceed at once");
+  v.section("units", r.units, "cycles of its units; each unit's add up to engine.cycles");
+}
+
+template <class V>
+void describe(V& v, LinkCycles& r) {
+  v.field("busy", r.busy, "cycles", "moving a packet");
+  v.field("stalled", r.stalled, "cycles", "a packet waited for a place at the other end");
+  v.field("idle", r.idle, "cycles", "nothing to move");
+}
+
+template <class V>
+void describe(V& v, Cache& r) {
+  v.field("requests", r.requests, "strips", "asked for");
+  v.field("lines", r.lines, "lines", "looked up");
+  v.field("hits", r.hits, "lines", "found");
+  v.field("merged", r.merged, "lines", "on their way already");
+  v.field("misses", r.misses, "lines", "fetched from memory");
+  v.field("hit_fraction", r.hit_fraction, "fraction", "hits over lines");
+}
+
+template <class V>
+void describe(V& v, Memory& r) {
+  v.section("caches", r.caches, "each L2");
+  v.field("dram_lines", r.dram_lines, "lines", "read");
+  v.field("dram_bytes", r.dram_bytes, "bytes", "read");
+  v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "moving lines");
+  v.field("dram_utilisation", r.dram_utilisation, "fraction", "busy cycles over all");
 }
 
 template <class V>
@@ -147,6 +203,8 @@ void describe(V& v, Link& r) {
   v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting, seen at sends");
   v.field("occupancy_max", r.occupancy_max, "packets", "waiting, seen at sends");
   v.field("stalled", r.stalled, "attempts", "sends that found the queue full");
+  v.field("utilisation", r.utilisation, "fraction", "cycles in which it moved something, over all");
+  v.section("cycles", r.cycles, "they add up to engine.cycles");
 }
 
 template <class V>
@@ -161,6 +219,7 @@ void describe(V& v, Shading& r) {
   v.field("workers", r.workers, "workers", "shader workers");
   v.field("shaded", r.shaded, "rays", "completed rays shaded");
   v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
+  v.field("utilisation", r.utilisation, "fraction", "of the workers' cycles, those spent on shading and camera rays");
   v.section("effects", r.effects, "effects of light");
 }
 
@@ -214,6 +273,7 @@ void describe(V& v, Report& r) {
   v.section("collections", r.collections, "rays waiting for a node");
   v.section("resources", r.resources, "each resource");
   v.section("links", r.links, "each link");
+  v.section("memory", r.memory, "caches and memory of the simulated machine");
   v.section("shading", r.shading, "shader workers");
   v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
   v.section("digest", r.digest, "equal digests mean equal hits and an equal picture");

@@ -101,6 +101,48 @@ void packet_lines(Table& table, const Report& report) {
   }
 }
 
+double busy_fraction(const std::vector<Resource>& resources, std::uint64_t cycles, UnitCycles Units::*bank) {
+  std::uint64_t busy = 0;
+  for (const Resource& r : resources)
+    if (r.units) busy += ((*r.units).*bank).busy;
+  return ratio(busy, cycles * resources.size());
+}
+
+/// Where the simulated machine's time went.
+void cycle_lines(Table& table, const Report& report) {
+  const std::uint64_t cycles = *report.engine.cycles;
+  const Throughput& t = *report.throughput;
+  std::string text = fmt::format("{} cycles", grouped(cycles));
+  if (t.whole)
+    text += fmt::format("   {:.2f} rays per kilocycle, {:.1f} Mrays/s at the clock", t.whole->rays_per_kilocycle,
+                        t.whole->mrays_per_second_at_clock);
+  if (t.steady) text += fmt::format("   steady {:.2f}", t.steady->rays_per_kilocycle);
+  table.line("simulated", "{}", text);
+  if (!report.resources || report.resources->empty()) return;
+  UnitCycles sum;
+  std::uint64_t handler = 0;
+  for (const Resource& r : *report.resources) {
+    if (!r.units) return;
+    const UnitCycles& u = r.units->box;
+    sum.memory += u.memory;
+    sum.link += u.link;
+    sum.credits += u.credits;
+    sum.storage += u.storage;
+    sum.idle += u.idle;
+    handler += r.units->handler_busy;
+  }
+  const std::uint64_t all = cycles * report.resources->size();
+  const auto part = [&](std::uint64_t x) { return percent(ratio(x, all)); };
+  table.line("busy", "box {}   triangle {}   transform {}   handling {}   shading {}   memory {}",
+             percent(busy_fraction(*report.resources, cycles, &Units::box)),
+             percent(busy_fraction(*report.resources, cycles, &Units::triangle)),
+             percent(busy_fraction(*report.resources, cycles, &Units::transform)), part(handler),
+             percent(report.shading.utilisation.value_or(0)),
+             percent(report.memory ? report.memory->dram_utilisation : 0));
+  table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}", part(sum.memory),
+             part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle));
+}
+
 std::string image_text(const nlohmann::ordered_json& config) {
   const auto image = config.find("image");
   if (image == config.end()) return "";
@@ -132,6 +174,7 @@ std::string report_table(const Report& report) {
   table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
              scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
              seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
+  if (report.engine.cycles && report.throughput) cycle_lines(table, report);
   if (report.tests) test_line(table, *report.tests);
   packet_lines(table, report);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);

@@ -1,6 +1,7 @@
 #include "ringbus/native_engine.h"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <memory>
@@ -135,6 +136,7 @@ class NativeRun {
     out.rays_emitted = count_.emitted;
     out.rays_completed = count_.completed;
     out.wall_seconds = wall_seconds;
+    out.threads = threads_;
     out.slots_used = machine_.control.slots_used();
     out.slot_waits = machine_.control.slot_waits();
     for (std::size_t r = 0; r < ports_.size(); ++r) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "accel/ray_check.h"
+#include "core/config.h"
 #include "core/error.h"
 #include "core/huge_pages.h"
 #include "core/workload.h"
@@ -57,5 +59,13 @@ class RayStore {
   std::vector<RayRecord, HugePageAllocator<RayRecord>> records_;
   std::vector<std::uint32_t> generations_;   // odd while in use; checked builds only
 };
+
+/// One for each resource.
+inline std::vector<std::unique_ptr<RayStore>> make_ray_stores(const Config& config) {
+  std::vector<std::unique_ptr<RayStore>> stores;
+  for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(config.topology.resources); ++r)
+    stores.push_back(std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(config.rays.slots_per_resource)));
+  return stores;
+}
 
 }  // namespace carousel::ringbus

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "accel/kernels.h"
 #include "core/config.h"
 #include "core/workload.h"
 #include "ringbus/collection_store.h"
@@ -22,6 +23,13 @@ namespace carousel::ringbus {
 /// is in flight.
 std::uint32_t reserve_blocks(const CollectionsConfig& config, int width, int max_depth);
 
+/// Takes rays through a whole subtree; for an engine that wants an account of it. Without one the kernels do.
+class SubtreeTracer {
+ public:
+  virtual ~SubtreeTracer() = default;
+  virtual void trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) = 0;
+};
+
 /// A compute resource without a clock: its slice of the rays, its testers and its share of the collections. An
 /// engine decides when each call happens; one thread at a time.
 class Resource {
@@ -33,6 +41,10 @@ class Resource {
   static std::int32_t initial_tests(const Config& config, const accel::Accel& accel);
 
   ResourceId id() const { return store_.owner(); }
+  /// Before the first test. Not owned.
+  void set_subtree_tracer(SubtreeTracer* tracer) { subtree_tracer_ = tracer; }
+  /// Whether `key` is a subtree that is crossed in one visit.
+  bool is_treelet(accel::NodeKey key) const { return is_treelet(config_, accel_, key); }
 
   /// How many rays may join the root's collection now, limited by collection storage.
   std::size_t admissible() const;
@@ -47,6 +59,9 @@ class Resource {
 
   /// Tests the packet's members that live here and writes the answers into it.
   void test(Packet& packet);
+  /// What the last test() did, and with how many rays.
+  const TestCounts& last_tests() const { return tests_; }
+  std::size_t last_rays() const { return local_slots_.size(); }
   /// Takes back a packet of its own: hits join the children's collections.
   void retire(Packet& packet);
   /// Takes the members of a membership packet that has reached its home.
@@ -71,7 +86,6 @@ class Resource {
     std::uint32_t next_shape = 0, shapes = 0;
   };
 
-  bool is_treelet(accel::NodeKey key) const { return is_treelet(config_, accel_, key); }
   static bool is_treelet(const Config& config, const accel::Accel& accel, accel::NodeKey key);
   /// Tests a ray waits for when it joins `key`: one a packet that will carry it there.
   static std::int32_t tests_of(const Config& config, const accel::Accel& accel, accel::NodeKey key, int strip_size);
@@ -96,6 +110,7 @@ class Resource {
   const Config& config_;
   const accel::Accel& accel_;
   EventSink* sink_;
+  SubtreeTracer* subtree_tracer_ = nullptr;
   bool ordered_, single_, bounded_;
   std::uint32_t floor_blocks_;
   RayStore& store_;

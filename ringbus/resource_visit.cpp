@@ -44,7 +44,9 @@ void Resource::test(Packet& packet) {
 void Resource::test_spread(Packet& packet) {
   const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size()};
   if (is_treelet(packet.key) || !packet.key.ref.is_inner()) {
-    if (is_treelet(packet.key))
+    if (is_treelet(packet.key) && subtree_tracer_ != nullptr)
+      subtree_tracer_->trace(packet.key, members, tests_);
+    else if (is_treelet(packet.key))
       accel::trace_subtree(accel_, packet.key, members, tests_);
     else
       accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);

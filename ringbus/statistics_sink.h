@@ -18,6 +18,7 @@ struct ResourceStatistics {
   TestCounts tests;
 
   ResourceStatistics& operator+=(const ResourceStatistics& o);
+  friend bool operator==(const ResourceStatistics&, const ResourceStatistics&) = default;
 };
 
 /// The statistics sink: adds up events.

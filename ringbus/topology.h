@@ -32,9 +32,10 @@ class Topology {
   ResourceId next(const Packet& packet, ResourceId here) const;
   /// Whether the packet has to be handled at `here`, or just cuts through.
   bool handles(const Packet& packet, ResourceId here) const;
+  /// Whether the packet has anything to do at `r`, its owner apart.
+  bool wanted(const Packet& packet, ResourceId r) const;
 
  private:
-  bool wanted(const Packet& packet, ResourceId r) const;
   std::uint32_t resources_;
   std::uint16_t directions_;
   bool point_to_point_, visit_all_;

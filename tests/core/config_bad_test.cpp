@@ -115,8 +115,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "instances, sliver)"},
         BadConfig{"TwoScenes", "scene: {file: a.glb, builtin: cornell}\n",
                   "test.yaml:1:31: scene.builtin: expected either file or builtin, found both"},
-        BadConfig{"CycleEngine", SCENE "engine: {kind: cycle}\n",
-                  "test.yaml:2:16: engine.kind: cycle is not built yet; expected native"},
+        BadConfig{"CyclePlacement", SCENE "engine: {kind: cycle}\nrays: {placement: addressed}\n",
+                  "test.yaml:3:19: rays.placement: the cycle engine has no addressed; expected balanced or "
+                  "round_robin"},
         BadConfig{
             "Shape", SCENE "topology: {shape: bus}\n",
             "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "

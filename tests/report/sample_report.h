@@ -11,7 +11,8 @@ inline Report sample_report() {
   r.config = {{"image", {{"width", 64}, {"height", 32}, {"samples", 4}}},
               {"topology", {{"resources", 2}, {"shape", "ring"}}}};
   r.scene = {"cornell", 1234567, 1300000, 3, 5, 7, 0, 1, 1, {{-1, -2, -3}, {1, 2, 3}}, {}};
-  r.engine = {"native", false, "threads"};
+  r.engine.kind = "native";
+  r.engine.reason = "threads";
   r.rays = {1000, 990, 10, 0, {500, 300, 200}};
   r.throughput = {0.5, 2.5, 17.25};
   r.tests = {{8000, 8.5}, {0, 0}, {2000, 2.25}, {0, 0}, {990, 1}};
@@ -26,7 +27,7 @@ inline Report sample_report() {
   b.stalls.link = 4;
   r.resources = {a, b};
   r.links = {{0, 1, 16, 600, 1.5, 9, 7}, {1, 0, 16, 600, 2.5, 11, 0}};
-  r.shading = {2, 990, 0, {{"shadow", true, "one light"}}};
+  r.shading = {2, 990, 0, std::nullopt, {{"shadow", true, "one light"}}};
   r.verify = {990, 1, "pixel 3"};
   r.digest = {"0123", "4567"};
   r.host = {4, 2.0, 495, 0.01, 0.2, 1 << 20, 64 << 20, "avx2", {"cpu", "linux", 4, 1ull << 34}};

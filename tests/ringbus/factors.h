@@ -58,4 +58,30 @@ inline std::vector<Factor> machine_factors() {
   };
 }
 
+/// What only a machine under virtual time can have otherwise; `machine_factors` apart from queues and the
+/// placements that need the native engine.
+inline std::vector<Factor> cycle_factors() {
+  using I = std::int64_t;
+  std::vector<Factor> factors = machine_factors();
+  std::erase_if(factors, [](const Factor& f) { return f.name == "queue" || f.name == "placement"; });
+  const std::vector<Factor> more{
+      factor<int>("engine", {0}, [](Cell& c, int) { c.config.engine.kind = EngineKind::kCycle; }),
+      factor("placement", std::vector{Placement::kBalanced, Placement::kRoundRobin},
+             [](Cell& c, Placement v) { c.config.rays.placement = v; }),
+      factor<I>("contexts", {1, 3}, [](Cell& c, I v) { c.config.testers.contexts = v; }),
+      factor("carry", std::vector{PacketCarry::kReference, PacketCarry::kData},
+             [](Cell& c, PacketCarry v) { c.config.packets.carry = v; }),
+      factor("fetch", std::vector{MemoryConfig::Fetch::kPacket, MemoryConfig::Fetch::kResource},
+             [](Cell& c, MemoryConfig::Fetch v) { c.config.memory.fetch = v; }),
+      factor<I>("fetch ahead", {0, 2}, [](Cell& c, I v) { c.config.memory.fetch_ahead = v; }),
+      factor<I>("hop", {1, 4, 30}, [](Cell& c, I v) { c.config.topology.link.latency_cycles = v; }),
+      factor<I>("link width", {4, 64}, [](Cell& c, I v) { c.config.topology.link.bytes_per_cycle = v; }),
+      factor<I>("cache", {1, 1024}, [](Cell& c, I v) { c.config.memory.l2_kib = v; }),
+      factor<I>("shared by", {1, 4}, [](Cell& c, I v) { c.config.memory.shared_by = v; }),
+      factor<I>("shade", {0, 20}, [](Cell& c, I v) { c.config.shading.cycles_per_shade = v; }),
+  };
+  factors.insert(factors.end(), more.begin(), more.end());
+  return factors;
+}
+
 }  // namespace carousel::ringbus

@@ -4,51 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/ringbus/covering_array.h"
-#include "tests/ringbus/factors.h"
+#include "tests/ringbus/identity_cells.h"
 
 namespace carousel::ringbus {
 namespace {
-
-Cell cell_of(const std::vector<Factor>& factors, const std::vector<int>& row) {
-  Cell cell;
-  for (std::size_t f = 0; f < factors.size(); ++f) factors[f].levels[static_cast<std::size_t>(row[f])](cell);
-  return cell;
-}
-
-std::vector<int> level_counts(const std::vector<Factor>& factors) {
-  std::vector<int> levels;
-  for (const Factor& f : factors) levels.push_back(static_cast<int>(f.levels.size()));
-  return levels;
-}
-
-std::vector<std::vector<int>> pairwise(const std::vector<Factor>& factors, std::uint32_t seed) {
-  return covering_array(
-      level_counts(factors), [&](const std::vector<int>& row) { return possible(cell_of(factors, row).config); }, seed);
-}
-
-void expect_one_digest(TestScene& scene, std::uint32_t array_seed, int random_cells) {
-  ASSERT_GT(scene.rays(), 1000u);   // most rays hit and send on others
-  const std::vector<Factor> factors = machine_factors();
-  std::vector<std::vector<int>> rows = pairwise(factors, array_seed);
-#ifdef __SANITIZE_THREAD__
-  rows.resize(rows.size() / 6);
-#endif
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Cell cell = cell_of(factors, rows[i]);
-    EXPECT_EQ(run_cell(scene, cell).fault, "") << "array seed " << array_seed << " row " << i << ": " << cell.text();
-  }
-  const int count = cell_count(random_cells);
-  for (std::uint32_t seed = first_seed(); seed < first_seed() + static_cast<std::uint32_t>(count); ++seed) {
-    std::mt19937 random(seed * 7919 + array_seed);
-    std::vector<int> row(factors.size());
-    do {
-      for (std::size_t f = 0; f < row.size(); ++f) row[f] = static_cast<int>(random() % factors[f].levels.size());
-    } while (!possible(cell_of(factors, row).config));
-    const Cell cell = cell_of(factors, row);
-    EXPECT_EQ(run_cell(scene, cell).fault, "") << "seed " << seed << ": " << cell.text();
-  }
-}
 
 TEST(CoveringArray, HoldsEveryPossiblePair) {
   const std::vector<Factor> factors = machine_factors();
@@ -71,23 +30,23 @@ TEST(CoveringArray, HoldsEveryPossiblePair) {
 
 TEST(Identity, Cornell) {
   TestScene scene(builtin_scene(BuiltinScene::kCornell, 0, 0), 400, 3);
-  expect_one_digest(scene, 1, 50);
+  expect_one_digest(scene, machine_factors(), 1, 50);
 }
 
 TEST(Identity, Terrain) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 400, 3);
-  expect_one_digest(scene, 2, 50);
+  expect_one_digest(scene, machine_factors(), 2, 50);
 }
 
 TEST(Identity, Sliver) {
   TestScene scene(builtin_scene(BuiltinScene::kSliver, 1000, 0), 1200, 3);
-  expect_one_digest(scene, 3, 50);
+  expect_one_digest(scene, machine_factors(), 3, 50);
 }
 
 // Rotated, mirrored and unequally scaled instances, seen from a hundred radii away.
 TEST(Identity, ThousandsOfInstancesFromFarAway) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 3000), 800, 3, 100.0f);
-  expect_one_digest(scene, 4, 50);
+  expect_one_digest(scene, machine_factors(), 4, 50);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "core/config_enums.h"
 #include "core/error.h"
 #include "core/executor.h"
+#include "ringbus/cycle_engine.h"
 #include "ringbus/deadlock.h"
 #include "ringbus/native_engine.h"
 #include "scene/builtin.h"
@@ -36,12 +37,13 @@ struct Cell {
     const Config& c = config;
     return fmt::format(
         "resources {} {} visit {} flow {} queue {} depth {} slots {} placement {} packet rays {} {} ready {} {} {} {} "
-        "home {} {}{} width {} leaf {} treelet {} workers {} simd {} threads {}",
+        "home {} {}{} contexts {} carry {} fetch {} ahead {} width {} leaf {} treelet {} workers {} simd {} threads {}",
         c.topology.resources, enum_name(c.topology.shape), enum_name(c.topology.visit), enum_name(c.topology.flow),
         enum_name(c.topology.link.queue), c.topology.link.depth, c.rays.slots_per_resource, enum_name(c.rays.placement),
         c.packets.rays, enum_name(c.packets.shapes), c.collections.ready, enum_name(c.collections.traversal),
         enum_name(c.collections.policy), enum_name(c.collections.select), enum_name(c.collections.home),
-        enum_name(c.collections.when_full), tight_storage ? " tight" : "", c.bvh.width, c.bvh.leaf_triangles,
+        enum_name(c.collections.when_full), tight_storage ? " tight" : "", c.testers.contexts,
+        enum_name(c.packets.carry), enum_name(c.memory.fetch), c.memory.fetch_ahead, c.bvh.width, c.bvh.leaf_triangles,
         c.bvh.treelet_triangles, c.shading.workers, enum_name(c.engine.simd), threads);
   }
 };
@@ -49,6 +51,9 @@ struct Cell {
 /// Whether core/config_validate would accept the combination.
 inline bool possible(const Config& c) {
   if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip) return false;
+  if (c.engine.kind == EngineKind::kCycle && c.packets.carry == PacketCarry::kData &&
+      c.memory.fetch != MemoryConfig::Fetch::kPacket)
+    return false;
   if (c.collections.home == Home::kHash && c.collections.when_full != WhenFull::kSpill) return false;
   return c.topology.flow != Flow::kBubble || c.topology.link.depth >= 2;
 }
@@ -125,7 +130,8 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   Outcome out;
   try {
     accel::select_simd_target(c.engine.simd);
-    out.result = run_native(c, accel, scene.size(), workload, options);
+    const auto run = c.engine.kind == EngineKind::kCycle ? run_cycle : run_native;
+    out.result = run(c, accel, scene.size(), workload, options);
   } catch (const std::exception& error) {
     out.fault = error.what();
   }

@@ -1,0 +1,24 @@
+#include "ringbus/cycle/cycle_machine.h"
+
+#include <algorithm>
+
+#include "ringbus/resource.h"
+
+namespace carousel::ringbus::cycle {
+
+CycleMachine::CycleMachine(const Config& c, const accel::Accel& a)
+    : config(c), accel(a), topology(c.topology), memory(a),
+      packets(make_packets(c, topology, packets_per_direction())), stores(make_ray_stores(c)),
+      control(c, stores, Resource::initial_tests(c, a)) {}
+
+std::uint32_t CycleMachine::packets_per_direction() const {
+  // What never travels needs no credit: one in each context, and those whose shapes are being fetched.
+  if (stays()) return static_cast<std::uint32_t>(config.testers.contexts + 1 + config.memory.fetch_ahead);
+  return packets_in_flight(config.topology);
+}
+
+Cycle control_latency(const Config& config) {
+  return std::max<Cycle>(1, static_cast<Cycle>(config.topology.link.latency_cycles));
+}
+
+}  // namespace carousel::ringbus::cycle

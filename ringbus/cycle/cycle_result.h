@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ringbus/cycle/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// What the testers of a resource did, cycle by cycle: the states add up to the run's length.
+enum class TileState : std::uint8_t {
+  kIdle,      ///< nothing to test: no rays, or collections that wait to fill
+  kTesting,   ///< a packet is in test
+  kMemory,    ///< shape data is on its way
+  kLink,      ///< a packet cannot leave
+  kCredits,   ///< collections are ready, but all packets are out
+  kStorage,   ///< too little collection storage to go on
+};
+inline constexpr std::size_t kTileStates = 6;
+
+/// A class of equal units of one resource, or a link, over the whole run.
+struct UnitLedger {
+  Cycle busy = 0;      ///< cycles in which it worked
+  Cycle stalled = 0;   ///< it had work and could not do it
+  friend bool operator==(const UnitLedger&, const UnitLedger&) = default;
+};
+
+struct TileResult {
+  std::array<Cycle, kTileStates> states{};   ///< by TileState
+  UnitLedger box, triangle, transform;       ///< busy within TileState::kTesting
+  UnitLedger handler;
+  friend bool operator==(const TileResult&, const TileResult&) = default;
+};
+
+struct LinkLedger {
+  std::uint32_t from = 0, to = 0;
+  UnitLedger use;
+  friend bool operator==(const LinkLedger&, const LinkLedger&) = default;
+};
+
+struct CacheResult {
+  std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0;
+  friend bool operator==(const CacheResult&, const CacheResult&) = default;
+};
+
+struct CycleResult {
+  Cycle cycles = 0;                  ///< when the last ray was shaded and everything had come to rest
+  Cycle steady_cycles = 0;           ///< between a quarter and three quarters of the rays
+  std::uint64_t steady_rays = 0;     ///< completed in these
+  std::vector<TileResult> tiles;     ///< by resource
+  std::vector<LinkLedger> links;
+  std::vector<CacheResult> caches;
+  std::uint64_t memory_lines = 0;
+  Cycle memory_busy = 0;
+  Cycle shading_busy = 0;            ///< worker-cycles
+  std::uint64_t hops = 0;
+  friend bool operator==(const CycleResult&, const CycleResult&) = default;
+};
+
+}  // namespace carousel::ringbus::cycle

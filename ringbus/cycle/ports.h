@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+#include "ringbus/cycle/channel.h"
+#include "ringbus/cycle/token.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A place in the receiver's input queue has become free.
+struct Credit {};
+
+/// A link between two nodes: packets one way, credits the other.
+struct Wire {
+  Channel<Token> packets;
+  Channel<Credit> credits;
+};
+
+/// Where packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A place is
+/// held until the packet is taken; the credit needs the link's latency to get back.
+struct InPort {
+  Wire* wire = nullptr;
+  Cycle latency = 1;
+
+  Cycle next() const { return wire->packets.next(); }
+  const Token& front() const { return wire->packets.front(); }
+  Token take(Cycle now) {
+    wire->credits.send(now + latency, {});
+    return wire->packets.take();
+  }
+};
+
+/// Where packets leave: those in hand, and the near end of a link. A packet occupies the link for as many cycles
+/// as it has widths; its head arrives `latency` cycles after it started, its tail accordingly later.
+class OutPort {
+ public:
+  OutPort(Wire& wire, Cycle latency, std::uint32_t depth, std::size_t places)
+      : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
+
+  bool has_place() const { return queue_.size() + reserved_ < places_; }
+  void reserve() { ++reserved_; }
+  void release() { --reserved_; }
+  /// `ready`: not before then. `cut_through`: the receiver passes it on without waiting for the tail.
+  void push(const Token& token, Cycle ready, bool cut_through) { queue_.push_back({token, ready, cut_through}); }
+
+  void take_credits(Cycle now) {
+    while (wire_->credits.next() <= now) {
+      wire_->credits.take();
+      ++credits_;
+    }
+  }
+  /// Sends one packet if it may; whether it did.
+  bool send(Cycle now) {
+    if (queue_.empty() || free_at_ > now || queue_.front().ready > now) return false;
+    if (credits_ == 0) {
+      if (blocked_since_ == kNever) blocked_since_ = now;
+      return false;
+    }
+    if (blocked_since_ != kNever) {
+      stalled_ += now - blocked_since_;
+      blocked_since_ = kNever;
+    }
+    const Entry& entry = queue_.front();
+    const Cycle cycles = entry.token.link_cycles;
+    wire_->packets.send(now + latency_ + (entry.cut_through ? 0 : cycles - 1), entry.token);
+    --credits_;
+    free_at_ = now + cycles;
+    busy_ += cycles;
+    ++packets_;
+    queue_.pop_front();
+    return true;
+  }
+  /// Free places of the receiver's queue that nothing in hand will take.
+  std::int64_t spare_places() const {
+    return static_cast<std::int64_t>(credits_) - static_cast<std::int64_t>(queue_.size() + reserved_);
+  }
+  /// When something can be sent, as far as is known; `want_credit`: wake for a credit even with nothing in hand.
+  Cycle next(bool want_credit) const {
+    if (queue_.empty()) return want_credit ? wire_->credits.next() : kNever;
+    if (credits_ == 0) return wire_->credits.next();
+    return std::max(free_at_, queue_.front().ready);
+  }
+
+  bool empty() const { return queue_.empty(); }
+  std::size_t in_hand() const { return queue_.size(); }
+  PacketId front() const { return queue_.front().token.packet; }
+  bool blocked() const { return blocked_since_ != kNever; }
+  Cycle busy() const { return busy_; }          ///< cycles in which the link moved something
+  Cycle stalled() const { return stalled_; }    ///< cycles in which a packet waited for a credit
+  std::uint64_t packets() const { return packets_; }
+
+ private:
+  struct Entry {
+    Token token;
+    Cycle ready = 0;
+    bool cut_through = false;
+  };
+  Wire* wire_;
+  Cycle latency_;
+  std::uint32_t credits_;
+  std::size_t places_, reserved_ = 0;
+  std::deque<Entry> queue_;
+  Cycle free_at_ = 0, busy_ = 0, stalled_ = 0, blocked_since_ = kNever;
+  std::uint64_t packets_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

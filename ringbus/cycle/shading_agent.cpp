@@ -1,0 +1,156 @@
+#include "ringbus/cycle/shading_agent.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace carousel::ringbus::cycle {
+
+ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, std::vector<Client> clients)
+    : machine_(machine),
+      workload_(workload),
+      clients_(std::move(clients)),
+      shade_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_shade)),
+      load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
+      latency_(control_latency(machine.config)),
+      slots_(static_cast<std::size_t>(machine.config.topology.resources * machine.config.rays.slots_per_resource)),
+      group_(static_cast<std::size_t>(machine.config.packets.rays)),
+      load_free_(clients_.size()),
+      last_sent_(clients_.size()) {
+  for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
+}
+
+Cycle ShadingAgent::next() const {
+  if (!started_) return 0;
+  Cycle first = jobs_.empty() ? kNever : jobs_.top().done;
+  for (const Client& client : clients_) first = std::min(first, client.completed->next());
+  return first;
+}
+
+void ShadingAgent::run(Cycle end) {
+  for (Cycle now; (now = next()) < end;) step(now);
+}
+
+void ShadingAgent::step(Cycle now) {
+  started_ = true;
+  take_completed(now);
+  // Shading that takes no time ends in the cycle in which it starts.
+  while (finish_jobs(now) || start_jobs(now)) {
+  }
+  place(now);
+}
+
+void ShadingAgent::take_completed(Cycle now) {
+  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
+    while (clients_[r].completed->next() <= now) {
+      const CompletedRays done = clients_[r].completed->take();
+      machine_.control.free(ResourceId(r), done.slots);
+      queue_.insert(queue_.end(), done.rays.begin(), done.rays.end());
+    }
+  }
+}
+
+bool ShadingAgent::finish_jobs(Cycle now) {
+  shaded_.clear();
+  bool any = false;
+  for (; !jobs_.empty() && jobs_.top().done <= now; jobs_.pop()) {
+    const Job& job = jobs_.top();
+    any = true;
+    idle_.push_back(job.worker);
+    if (job.made == 0) {
+      shaded_.push_back(job.ray);
+      continue;
+    }
+    making_ -= job.made;
+    const std::size_t before = gathered_.size();
+    const Workload::Generated made = workload_.generate(WorkerId(0), job.made, gathered_);
+    source_finished_ = made.finished;
+    source_dry_ = made.rays == 0;
+    outstanding_ += gathered_.size() - before;
+    emitted_ += gathered_.size() - before;
+  }
+  if (shaded_.empty()) return any;
+  const std::size_t before = gathered_.size();
+  workload_.shade(WorkerId(0), shaded_, gathered_);
+  outstanding_ += gathered_.size() - before;
+  emitted_ += gathered_.size() - before;
+  outstanding_ -= shaded_.size();
+  completed_ += shaded_.size();
+  source_dry_ = false;
+  milestone(now);
+  return true;
+}
+
+std::size_t ShadingAgent::room() const {
+  const std::uint64_t taken = outstanding_ + making_;
+  return taken >= slots_ ? 0 : std::min<std::size_t>(group_, slots_ - taken);
+}
+
+bool ShadingAgent::start_jobs(Cycle now) {
+  bool any = false;
+  while (!idle_.empty()) {
+    Job job;
+    job.worker = idle_.back();
+    if (!queue_.empty()) {
+      job.ray = queue_.front();
+      queue_.pop_front();
+      job.done = now + shade_cycles_;
+    } else if (!source_finished_ && !source_dry_ && room() > 0) {
+      job.made = room();
+      making_ += job.made;
+      job.done = now + shade_cycles_ * job.made;
+      if (shade_cycles_ == 0) source_dry_ = true;   // until it has answered
+    } else {
+      break;
+    }
+    idle_.pop_back();
+    busy_ += job.done - now;
+    jobs_.push(job);
+    any = true;
+  }
+  return any;
+}
+
+void ShadingAgent::place(Cycle now) {
+  const bool full = gathered_.size() >= group_, last = queue_.empty() && jobs_.empty();
+  bool placed = machine_.control.place_waiting();
+  if (full || (last && !gathered_.empty())) {
+    machine_.control.submit(gathered_);
+    gathered_.clear();
+    placed = true;
+  }
+  if (!placed) return;
+  const RayIdLayout& layout = machine_.stores.front()->layout();
+  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
+    groups_.clear();
+    machine_.control.collect(ResourceId(r), groups_);
+    for (RayGroup& group : groups_) {
+      Cycle loaded = now;
+      for (const RayId id : group.ids) {
+        Cycle& port = load_free_[layout.owner(id).value];
+        port = std::max(port, now) + load_cycles_;
+        loaded = std::max(loaded, port);
+      }
+      last_sent_[r] = std::max(last_sent_[r], loaded + latency_);
+      clients_[r].new_rays->send(last_sent_[r], {std::move(group.ids)});
+    }
+  }
+}
+
+void ShadingAgent::milestone(Cycle now) {
+  if (completed_ < milestone_rays_ * (milestones_.size() + 1)) return;
+  milestones_.push_back({now, completed_});
+  if (milestones_.size() < 1024) return;
+  for (std::size_t i = 0; i < 512; ++i) milestones_[i] = milestones_[2 * i + 1];
+  milestones_.resize(512);
+  milestone_rays_ *= 2;
+}
+
+std::string ShadingAgent::describe() const {
+  if (done()) return "";
+  return fmt::format("ray control and shading: {} rays outstanding, {} to be shaded, {} free slots, {}", outstanding_,
+                     queue_.size(), machine_.control.free_slots(),
+                     source_finished_ ? "no more to come" : "more to come");
+}
+
+}  // namespace carousel::ringbus::cycle

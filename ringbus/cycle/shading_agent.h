@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <queue>
+#include <string>
+#include <vector>
+
+#include "core/workload.h"
+#include "ringbus/cycle/agent.h"
+#include "ringbus/cycle/channel.h"
+#include "ringbus/cycle/control_messages.h"
+#include "ringbus/cycle/cycle_machine.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Ray control and the pool of shader workers. A worker takes the ray that has waited longest, and needs
+/// shading.cycles_per_shade for it, as for making a camera ray. New rays gather until they fill a packet, or until
+/// no worker has anything to do, and are then given slots; a record of 64 bytes needs its owner's load port for as
+/// many link widths as it has.
+class ShadingAgent final : public Agent {
+ public:
+  struct Client {
+    Channel<NewRays>* new_rays = nullptr;
+    Channel<CompletedRays>* completed = nullptr;
+  };
+
+  ShadingAgent(CycleMachine& machine, Workload& workload, std::vector<Client> clients);
+
+  Cycle next() const override;
+  void run(Cycle end) override;
+  std::string describe() const override;
+
+  bool done() const { return source_finished_ && outstanding_ == 0; }
+  /// Since the start, for the progress bar; from the agent's thread.
+  std::uint64_t emitted() const { return emitted_; }
+  std::uint64_t completed() const { return completed_; }
+  /// Worker-cycles spent on shading and on making camera rays.
+  Cycle busy() const { return busy_; }
+  /// When each ray was shaded, in steps of so many rays; for the rate between fill and drain.
+  struct Milestone {
+    Cycle at = 0;
+    std::uint64_t completed = 0;
+  };
+  const std::vector<Milestone>& milestones() const { return milestones_; }
+
+ private:
+  /// What a worker is at.
+  struct Job {
+    Cycle done = 0;
+    std::uint32_t worker = 0;
+    std::size_t made = 0;   // camera rays; 0: it shades `ray`
+    RayResult ray;
+    bool operator>(const Job& o) const { return done != o.done ? done > o.done : worker > o.worker; }
+  };
+
+  void step(Cycle now);
+  void take_completed(Cycle now);
+  bool finish_jobs(Cycle now);
+  bool start_jobs(Cycle now);
+  void place(Cycle now);
+  std::size_t room() const;
+  void milestone(Cycle now);
+
+  CycleMachine& machine_;
+  Workload& workload_;
+  std::vector<Client> clients_;
+  Cycle shade_cycles_, load_cycles_, latency_;
+  std::size_t slots_, group_;
+  std::deque<RayResult> queue_;
+  std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;
+  std::vector<std::uint32_t> idle_;          // workers, the next one last
+  RayBatch gathered_;
+  HitBatch shaded_;
+  std::vector<RayGroup> groups_;
+  std::vector<Cycle> load_free_, last_sent_;   // by resource
+  bool source_finished_ = false, source_dry_ = false, started_ = false;
+  std::size_t making_ = 0;
+  std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
+  Cycle now_ = 0, busy_ = 0;
+  std::uint64_t milestone_rays_ = 64;
+  std::vector<Milestone> milestones_;
+};
+
+}  // namespace carousel::ringbus::cycle

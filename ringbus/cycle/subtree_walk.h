@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/accel.h"
+#include "core/test_counts.h"
+#include "ringbus/packet.h"
+#include "ringbus/resource.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Takes rays through a subtree, depth-first and nearest first, a strip at a time, and notes what the hardware
+/// that does so has to do: the kernels' own walk is faster on the host but keeps no account.
+class SubtreeWalk final : public SubtreeTracer {
+ public:
+  /// Cycles that one ray needs for a strip of boxes, of triangles, and to be transformed.
+  struct StepCycles {
+    std::uint64_t box = 1, triangle = 1, transform = 1;
+  };
+  struct Account {
+    std::uint64_t chain = 0;                 ///< cycles of the slowest ray
+    std::vector<accel::NodeKey> strips;      ///< read by any of them, once each, in order of the first reading
+  };
+  SubtreeWalk(const accel::Accel& accel, const StepCycles& step) : accel_(accel), step_(step) {}
+
+  void trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) override;
+  /// Of the last trace().
+  const Account& account() const { return account_; }
+
+ private:
+  std::uint64_t walk_ray(accel::NodeKey from, const accel::RayMembers& ray, TestCounts& counts);
+  void note(accel::NodeKey key);
+
+  const accel::Accel& accel_;
+  StepCycles step_;
+  Account account_;
+  std::vector<NextNode> stack_;
+  std::vector<std::uint32_t> seen_;   // by a hash of the strip: its place in account_.strips, plus one
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/config.h"
+#include "core/test_counts.h"
+#include "ringbus/cycle/unit_bank.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A resource's test units. Transforms, boxes and triangles are pipelined: a ray's boxes are tested when it has
+/// been transformed, while the next one is.
+struct Tester {
+  explicit Tester(const TestersConfig& config)
+      : box(config.box), triangle(config.triangle), transform(config.transform) {}
+
+  /// When the answers to the tests of one strip are there; started at `at`.
+  Cycle strip(Cycle at, const TestCounts& counts) {
+    const UnitBank::Reservation moved = transform.reserve(at, counts.transforms);
+    UnitBank& bank = counts.box > 0 ? box : triangle;
+    const UnitBank::Reservation tested = bank.reserve(moved.first, counts.box + counts.triangle);
+    // The last ray to be transformed is tested last.
+    return counts.transforms > 0 ? std::max(tested.last, moved.last + bank.latency()) : tested.last;
+  }
+
+  /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
+  Cycle walk(Cycle at, const TestCounts& counts, Cycle chain) {
+    return std::max({at + chain, transform.reserve(at, counts.transforms).last, box.reserve(at, counts.box).last,
+                     triangle.reserve(at, counts.triangle).last});
+  }
+
+  UnitBank box, triangle, transform;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ringbus/cycle/agent.h"
+#include "ringbus/cycle/control_messages.h"
+#include "ringbus/cycle/cycle_machine.h"
+#include "ringbus/cycle/cycle_result.h"
+#include "ringbus/cycle/memory_messages.h"
+#include "ringbus/cycle/packet_size.h"
+#include "ringbus/cycle/ports.h"
+#include "ringbus/cycle/shape_buffer.h"
+#include "ringbus/cycle/state_clock.h"
+#include "ringbus/cycle/subtree_walk.h"
+#include "ringbus/cycle/tester.h"
+#include "ringbus/resource.h"
+#include "ringbus/statistics_sink.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Fetches that a packet in a subtree has under way at most: a ray each, and no more than this.
+inline constexpr std::size_t kSubtreeFetches = 32;
+
+/// A resource with a clock: input queues, a handler that looks through a packet's IDs, testers, hands to leave
+/// by, and a queue of its own packets whose shapes are being fetched.
+///
+/// One packet at a time is looked through, `packets.ids_per_cycle` IDs a cycle; those of other resources go first.
+/// With `visit: owners` packets without a ray here pass beside the handler. A packet with rays here needs a free
+/// test context and a place in hand before it is taken, so that tests always end; a packet without rays takes its
+/// way meanwhile (fills the bubble).
+class Tile final : public Agent {
+ public:
+  struct Ports {
+    std::vector<InPort> in;
+    std::vector<OutPort> out;                     ///< a ring: one a direction
+    std::vector<std::uint32_t> out_to;            ///< point to point and bus: by destination
+    Channel<NewRays>* new_rays = nullptr;
+    Channel<CompletedRays>* completed = nullptr;
+    Channel<FetchRequest>* fetch = nullptr;
+    Channel<FetchAnswer>* fetched = nullptr;
+  };
+
+  Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, Ports ports);
+
+  Cycle next() const override;
+  void run(Cycle end) override;
+  std::string describe() const override;
+
+  /// Ends the clocks of the ledger.
+  void close(Cycle end) { clock_.enter(TileState::kIdle, end); }
+
+  const Resource& resource() const { return resource_; }
+  ResourceStatistics statistics() const;
+  const Tester& tester() const { return tester_; }
+  const StateClock<TileState, kTileStates>& clock() const { return clock_; }
+  const std::vector<OutPort>& out() const { return ports_.out; }
+  Cycle handler_busy() const { return handler_busy_; }
+  std::uint64_t hops() const;
+  bool at_rest() const;
+
+ private:
+  /// A packet in test.
+  struct Context {
+    enum class Phase : std::uint8_t { kFree, kFetching, kComputing } phase = Phase::kFree;
+    PacketId packet;
+    Cycle done = 0;                       // kComputing: then; kFetching a subtree: of its tests
+    TestCounts counts;                    // of tests that begin when the shapes are there
+    bool subtree = false;
+    std::uint32_t outstanding = 0;        // fetches under way
+    std::vector<ShapeSpan> strips;        // a subtree's, yet to be fetched, last first
+  };
+  struct Issue {
+    PacketId packet;
+    std::uint32_t tag = 0;
+    ShapeSpan strip;
+    bool ready = false;
+  };
+
+  void step(Cycle now);
+  void take_answers(Cycle now);
+  void take_new_rays(Cycle now);
+  bool admit();
+  bool finish_tests(Cycle now);
+  bool cut_through(Cycle now);
+  bool handle(Cycle now);
+  bool handle_arrival(std::size_t d, Cycle now);
+  bool handle_issue(Cycle now);
+  bool fill_issue(Cycle now);
+  bool send(Cycle now);
+
+  Context* free_context();
+  void begin_test(Context& context, PacketId id, Cycle at);
+  void begin_fetch(Context& context, const ShapeSpan& strip, Cycle now);
+  void end_test(Context& context, Cycle now);
+  void depart(PacketId id, Cycle ready, bool reserved);
+  void come_home(PacketId id);
+  void hand_over(Cycle now);
+  void occupy_handler(Cycle now, std::size_t ids);
+  void fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now);
+  std::size_t exit_of(const Packet& packet) const;
+  std::optional<PacketId> free_packet();
+  bool may_inject(const Packet& packet) const;
+  bool handler_wanted() const;
+  TileState classify(Cycle now) const;
+
+  CycleMachine& machine_;
+  ResourceId id_;
+  StatisticsSink sink_;
+  SubtreeWalk walk_;
+  Resource resource_;
+  Ports ports_;
+  Tester tester_;
+  ShapeBuffer buffer_;
+  PacketSize packet_size_;
+  Cycle link_bytes_, ids_per_cycle_, completed_cycles_, control_latency_, fetch_latency_;
+  std::size_t issue_places_;
+  bool stays_, visit_all_, fetch_by_resource_, bubble_;
+
+  Cycle now_ = 0;
+  Cycle handler_free_ = 0, handler_busy_ = 0;
+  Cycle completed_free_ = 0;
+  std::size_t next_in_ = 0, next_direction_ = 0;
+  std::vector<std::vector<PacketId>> free_;   // own packets at home, by direction
+  std::deque<Issue> issue_;
+  std::uint32_t next_tag_ = 0;
+  std::vector<Context> contexts_;
+  std::deque<NewRays> waiting_;
+  bool storage_full_ = false;
+  std::uint64_t passed_ = 0, passed_rays_ = 0;   // packets without rays here, and their members
+  StateClock<TileState, kTileStates> clock_;
+};
+
+}  // namespace carousel::ringbus::cycle

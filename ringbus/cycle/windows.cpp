@@ -1,0 +1,112 @@
+#include "ringbus/cycle/windows.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+/// Where threads wait for each other, twice a window. It spins for a little and then gives the core away: with
+/// more threads than cores the one that is waited for must get to run.
+class Barrier {
+ public:
+  explicit Barrier(std::size_t threads) : threads_(threads) {}
+
+  void wait() {
+    const std::size_t turn = turn_.load(std::memory_order_relaxed);
+    // Acquire and release: whoever leaves sees what everyone did before arriving.
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
+      arrived_.store(0, std::memory_order_relaxed);
+      turn_.store(turn + 1, std::memory_order_release);
+      return;
+    }
+    for (int spins = 0; turn_.load(std::memory_order_acquire) == turn; ++spins)
+      if (spins > 200) std::this_thread::yield();
+  }
+
+ private:
+  std::size_t threads_;
+  alignas(64) std::atomic<std::size_t> arrived_{0};
+  alignas(64) std::atomic<std::size_t> turn_{0};
+};
+
+class WindowRun {
+ public:
+  WindowRun(std::span<const std::vector<Agent*>> parts, Cycle lookahead, const std::function<bool(Cycle)>& go_on)
+      : parts_(parts), lookahead_(lookahead), go_on_(go_on), barrier_(parts.size()), next_(parts.size()) {}
+
+  Cycle run() {
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t t = 1; t < parts_.size(); ++t) threads.emplace_back([this, t] { work(t); });
+      work(0);
+    }
+    if (error_) std::rethrow_exception(error_);
+    return reached_;
+  }
+
+ private:
+  struct alignas(64) Next {
+    Cycle cycle = kNever;
+  };
+
+  void work(std::size_t thread) {
+    const std::vector<Agent*>& agents = parts_[thread];
+    std::vector<Cycle> wake(agents.size());
+    const bool alone = parts_.size() == 1;
+    for (std::uint64_t window = 0;; ++window) {
+      Cycle first = kNever;
+      for (std::size_t i = 0; i < agents.size(); ++i) first = std::min(first, wake[i] = agents[i]->next());
+      if (!alone) {
+        next_[thread].cycle = first;
+        barrier_.wait();
+        for (const Next& other : next_) first = std::min(first, other.cycle);
+      }
+      // Everybody comes to the same conclusion. `stop_` was written before the barrier.
+      if (first == kNever || stop_.load(std::memory_order_relaxed)) break;
+      run_window(agents, wake, first + lookahead_);
+      if (thread == 0) {
+        reached_ = first;
+        if (window % kLook == 0 && !go_on_(first)) stop_.store(true, std::memory_order_relaxed);
+      }
+      if (!alone) barrier_.wait();
+    }
+  }
+
+  void run_window(const std::vector<Agent*>& agents, const std::vector<Cycle>& wake, Cycle end) {
+    try {
+      for (std::size_t i = 0; i < agents.size(); ++i)
+        if (wake[i] < end) agents[i]->run(end);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      stop_.store(true, std::memory_order_relaxed);
+    }
+  }
+
+  static constexpr std::uint64_t kLook = 4096;
+
+  std::span<const std::vector<Agent*>> parts_;
+  Cycle lookahead_;
+  const std::function<bool(Cycle)>& go_on_;
+  Barrier barrier_;
+  std::vector<Next> next_;
+  std::atomic<bool> stop_{false};
+  Cycle reached_ = 0;
+  std::mutex mutex_;   // guards error_
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, Cycle lookahead,
+                  const std::function<bool(Cycle)>& go_on) {
+  return WindowRun(parts, lookahead, go_on).run();
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "ringbus/collection_store.h"
+#include "ringbus/cycle/cycle_result.h"
+#include "ringbus/link.h"
+#include "ringbus/statistics_sink.h"
+
+namespace carousel::ringbus {
+
+struct RunOptions {
+  std::size_t threads = 1;
+  bool statistics = true;                          ///< false: no sinks at all
+  std::stop_token stop;                            ///< ends the run early; it is then incomplete
+  std::chrono::milliseconds stuck_after{10000};    ///< native: no progress for so long is a SimulationError
+  /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
+  std::function<void(std::uint64_t completed)> progress;
+};
+
+struct LinkResult {
+  ResourceId from, to;
+  std::size_t depth = 0;
+  LinkStatistics statistics;
+};
+
+struct RunResult {
+  bool complete = true;                       ///< false: stopped early
+  std::uint64_t rays_emitted = 0, rays_completed = 0;
+  double wall_seconds = 0;
+  std::size_t threads = 1;                    ///< that were used
+  std::uint64_t slots_used = 0;               ///< times a slot was handed out; beyond the slots: reuse
+  std::uint64_t slot_waits = 0;               ///< times new rays had to wait for free slots
+  std::vector<ResourceStatistics> resources;  ///< empty without statistics
+  std::vector<CollectionStore::Statistics> collections;
+  std::vector<LinkResult> links;
+  std::optional<cycle::CycleResult> cycle;    ///< of the cycle engine
+};
+
+}  // namespace carousel::ringbus
