@@ -6,8 +6,7 @@
 
 namespace carousel::app {
 
-Frame::Frame(const Prepared& prepared) {
-  const Config& config = prepared.config();
+Frame::Frame(const Prepared& prepared, const Config& config) {
   const auto workers = static_cast<std::size_t>(config.shading.workers);
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);

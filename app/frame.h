@@ -17,7 +17,9 @@ namespace carousel::app {
 class Frame {
  public:
   /// Reads the file of `rays_from`. Keeps references to `prepared`. Throws ConfigError and FileError.
-  explicit Frame(const Prepared& prepared);
+  explicit Frame(const Prepared& prepared) : Frame(prepared, prepared.config()) {}
+  /// With another machine than the prepared one, for what-if runs.
+  Frame(const Prepared& prepared, const Config& config);
 
   Workload& workload();
   void set_recorder(shading::RayRecorder* recorder);

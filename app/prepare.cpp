@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include <glm/geometric.hpp>
 #include <spdlog/spdlog.h>
 
 #include "accel/kernels.h"
@@ -60,6 +61,11 @@ void build_accel(Prepared& p) {
 }
 
 }  // namespace
+
+float Prepared::scene_size() const {
+  const Aabb box = scene.bounds();
+  return box.empty() ? 1.0f : glm::length(box.extent());
+}
 
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits) {
   Prepared p;

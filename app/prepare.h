@@ -27,6 +27,8 @@ struct Prepared {
   double scene_seconds = 0, build_seconds = 0;
 
   const Config& config() const { return located.config; }
+  /// Scale of entry distances, for the policy `nearest`.
+  float scene_size() const;
 };
 
 /// Loads all of it. What would not fit the machine is refused before it is loaded. Throws ConfigError,

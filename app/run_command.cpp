@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <optional>
 
-#include <glm/geometric.hpp>
 #include <spdlog/spdlog.h>
 
 #include "accel/verifying_workload.h"
+#include "app/bottleneck.h"
 #include "app/build_report.h"
 #include "app/counting_workload.h"
 #include "app/exit_status.h"
@@ -33,12 +33,6 @@ std::filesystem::path out_folder(const RunArguments& arguments) {
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
 }
 
-/// Scale of entry distances, for the policy `nearest`.
-float scene_size(const scene::Scene& scene) {
-  const Aabb box = scene.bounds();
-  return box.empty() ? 1.0f : glm::length(box.extent());
-}
-
 ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& workload,
                             const InterruptScope& interrupt, bool quiet) {
   CountingWorkload counting(workload);
@@ -51,7 +45,7 @@ ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& wor
     if (line) line->update(report::ratio(counting.generated(), frame.first_rays()), completed);
   };
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
-  return run(p.config(), p.accel, scene_size(p.scene), counting, options);
+  return run(p.config(), p.accel, p.scene_size(), counting, options);
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -83,7 +77,11 @@ int run_command(const RunArguments& arguments) {
   Workload& workload = verifying ? *verifying : frame.workload();
 
   const ringbus::RunResult result = simulate(p, frame, workload, interrupt, arguments.quiet);
-  const report::Report report = build_report(p, frame, result, verifying ? &*verifying : nullptr);
+  report::Report report = build_report(p, frame, result, verifying ? &*verifying : nullptr);
+  if (result.cycle) {
+    report.bound = bound_of(p.config(), result);
+    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, frame.first_rays(), interrupt.token());
+  }
   const std::filesystem::path folder = out_folder(arguments);
   write_files(folder, arguments, p, frame, report, recorder ? &*recorder : nullptr);
 

@@ -72,6 +72,7 @@ struct EngineConfig {
   std::optional<std::int64_t> threads;   ///< absent: `auto`, the machine's cores
   std::int64_t clock_mhz = 1000;
   SimdTarget simd = SimdTarget::kAuto;
+  bool what_if = true;
 };
 
 struct LinkConfig {

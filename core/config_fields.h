@@ -81,6 +81,8 @@ void describe(V& v, EngineConfig& c) {
                   "worker threads; auto is as many as the machine has cores");
   v.field("clock_mhz", c.clock_mhz, IntRange{1, 100'000}, "MHz", "clock of the simulated machine");
   v.choice("simd", c.simd, "instruction set of the test kernels; auto is the best this machine has");
+  v.field("what_if", c.what_if, "",
+          "cycle: find the bottleneck by simulating the first rays again with each class of parts lifted");
 }
 
 template <class V>

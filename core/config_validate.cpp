@@ -66,9 +66,13 @@ class Rules {
     if (shape == TopologyShape::kRing || shape == TopologyShape::kBidirectional ||
         shape == TopologyShape::kPointToPoint)
       return;
+    if (cycle() && (shape == TopologyShape::kMultiRing || shape == TopologyShape::kHierarchical ||
+                    shape == TopologyShape::kBus))
+      return;
     issue("topology.shape",
-          fmt::format("the {} engine has no {}; expected ring, bidirectional or point_to_point",
-                      enum_name(c.engine.kind), enum_name(shape)));
+          fmt::format("the {} engine has no {}; expected ring, bidirectional{} or point_to_point",
+                      enum_name(c.engine.kind), enum_name(shape),
+                      cycle() ? ", multi_ring, hierarchical, bus" : ""));
   }
 
   void built_accuracy() {

@@ -125,6 +125,29 @@ struct Memory {
   double dram_utilisation = 0;
 };
 
+/// What a class of parts alone would allow.
+struct BoundClass {
+  std::string name;
+  double rays_per_kilocycle = 0;
+};
+
+struct Bound {
+  double rays_per_kilocycle = 0, reached = 0;
+  std::vector<BoundClass> classes;
+};
+
+struct BottleneckGain {
+  std::string name, action;
+  double rays_per_kilocycle = 0, gain = 0;
+};
+
+struct Bottleneck {
+  std::string limits, verdict;
+  double rays_per_kilocycle = 0, noise = 0;
+  std::uint64_t paths = 0;
+  std::vector<BottleneckGain> gains;
+};
+
 struct Effect {
   std::string name;
   bool on = false;
@@ -176,6 +199,8 @@ struct Report {
   std::optional<std::vector<Link>> links;
   std::optional<Memory> memory;
   Shading shading;
+  std::optional<Bound> bound;
+  std::optional<Bottleneck> bottleneck;
   std::optional<Verify> verify;
   Digest digest;
   Host host;

@@ -208,6 +208,37 @@ void describe(V& v, Link& r) {
 }
 
 template <class V>
+void describe(V& v, BoundClass& r) {
+  v.field("name", r.name, "", "class of parts");
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "if it were busy all the time, at this work a ray");
+}
+
+template <class V>
+void describe(V& v, Bound& r) {
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "the least of the classes'");
+  v.field("reached", r.reached, "fraction", "the whole run's rate over the bound");
+  v.section("classes", r.classes, "tightest first");
+}
+
+template <class V>
+void describe(V& v, BottleneckGain& r) {
+  v.field("name", r.name, "", "class of parts");
+  v.field("action", r.action, "", "how it was lifted");
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "of the machine with it lifted, steady state");
+  v.field("gain", r.gain, "fraction", "over the machine as it is");
+}
+
+template <class V>
+void describe(V& v, Bottleneck& r) {
+  v.field("limits", r.limits, "", "class whose lift gains most; empty when none gains 5 %");
+  v.field("verdict", r.verdict, "", "the same in words");
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "of the machine as it is, over the same rays, steady state");
+  v.field("noise", r.noise, "fraction", "by how much the two halves of that steady state differ");
+  v.field("paths", r.paths, "paths", "simulated for each lift");
+  v.section("gains", r.gains, "greatest first");
+}
+
+template <class V>
 void describe(V& v, Effect& r) {
   v.field("name", r.name, "", "name of the effect");
   v.field("on", r.on, "", "whether it was computed");
@@ -275,6 +306,8 @@ void describe(V& v, Report& r) {
   v.section("links", r.links, "each link");
   v.section("memory", r.memory, "caches and memory of the simulated machine");
   v.section("shading", r.shading, "shader workers");
+  v.section("bound", r.bound, "what each class of parts alone would allow");
+  v.section("bottleneck", r.bottleneck, "what limits the machine, found by lifting each class in turn");
   v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
   v.section("digest", r.digest, "equal digests mean equal hits and an equal picture");
   v.section("host", r.host, "all that depends on the host and on time");

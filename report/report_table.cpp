@@ -175,6 +175,10 @@ std::string report_table(const Report& report) {
              scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
              seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
   if (report.engine.cycles && report.throughput) cycle_lines(table, report);
+  if (report.bottleneck) table.line("bottleneck", "{}", report.bottleneck->verdict);
+  if (report.bound && !report.bound->classes.empty())
+    table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
+               report.bound->classes.front().name, percent(report.bound->reached));
   if (report.tests) test_line(table, *report.tests);
   packet_lines(table, report);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);

@@ -1,9 +1,12 @@
 #include "ringbus/cycle_engine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "core/error.h"
+#include "ringbus/cycle/bridge.h"
+#include "ringbus/cycle/bus.h"
 #include "ringbus/cycle/cycle_machine.h"
 #include "ringbus/cycle/memory.h"
 #include "ringbus/cycle/shading_agent.h"
@@ -39,6 +42,7 @@ class CycleRun {
     }
     shading_ = std::make_unique<ShadingAgent>(machine_, workload, std::move(shading_clients));
     make_memory(cache_clients);
+    make_hubs();
   }
 
   RunResult run() {
@@ -69,27 +73,73 @@ class CycleRun {
     for (std::size_t i = 0; i < machine_.topology.wires().size(); ++i) wires_.push_back(std::make_unique<Wire>());
   }
 
-  Tile::Ports ports_of(ResourceId id) {
-    Tile::Ports ports;
-    const std::vector<Topology::Wire>& wires = machine_.topology.wires();
-    const Cycle latency = static_cast<Cycle>(config_.topology.link.latency_cycles);
-    const bool point_to_point = machine_.topology.point_to_point();
-    // In hand: the packets in test, and one that passes meanwhile. Point to point, all there are fit in, as nothing
-    // else would keep the many cycles of links from closing.
-    const std::size_t places = point_to_point ? machine_.packets.size() : static_cast<std::size_t>(config_.testers.contexts) + 1;
-    if (point_to_point) ports.out_to.resize(machine_.topology.resources());
-    for (std::size_t i = 0; i < wires.size(); ++i) {
-      if (wires[i].to == id) {
-        // A ring's come in by direction, to leave by the same.
-        const std::size_t at = point_to_point ? ports.in.size() : wires[i].direction;
+  /// The links at a node, in the order of the topology's wires; a ring's by direction, for what comes in by one
+  /// direction leaves by the same, and so a bridge's.
+  struct NodePorts {
+    std::vector<InPort> in;
+    std::vector<OutPort> out;
+    std::vector<ResourceId> out_to;   ///< as `out`
+  };
+  NodePorts ports_at(ResourceId node) const {
+    NodePorts ports;
+    const Topology& topology = machine_.topology;
+    const std::uint32_t depth = static_cast<std::uint32_t>(config_.topology.link.depth);
+    const bool hub = node.value >= topology.resources();
+    // In hand at a resource: the packets in test, and one that passes meanwhile. At a hub, and wherever packets go
+    // straight to their next stop, all there are fit in, as nothing else would keep circles of links from closing.
+    const std::size_t places =
+        hub || topology.direct() ? machine_.packets.size() : static_cast<std::size_t>(config_.testers.contexts) + 1;
+    for (std::size_t i = 0; i < topology.wires().size(); ++i) {
+      const Topology::Wire& wire = topology.wires()[i];
+      const Cycle latency = latency_of(wire);
+      if (wire.to == node) {
+        const std::size_t at = topology.direct() ? ports.in.size() : wire.direction;
         if (ports.in.size() <= at) ports.in.resize(at + 1);
         ports.in[at] = {wires_[i].get(), latency};
       }
-      if (wires[i].from != id) continue;
-      if (point_to_point) ports.out_to[wires[i].to.value] = static_cast<std::uint32_t>(ports.out.size());
-      ports.out.emplace_back(*wires_[i], latency, static_cast<std::uint32_t>(config_.topology.link.depth), places);
+      if (wire.from != node) continue;
+      ports.out.emplace_back(*wires_[i], latency, depth, places);
+      ports.out_to.push_back(wire.to);
     }
     return ports;
+  }
+
+  Cycle latency_of(const Topology::Wire& wire) const {
+    const LinkConfig& link = config_.topology.link;
+    if (!machine_.topology.bus()) return static_cast<Cycle>(link.latency_cycles);
+    return wire.from.value < machine_.topology.resources() ? Bus::latency_to(link) : Bus::latency_from(link);
+  }
+
+  Tile::Ports ports_of(ResourceId id) const {
+    NodePorts node = ports_at(id);
+    Tile::Ports ports;
+    ports.in = std::move(node.in);
+    ports.out = std::move(node.out);
+    if (!machine_.topology.direct()) return ports;
+    ports.out_to.resize(machine_.topology.resources());
+    for (std::uint32_t i = 0; !machine_.topology.bus() && i < node.out_to.size(); ++i) ports.out_to[node.out_to[i].value] = i;
+    return ports;
+  }
+
+  void make_hubs() {
+    const Topology& topology = machine_.topology;
+    if (topology.resources() == 1) return;
+    const std::uint32_t first = static_cast<std::uint32_t>(topology.resources());
+    if (topology.bus()) {
+      NodePorts ports = ports_at(ResourceId(first));
+      bus_ = std::make_unique<Bus>(machine_, std::move(ports.in), std::move(ports.out));
+    }
+    for (std::uint32_t g = 0; g < topology.groups(); ++g) {
+      NodePorts ports = ports_at(ResourceId(first + g));
+      bridges_.push_back(std::make_unique<Bridge>(g, machine_, std::move(ports.in), std::move(ports.out)));
+    }
+  }
+
+  /// The near ends of the links that leave a node.
+  const std::vector<OutPort>& out_of(ResourceId node) const {
+    const std::size_t resources = machine_.topology.resources();
+    if (node.value < resources) return tiles_[node.value]->out();
+    return bus_ ? bus_->out() : bridges_[node.value - resources]->out();
   }
 
   void make_memory(const std::vector<ShapeCache::Client>& clients) {
@@ -108,7 +158,9 @@ class CycleRun {
 
   /// The least latency of any channel.
   Cycle lookahead() const {
-    return std::min({static_cast<Cycle>(config_.topology.link.latency_cycles), control_latency(config_),
+    Cycle least = control_latency(config_);
+    for (const Topology::Wire& wire : machine_.topology.wires()) least = std::min(least, latency_of(wire));
+    return std::min({least,
                      ShapeCache::request_latency(config_.memory), ShapeCache::answer_latency(config_.memory),
                      Memory::request_latency(config_.memory), Memory::answer_latency(config_.memory)});
   }
@@ -119,6 +171,8 @@ class CycleRun {
     std::vector<std::vector<Agent*>> parts(threads);
     for (std::size_t r = 0; r < tiles_.size(); ++r) parts[r * threads / tiles_.size()].push_back(tiles_[r].get());
     for (std::size_t c = 0; c < caches_.size(); ++c) parts[c * threads / caches_.size()].push_back(caches_[c].get());
+    for (std::size_t g = 0; g < bridges_.size(); ++g) parts[g * threads / bridges_.size()].push_back(bridges_[g].get());
+    if (bus_) parts.front().push_back(bus_.get());
     parts.back().push_back(memory_.get());
     parts.back().push_back(shading_.get());
     return parts;
@@ -126,8 +180,11 @@ class CycleRun {
 
   void check_at_rest() const {
     std::string waiting = shading_->describe();
-    for (const auto& tile : tiles_)
-      if (const std::string text = tile->describe(); !text.empty()) waiting += "\n  " + text;
+    const auto ask = [&](const Agent& agent) {
+      if (const std::string text = agent.describe(); !text.empty()) waiting += "\n  " + text;
+    };
+    for (const auto& tile : tiles_) ask(*tile);
+    for (const auto& bridge : bridges_) ask(*bridge);
     if (!shading_->done() || !waiting.empty())
       throw SimulationError("nothing moves any more; who waits for whom:\n  " + waiting);
   }
@@ -154,12 +211,12 @@ class CycleRun {
       t.triangle.busy = tile->tester().triangle.busy();
       t.transform.busy = tile->tester().transform.busy();
       t.handler.busy = tile->handler_busy();
-      c.hops += tile->hops();
     }
     const std::vector<Topology::Wire>& wires = machine_.topology.wires();
-    std::vector<std::size_t> exits(tiles_.size());
+    std::vector<std::size_t> exits(tiles_.size() + bridges_.size() + 1);
     for (const Topology::Wire& wire : wires) {
-      const OutPort& port = tiles_[wire.from.value]->out()[exits[wire.from.value]++];
+      const OutPort& port = out_of(wire.from)[exits[wire.from.value]++];
+      c.hops += port.packets();
       c.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}});
       LinkStatistics s;
       s.packets = port.packets();
@@ -175,11 +232,17 @@ class CycleRun {
   void steady(CycleResult& c) const {
     const std::vector<ShadingAgent::Milestone>& m = shading_->milestones();
     const std::uint64_t all = shading_->completed();
-    const auto first = std::find_if(m.begin(), m.end(), [&](const auto& x) { return 4 * x.completed >= all; });
-    const auto last = std::find_if(first, m.end(), [&](const auto& x) { return 4 * x.completed >= 3 * all; });
-    if (last == m.end()) return;
+    const auto quarter = [&](std::uint64_t n) {
+      return std::find_if(m.begin(), m.end(), [&](const auto& x) { return 4 * x.completed >= n * all; });
+    };
+    const auto first = quarter(1), middle = quarter(2), last = quarter(3);
+    if (last == m.end() || last->at == middle->at || middle->at == first->at) return;
     c.steady_cycles = last->at - first->at;
     c.steady_rays = last->completed - first->completed;
+    const auto rate = [](const auto& from, const auto& to) {
+      return static_cast<double>(to->completed - from->completed) / static_cast<double>(to->at - from->at);
+    };
+    c.steady_spread = std::abs(rate(middle, last) - rate(first, middle)) / rate(first, last);
   }
 
   const Config& config_;
@@ -193,6 +256,8 @@ class CycleRun {
   std::vector<std::unique_ptr<Channel<std::uint64_t>>> lines_;
   std::vector<std::unique_ptr<Tile>> tiles_;
   std::vector<std::unique_ptr<ShapeCache>> caches_;
+  std::vector<std::unique_ptr<Bridge>> bridges_;
+  std::unique_ptr<Bus> bus_;
   std::unique_ptr<Memory> memory_;
   std::unique_ptr<ShadingAgent> shading_;
 };

@@ -14,6 +14,10 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
     return {false, fmt::format("credits: at most {} packets a resource are on the way, and every resource has places "
                                "in hand for all {} of them, so an arriving packet is always taken in",
                                packets_in_flight(config), packets_in_flight(config) * resources)};
+  if (config.shape == TopologyShape::kBus && config.flow != Flow::kNone)
+    return {false, "bus: every resource has places in hand for all packets there are, so what the bus brings is always taken in"};
+  if (config.shape == TopologyShape::kHierarchical)
+    return {false, "bridges: a bridge has room for all packets there are, so every line and the ring of bridges can always move on"};
   switch (config.flow) {
     case Flow::kCredits:
       return {false, fmt::format("credits: {0} resources with at most {1} packets each put {2} packets on a ring of {3} "

@@ -23,8 +23,7 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   // An ID, and a block's share of a collection, its place in the table and its list links.
   const std::uint64_t blocks = u(config.collections.capacity) / packet_rays + 1;
   e.collections = resources * blocks * (packet_rays * sizeof(RayId) + 128);
-  const std::uint64_t directions = config.topology.shape == TopologyShape::kBidirectional ? 2 : 1;
-  const std::uint64_t packets = resources * directions * packets_in_flight(config.topology) + resources;
+  const std::uint64_t packets = resources * Topology(config.topology).directions() * packets_in_flight(config.topology) + resources;
   e.packets = packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));
   // A completed ray may cause two, and both wait while slots are taken.
   e.rays_waiting = resources * slots * (2 * sizeof(RayRequest) + sizeof(RayResult));

@@ -72,7 +72,7 @@ bool NativePort::receive() {
   for (const Entry& entry : entries_) {
     // On a ring, what cannot leave must not come in, or the hand would be a queue without a bound. Point to
     // point, every packet there is would fit into the hand, so all may come in.
-    if (!machine_.topology.point_to_point() && !exits_[entry.direction].in_hand.empty()) continue;
+    if (!machine_.topology.direct() && !exits_[entry.direction].in_hand.empty()) continue;
     const std::size_t count = entry.link->try_receive(batch);
     for (std::size_t k = 0; k < count; ++k) arrive(batch[k]);
     moved |= count > 0;
@@ -95,7 +95,7 @@ void NativePort::arrive(PacketId id) {
 
 void NativePort::forward(PacketId id) {
   const Packet& packet = machine_.packet(id);
-  const std::size_t exit = machine_.topology.point_to_point()
+  const std::size_t exit = machine_.topology.direct()
                                ? exit_of_[machine_.topology.next(packet, resource_.id()).value]
                                : packet.direction;
   exits_[exit].in_hand.push_back(id);
@@ -228,7 +228,7 @@ bool NativePort::send_round(RayGroup& group) {
 bool NativePort::may_inject(std::size_t exit) const {
   // A packet in hand goes first. The bubble rule also leaves a place for the ring's own traffic.
   if (machine_.config.topology.flow == Flow::kNone) return exits_[exit].in_hand.size() < kReceiveBatch;
-  if (machine_.topology.point_to_point()) return true;
+  if (machine_.topology.direct()) return true;
   if (!exits_[exit].in_hand.empty()) return false;
   return machine_.config.topology.flow != Flow::kBubble || exits_[exit].link->free_places() >= 2;
 }

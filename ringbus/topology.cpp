@@ -4,21 +4,50 @@
 
 namespace carousel::ringbus {
 
+namespace {
+
+std::uint16_t directions_of(const TopologyConfig& config) {
+  if (config.shape == TopologyShape::kBidirectional) return 2;
+  return config.shape == TopologyShape::kMultiRing ? static_cast<std::uint16_t>(config.rings) : 1;
+}
+
+}  // namespace
+
 Topology::Topology(const TopologyConfig& config)
-    : resources_(static_cast<std::uint32_t>(config.resources)),
-      directions_(config.shape == TopologyShape::kBidirectional ? 2 : 1),
-      point_to_point_(config.shape == TopologyShape::kPointToPoint),
+    : shape_(config.shape),
+      resources_(static_cast<std::uint32_t>(config.resources)),
+      groups_(shape_ == TopologyShape::kHierarchical ? std::min(static_cast<std::uint32_t>(config.groups), resources_) : 0),
+      directions_(directions_of(config)),
       visit_all_(config.visit == Visit::kAll) {
   if (resources_ == 1) return;
-  for (std::uint32_t r = 0; r < resources_; ++r) {
-    if (point_to_point_) {
+  if (groups_ > 0) wire_groups();
+  for (std::uint32_t r = 0; groups_ == 0 && r < resources_; ++r) {
+    if (bus()) {
+      wires_.push_back({ResourceId(r), ResourceId(resources_), 0});
+      wires_.push_back({ResourceId(resources_), ResourceId(r), 0});
+    } else if (direct()) {
       for (std::uint32_t to = 0; to < resources_; ++to)
         if (to != r) wires_.push_back({ResourceId(r), ResourceId(to), 0});
     } else {
-      wires_.push_back({ResourceId(r), ResourceId((r + 1) % resources_), 0});
-      if (directions_ == 2) wires_.push_back({ResourceId(r), ResourceId((r + resources_ - 1) % resources_), 1});
+      for (std::uint16_t d = 0; d < directions_; ++d) wires_.push_back({ResourceId(r), follower(d, ResourceId(r)), d});
     }
   }
+}
+
+void Topology::wire_groups() {
+  for (std::uint32_t g = 0; g < groups_; ++g) {
+    const ResourceId bridge(resources_ + g);
+    wires_.push_back({bridge, first_of(g), 0});
+    for (std::uint32_t r = first_of(g).value; r < last_of(g).value; ++r)
+      wires_.push_back({ResourceId(r), ResourceId(r + 1), 0});
+    wires_.push_back({last_of(g), bridge, 0});
+    if (groups_ > 1) wires_.push_back({bridge, ResourceId(resources_ + (g + 1) % groups_), 1});
+  }
+}
+
+ResourceId Topology::follower(std::uint16_t direction, ResourceId here) const {
+  const bool back = shape_ == TopologyShape::kBidirectional && direction == 1;
+  return ResourceId((here.value + (back ? resources_ - 1 : 1)) % resources_);
 }
 
 bool Topology::wanted(const Packet& packet, ResourceId r) const {
@@ -32,11 +61,35 @@ bool Topology::handles(const Packet& packet, ResourceId here) const {
 }
 
 ResourceId Topology::next(const Packet& packet, ResourceId here) const {
-  const std::uint32_t step = packet.direction == 0 ? 1 : resources_ - 1;
-  ResourceId at((here.value + step) % resources_);
-  if (!point_to_point_ || visit_all_) return at;
-  while (at != packet.owner && !wanted(packet, at)) at = ResourceId((at.value + step) % resources_);
+  ResourceId at = follower(packet.direction, here);
+  if (!direct() || visit_all_) return at;
+  while (at != packet.owner && !wanted(packet, at)) at = follower(packet.direction, at);
   return at;
+}
+
+std::uint16_t Topology::skip_to(const Packet& packet, std::uint32_t at, std::uint32_t end) const {
+  std::uint16_t skip = 0;
+  for (; at < end && ResourceId(at) != packet.owner && !wanted(packet, ResourceId(at)); ++at) ++skip;
+  return skip;
+}
+
+std::uint16_t Topology::skip(const Packet& packet, ResourceId here) const {
+  if (direct()) return 0;
+  if (groups_ > 0) return skip_to(packet, here.value + 1, last_of(group_of(here)).value + 1);
+  std::uint16_t skip = 0;
+  for (ResourceId at = follower(packet.direction, here); at != packet.owner && !wanted(packet, at);
+       at = follower(packet.direction, at))
+    ++skip;
+  return skip;
+}
+
+std::uint16_t Topology::skip_from_entrance(const Packet& packet, std::uint32_t group) const {
+  return skip_to(packet, first_of(group).value, last_of(group).value + 1);
+}
+
+bool Topology::group_wants(const Packet& packet, std::uint32_t group) const {
+  if (visit_all_ || group_of(packet.owner) == group) return true;
+  return skip_from_entrance(packet, group) <= last_of(group).value - first_of(group).value;
 }
 
 std::uint32_t Topology::hops(const Packet& packet) const {

@@ -48,6 +48,7 @@ struct CycleResult {
   Cycle cycles = 0;                  ///< when the last ray was shaded and everything had come to rest
   Cycle steady_cycles = 0;           ///< between a quarter and three quarters of the rays
   std::uint64_t steady_rays = 0;     ///< completed in these
+  double steady_spread = 0;          ///< by how much the rates of their halves differ, as a fraction
   std::vector<TileResult> tiles;     ///< by resource
   std::vector<LinkLedger> links;
   std::vector<CacheResult> caches;

@@ -231,7 +231,7 @@ void Tile::end_test(Context& context, Cycle now) {
 // ---- packets
 
 std::size_t Tile::exit_of(const Packet& packet) const {
-  if (ports_.out_to.empty()) return packet.direction;
+  if (ports_.out_to.empty()) return machine_.topology.groups() > 0 ? 0 : packet.direction;
   return ports_.out_to[machine_.topology.next(packet, id_).value];
 }
 
@@ -242,11 +242,7 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   Token token{id, 0, 1, static_cast<std::uint16_t>(packet.members.size())};
   token.link_cycles = static_cast<std::uint16_t>(
       ceil_div(packet_size_.bytes(packet, machine_.memory, resource_.is_treelet(packet.key)), link_bytes_));
-  if (ports_.out_to.empty()) {
-    for (ResourceId at = machine_.topology.next(packet, id_); at != packet.owner && !machine_.topology.wanted(packet, at);
-         at = machine_.topology.next(packet, at))
-      ++token.skip;
-  }
+  token.skip = machine_.topology.skip(packet, id_);
   out.push(token, ready, !visit_all_ && token.skip > 0);
 }
 

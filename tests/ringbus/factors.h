@@ -63,11 +63,15 @@ inline std::vector<Factor> machine_factors() {
 inline std::vector<Factor> cycle_factors() {
   using I = std::int64_t;
   std::vector<Factor> factors = machine_factors();
-  std::erase_if(factors, [](const Factor& f) { return f.name == "queue" || f.name == "placement"; });
+  std::erase_if(factors, [](const Factor& f) { return f.name == "queue" || f.name == "placement" || f.name == "shape"; });
   const std::vector<Factor> more{
       factor<int>("engine", {0}, [](Cell& c, int) { c.config.engine.kind = EngineKind::kCycle; }),
       factor("placement", std::vector{Placement::kBalanced, Placement::kRoundRobin},
              [](Cell& c, Placement v) { c.config.rays.placement = v; }),
+      factor("shape", std::vector{TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kMultiRing,
+                                  TopologyShape::kHierarchical, TopologyShape::kPointToPoint, TopologyShape::kBus},
+             [](Cell& c, TopologyShape v) { c.config.topology.shape = v; }),
+      factor<I>("groups", {1, 3}, [](Cell& c, I v) { c.config.topology.groups = c.config.topology.rings = v; }),
       factor<I>("contexts", {1, 3}, [](Cell& c, I v) { c.config.testers.contexts = v; }),
       factor("carry", std::vector{PacketCarry::kReference, PacketCarry::kData},
              [](Cell& c, PacketCarry v) { c.config.packets.carry = v; }),

@@ -75,6 +75,9 @@ class TestScene {
     return *built;
   }
   ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 7, away_); }
+  std::unique_ptr<Workload> new_workload() const {
+    return std::make_unique<ScatterWorkload>(bounds_, paths_, bounces_, 7, away_);
+  }
   float size() const {
     const Vec3 e = bounds_.extent();
     return std::sqrt(e.x * e.x + e.y * e.y + e.z * e.z);

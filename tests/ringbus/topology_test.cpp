@@ -58,7 +58,7 @@ TEST(Topology, WiresAreTheShape) {
       pairs.insert({w.from.value, w.to.value});
     }
     EXPECT_EQ(pairs.size(), n * (n - 1));
-    EXPECT_TRUE(all.point_to_point());
+    EXPECT_TRUE(all.direct());
   }
 }
 
