@@ -6,6 +6,8 @@
 #define CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
 #endif
 
+#include <new>
+
 #include <hwy/highway.h>
 
 #include "accel/accel.h"
@@ -17,48 +19,55 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// A traversal stack. Its depth bound: binary depth is at most 72 (accel/sah_build.cpp), a level leaves at
-/// most seven siblings behind.
+/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/sah_build.cpp), above the instances and again
+/// below one that is entered in passing; a level leaves at most seven siblings behind.
+inline constexpr int kStackCapacity = 1024;
+
+/// Nodes that wait for their turn, a node's nearest child on top.
 struct DepthFirstStack {
   struct Entry {
     float entry;
-    std::uint32_t ref;   // bits of a NodeRef, which would be initialised: 512 times a call for nothing
+    std::uint32_t ref;   // bits of a NodeRef, which would be initialised: 1024 times a call for nothing
   };
-  static constexpr int kCapacity = 512;
-  Entry entries[kCapacity];
+  Entry entries[kStackCapacity];
 };
 
-/// Everything testing below one instance needs of a ray. Refers to the slab form, which outlives it: copying
-/// what was just written piece by piece would stall on the stores.
+/// All that testing needs of a ray, above the instances or below one: in world or in model space. Built in its
+/// place: copying what was just written piece by piece would stall on the stores.
 struct FrameRay {
-  const SlabRay& slab;
+  SlabRay slab;
   WatertightRay watertight;
   std::uint32_t instance;
-  float instance_entry;
+  float instance_entry;   ///< of the ray into the instance's world box
 
-  FrameRay(const SlabRay& s, const Ray& ray, std::uint32_t i, float entry)
-      : slab(s), watertight(ray), instance(i), instance_entry(entry) {}
+  HWY_INLINE FrameRay(const Ray& ray, std::uint32_t i, float entry)
+      : slab(ray), watertight(ray), instance(i), instance_entry(entry) {}
 };
 
-/// Calls `body(frame)` with the ray as it is below instance `index`: in model space.
-template <class Body>
-HWY_INLINE bool in_instance(const InstanceNode& node, std::uint32_t index, const Ray& world, const SlabRay& world_slab,
-                            float entry, TestCounts& counts, const Body& body) {
-  if (node.transform.identity) return body(FrameRay(world_slab, world, index, entry));
-  ++counts.transforms;
-  const Ray model = node.transform.to_model(world);
-  const SlabRay model_slab(model);
-  return body(FrameRay(model_slab, model, index, entry));
-}
-
-/// Entry into the world box of an instance, which has been hit on the way here.
-HWY_INLINE float instance_entry(const InstanceNode& node, const SlabRay& world) {
+/// A frame of `ray`, given in world space, to test shapes of `instance`; kNoInstance for the world itself. An
+/// instance without a transform is tested in world space, and its world box is the union of the boxes below it:
+/// entered no later than any of them, it decides nothing.
+HWY_INLINE void enter_frame(const Accel& accel, std::uint32_t instance, const Ray& ray, FrameRay* frame,
+                            TestCounts& counts) {
+  if (instance == kNoInstance || accel.instances[instance].transform.identity) {
+    new (frame) FrameRay(ray, instance, ray.tmin);
+    return;
+  }
+  const InstanceNode& node = accel.instances[instance];
   float entry;
-  slab(world, node.world, kInfinity, entry);
-  return entry;
+  slab(SlabRay(ray), node.world, kInfinity, entry);
+  ++counts.transforms;
+  new (frame) FrameRay(node.transform.to_model(ray), instance, entry);
 }
 
-HWY_INLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay& ray, Hit& hit) {
+/// Storage for a FrameRay to be built in.
+union FrameStorage {
+  FrameRay ray;
+  FrameStorage() {}
+};
+
+/// Not inlined: its registers would push the traversal's own into memory.
+HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay& ray, Hit& hit) {
   bool changed = false;
   for (std::uint32_t b = 0; b < leaf.blocks(); ++b, lanes >>= kBlockTriangles)
     changed |= watertight_block(accel.blocks[leaf.first_block() + b], ray.watertight, ray.slab, lanes,
@@ -66,15 +75,51 @@ HWY_INLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes,
   return changed;
 }
 
-/// A node that waits on the stack is on its way from memory while the nearer ones are visited.
-HWY_INLINE void prefetch(const Node* nodes, NodeRef ref) {
-  if (!ref.is_inner()) return;
-  const char* const bytes = reinterpret_cast<const char*>(nodes + ref.node());
-  for (std::size_t line = 0; line < sizeof(Node); line += 64) __builtin_prefetch(bytes + line);
+HWY_INLINE void prefetch_lines(const void* bytes) {
+  for (std::size_t line = 0; line < sizeof(Node); line += 64)
+    __builtin_prefetch(static_cast<const char*>(bytes) + line);
 }
 
-/// Visits everything below `root`. `visit_other(ref)` tests what is not an inner node and returns true to stop.
-/// Adds the boxes tested to `boxes`.
+/// What waits on the stack is on its way from memory while nearer nodes are visited.
+HWY_INLINE void prefetch(const Accel& accel, NodeRef ref) {
+  if (ref.is_inner())
+    prefetch_lines(accel.nodes.data() + ref.node());
+  else
+    prefetch_lines(accel.blocks.data() + ref.first_block());   // an instance: some block, which does no harm
+}
+
+/// The nearest of the children in `mask`, which is not empty; the others are pushed, the nearest of them on top.
+HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint32_t mask, const float* entry,
+                                 DepthFirstStack::Entry*& top) {
+  const int first = std::countr_zero(mask);
+  mask &= mask - 1;
+  if (mask == 0) return node.child[first];
+  const int second = std::countr_zero(mask);
+  mask &= mask - 1;
+  // Selected by arithmetic: compilers make a branch of a conditional, and which of the two is nearer is hard to guess.
+  const int flip = -static_cast<int>(entry[second] < entry[first]) & (first ^ second);
+  const int near_lane = first ^ flip, far_lane = second ^ flip;
+  DepthFirstStack::Entry nearest{entry[near_lane], node.child[near_lane].bits()};
+  DepthFirstStack::Entry* const bottom = top;
+  *top++ = {entry[far_lane], node.child[far_lane].bits()};
+  prefetch(accel, node.child[far_lane]);
+  for (; mask != 0; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    DepthFirstStack::Entry other{entry[lane], node.child[lane].bits()};
+    if (other.entry < nearest.entry) std::swap(other, nearest);
+    DepthFirstStack::Entry* at = top++;
+    for (; at > bottom && at[-1].entry < other.entry; --at) *at = at[-1];
+    *at = other;
+  }
+  return NodeRef::from_bits(nearest.ref);
+}
+
+/// What is to be done after visiting something that is not an inner node.
+enum class Then { kPop, kEnter, kStop };
+
+/// Visits everything below `root`, until `visit_other(ref)`, which tests what is not an inner node, returns kStop;
+/// after kEnter it goes on with the node that `ref` has been set to. Adds the boxes tested to `boxes`. True when it
+/// was stopped.
 template <class VisitOther>
 HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const SlabRay& slab_ray, const Hit& hit,
                             DepthFirstStack& stack, std::uint64_t& boxes, const VisitOther& visit_other) {
@@ -88,34 +133,12 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const SlabRay& sla
       const Node& node = nodes[ref.node()];
       alignas(64) float entry[kMaxWidth];
       tested += node.count;
-      std::uint32_t mask = slab_node(node, ray, hit.t, entry);
+      const std::uint32_t mask = slab_node(node, ray, hit.t, entry);
       if (mask == 0) goto pop;
-      const int first = std::countr_zero(mask);
-      mask &= mask - 1;
-      if (mask == 0) {
-        ref = node.child[first];
-        continue;
-      }
-      const int second = std::countr_zero(mask);
-      mask &= mask - 1;
-      // Which of the two is nearer is a coin toss no predictor guesses: selected without a branch.
-      const bool swap = entry[second] < entry[first];
-      const int near_lane = swap ? second : first, far_lane = swap ? first : second;
-      DepthFirstStack::Entry nearest{entry[near_lane], node.child[near_lane].bits()};
-      DepthFirstStack::Entry* const bottom = top;
-      *top++ = {entry[far_lane], node.child[far_lane].bits()};
-      prefetch(nodes, node.child[far_lane]);
-      for (; mask != 0; mask &= mask - 1) {
-        const int lane = std::countr_zero(mask);
-        DepthFirstStack::Entry other{entry[lane], node.child[lane].bits()};
-        if (other.entry < nearest.entry) std::swap(other, nearest);
-        DepthFirstStack::Entry* at = top++;
-        for (; at > bottom && at[-1].entry < other.entry; --at) *at = at[-1];
-        *at = other;
-      }
-      ref = NodeRef::from_bits(nearest.ref);
+      ref = nearest_child(accel, node, mask, entry, top);
     }
-    if (visit_other(ref)) {
+    if (const Then then = visit_other(ref); then != Then::kPop) {
+      if (then == Then::kEnter) continue;
       boxes += tested;
       return true;
     }
@@ -131,13 +154,44 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const SlabRay& sla
   }
 }
 
-/// Below one instance. True when a shadow ray is settled.
-HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef root, const FrameRay& ray, bool any_hit, Hit& hit,
-                               DepthFirstStack& stack, TestCounts& counts) {
-  return depth_first(accel, root, ray.slab, hit, stack, counts.box, [&](NodeRef leaf) HWY_ATTR {
-    counts.triangle += leaf.triangles();
-    return test_leaf(accel, leaf, ~0u, ray, hit) && any_hit;
+/// Stacks for what is above the instances and for what is below one.
+struct TraceStacks {
+  DepthFirstStack at[2];
+};
+
+/// Goes on into an instance without a transform: true, and `ref` is its root.
+HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay& frame) {
+  const InstanceNode& instance = accel.instances[ref.instance_index()];
+  if (!instance.transform.identity) return false;
+  frame.instance = ref.instance_index();
+  ref = instance.root;
+  return true;
+}
+
+/// Traces `ray` below an instance with a transform. True when a search for any hit has found one.
+HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
+                                 TraceStacks& stacks, TestCounts& counts);
+
+/// The same below `root`, in the frame that was made from `ray`. In the world frame, instances without a transform are
+/// entered in passing; `level` is 0 there and 1 below an instance with one.
+HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, const Ray& ray, FrameRay& frame, bool any_hit, Hit& hit,
+                              TraceStacks& stacks, int level, TestCounts& counts) {
+  return depth_first(accel, root, frame.slab, hit, stacks.at[level], counts.box, [&](NodeRef& ref) HWY_ATTR {
+    if (HWY_LIKELY(ref.kind() == NodeRef::Kind::kLeaf)) {
+      counts.triangle += ref.triangles();
+      return test_leaf(accel, ref, ~0u, frame, hit) && any_hit ? Then::kStop : Then::kPop;
+    }
+    if (enter_instance(accel, ref, frame)) return Then::kEnter;
+    return trace_instance(accel, ref, ray, any_hit, hit, stacks, counts) ? Then::kStop : Then::kPop;
   });
+}
+
+HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
+                                 TraceStacks& stacks, TestCounts& counts) {
+  FrameStorage below;
+  enter_frame(accel, instance.instance_index(), ray, &below.ray, counts);
+  const NodeRef root = accel.instances[instance.instance_index()].root;
+  return trace_frame(accel, root, ray, below.ray, any_hit, hit, stacks, 1, counts);
 }
 
 }  // namespace carousel::accel::HWY_NAMESPACE

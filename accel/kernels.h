@@ -35,8 +35,12 @@ struct StripHits {
 void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
                 const StripHits& hits, TestCounts& counts);
 
-/// Traces each member through everything below `key`, depth-first and nearest first.
+/// Traces each member through everything below `key`, depth-first and nearest first, one ray after another.
 void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts);
+
+/// The same with several rays under way, of which one fills the waits of the others. Faster where there are rays
+/// enough and the nodes are not all in the first-level cache.
+void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts);
 
 /// Names of the SIMD targets this program was built for and this machine has, best first.
 std::vector<std::string> simd_targets();

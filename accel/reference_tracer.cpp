@@ -7,15 +7,29 @@
 
 namespace carousel::accel {
 
-void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts) {
+namespace {
+
+/// `trace` is one of the kernels that trace whatever is below a node.
+void trace_batch(decltype(trace_subtree)& trace, const Accel& accel, const RayBatch& rays, HitBatch& out,
+                 TestCounts& counts) {
   constexpr std::size_t kChunk = 64;   // records that stay in the first-level cache
   std::array<RayRecord, kChunk> records;
   for (std::size_t begin = 0; begin < rays.size(); begin += kChunk) {
     const std::size_t count = std::min(kChunk, rays.size() - begin);
     for (std::size_t i = 0; i < count; ++i) start_record(rays[begin + i], records[i]);
-    trace_subtree(accel, accel.root_key(), {records.data(), nullptr, count}, counts);
+    trace(accel, accel.root_key(), {records.data(), nullptr, count}, counts);
     for (std::size_t i = 0; i < count; ++i) finish_record(records[i], out);
   }
+}
+
+}  // namespace
+
+void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts) {
+  trace_batch(trace_subtree, accel, rays, out, counts);
+}
+
+void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts) {
+  trace_batch(trace_interleaved, accel, rays, out, counts);
 }
 
 ReferenceRun run_reference(const Accel& accel, Workload& workload, std::size_t batch) {

@@ -61,8 +61,9 @@ struct SlabLanes {
 };
 
 /// One ray against the eight boxes of a node: bit l of the result when lane l is entered before tmax; all
-/// eight entries (never below tmin) are stored.
-HWY_INLINE std::uint32_t slab_node(const Node& node, const SlabLanes& ray, float tmax, float* HWY_RESTRICT entry) {
+/// eight entries (never below tmin) are stored. `nearest`, unless null, is lowered to the entries of lanes hit.
+HWY_INLINE std::uint32_t slab_node(const Node& node, const SlabLanes& ray, float tmax, float* HWY_RESTRICT entry,
+                                   float* HWY_RESTRICT nearest = nullptr) {
   const SlabLanes::Tag d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   const char* const planes = reinterpret_cast<const char*>(&node.plane[0][0]);
@@ -80,8 +81,13 @@ HWY_INLINE std::uint32_t slab_node(const Node& node, const SlabLanes& ray, float
     near = keep_max(hn::Mul(hn::Sub(plane(ray.near_row[2], i), ray.origin_z), ray.near_z), near);
     far = keep_min(hn::Mul(hn::Sub(plane(ray.far_row[2], i), ray.origin_z), ray.far_z), far);
     hn::Store(near, d, entry + i);
+    const auto hit = hn::Le(near, far);
+    if (nearest != nullptr) {
+      const auto before = hn::Load(d, nearest + i);
+      hn::Store(hn::IfThenElse(hn::And(hit, hn::Lt(near, before)), near, before), d, nearest + i);
+    }
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Le(near, far), bits);
+    hn::StoreMaskBits(d, hit, bits);
     mask |= std::uint32_t{bits[0]} << i;
   }
   return mask;

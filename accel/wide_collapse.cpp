@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 namespace carousel::accel {
 
@@ -15,24 +16,88 @@ class Collapse {
  public:
   Collapse(const std::vector<BinaryNode>& binary, int width,
            const std::function<WideLeaf(const BinaryNode&)>& make_leaf, NodeArray& nodes)
-      : binary_(binary), width_(width), make_leaf_(make_leaf), nodes_(nodes) {}
+      : binary_(binary),
+        width_(width),
+        make_leaf_(make_leaf),
+        nodes_(nodes),
+        shares_(std::make_unique_for_overwrite<Shares[]>(binary.size())) {}
+
+  WideTree run() {
+    price(0);
+    return emit(0);
+  }
+
+ private:
+  /// [i]: the least area of wide nodes that a subtree needs when its parent has i + 1 places for it.
+  using Prices = std::array<float, kMaxWidth>;
+  /// [i]: of i + 1 places, those that go to the left child; kWhole when one place does as well.
+  using Shares = std::array<std::uint8_t, kMaxWidth>;
+  static constexpr std::uint8_t kWhole = 0;
+
+  Prices price(std::uint32_t at) {
+    Prices prices{};
+    const BinaryNode& node = binary_[at];
+    if (node.count > 0) return prices;   // a leaf costs the same wherever it hangs
+    const Prices left = price(node.first), right = price(node.right);
+    Shares& shares = shares_[at];
+    const std::size_t width = static_cast<std::size_t>(width_);
+    for (std::size_t i = 1; i < width; ++i) {
+      prices[i] = left[0] + right[i - 1];
+      shares[i] = 1;
+      for (std::size_t k = 1; k < i; ++k) {
+        const float price = left[k] + right[i - 1 - k];
+        if (price < prices[i]) {
+          prices[i] = price;
+          shares[i] = static_cast<std::uint8_t>(k + 1);
+        }
+      }
+    }
+    // As a node of its own, its children have all places of that node.
+    shares[0] = shares[width - 1];
+    prices[0] = prices[width - 1] + node.box.half_area();
+    for (std::size_t i = 1; i < width; ++i) {
+      if (!(prices[0] < prices[i])) continue;
+      prices[i] = prices[0];
+      shares[i] = kWhole;
+    }
+    return prices;
+  }
+
+  struct Children {
+    std::array<std::uint32_t, kMaxWidth> nodes;
+    int count = 0;
+  };
+
+  /// Appends what stands in the `places` places that `at` has been given.
+  void place(std::uint32_t at, int places, Children& out) const {
+    const bool whole = places == 1 || binary_[at].count > 0 || shares_[at][static_cast<std::size_t>(places - 1)] == kWhole;
+    if (whole)
+      out.nodes[static_cast<std::size_t>(out.count++)] = at;
+    else
+      open(at, places, shares_[at][static_cast<std::size_t>(places - 1)], out);
+  }
+  void open(std::uint32_t at, int places, int left, Children& out) const {
+    place(binary_[at].first, left, out);
+    place(binary_[at].right, places - left, out);
+  }
 
   WideTree emit(std::uint32_t at) {
     if (binary_[at].count > 0) {
       const WideLeaf leaf = make_leaf_(binary_[at]);
       return {leaf.ref, leaf.strip_size, leaf.triangles, leaf.ref.kind() == NodeRef::Kind::kLeaf ? 1 : 0};
     }
-    std::array<std::uint32_t, kMaxWidth> children{binary_[at].first, binary_[at].right};
-    const int count = open_largest(children);
+    Children children;
+    open(at, width_, shares_[at][0], children);
     const std::uint32_t index = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
-    nodes_[index].count = static_cast<std::uint8_t>(count);
+    nodes_[index].count = static_cast<std::uint8_t>(children.count);
     std::uint32_t triangles = 0;
     int depth = 0;
-    for (int lane = 0; lane < count; ++lane) {
-      const WideTree child = emit(children[lane]);
+    for (int lane = 0; lane < children.count; ++lane) {
+      const std::uint32_t below = children.nodes[static_cast<std::size_t>(lane)];
+      const WideTree child = emit(below);
       Node& node = nodes_[index];   // emit() may have moved the array
-      const Aabb& box = binary_[children[lane]].box;
+      const Aabb& box = binary_[below].box;
       for (int axis = 0; axis < 3; ++axis) {
         node.plane[axis][lane] = box.lo[axis];
         node.plane[axis + 3][lane] = box.hi[axis];
@@ -43,42 +108,21 @@ class Collapse {
       depth = std::max(depth, child.depth);
     }
     nodes_[index].triangles = triangles;
-    return {NodeRef::inner(index), static_cast<std::uint8_t>(count), triangles, depth + 1};
-  }
-
- private:
-  int open_largest(std::array<std::uint32_t, kMaxWidth>& children) const {
-    int count = 2;
-    while (count < width_) {
-      int largest = -1;
-      float area = -1;
-      for (int i = 0; i < count; ++i) {
-        if (binary_[children[i]].count > 0) continue;
-        const float a = binary_[children[i]].box.half_area();
-        if (a > area) {
-          area = a;
-          largest = i;
-        }
-      }
-      if (largest < 0) break;
-      const BinaryNode& opened = binary_[children[largest]];
-      children[largest] = opened.first;
-      children[count++] = opened.right;
-    }
-    return count;
+    return {NodeRef::inner(index), static_cast<std::uint8_t>(children.count), triangles, depth + 1};
   }
 
   const std::vector<BinaryNode>& binary_;
   int width_;
   const std::function<WideLeaf(const BinaryNode&)>& make_leaf_;
   NodeArray& nodes_;
+  std::unique_ptr<Shares[]> shares_;   // by binary node
 };
 
 }  // namespace
 
 WideTree collapse(const std::vector<BinaryNode>& binary, int width,
                   const std::function<WideLeaf(const BinaryNode&)>& make_leaf, NodeArray& nodes) {
-  return Collapse(binary, width, make_leaf, nodes).emit(0);
+  return Collapse(binary, width, make_leaf, nodes).run();
 }
 
 }  // namespace carousel::accel

@@ -22,8 +22,9 @@ struct WideTree {
   int depth = 0;   ///< strips on the longest way down, a triangle leaf counted as one
 };
 
-/// Turns a binary tree into nodes of up to `width` children, appended to `nodes` depth-first: a node opens its
-/// child of the largest area until it is full (Wald, Benthin, Boulos 2008, "Getting rid of packets").
+/// Turns a binary tree into nodes of up to `width` children, appended to `nodes` depth-first, so that the areas of
+/// all nodes add up to the least possible (Ylitie, Karras, Laine 2017, "Efficient incoherent ray traversal on GPUs
+/// through compressed wide BVHs", section 3.2; leaves stay as they are).
 /// `make_leaf` is called once a leaf, in depth-first order. A tree that is one leaf has that leaf as its root.
 WideTree collapse(const std::vector<BinaryNode>& binary, int width,
                   const std::function<WideLeaf(const BinaryNode&)>& make_leaf, NodeArray& nodes);

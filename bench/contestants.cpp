@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "accel/reference_tracer.h"
 #include "bench/batch_threads.h"
 
 namespace carousel::bench {
@@ -32,7 +31,8 @@ float scene_size(const scene::Scene& scene) {
 Contest::Contest(const scene::Scene& scene, const accel::Accel& accel, const RingSettings& ring,
                  const Field& field)
     : accel_(accel), field_(field), scene_size_(scene_size(scene)) {
-  add_depth_first();
+  add_depth_first(kDepthFirst, accel::trace_depth_first);
+  add_depth_first(kDepthFirstInterleaved, accel::trace_depth_first_interleaved);
   add_treelet_rings("", ring, false);
   for (const std::string& changes : field.variations)
     add_treelet_rings(", " + changes, with_changes(ring, changes), false);
@@ -57,14 +57,14 @@ void Contest::add(Contestant contestant) {
   if (contestant.name.find(field_.only) != std::string::npos) contestants_.push_back(std::move(contestant));
 }
 
-void Contest::add_depth_first() {
-  add({kDepthFirst, true, [this](const RaySet& rays, int threads, HitList& hits) {
+void Contest::add_depth_first(const char* name, decltype(accel::trace_depth_first)& trace) {
+  add({name, true, [this, &trace](const RaySet& rays, int threads, HitList& hits) {
          std::atomic<std::uint64_t> boxes{0}, triangles{0};
          for_each_batch(rays, threads, [&] {
            return [&, found = HitBatch()](const RayBatch& batch) mutable {
              found.clear();
              TestCounts counts;
-             accel::trace_depth_first(accel_, batch, found, counts);
+             trace(accel_, batch, found, counts);
              for (const RayResult& result : found) hits[result.tag.path] = result.hit;
              // Relaxed: sums, read when the threads have been joined.
              boxes.fetch_add(counts.box, std::memory_order_relaxed);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "accel/reference_tracer.h"
 #include "bench/embree_peer.h"
 #include "bench/ray_sets.h"
 #include "bench/results.h"
@@ -16,6 +17,7 @@ namespace carousel::bench {
 
 /// Names that other contestants are compared with.
 inline constexpr const char* kDepthFirst = "depth-first";
+inline constexpr const char* kDepthFirstInterleaved = "depth-first, interleaved";
 inline constexpr const char* kEmbreeRobust = "Embree robust, single";
 /// Names that the summary picks out.
 inline constexpr const char* kTreeletLocal = "ring treelet, local";
@@ -48,7 +50,7 @@ class Contest {
 
  private:
   void add(Contestant contestant);
-  void add_depth_first();
+  void add_depth_first(const char* name, decltype(accel::trace_depth_first)& trace);
   void add_ring(const std::string& name, const RingSettings& settings, const RingForm& form,
                 bool resource_a_thread);
   void add_treelet_rings(const std::string& suffix, const RingSettings& settings, bool statistics);

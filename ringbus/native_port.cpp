@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kReceiveBatch = 8;     // packets taken from a link at once: one index update for all
 constexpr std::size_t kCompletedBatch = 512; // rays handed to shading at once, at most a quarter of the slots
+constexpr std::size_t kCompletedPause = 4096;  // completed rays after which issuing makes a pause for shading
 
 }  // namespace
 
@@ -112,7 +113,7 @@ void NativePort::come_home(PacketId id) {
     for (const PacketMember& member : packet.members) group.ids.push_back(member.ray);
     group.rays.swap(packet.requests);
     group.addresses.swap(packet.addresses);
-    if (!group.ids.empty() || !group.rays.empty()) waiting_.push_back(std::move(group));
+    wait(std::move(group));
   } else {
     resource_.retire(packet);
   }
@@ -130,27 +131,46 @@ void NativePort::leave(PacketId id) {
 // ---- new rays
 
 bool NativePort::admit() {
-  machine_.control.collect(resource_.id(), waiting_);
-  if (waiting_.empty()) return false;
-  bool moved = false;
-  arrived_.swap(waiting_);
-  for (RayGroup& group : arrived_) {
-    if (!group.ids.empty()) moved |= admit_ids(group.ids);
-    if (!group.rays.empty()) moved |= send_round(group);
-    if (!group.ids.empty() || !group.rays.empty()) waiting_.push_back(std::move(group));
-  }
+  machine_.control.collect(resource_.id(), arrived_);
+  for (RayGroup& group : arrived_) wait(std::move(group));
   arrived_.clear();
+  const bool admitted = admit_ids();
+  return send_rays_round() || admitted;
+}
+
+void NativePort::wait(RayGroup&& group) {
+  if (!group.ids.empty()) waiting_ids_.push_back(std::move(group.ids));
+  if (!group.rays.empty()) waiting_rays_.push_back({{}, std::move(group.rays), std::move(group.addresses)});
+}
+
+/// Admits rays while there is room, the oldest first.
+bool NativePort::admit_ids() {
+  bool moved = false;
+  while (!waiting_ids_.empty()) {
+    std::vector<RayId>& ids = waiting_ids_.front();
+    const std::size_t count = std::min(ids.size(), resource_.admissible());
+    if (count > 0) resource_.admit(std::span(ids).first(count));
+    moved |= count > 0;
+    if (count < ids.size()) {
+      stall(StallReason::kStorage);
+      ids.erase(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
+      break;
+    }
+    waiting_ids_.pop_front();
+  }
   return moved;
 }
 
-/// Admits a prefix of `ids` and removes it.
-bool NativePort::admit_ids(std::vector<RayId>& ids) {
-  const std::size_t count = std::min(ids.size(), resource_.admissible());
-  if (count < ids.size()) stall(StallReason::kStorage);
-  if (count == 0) return false;
-  resource_.admit(std::span(ids).first(count));
-  ids.erase(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
-  return true;
+/// Sends waiting rays out to look for slots; those that nobody has room for wait on.
+bool NativePort::send_rays_round() {
+  bool moved = false;
+  arrived_.swap(waiting_rays_);
+  for (RayGroup& group : arrived_) {
+    moved |= send_round(group);
+    wait(std::move(group));
+  }
+  arrived_.clear();
+  return moved;
 }
 
 /// Gives the rays of a ray packet the slots there are here, this resource's share of them, and writes down their
@@ -182,7 +202,7 @@ void NativePort::take_rays(Packet& packet) {
   }
   packet.requests.resize(kept);
   if (addressed) packet.addresses.resize(kept);
-  if (!own.ids.empty()) waiting_.push_back(std::move(own));
+  wait(std::move(own));
 }
 
 /// Sends a group's rays round the ring to look for slots; they are taken out of the group. Refused when nobody
@@ -255,7 +275,9 @@ bool NativePort::issue(bool partial) {
   const bool stays = machine_.topology.resources() == 1 || machine_.config.collections.home == Home::kLocal;
   bool moved = false;
   // When only partial collections are left, one at a time: the next look at the links may fill the others.
-  for (int budget = partial ? 1 : 64; budget > 0 && !resource_.idle(); --budget) {
+  // Completed rays go to shading while they are still in cache.
+  for (int budget = partial ? 1 : 64;
+       budget > 0 && !resource_.idle() && resource_.completed().size() < kCompletedPause; --budget) {
     PacketId id;
     Packet* packet = &local_;
     if (!stays) {
@@ -298,8 +320,8 @@ void NativePort::flush_completed(bool all) {
 bool NativePort::drained() const {
   const bool hands_empty =
       std::all_of(exits_.begin(), exits_.end(), [](const Exit& exit) { return exit.in_hand.empty(); });
-  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_.empty() &&
-         resource_.packets_in_flight() == 0 &&
+  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_ids_.empty() &&
+         waiting_rays_.empty() && resource_.packets_in_flight() == 0 &&
          machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
 }
 
@@ -310,7 +332,8 @@ std::string NativePort::describe() const {
                                  resource_.collections().collections(), resource_.collections().memberships(),
                                  resource_.packets_in_flight());
   std::size_t rays = 0;
-  for (const RayGroup& group : waiting_) rays += group.rays.size() + group.ids.size();
+  for (const std::vector<RayId>& ids : waiting_ids_) rays += ids.size();
+  for (const RayGroup& group : waiting_rays_) rays += group.rays.size();
   if (rays > 0) text += fmt::format(", {} new rays wait", rays);
   for (const Exit& exit : exits_) {
     if (exit.in_hand.empty()) continue;

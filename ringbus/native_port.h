@@ -45,7 +45,9 @@ class NativePort {
   void leave(PacketId id);
 
   bool admit();
-  bool admit_ids(std::vector<RayId>& ids);
+  void wait(RayGroup&& group);
+  bool admit_ids();
+  bool send_rays_round();
   bool send_round(RayGroup& group);
   void take_rays(Packet& packet);
 
@@ -76,8 +78,9 @@ class NativePort {
   std::size_t next_direction_ = 0;
   std::atomic<std::uint32_t> out_{0};           // own packets under way; written by the owner
   Packet local_;                                // never travels: collections that are tested on the spot
-  std::vector<RayGroup> waiting_;               // new rays, oldest first
-  std::vector<RayGroup> arrived_;               // scratch of admit()
+  std::deque<std::vector<RayId>> waiting_ids_;  // new rays that have slots, oldest first
+  std::vector<RayGroup> waiting_rays_;          // new rays without, oldest first
+  std::vector<RayGroup> arrived_;               // scratch of admit() and send_rays_round()
 };
 
 }  // namespace carousel::ringbus

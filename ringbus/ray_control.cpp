@@ -45,7 +45,9 @@ std::size_t RayControl::load_some(ResourceId resource, std::span<const RayReques
   SlotList& list = slots_[resource.value];
   const std::lock_guard lock(list.mutex);
   const std::size_t count = std::min(rays.size(), list.free.size());
+  constexpr std::size_t kAhead = 8;   // records that are fetched while others are written
   for (std::size_t i = 0; i < count; ++i) {
+    if (i + kAhead < count) stores_[resource.value]->prefetch(list.free[list.free.size() - 1 - kAhead]);
     ids.push_back(stores_[resource.value]->load(list.free.back(), rays[i], initial_tests_));
     list.free.pop_back();
   }
@@ -120,6 +122,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
         if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= enough_slots_) continue;
         break;
       }
+      group.ids.reserve(next.size());
       placed = local_ ? load_some(issuer, next, group.ids) : place_spread(next, group.ids);
     }
     if (placed == 0) break;

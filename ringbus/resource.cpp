@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "accel/kernels.h"
-#include "accel/ray_check.h"
 
 namespace carousel::ringbus {
 
@@ -144,10 +143,12 @@ void Resource::fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std
       packet.kind == PacketKind::kTest ? blocks_needed(key, static_cast<std::uint32_t>(rays.size())) : 0;
   std::fill(std::begin(packet.nearest), std::end(packet.nearest), kInfinity);
   if (packet.kind == PacketKind::kMemberships) packet.nearest[0] = issuing_.entry;
-  packet.members.clear();
+  packet.members.resize(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0};
   std::fill(packet.owners.begin(), packet.owners.end(), 0);
-  for (const RayId ray : rays) {
-    packet.members.push_back({ray, 0});
+  // One resource, or collections that stay with their rays: the owner is this one.
+  const bool own = config_.topology.resources == 1 || config_.collections.home == Home::kLocal;
+  for (const RayId ray : own ? rays.first(1) : rays) {
     const std::uint32_t owner = store_.layout().owner(ray).value;
     packet.owners[owner / 64] |= std::uint64_t{1} << (owner % 64);
   }
@@ -156,26 +157,6 @@ void Resource::fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std
   ++in_flight_;
   record({.kind = EventKind::kIssue, .resource = id(), .key = key, .rays = static_cast<std::uint32_t>(rays.size()),
           .members = packet.members});
-}
-
-// ---- completion
-
-void Resource::settle(std::uint32_t slot, std::int32_t pending_change) {
-  RayRecord& record = store_.record(slot);
-  record.pending += pending_change;
-  if constexpr (kChecked) {
-    if (record.pending < 0)
-      throw SimulationError("resource " + std::to_string(id().value) + " slot " + std::to_string(slot) +
-                            ": more answers than pending tests");
-  }
-  if (record.pending == 0) complete(slot);
-}
-
-void Resource::complete(std::uint32_t slot) {
-  accel::finish_record(store_.record(slot), completed_);
-  if (ordered_) stacks_->clear(slot);
-  store_.retire(slot);
-  freed_slots_.push_back(slot);
 }
 
 }  // namespace carousel::ringbus

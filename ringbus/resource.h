@@ -127,7 +127,6 @@ class Resource {
   std::vector<std::uint8_t> masks_;
   std::vector<float> entries_;
   std::vector<RayId> ids_;
-  std::array<std::vector<RayId>, accel::kMaxWidth> lane_ids_;   // retire_spread: members by lane hit
   TestCounts tests_;
 };
 

@@ -23,15 +23,19 @@ void Resource::retire(Packet& packet) {
 }
 
 void Resource::retire_spread(Packet& packet) {
-  for (const PacketMember& member : packet.members)
-    for (std::uint32_t rest = member.mask; rest != 0; rest &= rest - 1)
-      lane_ids_[static_cast<std::size_t>(std::countr_zero(rest))].push_back(member.ray);
-  for (int lane = 0; lane < accel::kMaxWidth; ++lane) {
-    std::vector<RayId>& ids = lane_ids_[static_cast<std::size_t>(lane)];
-    if (ids.empty()) continue;
+  std::uint32_t lanes = 0;
+  for (const PacketMember& member : packet.members) lanes |= member.mask;
+  ids_.resize(packet.members.size());
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    // Which members hit is a coin toss no predictor guesses: each is written, and counted if it did.
+    std::size_t count = 0;
+    for (const PacketMember& member : packet.members) {
+      ids_[count] = member.ray;
+      count += (member.mask >> lane) & 1u;
+    }
     collections_.add(accel_.child_key(packet.key, lane), static_cast<std::uint16_t>(packet.depth + 1),
-                     packet.nearest[lane], ids);
-    ids.clear();
+                     packet.nearest[lane], std::span(ids_).first(count));
   }
 }
 

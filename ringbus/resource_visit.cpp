@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "accel/kernels.h"
+#include "accel/ray_check.h"
 #include "ringbus/resource.h"
 
 namespace carousel::ringbus {
@@ -19,13 +20,37 @@ constexpr std::array<std::int8_t, 256> kBitCount = [] {
 }  // namespace
 
 void Resource::gather_local(const Packet& packet) {
-  local_slots_.clear();
-  local_members_.clear();
+  local_slots_.resize(packet.members.size());
+  local_members_.resize(packet.members.size());
+  std::size_t count = 0;
   for (std::uint32_t i = 0; i < packet.members.size(); ++i) {
-    if (!store_.owns(packet.members[i].ray)) continue;
-    local_slots_.push_back(store_.slot(packet.members[i].ray));
-    local_members_.push_back(i);
+    const RayId ray = packet.members[i].ray;
+    const bool local = store_.owns(ray);
+    // Written either way and counted if it is one of ours: with two owners no predictor guesses which.
+    local_slots_[count] = local ? store_.slot(ray) : 0;
+    local_members_[count] = i;
+    count += local;
   }
+  local_slots_.resize(count);
+  local_members_.resize(count);
+}
+
+void Resource::settle(std::uint32_t slot, std::int32_t pending_change) {
+  RayRecord& record = store_.record(slot);
+  record.pending += pending_change;
+  if constexpr (kChecked) {
+    if (record.pending < 0)
+      throw SimulationError("resource " + std::to_string(id().value) + " slot " + std::to_string(slot) +
+                            ": more answers than pending tests");
+  }
+  if (record.pending == 0) complete(slot);
+}
+
+void Resource::complete(std::uint32_t slot) {
+  accel::finish_record(store_.record(slot), completed_);
+  if (ordered_) stacks_->clear(slot);
+  store_.retire(slot);
+  freed_slots_.push_back(slot);
 }
 
 void Resource::test(Packet& packet) {
@@ -47,7 +72,7 @@ void Resource::test_spread(Packet& packet) {
     if (is_treelet(packet.key) && subtree_tracer_ != nullptr)
       subtree_tracer_->trace(packet.key, members, tests_);
     else if (is_treelet(packet.key))
-      accel::trace_subtree(accel_, packet.key, members, tests_);
+      accel::trace_interleaved(accel_, packet.key, members, tests_);
     else
       accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
     for (const std::uint32_t slot : local_slots_) settle(slot, -1);

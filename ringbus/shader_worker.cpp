@@ -5,8 +5,8 @@
 namespace carousel::ringbus {
 
 namespace {
-// Rays asked for at once: enough that resources find whole groups waiting when they come round again.
-constexpr std::int64_t kGenerateBatch = 65536;
+// Rays asked for at once: few enough that they are still in cache when ray control puts them into their slots.
+constexpr std::int64_t kGenerateBatch = 4096;
 }
 
 ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count)
@@ -42,19 +42,26 @@ bool ShaderWorker::generate() {
   // Acquire: pairs with the release below, and is only a hint here.
   if (count_.source_finished.load(std::memory_order_acquire)) return false;
   const std::int64_t workers = machine_.config.shading.workers;
-  const std::int64_t room = std::min({slots_ - count_.outstanding.load(std::memory_order_relaxed), kGenerateBatch,
-                                      slots_ / workers + 1});
-  if (room <= 0) return false;
-  // Counted before they exist, so that nobody sees the source finished with the last rays not yet counted.
-  count_.outstanding.fetch_add(room, std::memory_order_relaxed);
-  rays_.clear();
-  const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(room), rays_);
-  count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - room, std::memory_order_release);
-  count_.emitted.fetch_add(made.rays, std::memory_order_relaxed);
-  // Release: pairs with the acquire in done().
-  if (made.finished) count_.source_finished.store(true, std::memory_order_release);
-  if (made.rays > 0) machine_.control.submit(rays_);
-  return made.rays > 0;
+  const std::int64_t room = slots_ - count_.outstanding.load(std::memory_order_relaxed);
+  // All that fit, so that resources find whole groups waiting when they come round again.
+  std::int64_t left = std::min(room, slots_ / workers + 1);
+  bool any = false;
+  while (left > 0) {
+    const std::int64_t asked = std::min(left, kGenerateBatch);
+    // Counted before they exist, so that nobody sees the source finished with the last rays not yet counted.
+    count_.outstanding.fetch_add(asked, std::memory_order_relaxed);
+    rays_.clear();
+    const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(asked), rays_);
+    count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - asked, std::memory_order_release);
+    count_.emitted.fetch_add(made.rays, std::memory_order_relaxed);
+    // Release: pairs with the acquire in done().
+    if (made.finished) count_.source_finished.store(true, std::memory_order_release);
+    if (made.rays > 0) machine_.control.submit(rays_);
+    any |= made.rays > 0;
+    if (made.finished || static_cast<std::int64_t>(made.rays) < asked) break;
+    left -= asked;
+  }
+  return any;
 }
 
 }  // namespace carousel::ringbus

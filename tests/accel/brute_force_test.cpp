@@ -16,11 +16,15 @@ class BruteForce {
   BruteForce(const scene::Scene& scene, const RayBatch& rays) : rays_(rays) {
     for (const RayRequest& ray : rays) expected_.push_back({ray.ray, brute_force(scene, ray), ray.tag});
   }
-  /// How many rays the structure answers otherwise.
+  /// How many answers of the structure are others, one ray after another and interleaved.
   std::size_t differences(const Accel& accel) const {
-    const HitBatch got = trace(accel, rays_);
     std::size_t differences = 0;
-    for (std::size_t i = 0; i < got.size(); ++i) differences += !same_result(expected_[i], got[i]);
+    for (auto* const tracer : {trace_depth_first, trace_depth_first_interleaved}) {
+      HitBatch got;
+      TestCounts counts;
+      tracer(accel, rays_, got, counts);
+      for (std::size_t i = 0; i < expected_.size(); ++i) differences += !same_result(expected_[i], got.at(i));
+    }
     return differences;
   }
   std::size_t hits() const {
