@@ -12,6 +12,7 @@
 #include "ringbus/cycle/shading_agent.h"
 #include "ringbus/cycle/shape_cache.h"
 #include "ringbus/cycle/tile.h"
+#include "ringbus/cycle/wait_cycle.h"
 #include "ringbus/cycle/windows.h"
 
 namespace carousel::ringbus {
@@ -178,6 +179,13 @@ class CycleRun {
     return parts;
   }
 
+  /// Calls `body` with each wire and which of its node's exits it is.
+  template <class Body>
+  void for_each_link(const Body& body) const {
+    std::vector<std::size_t> exits(tiles_.size() + bridges_.size() + 1);
+    for (const Topology::Wire& wire : machine_.topology.wires()) body(wire, exits[wire.from.value]++);
+  }
+
   void check_at_rest() const {
     std::string waiting = shading_->describe();
     const auto ask = [&](const Agent& agent) {
@@ -185,6 +193,13 @@ class CycleRun {
     };
     for (const auto& tile : tiles_) ask(*tile);
     for (const auto& bridge : bridges_) ask(*bridge);
+    std::vector<Wait> waits;
+    for_each_link([&](const Topology::Wire& wire, std::size_t exit) {
+      if (wire.from.value >= tiles_.size()) return;
+      if (std::string packet = tiles_[wire.from.value]->blocked(exit); !packet.empty())
+        waits.push_back({wire.from.value, wire.to.value, std::move(packet)});
+    });
+    if (const std::string circle = wait_cycle(waits); !circle.empty()) waiting += "\n  " + circle;
     if (!shading_->done() || !waiting.empty())
       throw SimulationError("nothing moves any more; who waits for whom:\n  " + waiting);
   }
@@ -212,16 +227,14 @@ class CycleRun {
       t.transform.busy = tile->tester().transform.busy();
       t.handler.busy = tile->handler_busy();
     }
-    const std::vector<Topology::Wire>& wires = machine_.topology.wires();
-    std::vector<std::size_t> exits(tiles_.size() + bridges_.size() + 1);
-    for (const Topology::Wire& wire : wires) {
-      const OutPort& port = out_of(wire.from)[exits[wire.from.value]++];
+    for_each_link([&](const Topology::Wire& wire, std::size_t exit) {
+      const OutPort& port = out_of(wire.from)[exit];
       c.hops += port.packets();
       c.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s});
-    }
+    });
     for (const auto& cache : caches_) {
       const ShapeCache::Statistics& s = cache->statistics();
       c.caches.push_back({s.requests, s.lines, s.hits, s.merged, s.misses});

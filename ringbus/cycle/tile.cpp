@@ -443,14 +443,20 @@ std::string Tile::describe() const {
   std::string text = fmt::format("resource {}: {} collections with {} memberships, {} packets out, {} to be issued", id_.value,
                                  resource_.collections().collections(), resource_.collections().memberships(),
                                  resource_.packets_in_flight(), issue_.size());
-  for (const OutPort& out : ports_.out) {
-    if (!out.blocked()) continue;
-    const Packet& packet = machine_.packet(out.front());
-    text += fmt::format("; packet {} of resource {}", out.front().value, packet.owner.value);
-    if (!packet.members.empty())
-      text += fmt::format(" (first ray {}:{})", resource_.rays().layout().owner(packet.members[0].ray).value,
-                          resource_.rays().layout().slot(packet.members[0].ray));
-    text += fmt::format(" waits for a place at its next stop ({} more in hand)", out.in_hand() - 1);
+  for (std::size_t exit = 0; exit < ports_.out.size(); ++exit)
+    if (const std::string packet = blocked(exit); !packet.empty())
+      text += fmt::format("; {} cannot leave, {} more behind it", packet, ports_.out[exit].in_hand() - 1);
+  return text;
+}
+
+std::string Tile::blocked(std::size_t exit) const {
+  const OutPort& out = ports_.out[exit];
+  if (!out.blocked()) return "";
+  const Packet& packet = machine_.packet(out.front());
+  std::string text = fmt::format("packet {} of resource {}", out.front().value, packet.owner.value);
+  if (!packet.members.empty()) {
+    const RayIdLayout& layout = resource_.rays().layout();
+    text += fmt::format(" (first ray {}:{})", layout.owner(packet.members[0].ray).value, layout.slot(packet.members[0].ray));
   }
   return text;
 }

@@ -50,6 +50,9 @@ class Tile final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override;
 
+  /// Packets that cannot leave, by exit: with the first of their rays, or empty.
+  std::string blocked(std::size_t exit) const;
+
   /// Ends the clocks of the ledger.
   void close(Cycle end) { clock_.enter(TileState::kIdle, end); }
 

@@ -94,5 +94,25 @@ TEST(CycleEngine, LedgersAddUp) {
   EXPECT_GT(transforms, 0u);
 }
 
+// Without flow control a small ring fills up. The run must end and say who waits for whom.
+TEST(CycleEngine, StuckRingNamesTheCircle) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 2000, 1);
+  Cell cell;
+  Config& c = cell.config;
+  c.engine.kind = EngineKind::kCycle;
+  c.topology.resources = 4;
+  c.topology.flow = Flow::kNone;
+  c.topology.link.depth = 1;
+  c.packets.rays = c.collections.ready = 4;
+  c.collections.when_full = WhenFull::kSpill;
+  c.memory.fetch_ahead = 16;
+  const std::string fault = run_cell(scene, cell).fault;
+  EXPECT_NE(fault.find("nothing moves any more"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("a circle of waits: resource "), std::string::npos) << fault;
+  EXPECT_NE(fault.find("(first ray "), std::string::npos) << fault;
+  c.topology.flow = Flow::kCredits;
+  EXPECT_EQ(run_cell(scene, cell).fault, "");
+}
+
 }  // namespace
 }  // namespace carousel::ringbus
