@@ -1,5 +1,6 @@
 // No arrangement of threads, queues and policies may change a bit: every cell of the covering array and every
 // random one has the reference tracer's digest.
+#include <iostream>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -27,8 +28,10 @@ std::vector<std::vector<int>> pairwise(const std::vector<Factor>& factors, std::
       level_counts(factors), [&](const std::vector<int>& row) { return possible(cell_of(factors, row).config); }, seed);
 }
 
-void expect_one_digest(TestScene& scene, std::uint32_t array_seed, int random_cells) {
+void expect_one_digest(TestScene& scene, std::uint32_t number, int random_cells) {
   ASSERT_GT(scene.rays(), 1000u);   // most rays hit and send on others
+  SCOPED_TRACE(fmt::format("CAROUSEL_SEED={}", run_seed()));   // rays and arrays follow from it
+  const std::uint32_t array_seed = 4 * (run_seed() - 1) + number;
   const std::vector<Factor> factors = machine_factors();
   std::vector<std::vector<int>> rows = pairwise(factors, array_seed);
 #ifdef __SANITIZE_THREAD__
@@ -38,8 +41,8 @@ void expect_one_digest(TestScene& scene, std::uint32_t array_seed, int random_ce
     const Cell cell = cell_of(factors, rows[i]);
     EXPECT_EQ(run_cell(scene, cell).fault, "") << "array seed " << array_seed << " row " << i << ": " << cell.text();
   }
-  const int count = cell_count(random_cells);
-  for (std::uint32_t seed = first_seed(); seed < first_seed() + static_cast<std::uint32_t>(count); ++seed) {
+  const auto count = static_cast<std::uint32_t>(cell_count(random_cells));
+  for (std::uint32_t seed = run_seed(); seed < run_seed() + count; ++seed) {
     std::mt19937 random(seed * 7919 + array_seed);
     std::vector<int> row(factors.size());
     do {
@@ -48,6 +51,7 @@ void expect_one_digest(TestScene& scene, std::uint32_t array_seed, int random_ce
     const Cell cell = cell_of(factors, row);
     EXPECT_EQ(run_cell(scene, cell).fault, "") << "seed " << seed << ": " << cell.text();
   }
+  std::cout << rows.size() + count << " machines, " << scene.rays() << " rays each\n";
 }
 
 TEST(CoveringArray, HoldsEveryPossiblePair) {
