@@ -10,11 +10,11 @@
 #include "app/bottleneck.h"
 #include "app/build_report.h"
 #include "app/counting_workload.h"
-#include "app/exit_status.h"
 #include "app/frame.h"
 #include "app/hit_recorder.h"
 #include "app/interrupt.h"
 #include "app/output.h"
+#include "app/verdict.h"
 #include "core/atomic_file.h"
 #include "core/config_write.h"
 #include "report/progress_line.h"
@@ -89,12 +89,7 @@ int run_command(const RunArguments& arguments) {
     print_result(report::report_json(report).dump(2) + "\n");
   else if (!arguments.quiet)
     print_result(report::report_table(report) + "files        " + folder.string() + "\n");
-  if (report.incomplete) spdlog::warn("interrupted; report and picture are partial");
-  if (report.verify && report.verify->mismatches > 0)
-    spdlog::error("verification failed: {} of {} rays differ from the reference tracer",
-                  report.verify->mismatches, report.verify->compared);
-  if (report.incomplete) return kInterrupted;
-  return report.verify && report.verify->mismatches > 0 ? kBroken : kDone;
+  return verdict(report);
 }
 
 }  // namespace carousel::app

@@ -162,15 +162,25 @@ const Schema kChannel{integer("sampler", 0, kMostSparse, true), object("target",
 const Schema kAnimationSampler{index("input", "/accessors", true), index("output", "/accessors", true)};
 const Schema kAnimation{objects("channels", kChannel, true), objects("samplers", kAnimationSampler, true)};
 
-const Schema kRoot{object("asset", kAsset, true),     texts("extensionsUsed"),
-                   texts("extensionsRequired"),       index("scene", "/scenes"),
-                   objects("scenes", kScene),         objects("nodes", kNode),
-                   objects("meshes", kMesh),          objects("materials", kMaterial),
-                   objects("textures", kTexture),     objects("images", kImage),
-                   objects("samplers", kSampler),     objects("cameras", kCamera),
-                   objects("accessors", kAccessor),   objects("bufferViews", kBufferView),
-                   objects("buffers", kBuffer),       objects("skins", kSkin),
-                   objects("animations", kAnimation), object("extensions", kRootExtensions)};
+// In the order in which they are checked: extensions before the nodes whose indices lead into them.
+const Schema kRoot{object("asset", kAsset, true),
+                   texts("extensionsUsed"),
+                   texts("extensionsRequired"),
+                   object("extensions", kRootExtensions),
+                   index("scene", "/scenes"),
+                   objects("scenes", kScene),
+                   objects("nodes", kNode),
+                   objects("meshes", kMesh),
+                   objects("materials", kMaterial),
+                   objects("textures", kTexture),
+                   objects("images", kImage),
+                   objects("samplers", kSampler),
+                   objects("cameras", kCamera),
+                   objects("accessors", kAccessor),
+                   objects("bufferViews", kBufferView),
+                   objects("buffers", kBuffer),
+                   objects("skins", kSkin),
+                   objects("animations", kAnimation)};
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 #include "tests/accel/exact_oracle.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
+#include "tests/random_runs.h"
 
 namespace carousel::accel {
 namespace {
@@ -31,7 +32,8 @@ void expect_explained(const scene::Scene& scene, std::size_t rays) {
   std::size_t disagree = 0, ties = 0, embree_wrong = 0, unexplained = 0, hits = 0;
   constexpr std::size_t kBatch = 50000;
   for (std::size_t begin = 0; begin < rays; begin += kBatch) {
-    const RayBatch batch = whole_rays(scene, std::min(kBatch, rays - begin), 1000 + begin);
+    const std::uint64_t seed = std::uint64_t{run_seed() - 1} << 32 | (1000 + begin);
+    const RayBatch batch = whole_rays(scene, std::min(kBatch, rays - begin), seed);
     for (const RayResult& ours : trace(accel, batch)) {
       const Hit theirs = embree.closest(ours.ray);
       hits += ours.hit.valid();
@@ -44,7 +46,8 @@ void expect_explained(const scene::Scene& scene, std::size_t rays) {
       ++unexplained;
       const Ray& r = ours.ray;
       if (unexplained <= 3)
-        ADD_FAILURE() << std::hexfloat << "origin " << r.origin.x << " " << r.origin.y << " " << r.origin.z << " direction "
+        ADD_FAILURE() << "CAROUSEL_SEED=" << run_seed() << " within 50000 rays of ray " << begin << std::hexfloat
+                      << ": origin " << r.origin.x << " " << r.origin.y << " " << r.origin.z << " direction "
                       << r.direction.x << " " << r.direction.y << " " << r.direction.z << "\n ours " << ours.hit.t << " "
                       << static_cast<int>(ours.hit.instance) << " " << ours.hit.primitive << "\n Embree " << theirs.t
                       << " " << static_cast<int>(theirs.instance) << " " << theirs.primitive

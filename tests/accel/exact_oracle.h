@@ -33,7 +33,10 @@ class ExactOracle {
       frame.first = triangles_.size();
       frame.identity = m.linear == Mat3(1.0f) && m.translation == Vec3(0.0f);
       frame.translation = DVec3(m.translation);
-      if (!frame.identity) frame.condition = norm(DMat3(m.linear)) * norm(glm::inverse(DMat3(m.linear)));
+      if (!frame.identity) {
+        frame.model_from_world = glm::inverse(DMat3(m.linear));
+        frame.condition = norm(DMat3(m.linear)) * norm(frame.model_from_world);
+      }
       for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         Triangle triangle{i, t, {}, {}, DVec3(0), 0};
         for (std::uint32_t k = 0; k < 3; ++k) {
@@ -68,10 +71,11 @@ class ExactOracle {
     for (const Triangle* b : blockers) delta = std::max(delta, bound(*b, o));
     const DVec3 axis = std::fabs(d.x) < std::fabs(d.y) ? DVec3(1, 0, 0) : DVec3(0, 1, 0);
     const DVec3 e1 = glm::normalize(glm::cross(d, axis)), e2 = glm::normalize(glm::cross(d, e1));
-    constexpr int kWays = 16;
-    for (int way = -1; way < kWays; ++way) {
-      const double angle = 6.283185307179586 * way / kWays;
-      const DVec3 offset = way < 0 ? DVec3(0) : delta * (std::cos(angle) * e1 + std::sin(angle) * e2);
+    // Where needles lie thick, a ray at the bound's end meets other ones than a ray nearby: near ones are tried too.
+    constexpr int kWays = 16, kRings = 5;
+    for (int way = -1; way < kWays * kRings; ++way) {
+      const double angle = 6.283185307179586 * way / kWays, away = std::ldexp(delta, -3 * (way / kWays));
+      const DVec3 offset = way < 0 ? DVec3(0) : away * (std::cos(angle) * e1 + std::sin(angle) * e2);
       bool blocked = false;
       for (const Triangle* b : blockers) {
         if (!blocks(exact(ray, *b, offset), *b, o, d, limit)) continue;
@@ -97,6 +101,7 @@ class ExactOracle {
     std::size_t first = 0;
     bool identity = true;
     DVec3 translation{0};
+    DMat3 model_from_world{1};   // directions; rounded
     double condition = 1;
   };
   /// Exact signs: the ray's line against the three edges, and the plane.
@@ -199,22 +204,30 @@ class ExactOracle {
     }
     return {lo, hi};
   }
-  // What moving the vertices by delta, each on its own, does to t: nothing to speak of for a broad triangle, and
-  // for one that looks thinner than delta t may lie anywhere along it.
+  // What moving the vertices by delta does to t: nothing to speak of for a broad triangle, and for one that looks
+  // thinner than delta t may lie anywhere along it. The kernel's rounding moves them otherwise for each edge, so the
+  // mean of the corners that it takes need not lie on the ray: its t is that mean's depth along the direction's
+  // largest component (Woop, Benthin, Wald 2013), where the corners may lie farther apart than along the ray.
   double t_slack(const Triangle& t, const DVec3& o, const DVec3& d, double delta) const {
     const DVec3 e1 = t.world[1] - t.world[0], e2 = t.world[2] - t.world[0];
     const double facing = std::fabs(glm::dot(glm::cross(e1, e2), d));   // twice the area seen, times |d|
     const double longest = std::max({glm::length(glm::cross(d, e1)), glm::length(glm::cross(d, e2)),
                                      glm::length(glm::cross(d, e2 - e1))});
     const double thin = facing > 0 ? std::min(1.0, 4 * delta * longest / facing) : 1.0;
+    const DMat3& to_model = frames_[t.instance].model_from_world;
+    const DVec3 along = to_model * d, a = to_model * e1, b = to_model * e2, size = glm::abs(along);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const double deep = (std::max({0.0, a[axis], b[axis]}) - std::min({0.0, a[axis], b[axis]})) / size[axis];
     const auto [lo, hi] = t_range(t, o, d);
-    return thin * (hi - lo) + 2 * delta / glm::length(d) + 0x1p-20 * std::fabs(hi);
+    return thin * std::max(deep, hi - lo) + 2 * delta / glm::length(d) + 0x1p-20 * std::fabs(hi);
   }
+  // No factor on delta: a volume over |d x edge| is the distance between the ray's line and the edge's, and delta is
+  // already the most that rounding moves one against the other (about 5 u of the 16 u are the kernel's own).
   bool near_triangle(const Sides& s, const Triangle& t, const DVec3& d, double delta) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const DVec3 edge = t.world[(k + 2) % 3] - t.world[(k + 1) % 3];
       const double side = s.facing == 0 ? -std::fabs(s.volume[k]) : s.volume[k];
-      if (side < -4 * delta * glm::length(glm::cross(d, edge))) return false;
+      if (side < -delta * glm::length(glm::cross(d, edge))) return false;
     }
     return true;
   }

@@ -141,6 +141,22 @@ TEST(RunCommand, FilesThatCannotBeWrittenEndWithStatus2) {
   EXPECT_EQ(program.run({"run", "small.yaml", "--dump-rays", "/dev/full"}).status, 2);
 }
 
+// Nothing bounds the packets on the way, and one thread fixes the order of steps: both resources fill their link
+// before they look at what comes in (as in tests/ringbus/native_engine_test.cpp).
+TEST(RunCommand, AStuckRunEndsWithStatus1AndSaysWhoWaits) {
+  const Program program;
+  program.write("stuck.yaml",
+                "scene: {builtin: cornell}\nimage: {width: 32, height: 32}\nengine: {threads: 1}\n"
+                "topology: {resources: 2, flow: none, link: {depth: 1}}\npackets: {rays: 1}\n"
+                "collections: {ready: 1}\nshading: {workers: 1}\n");
+  EXPECT_EQ(program.run({"run", "stuck.yaml"}).status, 2) << "only --force runs it";
+  const Outcome outcome = program.run({"run", "stuck.yaml", "--force"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("error: no progress for 10000 ms"));
+  EXPECT_THAT(outcome.err, HasSubstr("waits for a place in the link to resource 1"));
+  EXPECT_FALSE(std::filesystem::exists(program.folder() / "out")) << "there is no result to report";
+}
+
 /// Whether the process catches SIGINT by now: until then an interrupt just ends it.
 bool catches_interrupts(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/status");

@@ -1,14 +1,13 @@
 #include "core/atomic_file.h"
 
-#include <csignal>
 #include <fstream>
 #include <iterator>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "core/error.h"
+#include "tests/full_disk.h"
 
 namespace carousel {
 namespace {
@@ -83,16 +82,11 @@ TEST_F(AtomicFileTest, RefusesFoldersAndMissingPermissions) {
 
 TEST_F(AtomicFileTest, LeavesNothingBehindWhenTheDiskIsFull) {
   write_file(folder_ / "a.txt", "old");
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit small = before;
-  small.rlim_cur = 1000;
-  setrlimit(RLIMIT_FSIZE, &small);
-  EXPECT_THROW(write_file(folder_ / "a.txt", std::string(100'000, 'x')), FileError);
-  EXPECT_THROW(write_file(folder_ / "b.txt", std::string(2000, 'x')), FileError);
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
+  {
+    const FullDisk full(1000);
+    EXPECT_THROW(write_file(folder_ / "a.txt", std::string(100'000, 'x')), FileError);
+    EXPECT_THROW(write_file(folder_ / "b.txt", std::string(2000, 'x')), FileError);
+  }
   EXPECT_EQ(content(folder_ / "a.txt"), "old");
   EXPECT_EQ(files(), 1u);
 }

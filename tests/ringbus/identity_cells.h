@@ -1,5 +1,7 @@
 #pragma once
 
+#include <iostream>
+
 #include <gtest/gtest.h>
 
 #include "tests/ringbus/covering_array.h"
@@ -25,8 +27,10 @@ inline std::vector<std::vector<int>> pairwise(const std::vector<Factor>& factors
 }
 
 /// Every cell of the factors' covering array, and so many random ones, has the scene's digest.
-inline void expect_one_digest(TestScene& scene, const std::vector<Factor>& factors, std::uint32_t array_seed, int random_cells) {
+inline void expect_one_digest(TestScene& scene, const std::vector<Factor>& factors, std::uint32_t number, int random_cells) {
   ASSERT_GT(scene.rays(), 1000u);   // most rays hit and send on others
+  SCOPED_TRACE(fmt::format("CAROUSEL_SEED={}", run_seed()));   // rays and arrays follow from it
+  const std::uint32_t array_seed = 32 * (run_seed() - 1) + number;
   std::vector<std::vector<int>> rows = pairwise(factors, array_seed);
 #ifdef __SANITIZE_THREAD__
   rows.resize(rows.size() / 6);
@@ -35,8 +39,8 @@ inline void expect_one_digest(TestScene& scene, const std::vector<Factor>& facto
     const Cell cell = cell_of(factors, rows[i]);
     EXPECT_EQ(run_cell(scene, cell).fault, "") << "array seed " << array_seed << " row " << i << ": " << cell.text();
   }
-  const int count = cell_count(random_cells);
-  for (std::uint32_t seed = first_seed(); seed < first_seed() + static_cast<std::uint32_t>(count); ++seed) {
+  const auto count = static_cast<std::uint32_t>(cell_count(random_cells));
+  for (std::uint32_t seed = run_seed(); seed < run_seed() + count; ++seed) {
     std::mt19937 random(seed * 7919 + array_seed);
     std::vector<int> row(factors.size());
     do {
@@ -45,6 +49,7 @@ inline void expect_one_digest(TestScene& scene, const std::vector<Factor>& facto
     const Cell cell = cell_of(factors, row);
     EXPECT_EQ(run_cell(scene, cell).fault, "") << "seed " << seed << ": " << cell.text();
   }
+  std::cout << rows.size() + count << " machines, " << scene.rays() << " rays each\n";
 }
 
 }  // namespace carousel::ringbus

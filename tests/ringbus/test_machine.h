@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,6 +21,7 @@
 #include "ringbus/deadlock.h"
 #include "ringbus/native_engine.h"
 #include "scene/builtin.h"
+#include "tests/random_runs.h"
 #include "tests/ringbus/queue_kinds.h"
 #include "tests/ringbus/scatter_workload.h"
 
@@ -74,9 +74,9 @@ class TestScene {
     if (!built) built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor()));
     return *built;
   }
-  ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 7, away_); }
+  ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 6 + run_seed(), away_); }
   std::unique_ptr<Workload> new_workload() const {
-    return std::make_unique<ScatterWorkload>(bounds_, paths_, bounces_, 7, away_);
+    return std::make_unique<ScatterWorkload>(bounds_, paths_, bounces_, 6 + run_seed(), away_);
   }
   float size() const {
     const Vec3 e = bounds_.extent();
@@ -174,17 +174,11 @@ inline std::vector<SimdTarget> simd_targets() {
 
 /// How many random cells to run: `wanted`, times CAROUSEL_CELLS; fewer under ThreadSanitizer, which is slow.
 inline int cell_count(int wanted) {
-  if (const char* scale = std::getenv("CAROUSEL_CELLS")) wanted = static_cast<int>(wanted * std::atof(scale));
+  wanted = scaled(wanted, "CAROUSEL_CELLS");
 #ifdef __SANITIZE_THREAD__
   wanted /= 8;
 #endif
   return std::max(1, wanted);
-}
-
-/// The first seed of random cells; CAROUSEL_SEED moves it, so that soak runs differ.
-inline std::uint32_t first_seed() {
-  const char* seed = std::getenv("CAROUSEL_SEED");
-  return seed != nullptr ? static_cast<std::uint32_t>(std::atoll(seed)) : 1u;
 }
 
 }  // namespace carousel::ringbus

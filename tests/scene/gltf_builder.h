@@ -112,7 +112,8 @@ class GltfBuilder {
     word(static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + padded.size()));
     word(static_cast<std::uint32_t>(text.size()));
     word(0x4e4f534a);
-    for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
+    const auto* first = reinterpret_cast<const std::byte*>(text.data());
+    bytes.insert(bytes.end(), first, first + text.size());
     word(static_cast<std::uint32_t>(padded.size()));
     word(0x004e4942);
     bytes.insert(bytes.end(), padded.begin(), padded.end());

@@ -11,6 +11,7 @@
 #include "core/fixed_point.h"
 #include "shading/film.h"
 #include "shading/tone_curve.h"
+#include "tests/full_disk.h"
 
 namespace carousel::shading {
 namespace {
@@ -57,6 +58,23 @@ TEST_F(ImageFile, LeavesNothingElseBehind) {
 TEST_F(ImageFile, ReportsWhatCannotBeWritten) {
   EXPECT_THROW(write_png("/proc/no/such/a.png", 2, 1, rgb_), FileError);
   EXPECT_THROW(write_exr("/proc/no/such/a.exr", 2, 1, rgb_), FileError);
+}
+
+TEST_F(ImageFile, KeepsTheOldPictureWhenTheDiskIsFull) {
+  EXPECT_THROW(write_png("/dev/full", 2, 1, rgb_), FileError);
+  EXPECT_THROW(write_exr("/dev/full", 2, 1, rgb_), FileError);
+  write_exr(folder_ / "a.exr", 2, 1, rgb_);
+  write_png(folder_ / "a.png", 2, 1, rgb_);
+  {
+    const FullDisk full(100);
+    const std::vector<float> noise(3 * 64 * 64, 0.5f);
+    EXPECT_THROW(write_exr(folder_ / "a.exr", 64, 64, noise), FileError);
+    EXPECT_THROW(write_png(folder_ / "a.png", 64, 64, noise), FileError);
+    EXPECT_THROW(write_png(folder_ / "b.png", 64, 64, noise), FileError);
+  }
+  EXPECT_EQ(read<float>(folder_ / "a.exr", OIIO::TypeDesc::FLOAT), rgb_);
+  EXPECT_EQ(read<std::uint8_t>(folder_ / "a.png", OIIO::TypeDesc::UINT8).size(), 6u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2);
 }
 
 TEST(ToneCurve, KeepsMidtonesAndNeverLeavesTheDisplay) {
