@@ -133,6 +133,9 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
 /// The parts that need a simulated clock.
 void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config) {
   r.engine.cycles = c.cycles;
+  report::Epochs& epochs = r.engine.epochs.emplace();
+  epochs.cycles_each = c.epochs.cycles_each;
+  for (const std::uint64_t digest : c.epochs.digests) epochs.digests.push_back(fmt::format("{:016x}", digest));
   if (r.throughput) {
     r.throughput->whole = rate(r.rays.completed, c.cycles, config.engine.clock_mhz);
     if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);

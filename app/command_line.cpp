@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "app/check_command.h"
+#include "app/compare_command.h"
 #include "app/exit_status.h"
 #include "app/output.h"
 #include "app/run_command.h"
@@ -24,7 +25,7 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "check", "schema"};
+const std::vector<std::string> kCommands{"run", "check", "compare", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.
@@ -63,6 +64,7 @@ std::string usage_hint(const CLI::App& program, int argc, const char* const* arg
 struct Arguments {
   RunArguments run;
   CheckArguments check;
+  CompareArguments compare;
   SchemaArguments schema;
 };
 
@@ -95,6 +97,13 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       program.add_subcommand("check", "validate, print the resolved config, say whether it can deadlock");
   add_config_options(*check, arguments.check);
 
+  CLI::App* compare = program.add_subcommand("compare", "two reports side by side");
+  compare->add_option("a", arguments.compare.a, "report.json, or its folder")->required();
+  compare->add_option("b", arguments.compare.b, "the other")->required();
+  compare->add_option("--expect", "identical: exit status 1 when they differ")
+      ->check(CLI::IsMember({"identical"}))
+      ->each([&arguments](const std::string&) { arguments.compare.expect_identical = true; });
+
   CLI::App* schema = program.add_subcommand("schema", "JSON Schema of the files");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
@@ -122,6 +131,7 @@ int run_command_line(int argc, const char* const* argv) {
   log_to_stderr(arguments.run.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
   if (program.got_subcommand("check")) return check_command(arguments.check);
+  if (program.got_subcommand("compare")) return compare_command(arguments.compare);
   return schema_command(arguments.schema);
 }
 

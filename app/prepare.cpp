@@ -60,17 +60,8 @@ void build_accel(Prepared& p) {
     throw ConfigError(std::move(issues));
 }
 
-}  // namespace
-
-float Prepared::scene_size() const {
-  const Aabb box = scene.bounds();
-  return box.empty() ? 1.0f : glm::length(box.extent());
-}
-
-Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits) {
-  Prepared p;
-  p.located = load_located_config(arguments.config, arguments.sets, options);
-  p.config_folder = std::filesystem::path(arguments.config).parent_path();
+/// Everything after reading the configuration.
+void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
   // A second thread pays for the cycle engine only where each has many resources (docs/performance.md).
   const std::int64_t automatic =
@@ -83,6 +74,27 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
     build_accel(p);
   });
   require_fit(estimate(p.config(), keep_hits, p.scene, p.accel), usable_memory_bytes(), positions);
+}
+
+}  // namespace
+
+float Prepared::scene_size() const {
+  const Aabb box = scene.bounds();
+  return box.empty() ? 1.0f : glm::length(box.extent());
+}
+
+Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits) {
+  Prepared p;
+  p.located = load_located_config(arguments.config, arguments.sets, options);
+  p.config_folder = std::filesystem::path(arguments.config).parent_path();
+  prepare_located(p, keep_hits);
+  return p;
+}
+
+Prepared prepare_config(const std::string& text, const std::string& name) {
+  Prepared p;
+  p.located = parse_located_config(text, name, {}, {.force = true});
+  prepare_located(p, false);
   return p;
 }
 

@@ -32,9 +32,16 @@ struct SceneSummary {
   std::vector<std::string> warnings;
 };
 
+/// Digests of what happened, one a stretch of the run.
+struct Epochs {
+  std::uint64_t cycles_each = 0;
+  std::vector<std::string> digests;
+};
+
 struct Engine {
   std::string kind;
   std::optional<std::uint64_t> cycles{};
+  std::optional<Epochs> epochs{};
   bool deterministic = false;
   std::string reason;
 };

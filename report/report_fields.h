@@ -42,9 +42,16 @@ void describe(V& v, SceneSummary& r) {
 }
 
 template <class V>
+void describe(V& v, Epochs& r) {
+  v.field("cycles_each", r.cycles_each, "cycles", "length of an epoch");
+  v.field("digests", r.digests, "", "64 bits an epoch over all that happened in it");
+}
+
+template <class V>
 void describe(V& v, Engine& r) {
   v.field("kind", r.kind, "", "native or cycle");
   v.field("cycles", r.cycles, "cycles", "simulated, until everything had come to rest");
+  v.section("epochs", r.epochs, "where two runs that differ begin to, see carousel compare");
   v.field("deterministic", r.deterministic, "",
           "whether everything outside of host is the same in every run");
   v.field("reason", r.reason, "", "why");

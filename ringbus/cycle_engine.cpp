@@ -39,9 +39,9 @@ class CycleRun {
       ports.fetched = answers_.emplace_back(std::make_unique<Channel<FetchAnswer>>()).get();
       shading_clients.push_back({ports.new_rays, ports.completed});
       cache_clients.push_back({ports.fetch, ports.fetched});
-      tiles_.push_back(std::make_unique<Tile>(ResourceId(r), machine_, scene_size, options.statistics, std::move(ports)));
+      tiles_.push_back(std::make_unique<Tile>(ResourceId(r), machine_, scene_size, options.statistics, options.trace, std::move(ports)));
     }
-    shading_ = std::make_unique<ShadingAgent>(machine_, workload, std::move(shading_clients));
+    shading_ = std::make_unique<ShadingAgent>(machine_, workload, options.trace, std::move(shading_clients));
     make_memory(cache_clients);
     make_hubs();
   }
@@ -216,6 +216,10 @@ class CycleRun {
     c.memory_lines = memory_->lines();
     c.memory_busy = memory_->busy();
     steady(c);
+    std::vector<const Trace*> traces{&shading_->trace()};
+    for (const auto& tile : tiles_) traces.push_back(&tile->trace());
+    c.epochs = combine(traces);
+    c.steps = merge_steps(traces);
     for (const auto& tile : tiles_) {
       tile->close(end);
       if (options_.statistics) out.resources.push_back(tile->statistics());

@@ -19,6 +19,7 @@ struct RunOptions {
   bool statistics = true;                          ///< false: no sinks at all
   std::stop_token stop;                            ///< ends the run early; it is then incomplete
   std::chrono::milliseconds stuck_after{10000};    ///< native: no progress for so long is a SimulationError
+  cycle::TraceWindow trace{};                      ///< cycle: keep every step of these cycles
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
   std::function<void(std::uint64_t completed)> progress;
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ringbus/cycle/clock.h"
+#include "ringbus/cycle/trace.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -56,6 +57,8 @@ struct CycleResult {
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;            ///< worker-cycles
   std::uint64_t hops = 0;
+  EpochDigests epochs;
+  std::vector<Step> steps;           ///< of RunOptions::trace
   friend bool operator==(const CycleResult&, const CycleResult&) = default;
 };
 

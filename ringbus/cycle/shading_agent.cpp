@@ -6,10 +6,12 @@
 
 namespace carousel::ringbus::cycle {
 
-ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, std::vector<Client> clients)
+ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window,
+                           std::vector<Client> clients)
     : machine_(machine),
       workload_(workload),
       clients_(std::move(clients)),
+      trace_(static_cast<std::uint32_t>(machine.topology.resources()), window),
       shade_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_shade)),
       load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
       latency_(control_latency(machine.config)),
@@ -72,6 +74,7 @@ bool ShadingAgent::finish_jobs(Cycle now) {
   if (shaded_.empty()) return any;
   const std::size_t before = gathered_.size();
   workload_.shade(WorkerId(0), shaded_, gathered_);
+  trace_.note(now, StepKind::kShade, 0, shaded_.size());
   outstanding_ += gathered_.size() - before;
   emitted_ += gathered_.size() - before;
   outstanding_ -= shaded_.size();
@@ -131,6 +134,7 @@ void ShadingAgent::place(Cycle now) {
         port = std::max(port, now) + load_cycles_;
         loaded = std::max(loaded, port);
       }
+      trace_.note(now, StepKind::kPlace, 0, group.ids.size());
       last_sent_[r] = std::max(last_sent_[r], loaded + latency_);
       clients_[r].new_rays->send(last_sent_[r], {std::move(group.ids)});
     }

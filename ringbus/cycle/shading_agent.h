@@ -11,6 +11,7 @@
 #include "ringbus/cycle/channel.h"
 #include "ringbus/cycle/control_messages.h"
 #include "ringbus/cycle/cycle_machine.h"
+#include "ringbus/cycle/trace.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -25,7 +26,7 @@ class ShadingAgent final : public Agent {
     Channel<CompletedRays>* completed = nullptr;
   };
 
-  ShadingAgent(CycleMachine& machine, Workload& workload, std::vector<Client> clients);
+  ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window, std::vector<Client> clients);
 
   Cycle next() const override;
   void run(Cycle end) override;
@@ -43,6 +44,7 @@ class ShadingAgent final : public Agent {
     std::uint64_t completed = 0;
   };
   const std::vector<Milestone>& milestones() const { return milestones_; }
+  const Trace& trace() const { return trace_; }
 
  private:
   /// What a worker is at.
@@ -65,6 +67,7 @@ class ShadingAgent final : public Agent {
   CycleMachine& machine_;
   Workload& workload_;
   std::vector<Client> clients_;
+  Trace trace_;
   Cycle shade_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
   std::deque<RayResult> queue_;

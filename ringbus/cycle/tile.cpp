@@ -25,9 +25,10 @@ constexpr std::uint32_t kContextTag = 1u << 31;   // of a fetch: for a context, 
 
 }  // namespace
 
-Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, Ports ports)
+Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, TraceWindow window, Ports ports)
     : machine_(machine),
       id_(id),
+      trace_(id.value, window),
       walk_(machine.accel, step_cycles(testers_of(machine.config, id))),
       resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], statistics ? &sink_ : nullptr),
       ports_(std::move(ports)),
@@ -130,6 +131,7 @@ bool Tile::admit() {
     storage_full_ = count < ids.size();
     if (count == 0) return moved;
     resource_.admit(std::span(ids).first(count));
+    trace_.note(now_, StepKind::kNewRays, 0, count);
     ids.erase(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
     if (ids.empty()) waiting_.pop_front();
     moved = true;
@@ -218,6 +220,7 @@ bool Tile::finish_tests(Cycle now) {
 void Tile::end_test(Context& context, Cycle now) {
   const PacketId id = context.packet;
   const Packet& packet = machine_.packet(id);
+  trace_.note(now, StepKind::kTested, id.value, packet.members.size());
   context.phase = Context::Phase::kFree;
   context.subtree = false;
   if (packet.owner == id_ && (stays_ || machine_.topology.hops(packet) == 0)) {
@@ -248,6 +251,7 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
 
 void Tile::come_home(PacketId id) {
   Packet& packet = machine_.packet(id);
+  trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
   resource_.retire(packet);
   free_[packet.direction].push_back(id);
 }
@@ -310,6 +314,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   in.take(now);
+  trace_.note(now, StepKind::kTake, id.value, packet.members.size());
   occupy_handler(now, packet.members.size());
   if (tested) {
     out.reserve();
@@ -344,6 +349,7 @@ bool Tile::handle_issue(Cycle now) {
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   issue_.pop_front();
+  trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
   occupy_handler(now, packet.members.size());
   if (tested) {
     if (travels) ports_.out[exit_of(packet)].reserve();
@@ -410,6 +416,7 @@ void Tile::hand_over(Cycle now) {
   HitBatch& done = resource_.completed();
   if (done.empty()) return;
   sink_.record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(done.size())});
+  trace_.note(now, StepKind::kComplete, 0, done.size());
   completed_free_ = std::max(completed_free_, now) + done.size() * completed_cycles_;
   ports_.completed->send(completed_free_ + control_latency_, {std::move(done), std::move(resource_.freed_slots())});
   done.clear();

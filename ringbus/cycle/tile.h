@@ -17,6 +17,7 @@
 #include "ringbus/cycle/state_clock.h"
 #include "ringbus/cycle/subtree_walk.h"
 #include "ringbus/cycle/tester.h"
+#include "ringbus/cycle/trace.h"
 #include "ringbus/resource.h"
 #include "ringbus/statistics_sink.h"
 
@@ -44,7 +45,7 @@ class Tile final : public Agent {
     Channel<FetchAnswer>* fetched = nullptr;
   };
 
-  Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, Ports ports);
+  Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, TraceWindow window, Ports ports);
 
   Cycle next() const override;
   void run(Cycle end) override;
@@ -61,6 +62,7 @@ class Tile final : public Agent {
   const Tester& tester() const { return tester_; }
   const StateClock<TileState, kTileStates>& clock() const { return clock_; }
   const std::vector<OutPort>& out() const { return ports_.out; }
+  const Trace& trace() const { return trace_; }
   Cycle handler_busy() const { return handler_busy_; }
   std::uint64_t hops() const;
   bool at_rest() const;
@@ -113,6 +115,7 @@ class Tile final : public Agent {
   CycleMachine& machine_;
   ResourceId id_;
   StatisticsSink sink_;
+  Trace trace_;
   SubtreeWalk walk_;
   Resource resource_;
   Ports ports_;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace carousel::report {
+
+/// A place where two reports differ; a missing value is empty.
+struct Difference {
+  std::string path, a, b;
+};
+
+/// Where two reports differ outside of `host` and of config.engine.threads, in the order of the first. Two runs are identical when there is none.
+std::vector<Difference> differences(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b);
+
+/// The first epoch whose digests differ, and its length; the shorter list's end counts as a difference.
+struct EpochRange {
+  bool found = false;
+  std::size_t first_cycle = 0, end_cycle = 0;
+};
+EpochRange first_differing_epoch(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b);
+
+}  // namespace carousel::report
