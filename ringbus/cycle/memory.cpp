@@ -4,14 +4,9 @@
 
 namespace carousel::ringbus::cycle {
 
-Cycle Memory::request_latency(const MemoryConfig& config) {
-  return std::max<Cycle>(1, static_cast<Cycle>(config.dram_latency_cycles) / 2);
-}
+Cycle Memory::request_latency(const MemoryConfig& config) { return way_there(config.dram_latency_cycles); }
 
-Cycle Memory::answer_latency(const MemoryConfig& config) {
-  const Cycle whole = static_cast<Cycle>(config.dram_latency_cycles), in = request_latency(config);
-  return whole > in ? whole - in : 1;
-}
+Cycle Memory::answer_latency(const MemoryConfig& config) { return way_back(config.dram_latency_cycles); }
 
 Memory::Memory(const MemoryConfig& config, std::vector<Client> clients)
     : answer_latency_(answer_latency(config)),

@@ -8,14 +8,9 @@
 
 namespace carousel::ringbus::cycle {
 
-Cycle ShapeCache::request_latency(const MemoryConfig& config) {
-  return std::max<Cycle>(1, static_cast<Cycle>(config.l2_latency_cycles) / 2);
-}
+Cycle ShapeCache::request_latency(const MemoryConfig& config) { return way_there(config.l2_latency_cycles); }
 
-Cycle ShapeCache::answer_latency(const MemoryConfig& config) {
-  const Cycle whole = static_cast<Cycle>(config.l2_latency_cycles), in = request_latency(config);
-  return whole > in ? whole - in : 1;
-}
+Cycle ShapeCache::answer_latency(const MemoryConfig& config) { return way_back(config.l2_latency_cycles); }
 
 ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, Channel<std::uint64_t>& to_memory,
                        Channel<std::uint64_t>& from_memory)
