@@ -11,11 +11,12 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-/// Where threads wait for each other, twice a window. It spins for a little and then gives the core away: with
-/// more threads than cores the one that is waited for must get to run.
+/// Where threads wait for each other, twice a window. It spins for a little, if there is a core for everyone, and
+/// then sleeps: whoever is woken runs soon even on a busy machine, while one that yields goes behind everybody.
 class Barrier {
  public:
-  explicit Barrier(std::size_t threads) : threads_(threads) {}
+  explicit Barrier(std::size_t threads)
+      : threads_(threads), spins_(threads <= std::thread::hardware_concurrency() ? 2000 : 0) {}
 
   void wait() {
     const std::size_t turn = turn_.load(std::memory_order_relaxed);
@@ -23,14 +24,16 @@ class Barrier {
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
       arrived_.store(0, std::memory_order_relaxed);
       turn_.store(turn + 1, std::memory_order_release);
+      turn_.notify_all();
       return;
     }
     for (int spins = 0; turn_.load(std::memory_order_acquire) == turn; ++spins)
-      if (spins > 200) std::this_thread::yield();
+      if (spins >= spins_) turn_.wait(turn, std::memory_order_acquire);
   }
 
  private:
   std::size_t threads_;
+  int spins_;
   alignas(64) std::atomic<std::size_t> arrived_{0};
   alignas(64) std::atomic<std::size_t> turn_{0};
 };

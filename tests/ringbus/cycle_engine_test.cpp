@@ -35,8 +35,8 @@ Cell random_cell(std::uint32_t seed) {
 }
 
 TEST(CycleEngine, TakesTheSameCyclesOnAnyNumberOfThreads) {
-  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 400, 3);
-  for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(8)); ++seed) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 300, 2);
+  for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(6)); ++seed) {
     Cell cell = random_cell(seed);
     cell.config.topology.link.latency_cycles = std::max<std::int64_t>(4, cell.config.topology.link.latency_cycles);
     cell.threads = 1;
