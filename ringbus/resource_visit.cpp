@@ -4,6 +4,7 @@
 
 #include "accel/kernels.h"
 #include "accel/ray_check.h"
+#include "ringbus/farthest_first.h"
 #include "ringbus/resource.h"
 
 namespace carousel::ringbus {
@@ -111,18 +112,9 @@ void Resource::test_ordered(Packet& packet) {
   for (std::size_t i = 0; i < local_slots_.size(); ++i) {
     const std::uint32_t slot = local_slots_[i];
     const float* entry = entries_.data() + accel::kMaxWidth * i;
-    // Farthest first, so that the nearest ends on top; lanes break ties to keep the order a function of the ray.
-    std::uint8_t mask = masks_[i];
-    while (mask != 0) {
-      int farthest = std::countr_zero(mask);
-      for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
-        const int lane = std::countr_zero(rest);
-        if (entry[lane] >= entry[farthest]) farthest = lane;
-      }
-      mask &= static_cast<std::uint8_t>(~(1u << farthest));
-      stacks_->push(slot, {accel_.child_key(packet.key, farthest), entry[farthest],
-                           static_cast<std::uint16_t>(packet.depth + 1), true});
-    }
+    farthest_first(masks_[i], entry, [&](int lane) {
+      stacks_->push(slot, {accel_.child_key(packet.key, lane), entry[lane], static_cast<std::uint16_t>(packet.depth + 1), true});
+    });
     const RayRecord& ray = store_.record(slot);
     const bool done = (ray.tag.flags & accel::kRayDone) != 0;
     const NextNode next = done ? NextNode{} : stacks_->pop(slot, ray.hit.t);

@@ -1,8 +1,6 @@
 #include "ringbus/cycle/subtree_walk.h"
 
 #include <algorithm>
-#include <bit>
-#include <utility>
 
 namespace carousel::ringbus::cycle {
 
@@ -17,32 +15,12 @@ void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, T
 std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, TestCounts& counts) {
   const RayRecord& record = ray.records[*ray.slots];
   std::uint64_t cycles = 0;
-  std::uint32_t instance = kNoInstance;
-  stack_.assign(1, {from, 0, 0, true});
-  while (!stack_.empty() && (record.tag.flags & accel::kRayDone) == 0) {
-    const NextNode top = stack_.back();
-    stack_.pop_back();
-    if (top.entry > record.hit.t) continue;
-    note(top.key);
-    std::uint8_t mask = 0;
-    float nearest[accel::kMaxWidth], entry[accel::kMaxWidth];
-    std::fill(std::begin(nearest), std::end(nearest), kInfinity);
-    TestCounts tests;
-    accel::test_strip(accel_, top.key, ~0u, ray, {&mask, nearest, entry}, tests);
-    // The kernel transforms the ray for every strip; a walk keeps it while it stays within the instance.
-    if (top.key.instance == instance) tests.transforms = 0;
-    instance = top.key.instance;
-    cycles += (top.key.ref.is_inner() ? step_.box : step_.triangle) + tests.transforms * step_.transform;
+  walk_.start(from);
+  while (const std::optional<accel::NodeKey> key = walk_.next(record)) {
+    note(*key);
+    const TestCounts tests = walk_.test(accel_, *key, ray);
+    cycles += (key->ref.is_inner() ? step_.box : step_.triangle) + tests.transforms * step_.transform;
     counts += tests;
-    if (!top.key.ref.is_inner()) continue;
-    // Farthest first, so that the nearest ends on top.
-    const std::size_t first = stack_.size();
-    for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
-      stack_.push_back({accel_.child_key(top.key, lane), entry[lane], 0, true});
-      for (std::size_t i = stack_.size() - 1; i > first && stack_[i].entry > stack_[i - 1].entry; --i)
-        std::swap(stack_[i], stack_[i - 1]);
-    }
   }
   return cycles;
 }

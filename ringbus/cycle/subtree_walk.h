@@ -5,7 +5,7 @@
 
 #include "accel/accel.h"
 #include "core/test_counts.h"
-#include "ringbus/packet.h"
+#include "ringbus/cycle/ray_walk.h"
 #include "ringbus/resource.h"
 
 namespace carousel::ringbus::cycle {
@@ -35,7 +35,7 @@ class SubtreeWalk final : public SubtreeTracer {
   const accel::Accel& accel_;
   StepCycles step_;
   Account account_;
-  std::vector<NextNode> stack_;
+  RayWalk walk_;
   std::vector<std::uint32_t> seen_;   // by a hash of the strip: its place in account_.strips, plus one
 };
 

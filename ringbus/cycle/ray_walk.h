@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "accel/accel.h"
+#include "accel/kernels.h"
+#include "core/test_counts.h"
+#include "ringbus/packet.h"
+
+namespace carousel::ringbus::cycle {
+
+/// One ray's way through a tree, depth-first and nearest first, a strip at a time.
+///
+/// The nodes that wait stand on a stack, an entry of 32 bits for an inner node and of 96 for a leaf; the nearest
+/// child goes on at once without having been there. The ray's transformed copy is kept while it stays within an
+/// instance.
+class RayWalk {
+ public:
+  void start(accel::NodeKey from);
+  /// The strip the ray has to be tested against next; nothing when it is through, or needs to know no more.
+  std::optional<accel::NodeKey> next(const RayRecord& record);
+  /// Tests the ray, the one member of `ray`, against that strip. Returns what the hardware has to do for it.
+  TestCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
+
+  /// Bytes on the stack now, and moved onto it and from it since start().
+  struct StackBytes {
+    std::uint64_t held = 0, pushed = 0, popped = 0;
+  };
+  const StackBytes& stack_bytes() const { return bytes_; }
+
+ private:
+  NextNode pop();
+
+  std::vector<NextNode> stack_;   // and on top of it the nearest child
+  bool nearest_in_hand_ = false;
+  std::uint32_t instance_ = kNoInstance;
+  StackBytes bytes_;
+};
+
+}  // namespace carousel::ringbus::cycle
