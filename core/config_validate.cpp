@@ -67,12 +67,12 @@ class Rules {
         shape == TopologyShape::kPointToPoint)
       return;
     if (cycle() && (shape == TopologyShape::kMultiRing || shape == TopologyShape::kHierarchical ||
-                    shape == TopologyShape::kBus))
+                    shape == TopologyShape::kBus || shape == TopologyShape::kIndependent))
       return;
     issue("topology.shape",
-          fmt::format("the {} engine has no {}; expected ring, bidirectional{} or point_to_point",
+          fmt::format("the {} engine has no {}; expected ring, bidirectional{}",
                       enum_name(c.engine.kind), enum_name(shape),
-                      cycle() ? ", multi_ring, hierarchical, bus" : ""));
+                      cycle() ? ", multi_ring, hierarchical, point_to_point, bus or independent" : " or point_to_point"));
   }
 
   void built_accuracy() {

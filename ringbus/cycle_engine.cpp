@@ -8,6 +8,7 @@
 #include "ringbus/cycle/bridge.h"
 #include "ringbus/cycle/bus.h"
 #include "ringbus/cycle/cycle_machine.h"
+#include "ringbus/cycle/independent_tile.h"
 #include "ringbus/cycle/memory.h"
 #include "ringbus/cycle/shading_agent.h"
 #include "ringbus/cycle/shape_cache.h"
@@ -32,14 +33,14 @@ class CycleRun {
     std::vector<ShadingAgent::Client> shading_clients;
     std::vector<ShapeCache::Client> cache_clients;
     for (std::uint32_t r = 0; r < resources; ++r) {
-      Tile::Ports ports = ports_of(ResourceId(r));
-      ports.new_rays = new_rays_.emplace_back(std::make_unique<Channel<NewRays>>()).get();
-      ports.completed = completed_.emplace_back(std::make_unique<Channel<CompletedRays>>()).get();
-      ports.fetch = fetches_.emplace_back(std::make_unique<Channel<FetchRequest>>()).get();
-      ports.fetched = answers_.emplace_back(std::make_unique<Channel<FetchAnswer>>()).get();
-      shading_clients.push_back({ports.new_rays, ports.completed});
-      cache_clients.push_back({ports.fetch, ports.fetched});
-      tiles_.push_back(std::make_unique<Tile>(ResourceId(r), machine_, scene_size, options.statistics, options.trace, std::move(ports)));
+      SidePorts side;
+      side.new_rays = new_rays_.emplace_back(std::make_unique<Channel<NewRays>>()).get();
+      side.completed = completed_.emplace_back(std::make_unique<Channel<CompletedRays>>()).get();
+      side.fetch = fetches_.emplace_back(std::make_unique<Channel<FetchRequest>>()).get();
+      side.fetched = answers_.emplace_back(std::make_unique<Channel<FetchAnswer>>()).get();
+      shading_clients.push_back({side.new_rays, side.completed});
+      cache_clients.push_back({side.fetch, side.fetched});
+      tiles_.push_back(make_tile(ResourceId(r), side, scene_size));
     }
     shading_ = std::make_unique<ShadingAgent>(machine_, workload, options.trace, std::move(shading_clients));
     make_memory(cache_clients);
@@ -70,6 +71,12 @@ class CycleRun {
   }
 
  private:
+  std::unique_ptr<ResourceAgent> make_tile(ResourceId id, const SidePorts& side, float scene_size) {
+    if (config_.topology.shape == TopologyShape::kIndependent)
+      return std::make_unique<IndependentTile>(id, machine_, options_.statistics, options_.trace, side);
+    return std::make_unique<Tile>(id, machine_, scene_size, options_.statistics, options_.trace, ports_of(id, side));
+  }
+
   void make_wires() {
     for (std::size_t i = 0; i < machine_.topology.wires().size(); ++i) wires_.push_back(std::make_unique<Wire>());
   }
@@ -111,9 +118,9 @@ class CycleRun {
     return wire.from.value < machine_.topology.resources() ? Bus::latency_to(link) : Bus::latency_from(link);
   }
 
-  Tile::Ports ports_of(ResourceId id) const {
+  Tile::Ports ports_of(ResourceId id, const SidePorts& side) const {
     NodePorts node = ports_at(id);
-    Tile::Ports ports;
+    Tile::Ports ports{side, {}, {}, {}};
     ports.in = std::move(node.in);
     ports.out = std::move(node.out);
     if (!machine_.topology.direct()) return ports;
@@ -223,13 +230,8 @@ class CycleRun {
     for (const auto& tile : tiles_) {
       tile->close(end);
       if (options_.statistics) out.resources.push_back(tile->statistics());
-      out.collections.push_back(tile->resource().collections().statistics());
-      TileResult& t = c.tiles.emplace_back();
-      t.states = tile->clock().times();
-      t.box.busy = tile->tester().box.busy();
-      t.triangle.busy = tile->tester().triangle.busy();
-      t.transform.busy = tile->tester().transform.busy();
-      t.handler.busy = tile->handler_busy();
+      out.collections.push_back(tile->collections());
+      c.tiles.push_back(tile->result());
     }
     for_each_link([&](const Topology::Wire& wire, std::size_t exit) {
       const OutPort& port = out_of(wire.from)[exit];
@@ -271,7 +273,7 @@ class CycleRun {
   std::vector<std::unique_ptr<Channel<FetchRequest>>> fetches_;
   std::vector<std::unique_ptr<Channel<FetchAnswer>>> answers_;
   std::vector<std::unique_ptr<Channel<std::uint64_t>>> lines_;
-  std::vector<std::unique_ptr<Tile>> tiles_;
+  std::vector<std::unique_ptr<ResourceAgent>> tiles_;
   std::vector<std::unique_ptr<ShapeCache>> caches_;
   std::vector<std::unique_ptr<Bridge>> bridges_;
   std::unique_ptr<Bus> bus_;

@@ -10,6 +10,8 @@ namespace carousel::ringbus {
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
   const std::int64_t resources = config.resources, depth = config.link.depth;
   if (resources == 1) return {false, "one resource: packets are tested where they are issued, there are no links"};
+  if (config.shape == TopologyShape::kIndependent)
+    return {false, "independent: every resource traces its own rays, there are no links"};
   if (config.shape == TopologyShape::kPointToPoint && config.flow != Flow::kNone)
     return {false, fmt::format("credits: at most {} packets a resource are on the way, and every resource has places "
                                "in hand for all {} of them, so an arriving packet is always taken in",
@@ -35,7 +37,7 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
 }
 
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
-  if (config.collections.when_full == WhenFull::kSpill) return 0;
+  if (config.collections.when_full == WhenFull::kSpill || config.topology.shape == TopologyShape::kIndependent) return 0;
   if (config.collections.traversal == Traversal::kOrdered) return config.packets.rays;
   const std::int64_t reserve = reserve_blocks(config.collections, width, max_depth);
   return 2 * (reserve + width + 1) * config.packets.rays;

@@ -18,7 +18,7 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
 
 /// Ray IDs of collection storage a resource needs so that bounded storage (`when_full: reserve`) cannot block:
 /// twice the reserve that deepest-first draining uses, since new rays are admitted only above half free; one
-/// block for ordered traversal, which admits a ray a block. 0 with `when_full: spill`.
+/// block for ordered traversal, which admits a ray a block. 0 with `when_full: spill`, and where nothing is collected.
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth);
 
 /// The rules that need the built structure. Positions are left to the caller, who knows the file.

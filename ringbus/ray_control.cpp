@@ -9,7 +9,7 @@ RayControl::RayControl(const Config& config, std::span<const std::unique_ptr<Ray
                        std::int32_t initial_tests)
     : placement_(config.rays.placement),
       rays_travel_(placement_ == Placement::kFirstTaker || placement_ == Placement::kAddressed),
-      local_(config.collections.home == Home::kLocal),
+      local_(config.collections.home == Home::kLocal || config.topology.shape == TopologyShape::kIndependent),
       resources_(static_cast<std::uint32_t>(stores.size())),
       group_rays_(static_cast<std::size_t>(config.packets.rays)),
       initial_tests_(initial_tests),

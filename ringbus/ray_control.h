@@ -25,8 +25,8 @@ struct RayGroup {
 
 /// Gives new rays a slot and an ID, in slots that completed rays freed. The rays of one group (as many as a
 /// packet carries) are spread over the resources, so that every packet finds work everywhere, and the group's
-/// IDs go to one resource, which issues it from its root collection; with `home: local` a whole group lives
-/// where it is issued. With first_taker and addressed placement the rays travel instead, and resources ask for
+/// IDs go to one resource, which issues it from its root collection; with `home: local` and
+/// independent resources a whole group lives where it is issued. With first_taker and addressed placement the rays travel instead, and resources ask for
 /// slots as packets pass. Any thread may call.
 class RayControl {
  public:

@@ -19,7 +19,7 @@ Topology::Topology(const TopologyConfig& config)
       groups_(shape_ == TopologyShape::kHierarchical ? std::min(static_cast<std::uint32_t>(config.groups), resources_) : 0),
       directions_(directions_of(config)),
       visit_all_(config.visit == Visit::kAll) {
-  if (resources_ == 1) return;
+  if (resources_ == 1 || shape_ == TopologyShape::kIndependent) return;
   if (groups_ > 0) wire_groups();
   for (std::uint32_t r = 0; groups_ == 0 && r < resources_; ++r) {
     if (bus()) {

@@ -27,7 +27,7 @@ class Topology {
     ResourceId from, to;
     std::uint16_t direction;
   };
-  /// Every link to make. None when there is only one resource.
+  /// Every link to make. None when there is only one resource, or all work independently.
   const std::vector<Wire>& wires() const { return wires_; }
   std::size_t resources() const { return resources_; }
   std::size_t directions() const { return directions_; }

@@ -46,7 +46,8 @@ std::vector<Lift> lifts(const Config& config) {
   all.push_back(units_lift("box_tests", "box", &TestersConfig::box));
   all.push_back(units_lift("triangle_tests", "triangle", &TestersConfig::triangle));
   all.push_back(units_lift("transforms", "transform", &TestersConfig::transform));
-  all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
+  const bool independent = config.topology.shape == TopologyShape::kIndependent;
+  if (!independent) all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
   all.push_back({"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", [](Config& c) {
                    c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);
                    c.memory.dram_latency_cycles = halved(c.memory.dram_latency_cycles);
@@ -55,7 +56,7 @@ std::vector<Lift> lifts(const Config& config) {
                  [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }});
   all.push_back({"ray_slots", "twice rays.slots_per_resource", [](Config& c) { c.rays.slots_per_resource *= 2; }});
   all.push_back({"shading", "twice shading.workers", [](Config& c) { c.shading.workers *= 2; }});
-  if (config.topology.resources > 1 && config.collections.home != Home::kLocal) {
+  if (config.topology.resources > 1 && config.collections.home != Home::kLocal && !independent) {
     all.push_back({"link_bandwidth", "twice topology.link.bytes_per_cycle",
                    [](Config& c) { c.topology.link.bytes_per_cycle *= 2; }});
     if (config.topology.link.latency_cycles > 1)

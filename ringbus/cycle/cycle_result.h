@@ -27,10 +27,19 @@ struct UnitLedger {
   friend bool operator==(const UnitLedger&, const UnitLedger&) = default;
 };
 
+/// What the stacks of a resource's rays moved, for `shape: independent`.
+struct StackLedger {
+  std::uint64_t pushed_bytes = 0, popped_bytes = 0;
+  std::uint64_t peak_bytes = 0;       ///< of all its rays at once
+  std::uint64_t ray_peak_bytes = 0;   ///< of one ray
+  friend bool operator==(const StackLedger&, const StackLedger&) = default;
+};
+
 struct TileResult {
   std::array<Cycle, kTileStates> states{};   ///< by TileState
   UnitLedger box, triangle, transform;       ///< busy within TileState::kTesting
   UnitLedger handler;
+  StackLedger stack;
   friend bool operator==(const TileResult&, const TileResult&) = default;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/config.h"
+#include "core/ids.h"
 #include "core/test_counts.h"
 #include "ringbus/cycle/unit_bank.h"
 
@@ -27,7 +28,21 @@ struct Tester {
                      triangle.reserve(at, counts.triangle).last});
   }
 
+  /// The same for a single ray, beside others.
+  Cycle ray(Cycle at, const TestCounts& counts) {
+    const Cycle moved = transform.reserve_beside(at, counts.transforms).last;
+    UnitBank& bank = counts.box > 0 ? box : triangle;
+    return bank.reserve_beside(moved, counts.box + counts.triangle).last;
+  }
+
   UnitBank box, triangle, transform;
 };
+
+/// Those of a resource: the machine's, unless it has its own.
+inline const TestersConfig& testers_of(const Config& config, ResourceId id) {
+  for (const ResourceOverride& one : config.topology.overrides)
+    if (one.resource == id.value) return one.testers;
+  return config.testers;
+}
 
 }  // namespace carousel::ringbus::cycle

@@ -4,17 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "ringbus/cycle/shape_cache.h"
-
 namespace carousel::ringbus::cycle {
 
 namespace {
-
-const TestersConfig& testers_of(const Config& config, ResourceId id) {
-  for (const ResourceOverride& one : config.topology.overrides)
-    if (one.resource == id.value) return one.testers;
-  return config.testers;
-}
 
 SubtreeWalk::StepCycles step_cycles(const TestersConfig& testers) {
   const auto latency = [](const TesterUnits& units) { return static_cast<std::uint64_t>(units.latency_cycles); };
@@ -33,13 +25,11 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], statistics ? &sink_ : nullptr),
       ports_(std::move(ports)),
       tester_(testers_of(machine.config, id)),
-      buffer_(machine.config.memory),
+      shapes_(machine.config.memory, ports_),
+      completed_port_(machine.config, ports_),
       packet_size_(machine.config),
       link_bytes_(static_cast<Cycle>(machine.config.topology.link.bytes_per_cycle)),
       ids_per_cycle_(static_cast<Cycle>(machine.config.packets.ids_per_cycle)),
-      completed_cycles_(ceil_div(sizeof(RayRecord), link_bytes_)),
-      control_latency_(control_latency(machine.config)),
-      fetch_latency_(ShapeCache::request_latency(machine.config.memory)),
       issue_places_(static_cast<std::size_t>(machine.config.memory.fetch_ahead) + 1),
       stays_(machine.stays()),
       visit_all_(machine.config.topology.visit == Visit::kAll),
@@ -64,7 +54,7 @@ Cycle Tile::next() const {
   const bool want_credit = bubble_ && !issue_.empty() && issue_.front().ready;
   for (const OutPort& out : ports_.out) consider(out.next(want_credit));
   consider(ports_.new_rays->next());
-  consider(ports_.fetched->next());
+  consider(shapes_.next());
   for (const Context& context : contexts_)
     if (context.phase == Context::Phase::kComputing || context.subtree) consider(context.done);
   if (handler_free_ > now_ && handler_free_ < first && handler_wanted()) first = handler_free_;
@@ -140,16 +130,14 @@ bool Tile::admit() {
 }
 
 void Tile::fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now) {
-  const std::uint64_t line = static_cast<std::uint64_t>(machine_.config.memory.line_bytes);
-  const std::uint64_t first = strip.address / line, last = (strip.address + strip.bytes - 1) / line;
-  ports_.fetch->send(now + fetch_latency_, {first, static_cast<std::uint32_t>(last - first + 1), tag});
+  shapes_.request(strip, tag, now);
   // Its place in the buffer is taken now; whoever wants it meanwhile waits behind this one.
-  buffer_.keep(strip);
+  shapes_.keep(strip);
 }
 
 void Tile::take_answers(Cycle now) {
-  while (ports_.fetched->next() <= now) {
-    const std::uint32_t tag = ports_.fetched->take().tag;
+  while (shapes_.next() <= now) {
+    const std::uint32_t tag = shapes_.take();
     if ((tag & kContextTag) == 0) {
       for (Issue& issue : issue_) issue.ready |= issue.tag == tag;
       continue;
@@ -192,14 +180,14 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     context.done = tester_.walk(at, context.counts, walk_.account().chain);
     context.strips.clear();
     for (const accel::NodeKey key : walk_.account().strips)
-      if (const ShapeSpan strip = machine_.memory.strip(key); !buffer_.has(strip)) context.strips.push_back(strip);
+      if (const ShapeSpan strip = machine_.memory.strip(key); !shapes_.has(strip)) context.strips.push_back(strip);
     std::reverse(context.strips.begin(), context.strips.end());
     const std::size_t together = std::min({resource_.last_rays(), kSubtreeFetches, context.strips.size()});
     for (std::size_t i = 0; i < together; ++i) {
       begin_fetch(context, context.strips.back(), at);
       context.strips.pop_back();
     }
-  } else if (const ShapeSpan strip = machine_.memory.strip(packet.key); fetch_by_resource_ && !buffer_.has(strip)) {
+  } else if (const ShapeSpan strip = machine_.memory.strip(packet.key); fetch_by_resource_ && !shapes_.has(strip)) {
     begin_fetch(context, strip, at);
   } else {
     context.done = tester_.strip(at, context.counts);
@@ -396,7 +384,7 @@ bool Tile::fill_issue(Cycle now) {
     moved = true;
     Issue issue{*id, next_tag_, machine_.memory.strip(packet.key), true};
     const bool brings_shapes = packet.kind == PacketKind::kTest && !fetch_by_resource_ && !resource_.is_treelet(packet.key);
-    if (brings_shapes && !buffer_.has(issue.strip)) {
+    if (brings_shapes && !shapes_.has(issue.strip)) {
       issue.ready = false;
       fetch(issue.strip, issue.tag, now);
       next_tag_ = (next_tag_ + 1) & ~kContextTag;
@@ -417,10 +405,7 @@ void Tile::hand_over(Cycle now) {
   if (done.empty()) return;
   sink_.record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(done.size())});
   trace_.note(now, StepKind::kComplete, 0, done.size());
-  completed_free_ = std::max(completed_free_, now) + done.size() * completed_cycles_;
-  ports_.completed->send(completed_free_ + control_latency_, {std::move(done), std::move(resource_.freed_slots())});
-  done.clear();
-  resource_.freed_slots().clear();
+  completed_port_.send(done, resource_.freed_slots(), now);
 }
 
 // ---- the end, good or bad
@@ -438,6 +423,16 @@ ResourceStatistics Tile::statistics() const {
   s.bubbles += passed_;
   s.seen_rays += passed_rays_;
   return s;
+}
+
+TileResult Tile::result() const {
+  TileResult t;
+  t.states = clock_.times();
+  t.box.busy = tester_.box.busy();
+  t.triangle.busy = tester_.triangle.busy();
+  t.transform.busy = tester_.transform.busy();
+  t.handler.busy = handler_busy_;
+  return t;
 }
 
 bool Tile::at_rest() const {

@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/agent.h"
-#include "ringbus/cycle/control_messages.h"
+#include "ringbus/cycle/completed_port.h"
 #include "ringbus/cycle/cycle_machine.h"
-#include "ringbus/cycle/cycle_result.h"
-#include "ringbus/cycle/memory_messages.h"
 #include "ringbus/cycle/packet_size.h"
-#include "ringbus/cycle/ports.h"
-#include "ringbus/cycle/shape_buffer.h"
+#include "ringbus/cycle/resource_agent.h"
+#include "ringbus/cycle/shape_port.h"
 #include "ringbus/cycle/state_clock.h"
 #include "ringbus/cycle/subtree_walk.h"
 #include "ringbus/cycle/tester.h"
@@ -33,16 +30,12 @@ inline constexpr std::size_t kSubtreeFetches = 32;
 /// With `visit: owners` packets without a ray here pass beside the handler. A packet with rays here needs a free
 /// test context and a place in hand before it is taken, so that tests always end; a packet without rays takes its
 /// way meanwhile (fills the bubble).
-class Tile final : public Agent {
+class Tile final : public ResourceAgent {
  public:
-  struct Ports {
+  struct Ports : SidePorts {
     std::vector<InPort> in;
     std::vector<OutPort> out;                     ///< a ring: one a direction
     std::vector<std::uint32_t> out_to;            ///< point to point and bus: by destination
-    Channel<NewRays>* new_rays = nullptr;
-    Channel<CompletedRays>* completed = nullptr;
-    Channel<FetchRequest>* fetch = nullptr;
-    Channel<FetchAnswer>* fetched = nullptr;
   };
 
   Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, TraceWindow window, Ports ports);
@@ -51,21 +44,13 @@ class Tile final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override;
 
-  /// Packets that cannot leave, by exit: with the first of their rays, or empty.
-  std::string blocked(std::size_t exit) const;
-
-  /// Ends the clocks of the ledger.
-  void close(Cycle end) { clock_.enter(TileState::kIdle, end); }
-
-  const Resource& resource() const { return resource_; }
-  ResourceStatistics statistics() const;
-  const Tester& tester() const { return tester_; }
-  const StateClock<TileState, kTileStates>& clock() const { return clock_; }
-  const std::vector<OutPort>& out() const { return ports_.out; }
-  const Trace& trace() const { return trace_; }
-  Cycle handler_busy() const { return handler_busy_; }
-  std::uint64_t hops() const;
-  bool at_rest() const;
+  void close(Cycle end) override { clock_.enter(TileState::kIdle, end); }
+  TileResult result() const override;
+  ResourceStatistics statistics() const override;
+  CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
+  const std::vector<OutPort>& out() const override { return ports_.out; }
+  std::string blocked(std::size_t exit) const override;
+  const Trace& trace() const override { return trace_; }
 
  private:
   /// A packet in test.
@@ -85,6 +70,8 @@ class Tile final : public Agent {
     bool ready = false;
   };
 
+  std::uint64_t hops() const;
+  bool at_rest() const;
   void step(Cycle now);
   void take_answers(Cycle now);
   void take_new_rays(Cycle now);
@@ -120,15 +107,15 @@ class Tile final : public Agent {
   Resource resource_;
   Ports ports_;
   Tester tester_;
-  ShapeBuffer buffer_;
+  ShapePort shapes_;
+  CompletedPort completed_port_;
   PacketSize packet_size_;
-  Cycle link_bytes_, ids_per_cycle_, completed_cycles_, control_latency_, fetch_latency_;
+  Cycle link_bytes_, ids_per_cycle_;
   std::size_t issue_places_;
   bool stays_, visit_all_, fetch_by_resource_, bubble_;
 
   Cycle now_ = 0;
   Cycle handler_free_ = 0, handler_busy_ = 0;
-  Cycle completed_free_ = 0;
   std::size_t next_in_ = 0, next_direction_ = 0;
   std::vector<std::vector<PacketId>> free_;   // own packets at home, by direction
   std::deque<Issue> issue_;

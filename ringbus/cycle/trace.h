@@ -14,6 +14,7 @@ enum class StepKind : std::uint8_t {
   kIssue,      ///< a packet left the issue queue
   kTake,       ///< a packet came in and was looked through
   kTested,     ///< a packet's tests were done
+  kTestedRay,  ///< those of a single ray were, where there are no packets
   kRetire,     ///< a packet came home
   kComplete,   ///< rays were handed over to shading
   kShade,      ///< rays were shaded
@@ -24,7 +25,7 @@ struct Step {
   Cycle at = 0;
   std::uint32_t node = 0;     ///< resource; beyond them ray control and shading
   StepKind kind = StepKind::kNewRays;
-  std::uint32_t packet = 0;   ///< its ID, where there is one
+  std::uint32_t packet = 0;   ///< its ID, where there is one; or the ray's slot
   std::uint32_t rays = 0;
   friend bool operator==(const Step&, const Step&) = default;
 };

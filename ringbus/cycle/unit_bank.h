@@ -26,7 +26,19 @@ class UnitBank {
     free_at_ = start + length;
     busy_ += length;
     tests_ += tests;
+    spare_ = ceil_div(tests, units_) * units_ - tests;
     return {start + latency_, free_at_ - interval_ + latency_};
+  }
+  /// The same, but units that the tests before leave idle in their last cycle are taken first: single rays bring too
+  /// few tests to fill a bank.
+  Reservation reserve_beside(Cycle at, std::uint64_t tests) {
+    const Cycle last_start = free_at_ - interval_;
+    if (tests == 0 || spare_ == 0 || at > last_start) return reserve(at, tests);
+    const std::uint64_t beside = std::min(tests, spare_);
+    spare_ -= beside;
+    tests_ += beside;
+    const Cycle first = last_start + latency_;
+    return beside == tests ? Reservation{first, first} : Reservation{first, reserve(at, tests - beside).last};
   }
 
   Cycle latency() const { return latency_; }
@@ -36,7 +48,7 @@ class UnitBank {
  private:
   Cycle units_, interval_, latency_;
   Cycle free_at_ = 0, busy_ = 0;
-  std::uint64_t tests_ = 0;
+  std::uint64_t tests_ = 0, spare_ = 0;   // spare: tests that could have been started with the last ones
 };
 
 }  // namespace carousel::ringbus::cycle

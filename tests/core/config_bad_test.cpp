@@ -122,6 +122,10 @@ INSTANTIATE_TEST_SUITE_P(
             "Shape", SCENE "topology: {shape: bus}\n",
             "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
             "point_to_point"},
+        BadConfig{
+            "CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
+            "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
+            "multi_ring, hierarchical, point_to_point, bus or independent"},
         BadConfig{"Triangle", SCENE "accuracy: {triangle: fast}\n",
                   "test.yaml:2:22: accuracy.triangle: fast is not built yet; expected watertight"},
         BadConfig{"Box", SCENE "accuracy: {box: plain}\n",

@@ -23,6 +23,10 @@ TEST(DeadlockVerdict, NamesTheRuleThatProtects) {
   EXPECT_TRUE(deadlock_verdict(c).can_deadlock);
   c.resources = 1;
   EXPECT_FALSE(deadlock_verdict(c).can_deadlock);   // no links
+  c.resources = 5;
+  c.shape = TopologyShape::kIndependent;
+  EXPECT_FALSE(deadlock_verdict(c).can_deadlock);
+  EXPECT_NE(deadlock_verdict(c).rule.find("no links"), std::string::npos);
 }
 
 TEST(CheckStorage, AsksForWhatDrainingNeeds) {
@@ -59,6 +63,10 @@ TEST(MemoryEstimate, GrowsWithWhatTakesMemory) {
   more = c;
   more.collections.traversal = Traversal::kOrdered;
   EXPECT_GT(estimate_memory(more, 20).ray_stacks, estimate_memory(more, 10).ray_stacks);
+  more = c;
+  more.topology.shape = TopologyShape::kIndependent;
+  EXPECT_GT(estimate_memory(more, 10).ray_stacks, 0u);
+  EXPECT_EQ(estimate_memory(more, 10).packets + estimate_memory(more, 10).collections, 0u);
   more = c;
   more.topology.shape = TopologyShape::kBidirectional;
   EXPECT_GT(estimate_memory(more, 10).packets, base.packets);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ringbus/collection_store.h"
+#include "ringbus/cycle/agent.h"
+#include "ringbus/cycle/cycle_result.h"
+#include "ringbus/cycle/ports.h"
+#include "ringbus/cycle/trace.h"
+#include "ringbus/statistics_sink.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A resource, whatever machine it is part of, as the engine sees it.
+class ResourceAgent : public Agent {
+ public:
+  /// Ends the clocks of the ledger.
+  virtual void close(Cycle end) = 0;
+  /// After close().
+  virtual TileResult result() const = 0;
+  virtual ResourceStatistics statistics() const = 0;
+  virtual CollectionStore::Statistics collections() const = 0;
+
+  /// The near ends of its links, as the topology's wires.
+  virtual const std::vector<OutPort>& out() const = 0;
+  /// The packet that cannot leave by an exit, with the first of its rays, or empty.
+  virtual std::string blocked(std::size_t exit) const = 0;
+  virtual const Trace& trace() const = 0;
+};
+
+}  // namespace carousel::ringbus::cycle
