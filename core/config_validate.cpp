@@ -105,7 +105,7 @@ class Rules {
     using Choice = ShadingConfig::Effects::Choice;
     if (c.shading.effects.choice != Choice::kAuto)
       issue("shading.effects", "choosing effects is not built yet; expected auto");
-    only("shading.idle_resources_shade", c.shading.idle_resources_shade, false, "true", "false");
+    if (!cycle()) only("shading.idle_resources_shade", c.shading.idle_resources_shade, false, "true", "false");
   }
 
   void built_testers() { only("testers.any_hit", c.testers.any_hit, TestersConfig::AnyHit::kInline); }

@@ -30,19 +30,22 @@ class CycleRun {
       : config_(config), options_(options), machine_(config, accel) {
     const std::size_t resources = machine_.topology.resources();
     make_wires();
-    std::vector<ShadingAgent::Client> shading_clients;
+    std::vector<SidePorts> sides;
     std::vector<ShapeCache::Client> cache_clients;
     for (std::uint32_t r = 0; r < resources; ++r) {
-      SidePorts side;
+      SidePorts& side = sides.emplace_back();
       side.new_rays = new_rays_.emplace_back(std::make_unique<Channel<NewRays>>()).get();
       side.completed = completed_.emplace_back(std::make_unique<Channel<CompletedRays>>()).get();
       side.fetch = fetches_.emplace_back(std::make_unique<Channel<FetchRequest>>()).get();
       side.fetched = answers_.emplace_back(std::make_unique<Channel<FetchAnswer>>()).get();
-      shading_clients.push_back({side.new_rays, side.completed});
+      if (config.shading.idle_resources_shade) {
+        side.jobs = jobs_.emplace_back(std::make_unique<Channel<ShadeJob>>()).get();
+        side.help = help_.emplace_back(std::make_unique<Channel<HelpNote>>()).get();
+      }
       cache_clients.push_back({side.fetch, side.fetched});
       tiles_.push_back(make_tile(ResourceId(r), side, scene_size));
     }
-    shading_ = std::make_unique<ShadingAgent>(machine_, workload, options.trace, std::move(shading_clients));
+    shading_ = std::make_unique<ShadingAgent>(machine_, workload, options.trace, std::move(sides));
     make_memory(cache_clients);
     make_hubs();
   }
@@ -272,6 +275,8 @@ class CycleRun {
   std::vector<std::unique_ptr<Channel<CompletedRays>>> completed_;
   std::vector<std::unique_ptr<Channel<FetchRequest>>> fetches_;
   std::vector<std::unique_ptr<Channel<FetchAnswer>>> answers_;
+  std::vector<std::unique_ptr<Channel<ShadeJob>>> jobs_;
+  std::vector<std::unique_ptr<Channel<HelpNote>>> help_;
   std::vector<std::unique_ptr<Channel<std::uint64_t>>> lines_;
   std::vector<std::unique_ptr<ResourceAgent>> tiles_;
   std::vector<std::unique_ptr<ShapeCache>> caches_;

@@ -17,8 +17,9 @@ enum class TileState : std::uint8_t {
   kLink,      ///< a packet cannot leave
   kCredits,   ///< collections are ready, but all packets are out
   kStorage,   ///< too little collection storage to go on
+  kShading,   ///< it helps the shader workers
 };
-inline constexpr std::size_t kTileStates = 6;
+inline constexpr std::size_t kTileStates = 7;
 
 /// A class of equal units of one resource, or a link, over the whole run.
 struct UnitLedger {
@@ -64,7 +65,7 @@ struct CycleResult {
   std::vector<CacheResult> caches;
   std::uint64_t memory_lines = 0;
   Cycle memory_busy = 0;
-  Cycle shading_busy = 0;            ///< worker-cycles
+  Cycle shading_busy = 0;            ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
   EpochDigests epochs;
   std::vector<Step> steps;           ///< of RunOptions::trace

@@ -19,11 +19,12 @@ IndependentTile::IndependentTile(ResourceId id, CycleMachine& machine, bool stat
       tester_(testers_of(machine.config, id)),
       fetches_(machine.config.memory, ports),
       completed_port_(machine.config, ports),
+      help_(machine.config, ports),
       threads_(store_.slots()) {}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
-  return std::min({tested, ports_.new_rays->next(), fetches_.next()});
+  return std::min({tested, ports_.new_rays->next(), fetches_.next(), help_.next()});
 }
 
 void IndependentTile::run(Cycle end) {
@@ -34,17 +35,23 @@ void IndependentTile::step(Cycle now) {
   take_new_rays(now);
   while (fetches_.next() <= now)
     for (const std::uint32_t slot : fetches_.take()) test(slot, now);
-  while (!tests_.empty() && tests_.top().done <= now) {
-    const std::uint32_t slot = tests_.top().slot;
-    tests_.pop();
-    trace_.note(now, StepKind::kTestedRay, slot, 1);
-    go_on(slot, now);
-  }
+  do {
+    while (!tests_.empty() && tests_.top().done <= now) {
+      const std::uint32_t slot = tests_.top().slot;
+      tests_.pop();
+      trace_.note(now, StepKind::kTestedRay, slot, 1);
+      go_on(slot, now);
+    }
+  } while (help_.step(now, tests_.empty()));
+  if (!help_.holds()) test_held_back(now);
   hand_over(now);
-  clock_.enter(classify(), now);
+  const TileState state = classify();
+  clock_.enter(state, now);
+  help_.tell(now, state == TileState::kIdle);
 }
 
 TileState IndependentTile::classify() const {
+  if (help_.shading()) return TileState::kShading;
   if (!tests_.empty()) return TileState::kTesting;
   return fetches_.empty() ? TileState::kIdle : TileState::kMemory;
 }
@@ -79,7 +86,16 @@ void IndependentTile::go_on(std::uint32_t slot, Cycle now) {
   if (fetches_.want(machine_.memory.strip(*next), slot, now)) test(slot, now);
 }
 
+void IndependentTile::test_held_back(Cycle now) {
+  for (const std::uint32_t slot : held_back_) test(slot, now);
+  held_back_.clear();
+}
+
 void IndependentTile::test(std::uint32_t slot, Cycle now) {
+  if (help_.holds()) {
+    held_back_.push_back(slot);
+    return;
+  }
   Thread& thread = threads_[slot];
   stack_held_ -= thread.walk.stack_bytes().held;
   const TestCounts counts = thread.walk.test(machine_.accel, thread.strip, {store_.records(), &slot, 1});

@@ -9,6 +9,7 @@
 #include "ringbus/cycle/cycle_machine.h"
 #include "ringbus/cycle/ray_walk.h"
 #include "ringbus/cycle/resource_agent.h"
+#include "ringbus/cycle/shade_help.h"
 #include "ringbus/cycle/state_clock.h"
 #include "ringbus/cycle/strip_fetches.h"
 #include "ringbus/cycle/tester.h"
@@ -56,6 +57,7 @@ class IndependentTile final : public ResourceAgent {
   void take_new_rays(Cycle now);
   void go_on(std::uint32_t slot, Cycle now);
   void test(std::uint32_t slot, Cycle now);
+  void test_held_back(Cycle now);
   void complete(std::uint32_t slot);
   void hand_over(Cycle now);
   TileState classify() const;
@@ -73,9 +75,11 @@ class IndependentTile final : public ResourceAgent {
   Tester tester_;
   StripFetches fetches_;
   CompletedPort completed_port_;
+  ShadeHelp help_;
 
   std::vector<Thread> threads_;   // by slot
   std::priority_queue<Test, std::vector<Test>, std::greater<>> tests_;
+  std::vector<std::uint32_t> held_back_;   // slots of rays that are ready, but the resource shades
   std::uint64_t next_turn_ = 0;
   std::size_t active_ = 0;        // rays in slots
   HitBatch completed_;

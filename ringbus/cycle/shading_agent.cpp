@@ -7,7 +7,7 @@
 namespace carousel::ringbus::cycle {
 
 ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window,
-                           std::vector<Client> clients)
+                           std::vector<SidePorts> clients)
     : machine_(machine),
       workload_(workload),
       clients_(std::move(clients)),
@@ -17,6 +17,8 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       latency_(control_latency(machine.config)),
       slots_(static_cast<std::size_t>(machine.config.topology.resources * machine.config.rays.slots_per_resource)),
       group_(static_cast<std::size_t>(machine.config.packets.rays)),
+      queues_(machine.config.shading, static_cast<std::uint64_t>(machine.config.image.seed)),
+      helpers_(clients_, latency_),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
   for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
@@ -25,8 +27,8 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
 Cycle ShadingAgent::next() const {
   if (!started_) return 0;
   Cycle first = jobs_.empty() ? kNever : jobs_.top().done;
-  for (const Client& client : clients_) first = std::min(first, client.completed->next());
-  return first;
+  for (const SidePorts& client : clients_) first = std::min(first, client.completed->next());
+  return std::min(first, helpers_.next());
 }
 
 void ShadingAgent::run(Cycle end) {
@@ -47,18 +49,20 @@ void ShadingAgent::take_completed(Cycle now) {
     while (clients_[r].completed->next() <= now) {
       const CompletedRays done = clients_[r].completed->take();
       machine_.control.free(ResourceId(r), done.slots);
-      queue_.insert(queue_.end(), done.rays.begin(), done.rays.end());
+      for (const RayResult& ray : done.rays) queues_.push(ray);
     }
   }
 }
 
 bool ShadingAgent::finish_jobs(Cycle now) {
   shaded_.clear();
+  helpers_.take_notes(now, shaded_);
   bool any = false;
   for (; !jobs_.empty() && jobs_.top().done <= now; jobs_.pop()) {
     const Job& job = jobs_.top();
     any = true;
     idle_.push_back(job.worker);
+    queues_.hold(job.worker, 0);
     if (job.made == 0) {
       shaded_.push_back(job.ray);
       continue;
@@ -91,31 +95,43 @@ std::size_t ShadingAgent::room() const {
 
 bool ShadingAgent::start_jobs(Cycle now) {
   bool any = false;
-  while (!idle_.empty()) {
-    Job job;
-    job.worker = idle_.back();
-    if (!queue_.empty()) {
-      job.ray = queue_.front();
-      queue_.pop_front();
-      job.done = now + shade_cycles_;
-    } else if (!source_finished_ && !source_dry_ && room() > 0) {
-      job.made = room();
-      making_ += job.made;
-      job.done = now + shade_cycles_ * job.made;
-      if (shade_cycles_ == 0) source_dry_ = true;   // until it has answered
-    } else {
-      break;
-    }
-    idle_.pop_back();
-    busy_ += job.done - now;
-    jobs_.push(job);
+  // The last to fall idle first.
+  for (std::size_t i = idle_.size(); i-- > 0;) {
+    if (!start_job(idle_[i], now)) continue;
+    idle_.erase(idle_.begin() + static_cast<std::ptrdiff_t>(i));
+    any = true;
+  }
+  while (helpers_.any()) {
+    const std::optional<RayResult> ray = queues_.take_any();
+    if (!ray) break;
+    helpers_.give(*ray, now);
     any = true;
   }
   return any;
 }
 
+bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
+  Job job;
+  job.worker = worker;
+  if (const std::optional<RayResult> ray = queues_.take(worker)) {
+    job.ray = *ray;
+    job.done = now + shade_cycles_;
+  } else if (!source_finished_ && !source_dry_ && room() > 0) {
+    job.made = room();
+    making_ += job.made;
+    job.done = now + shade_cycles_ * job.made;
+    if (shade_cycles_ == 0) source_dry_ = true;   // until it has answered
+  } else {
+    return false;
+  }
+  queues_.hold(worker, std::max<std::size_t>(1, job.made));
+  busy_ += job.done - now;
+  jobs_.push(job);
+  return true;
+}
+
 void ShadingAgent::place(Cycle now) {
-  const bool full = gathered_.size() >= group_, last = queue_.empty() && jobs_.empty();
+  const bool full = gathered_.size() >= group_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
   bool placed = machine_.control.place_waiting();
   if (full || (last && !gathered_.empty())) {
     machine_.control.submit(gathered_);
@@ -153,7 +169,7 @@ void ShadingAgent::milestone(Cycle now) {
 std::string ShadingAgent::describe() const {
   if (done()) return "";
   return fmt::format("ray control and shading: {} rays outstanding, {} to be shaded, {} free slots, {}", outstanding_,
-                     queue_.size(), machine_.control.free_slots(),
+                     queues_.size(), machine_.control.free_slots(),
                      source_finished_ ? "no more to come" : "more to come");
 }
 

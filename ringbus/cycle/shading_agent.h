@@ -1,32 +1,29 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <queue>
 #include <string>
 #include <vector>
 
 #include "core/workload.h"
 #include "ringbus/cycle/agent.h"
-#include "ringbus/cycle/channel.h"
-#include "ringbus/cycle/control_messages.h"
 #include "ringbus/cycle/cycle_machine.h"
+#include "ringbus/cycle/shade_helpers.h"
+#include "ringbus/cycle/shade_queues.h"
+#include "ringbus/cycle/side_ports.h"
 #include "ringbus/cycle/trace.h"
 
 namespace carousel::ringbus::cycle {
 
-/// Ray control and the pool of shader workers. A worker takes the ray that has waited longest, and needs
-/// shading.cycles_per_shade for it, as for making a camera ray. New rays gather until they fill a packet, or until
+/// Ray control and the pool of shader workers. A worker takes the ray that has waited longest in its queue, and needs
+/// shading.cycles_per_shade for it, as for making a camera ray. What the workers have no hand free for goes to
+/// resources that have nothing to test, with `idle_resources_shade`. New rays gather until they fill a packet, or until
 /// no worker has anything to do, and are then given slots; a record of 64 bytes needs its owner's load port for as
 /// many link widths as it has.
 class ShadingAgent final : public Agent {
  public:
-  struct Client {
-    Channel<NewRays>* new_rays = nullptr;
-    Channel<CompletedRays>* completed = nullptr;
-  };
-
-  ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window, std::vector<Client> clients);
+  /// `clients` by resource.
+  ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window, std::vector<SidePorts> clients);
 
   Cycle next() const override;
   void run(Cycle end) override;
@@ -60,17 +57,19 @@ class ShadingAgent final : public Agent {
   void take_completed(Cycle now);
   bool finish_jobs(Cycle now);
   bool start_jobs(Cycle now);
+  bool start_job(std::uint32_t worker, Cycle now);
   void place(Cycle now);
   std::size_t room() const;
   void milestone(Cycle now);
 
   CycleMachine& machine_;
   Workload& workload_;
-  std::vector<Client> clients_;
+  std::vector<SidePorts> clients_;
   Trace trace_;
   Cycle shade_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
-  std::deque<RayResult> queue_;
+  ShadeQueues queues_;
+  ShadeHelpers helpers_;
   std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;
   std::vector<std::uint32_t> idle_;          // workers, the next one last
   RayBatch gathered_;

@@ -2,16 +2,20 @@
 
 #include "ringbus/cycle/channel.h"
 #include "ringbus/cycle/control_messages.h"
+#include "ringbus/cycle/help_messages.h"
 #include "ringbus/cycle/memory_messages.h"
 
 namespace carousel::ringbus::cycle {
 
-/// A resource's channels beside the links: from ray control, to shading, and to its cache and back.
+/// A resource's channels beside the links: from ray control, to shading, to its cache and back; and with
+/// `idle_resources_shade` for jobs from shading, and what it has to say of them.
 struct SidePorts {
   Channel<NewRays>* new_rays = nullptr;
   Channel<CompletedRays>* completed = nullptr;
   Channel<FetchRequest>* fetch = nullptr;
   Channel<FetchAnswer>* fetched = nullptr;
+  Channel<ShadeJob>* jobs = nullptr;   ///< null, like `help`, when it does not help
+  Channel<HelpNote>* help = nullptr;
 };
 
 }  // namespace carousel::ringbus::cycle

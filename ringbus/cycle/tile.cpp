@@ -27,6 +27,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       tester_(testers_of(machine.config, id)),
       shapes_(machine.config.memory, ports_),
       completed_port_(machine.config, ports_),
+      help_(machine.config, ports_),
       packet_size_(machine.config),
       link_bytes_(static_cast<Cycle>(machine.config.topology.link.bytes_per_cycle)),
       ids_per_cycle_(static_cast<Cycle>(machine.config.packets.ids_per_cycle)),
@@ -55,6 +56,7 @@ Cycle Tile::next() const {
   for (const OutPort& out : ports_.out) consider(out.next(want_credit));
   consider(ports_.new_rays->next());
   consider(shapes_.next());
+  consider(help_.next());
   for (const Context& context : contexts_)
     if (context.phase == Context::Phase::kComputing || context.subtree) consider(context.done);
   if (handler_free_ > now_ && handler_free_ < first && handler_wanted()) first = handler_free_;
@@ -79,6 +81,7 @@ void Tile::step(Cycle now) {
   bool again = true;
   while (again) {
     again = finish_tests(now);
+    again |= help_.step(now, testers_free());
     again |= cut_through(now);
     again |= handle(now);
     again |= admit();
@@ -86,10 +89,13 @@ void Tile::step(Cycle now) {
     again |= send(now);
   }
   hand_over(now);
-  clock_.enter(classify(now), now);
+  const TileState state = classify(now);
+  clock_.enter(state, now);
+  help_.tell(now, state != TileState::kTesting && state != TileState::kMemory);
 }
 
 TileState Tile::classify(Cycle now) const {
+  if (help_.shading()) return TileState::kShading;
   bool fetching = false, computing = false;
   for (const Context& c : contexts_) {
     computing |= c.phase == Context::Phase::kComputing || (c.phase == Context::Phase::kFetching && c.subtree && c.done > now);
@@ -157,7 +163,12 @@ void Tile::take_answers(Cycle now) {
 
 // ---- tests
 
+bool Tile::testers_free() const {
+  return std::all_of(contexts_.begin(), contexts_.end(), [](const Context& c) { return c.phase == Context::Phase::kFree; });
+}
+
 Tile::Context* Tile::free_context() {
+  if (help_.holds()) return nullptr;
   for (Context& context : contexts_)
     if (context.phase == Context::Phase::kFree) return &context;
   return nullptr;
@@ -369,8 +380,7 @@ bool Tile::fill_issue(Cycle now) {
   while (issue_.size() < issue_places_ && !resource_.idle()) {
     // Collections that are not full go only when there is nothing better to do: waiting fills them.
     const bool nothing_else =
-        issue_.empty() && handler_free_ <= now &&
-        std::all_of(contexts_.begin(), contexts_.end(), [](const Context& c) { return c.phase == Context::Phase::kFree; }) &&
+        issue_.empty() && handler_free_ <= now && testers_free() && !help_.holds() &&
         std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
     const std::optional<PacketId> id = free_packet();
     if (!id) return moved;

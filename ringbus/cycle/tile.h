@@ -10,6 +10,7 @@
 #include "ringbus/cycle/cycle_machine.h"
 #include "ringbus/cycle/packet_size.h"
 #include "ringbus/cycle/resource_agent.h"
+#include "ringbus/cycle/shade_help.h"
 #include "ringbus/cycle/shape_port.h"
 #include "ringbus/cycle/state_clock.h"
 #include "ringbus/cycle/subtree_walk.h"
@@ -85,6 +86,7 @@ class Tile final : public ResourceAgent {
   bool send(Cycle now);
 
   Context* free_context();
+  bool testers_free() const;
   void begin_test(Context& context, PacketId id, Cycle at);
   void begin_fetch(Context& context, const ShapeSpan& strip, Cycle now);
   void end_test(Context& context, Cycle now);
@@ -109,6 +111,7 @@ class Tile final : public ResourceAgent {
   Tester tester_;
   ShapePort shapes_;
   CompletedPort completed_port_;
+  ShadeHelp help_;
   PacketSize packet_size_;
   Cycle link_bytes_, ids_per_cycle_;
   std::size_t issue_places_;

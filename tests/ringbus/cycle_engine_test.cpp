@@ -56,7 +56,7 @@ TEST(CycleEngine, TakesTheSameCyclesOnAnyNumberOfThreads) {
 
 TEST(CycleEngine, LedgersAddUp) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
-  std::uint64_t transforms = 0;
+  std::uint64_t transforms = 0, jobs = 0;
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(40)); ++seed) {
     const Cell cell = random_cell(seed + 1000);
     const Outcome out = run_cell(scene, cell);
@@ -71,6 +71,11 @@ TEST(CycleEngine, LedgersAddUp) {
       const cycle::Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
       for (const cycle::UnitLedger& bank : {tile.box, tile.triangle, tile.transform}) EXPECT_LE(bank.busy, testing);
       EXPECT_LE(tile.handler.busy, c.cycles);
+      // Jobs are shaded whole.
+      const cycle::Cycle shaded = tile.states[static_cast<std::size_t>(cycle::TileState::kShading)];
+      const cycle::Cycle job = static_cast<cycle::Cycle>(cell.config.shading.cycles_per_shade);
+      EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
+      jobs += job == 0 ? 0 : shaded / job;
       // What the banks did is what the resource counted, rounded up a packet at a time.
       const TesterUnits& box = cell.config.testers.box;
       EXPECT_GE(tile.box.busy * static_cast<std::uint64_t>(box.units), out.result.resources[r].tests.box);
@@ -92,6 +97,7 @@ TEST(CycleEngine, LedgersAddUp) {
     EXPECT_LE(c.shading_busy, c.cycles * static_cast<std::uint64_t>(cell.config.shading.workers));
   }
   EXPECT_GT(transforms, 0u);
+  EXPECT_GT(jobs, 0u);
 }
 
 // Without flow control a small ring fills up. The run must end and say who waits for whom.

@@ -21,14 +21,17 @@ Factor factor(std::string name, const std::vector<T>& values, const Set& set) {
   return out;
 }
 
+/// The values of an enum.
+template <class E>
+std::vector<E> all(E) {
+  std::vector<E> values;
+  for (const auto& entry : kEnumNames<E>) values.push_back(entry.value);
+  return values;
+}
+
 /// Every way a native machine can be arranged that must not show in the hits (DESIGN.md section 3).
 inline std::vector<Factor> machine_factors() {
   using I = std::int64_t;
-  const auto all = []<class E>(E) {
-    std::vector<E> values;
-    for (const auto& entry : kEnumNames<E>) values.push_back(entry.value);
-    return values;
-  };
   const std::vector<TopologyShape> shapes{TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint};
   const std::vector<Flow> flows{Flow::kCredits, Flow::kBubble};
   return {
@@ -83,6 +86,9 @@ inline std::vector<Factor> cycle_factors() {
       factor<I>("link width", {4, 64}, [](Cell& c, I v) { c.config.topology.link.bytes_per_cycle = v; }),
       factor<I>("cache", {1, 1024}, [](Cell& c, I v) { c.config.memory.l2_kib = v; }),
       factor<I>("shared by", {1, 4}, [](Cell& c, I v) { c.config.memory.shared_by = v; }),
+      factor<bool>("idle shade", {false, true}, [](Cell& c, bool v) { c.config.shading.idle_resources_shade = v; }),
+      factor("distribute", all(ShadingConfig::Distribute{}),
+             [](Cell& c, ShadingConfig::Distribute v) { c.config.shading.distribute = v; }),
       factor<I>("shade", {0, 20}, [](Cell& c, I v) { c.config.shading.cycles_per_shade = v; }),
   };
   factors.insert(factors.end(), more.begin(), more.end());

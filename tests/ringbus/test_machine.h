@@ -37,14 +37,15 @@ struct Cell {
     const Config& c = config;
     return fmt::format(
         "resources {} {} visit {} flow {} queue {} depth {} slots {} placement {} packet rays {} {} ready {} {} {} {} "
-        "home {} {}{} contexts {} carry {} fetch {} ahead {} width {} leaf {} treelet {} workers {} simd {} threads {}",
+        "home {} {}{} contexts {} carry {} fetch {} ahead {} width {} leaf {} treelet {} workers {} {}{} simd {} threads {}",
         c.topology.resources, enum_name(c.topology.shape), enum_name(c.topology.visit), enum_name(c.topology.flow),
         enum_name(c.topology.link.queue), c.topology.link.depth, c.rays.slots_per_resource, enum_name(c.rays.placement),
         c.packets.rays, enum_name(c.packets.shapes), c.collections.ready, enum_name(c.collections.traversal),
         enum_name(c.collections.policy), enum_name(c.collections.select), enum_name(c.collections.home),
         enum_name(c.collections.when_full), tight_storage ? " tight" : "", c.testers.contexts,
         enum_name(c.packets.carry), enum_name(c.memory.fetch), c.memory.fetch_ahead, c.bvh.width, c.bvh.leaf_triangles,
-        c.bvh.treelet_triangles, c.shading.workers, enum_name(c.engine.simd), threads);
+        c.bvh.treelet_triangles, c.shading.workers, enum_name(c.shading.distribute),
+        c.shading.idle_resources_shade ? " idle resources shade" : "", enum_name(c.engine.simd), threads);
   }
 };
 
