@@ -125,9 +125,13 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
     return report::UnitCycles{ledger.busy,          in(TileState::kTesting) - ledger.busy,
                               in(TileState::kMemory),  in(TileState::kLink),
                               in(TileState::kCredits), in(TileState::kStorage),
-                              in(TileState::kIdle)};
+                              in(TileState::kShading), in(TileState::kIdle)};
   };
   return {bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.handler.busy, cycles - tile.handler.busy};
+}
+
+report::Stack stack(const ringbus::cycle::StackLedger& ledger) {
+  return {ledger.pushed_bytes, ledger.popped_bytes, ledger.peak_bytes, ledger.ray_peak_bytes};
 }
 
 /// The parts that need a simulated clock.
@@ -140,7 +144,10 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     r.throughput->whole = rate(r.rays.completed, c.cycles, config.engine.clock_mhz);
     if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);
   }
-  for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i) (*r.resources)[i].units = units(c.tiles[i], c.cycles);
+  for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i) {
+    (*r.resources)[i].units = units(c.tiles[i], c.cycles);
+    if (config.topology.shape == TopologyShape::kIndependent) (*r.resources)[i].stack = stack(c.tiles[i].stack);
+  }
   for (std::size_t i = 0; r.links && i < r.links->size(); ++i) {
     const ringbus::cycle::UnitLedger& use = c.links[i].use;
     (*r.links)[i].utilisation = ratio(use.busy, c.cycles);

@@ -91,12 +91,17 @@ struct Stalls {
 
 /// Cycles of a group of equal units; the parts add up to the run.
 struct UnitCycles {
-  std::uint64_t busy = 0, other_units = 0, memory = 0, link = 0, credits = 0, storage = 0, idle = 0;
+  std::uint64_t busy = 0, other_units = 0, memory = 0, link = 0, credits = 0, storage = 0, shading = 0, idle = 0;
 };
 
 struct Units {
   UnitCycles box, triangle, transform;
   std::uint64_t handler_busy = 0, handler_idle = 0;
+};
+
+/// What moved onto the stacks of a resource's rays and from them.
+struct Stack {
+  std::uint64_t pushed_bytes = 0, popped_bytes = 0, peak_bytes = 0, ray_peak_bytes = 0;
 };
 
 struct Resource {
@@ -107,6 +112,7 @@ struct Resource {
   std::uint64_t collections_created = 0, collections_peak = 0, memberships_peak = 0, spilled = 0;
   Stalls stalls;
   std::optional<Units> units{};
+  std::optional<Stack> stack{};
 };
 
 struct LinkCycles {

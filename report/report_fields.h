@@ -141,6 +141,7 @@ void describe(V& v, UnitCycles& r) {
   v.field("link", r.link, "cycles", "waiting for a packet to leave");
   v.field("credits", r.credits, "cycles", "all packets were out");
   v.field("storage", r.storage, "cycles", "too few collection blocks were free");
+  v.field("shading", r.shading, "cycles", "helping the shader workers");
   v.field("idle", r.idle, "cycles", "nothing to test");
 }
 
@@ -151,6 +152,14 @@ void describe(V& v, Units& r) {
   v.section("transform", r.transform, "transform units");
   v.field("handler_busy", r.handler_busy, "cycles", "looking through packets' IDs");
   v.field("handler_idle", r.handler_idle, "cycles", "the rest");
+}
+
+template <class V>
+void describe(V& v, Stack& r) {
+  v.field("pushed_bytes", r.pushed_bytes, "bytes", "4 for an inner node, 12 for a leaf");
+  v.field("popped_bytes", r.popped_bytes, "bytes", "the rest was left by rays that needed no more");
+  v.field("peak_bytes", r.peak_bytes, "bytes", "of all its rays at once");
+  v.field("ray_peak_bytes", r.ray_peak_bytes, "bytes", "of one ray");
 }
 
 template <class V>
@@ -173,6 +182,7 @@ void describe(V& v, Resource& r) {
   v.field("spilled", r.spilled, "ray IDs", "stored beyond the capacity");
   v.section("stalls", r.stalls, "what could not proceed at once");
   v.section("units", r.units, "cycles of its units; each unit's add up to engine.cycles");
+  v.section("stack", r.stack, "of its rays, with topology.shape: independent");
 }
 
 template <class V>

@@ -128,6 +128,7 @@ void cycle_lines(Table& table, const Report& report) {
     sum.link += u.link;
     sum.credits += u.credits;
     sum.storage += u.storage;
+    sum.shading += u.shading;
     sum.idle += u.idle;
     handler += r.units->handler_busy;
   }
@@ -139,8 +140,9 @@ void cycle_lines(Table& table, const Report& report) {
              percent(busy_fraction(*report.resources, cycles, &Units::transform)), part(handler),
              percent(report.shading.utilisation.value_or(0)),
              percent(report.memory ? report.memory->dram_utilisation : 0));
-  table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}", part(sum.memory),
-             part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle));
+  table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),
+             part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle),
+             sum.shading > 0 ? "   shading " + part(sum.shading) : "");
 }
 
 std::string image_text(const nlohmann::ordered_json& config) {
