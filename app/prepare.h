@@ -29,7 +29,7 @@ struct Prepared {
   const Config& config() const { return located.config; }
 };
 
-/// Loads all of it. What would not fit the machine is refused before it is loaded. Throws ConfigError,
+/// Loads all of it; for synthetic traffic the configuration only. What would not fit the machine is refused before it is loaded. Throws ConfigError,
 /// SceneError and FileError; warnings go to the log.
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits);
 

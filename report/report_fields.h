@@ -1,6 +1,7 @@
 #pragma once
 
 #include "report/report.h"
+#include "report/traffic_fields.h"
 
 namespace carousel::report {
 
@@ -274,6 +275,7 @@ void describe(V& v, Report& r) {
   v.section("resources", r.resources, "each resource");
   v.section("links", r.links, "each link");
   v.section("memory", r.memory, "caches and memory of the simulated machine");
+  v.section("traffic", r.traffic, "the network alone, when workload is traffic");
   v.section("shading", r.shading, "shader workers");
   v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
   v.section("digest", r.digest, "equal digests mean equal hits and an equal picture");
