@@ -26,7 +26,8 @@ class TrafficRun {
       if (acknowledges()) acks_.push_back(std::make_unique<Channel<TrafficAck>>());
     }
     for (std::uint32_t r = 0; r < topology_.resources(); ++r)
-      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config, plan_.packets[r], plan_.window, ports_of(ResourceId(r))));
+      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config, TrafficSource(config, ResourceId(r), plan_.gap),
+                                                     plan_.packets[r], plan_.window, ports_of(ResourceId(r))));
   }
 
   TrafficResult run() {

@@ -68,13 +68,7 @@ class OutPortOf {
       stalled_ += now - blocked_since_;
       blocked_since_ = kNever;
     }
-    const Entry& entry = queue_.front();
-    const Cycle cycles = entry.token.link_cycles;
-    wire_->packets.send(now + latency_ + (entry.cut_through ? 0 : cycles - 1), entry.token);
-    --credits_;
-    free_at_ = now + cycles;
-    busy_ += cycles;
-    ++packets_;
+    start(queue_.front(), now);
     queue_.pop_front();
     return true;
   }
@@ -82,13 +76,18 @@ class OutPortOf {
   std::int64_t spare_places() const {
     return static_cast<std::int64_t>(credits_) - static_cast<std::int64_t>(queue_.size() + reserved_);
   }
-  /// With nothing in hand: whether what is pushed now is sent at once and leaves the receiver `places` - 1 free
-  /// places.
-  bool open(Cycle now, std::uint32_t places) const { return queue_.empty() && free_at_ <= now && credits_ >= places; }
+  /// Whether, with nothing in hand, launch() may send something that leaves the receiver `places` - 1 free places.
+  /// Takes credits when it needs them.
+  bool open(Cycle now, std::uint32_t places) {
+    if (credits_ < places) take_credits(now);
+    return queue_.empty() && free_at_ <= now && credits_ >= places;
+  }
+  /// Sends what has not been in hand.
+  void launch(const T& token, Cycle now, bool cut_through) { start({token, now, cut_through}, now); }
   /// When it will be open(), as far as is known and if nothing else is sent before.
   Cycle opens(std::uint32_t places) const {
     if (!queue_.empty()) return kNever;
-    return credits_ >= places ? free_at_ : wire_->credits.next();
+    return credits_ >= places ? free_at_ : std::max(free_at_, wire_->credits.next());
   }
   /// When something can be sent, as far as is known; `want_credit`: wake for a credit even with nothing in hand.
   Cycle next(bool want_credit) const {
@@ -112,6 +111,16 @@ class OutPortOf {
     Cycle ready = 0;
     bool cut_through = false;
   };
+
+  void start(const Entry& entry, Cycle now) {
+    const Cycle cycles = entry.token.link_cycles;
+    wire_->packets.send(now + latency_ + (entry.cut_through ? 0 : cycles - 1), entry.token);
+    --credits_;
+    free_at_ = now + cycles;
+    busy_ += cycles;
+    ++packets_;
+  }
+
   WireOf<T>* wire_;
   Cycle latency_;
   std::uint32_t credits_;

@@ -6,12 +6,12 @@
 
 namespace carousel::ringbus::cycle {
 
-TrafficNode::TrafficNode(ResourceId id, const Config& config, std::uint64_t packets, TrafficWindow window, Ports ports)
+TrafficNode::TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets,
+                         TrafficWindow window, Ports ports)
     : topology_(config.topology),
       id_(id),
       ports_(std::move(ports)),
-      source_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), id,
-              static_cast<std::size_t>(config.topology.resources)),
+      source_(std::move(source)),
       window_(window),
       inject_cycles_(static_cast<Cycle>(config.workload.traffic.inject_cycles)),
       eject_cycles_(static_cast<Cycle>(config.workload.traffic.eject_cycles)),
@@ -19,8 +19,11 @@ TrafficNode::TrafficNode(ResourceId id, const Config& config, std::uint64_t pack
       flits_(static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(config.workload.traffic.packet_bytes),
                                                  static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle)))),
       places_wanted_(config.topology.flow == Flow::kBubble && ports_.out_to.empty() ? 2 : 1),
+      arrivals_(ports_.in.size()),
+      eager_(config.topology.flow == Flow::kNone),
       to_create_(packets),
-      window_left_(ports_.acks_in.size(), static_cast<std::uint32_t>(config.topology.link.depth)) {
+      allowances_(ports_.acks_in.size(), {static_cast<std::uint32_t>(config.topology.link.depth), {}}),
+      passing_acks_(ports_.acks_in.size()) {
   create();
 }
 
@@ -41,41 +44,62 @@ void TrafficNode::create() {
 // ---- time
 
 Cycle TrafficNode::next() const {
-  // What is not later than the last step waits for something else, which is looked at too.
+  Cycle first = next_here();
+  for (const In& in : ports_.in)
+    if (const Cycle at = in.next(); at > now_) first = std::min(first, at);
+  for (const Channel<TrafficAck>* acks : ports_.acks_in) first = std::min(first, acks->next());
+  return first;
+}
+
+Cycle TrafficNode::next_here() const {
   Cycle first = waiting_ ? next_injection() : kNever;
-  for (const In& in : ports_.in) {
-    const Cycle at = in.next();
-    if (at > now_)
-      first = std::min(first, at);
-    else if (in.front().skip == 0)
+  for (std::size_t d = 0; d < arrivals_.size(); ++d) {
+    // What is not later than the last step waits: for the sink, or for what is in hand to leave.
+    if (arrivals_[d] > now_)
+      first = std::min(first, arrivals_[d]);
+    else if (sink_free_ > now_ && ports_.in[d].front().skip == 0)
       first = std::min(first, sink_free_);
   }
-  for (const Out& out : ports_.out)
-    if (!out.empty()) first = std::min(first, out.next(false));
-  for (const Channel<TrafficAck>* acks : ports_.acks_in) first = std::min(first, acks->next());
+  if (hands_ > 0)
+    for (const Out& out : ports_.out)
+      if (!out.empty()) first = std::min(first, out.next(false));
   return first;
 }
 
 Cycle TrafficNode::next_injection() const {
   if (ready_ > now_) return ready_;
   if (route_.hops == 0) return sink_free_ - (flits_ - 1u);
-  if (!window_left_.empty() && window_left_[route_.direction] == 0) return kNever;   // until an ack comes
+  if (!allowances_.empty()) {
+    const Allowance& allowance = allowances_[route_.direction];
+    if (allowance.left == 0 && allowance.acks.empty()) return kNever;
+    if (allowance.left == 0 && allowance.acks.front() > now_) return allowance.acks.front();
+  }
   return ports_.out[exit_].opens(places_wanted_);
 }
 
 void TrafficNode::run(Cycle end) {
-  for (Cycle now; (now = next()) < end;) step(now);
+  // Nothing that is sent to it from now on arrives before `end`: it is enough to look once.
+  for (std::size_t d = 0; d < arrivals_.size(); ++d) arrivals_[d] = ports_.in[d].next();
+  take_acks(end);
+  for (Cycle now; (now = next_here()) < end;) step(now);
+  for (std::size_t a = 0; a < passing_acks_.size(); ++a) forward_acks(a, end);
 }
 
 void TrafficNode::step(Cycle now) {
   now_ = now;
-  for (Out& out : ports_.out) {
-    out.take_credits(now);
-    out.send(now);
+  if (hands_ > 0) {
+    for (Out& out : ports_.out) {
+      if (out.empty()) continue;
+      out.take_credits(now);
+      hands_ -= out.send(now);
+    }
   }
-  take_acks(now);
-  const std::size_t ways = ports_.in.size(), first = first_in_;
-  for (std::size_t i = 0; i < ways; ++i) pass(first + i < ways ? first + i : first + i - ways, now);
+  if (eager_ && waiting_ && ready_ <= now) inject(now);
+  const std::size_t ways = arrivals_.size(), first = first_in_;
+  for (std::size_t i = 0; i < ways; ++i) {
+    const std::size_t d = first + i < ways ? first + i : first + i - ways;
+    if (arrivals_[d] <= now) pass(d, now);
+  }
   if (waiting_ && ready_ <= now) inject(now);
 }
 
@@ -83,22 +107,27 @@ void TrafficNode::step(Cycle now) {
 
 void TrafficNode::pass(std::size_t d, Cycle now) {
   In& in = ports_.in[d];
-  while (in.next() <= now) {
+  for (; arrivals_[d] <= now; arrivals_[d] = in.next()) {
     if (in.front().skip == 0) {
       if (!sink_open(now)) return;
       const TrafficToken token = in.take(now);
-      if (!ports_.acks_out.empty())
-        ports_.acks_out[ack_direction(d)]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
+      if (!allowances_.empty()) acknowledge(token, d, now);
       deliver(token, now);
       first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;   // the others first, the next time
       continue;
     }
     Out& out = ports_.out[d];
-    if (!out.has_place()) return;
+    const bool open = out.open(now, 1);
+    if (!open && !out.has_place()) return;
     TrafficToken token = in.take(now);
     --token.skip;
-    out.push(token, now, token.skip > 0);
-    out.send(now);
+    if (open) {
+      out.launch(token, now, token.skip > 0);
+    } else {
+      out.push(token, now, token.skip > 0);
+      out.send(now);   // does not, but counts the wait
+      ++hands_;
+    }
   }
 }
 
@@ -109,15 +138,14 @@ void TrafficNode::inject(Cycle now) {
     const Cycle tail = now + flits_ - 1u;
     if (!sink_open(tail)) return;
     deliver(token, tail);
-  } else {
-    Out& out = ports_.out[exit_];
-    if (!out.open(now, places_wanted_)) return;
-    if (!window_left_.empty()) {
-      if (window_left_[route_.direction] == 0) return;
-      --window_left_[route_.direction];
-    }
+  } else if (Out& out = ports_.out[exit_]; eager_) {
+    if (!out.has_place()) return;
     out.push(token, now, token.skip > 0);
-    out.send(now);
+    out.take_credits(now);
+    if (!out.send(now)) ++hands_;
+  } else {
+    if (!out.open(now, places_wanted_) || !may_send_more(now)) return;
+    out.launch(token, now, token.skip > 0);
   }
   inject_free_ = now + flits_;
   create();
@@ -133,20 +161,38 @@ void TrafficNode::deliver(const TrafficToken& token, Cycle tail) {
 
 // ---- word of deliveries
 
-std::size_t TrafficNode::ack_direction(std::size_t d) const {
-  return topology_.shape == TopologyShape::kBidirectional ? 1 - d : d;
-}
-
-void TrafficNode::take_acks(Cycle now) {
+void TrafficNode::take_acks(Cycle end) {
   for (std::size_t a = 0; a < ports_.acks_in.size(); ++a) {
-    while (ports_.acks_in[a]->next() <= now) {
-      const TrafficAck ack = ports_.acks_in[a]->take();
+    Channel<TrafficAck>& acks = *ports_.acks_in[a];
+    for (Cycle at; (at = acks.next()) < end;) {
+      const TrafficAck ack = acks.take();
       if (ack.source == id_.value)
-        ++window_left_[ack.direction];
+        allowances_[ack.direction].acks.push_back(at);
       else
-        ports_.acks_out[a]->send(now + ack_latency_, ack);
+        passing_acks_[a].push_back({at, ack});
     }
   }
+}
+
+void TrafficNode::forward_acks(std::size_t a, Cycle end) {
+  Fifo<PassingAck>& passing = passing_acks_[a];
+  for (; !passing.empty() && passing.front().at < end; passing.pop_front())
+    ports_.acks_out[a]->send(passing.front().at + ack_latency_, passing.front().ack);
+}
+
+void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle now) {
+  const std::size_t a = topology_.shape == TopologyShape::kBidirectional ? 1 - d : d;
+  forward_acks(a, now + 1);   // those that came earlier leave earlier
+  ports_.acks_out[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
+}
+
+bool TrafficNode::may_send_more(Cycle now) {
+  if (allowances_.empty()) return true;
+  Allowance& allowance = allowances_[route_.direction];
+  for (; !allowance.acks.empty() && allowance.acks.front() <= now; allowance.acks.pop_front()) ++allowance.left;
+  if (allowance.left == 0) return false;
+  --allowance.left;
+  return true;
 }
 
 // ---- the end, good or bad

@@ -35,6 +35,7 @@ struct TrafficWindow {
 ///   sources have R * depth packets against R * depth places in queues and R in hands: a place is always free. Word
 ///   of a delivery travels on wires of its own that are never full (round a ring that has only one direction, back
 ///   the other way of one that has two).
+/// - `none`: nothing prevents it, and what wants in goes first, so that it shows.
 /// - The sink takes every packet after a bounded time, so point to point no packet waits for another to move.
 class TrafficNode final : public Agent {
  public:
@@ -47,8 +48,9 @@ class TrafficNode final : public Agent {
     std::vector<Channel<TrafficAck>*> acks_in, acks_out;   ///< by direction; empty where nobody waits for them
   };
 
-  /// `packets`: that it creates.
-  TrafficNode(ResourceId id, const Config& config, std::uint64_t packets, TrafficWindow window, Ports ports);
+  /// `packets`: that it takes from the source.
+  TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets, TrafficWindow window,
+              Ports ports);
 
   Cycle next() const override;
   void run(Cycle end) override;
@@ -64,15 +66,18 @@ class TrafficNode final : public Agent {
   Cycle last() const { return last_; }                   ///< when something was last delivered
 
  private:
+  Cycle next_here() const;
+  Cycle next_injection() const;
   void step(Cycle now);
-  void take_acks(Cycle now);
+  void take_acks(Cycle end);
+  void forward_acks(std::size_t a, Cycle end);
+  void acknowledge(const TrafficToken& token, std::size_t d, Cycle now);
+  bool may_send_more(Cycle now);
   void pass(std::size_t d, Cycle now);
   void inject(Cycle now);
-  Cycle next_injection() const;
   bool sink_open(Cycle tail) const { return sink_free_ <= tail; }
   void deliver(const TrafficToken& token, Cycle tail);
   void create();
-  std::size_t ack_direction(std::size_t d) const;
 
   const TopologyConfig& topology_;
   ResourceId id_;
@@ -84,14 +89,29 @@ class TrafficNode final : public Agent {
   std::uint32_t places_wanted_;   // in the next queue, to inject
 
   Cycle now_ = 0;
-  std::uint64_t to_create_;
-  bool waiting_ = false;          // there is a packet to inject, no matter whether it has been created yet
-  TrafficRoute route_;            // the packet's
+  std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted down when a window begins
+  std::size_t hands_ = 0;         // ways out with something in hand
+  std::size_t first_in_ = 0;      // has the sink before the others
+  Cycle sink_free_ = 0;           // for the next packet's tail
+
+  bool eager_;                    // injects before it lets pass
+
+  // The packet to inject next; it need not have been created yet.
+  bool waiting_ = false;
+  TrafficRoute route_;
   std::size_t exit_ = 0;
-  Cycle ready_ = 0;               // not injected before
-  Cycle inject_free_ = 0, sink_free_ = 0;   // sink_free_: the next packet's tail, not before
-  std::size_t first_in_ = 0;
-  std::vector<std::uint32_t> window_left_;  // packets it may still send, by direction; empty: any number
+  Cycle ready_ = 0, inject_free_ = 0;   // not injected before
+  std::uint64_t to_create_;             // after it
+  struct Allowance {
+    std::uint32_t left = 0;   // packets it may have on the way besides those it has
+    Fifo<Cycle> acks;         // when there will be one more
+  };
+  std::vector<Allowance> allowances_;   // by direction; empty: any number
+  struct PassingAck {
+    Cycle at = 0;
+    TrafficAck ack;
+  };
+  std::vector<Fifo<PassingAck>> passing_acks_;   // by their direction
 
   LatencyHistogram latency_;
   std::uint64_t delivered_ = 0, accepted_ = 0, offered_ = 0, routers_ = 0;

@@ -4,11 +4,12 @@
 
 namespace carousel::ringbus::cycle {
 
-TrafficPlan::TrafficPlan(const Config& config) : packets(static_cast<std::size_t>(config.topology.resources)) {
+TrafficPlan::TrafficPlan(const Config& config) 
+    : gap(traffic_gap(config.workload.traffic)), packets(static_cast<std::size_t>(config.topology.resources)) {
   const std::uint64_t resources = packets.size();
   std::vector<TrafficSource> sources;
   for (std::uint32_t r = 0; r < resources; ++r) {
-    sources.emplace_back(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), ResourceId(r), resources);
+    sources.emplace_back(config, ResourceId(r), gap);
     sources.back().advance();
   }
   std::uint64_t left = static_cast<std::uint64_t>(config.workload.traffic.packets);

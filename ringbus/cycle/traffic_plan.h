@@ -13,6 +13,7 @@ namespace carousel::ringbus::cycle {
 struct TrafficPlan {
   explicit TrafficPlan(const Config& config);
 
+  GeometricGap gap;
   std::vector<std::uint64_t> packets;   ///< by resource
   TrafficWindow window;
 };

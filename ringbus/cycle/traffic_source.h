@@ -20,9 +20,21 @@ class GeometricGap {
 
  private:
   static constexpr std::size_t kPowers = 40;
+  static constexpr int kStartBits = 8;
+  /// Where to look for the gap of a random number, by its first bits.
+  struct Start {
+    double power = 1;         // of (1 - rate), to the `gap`: not less than any such number
+    Cycle gap = 0;
+    std::size_t levels = 0;   // powers_ that can lead from there to one of these numbers
+  };
+  void descend(double least, std::size_t levels, double& power, Cycle& gap) const;
+
   std::array<double, kPowers> powers_{};   // probability of no event in 2^i cycles
-  std::size_t used_ = 0;                   // those above can be seen too seldom for 64 random bits
+  std::array<Start, std::size_t{1} << kStartBits> starts_;
 };
+
+/// Of the packets of one source; with bursts, of the silences between them.
+GeometricGap traffic_gap(const TrafficConfig& config);
 
 /// The packets that one resource creates: when, and for whom. It knows nothing of the network, so the packets are
 /// the same in every one.
@@ -34,7 +46,8 @@ class GeometricGap {
 ///              BookSim2's on/off process with a rate of 1 when on)
 class TrafficSource {
  public:
-  TrafficSource(const TrafficConfig& config, std::uint64_t seed, ResourceId id, std::size_t resources);
+  /// `gap` is that of traffic_gap(), which all sources share; it must outlive them.
+  TrafficSource(const Config& config, ResourceId id, const GeometricGap& gap);
 
   /// Creates the next packet.
   void advance();
@@ -52,7 +65,7 @@ class TrafficSource {
   std::uint32_t id_, resources_;
   ResourceId hotspot_;
   double chance_;   // bursty: that a burst ends; hotspot: that a packet goes there
-  GeometricGap gap_;
+  const GeometricGap* gap_;
   std::uint64_t index_ = 0;
   PhiloxCounter words_{};
   Cycle created_ = 0;
