@@ -13,11 +13,10 @@ namespace carousel::bench {
 
 /// Simulators of others, measured once on a machine like ours; they are not run here.
 struct Peers {
-  /// BookSim2 (github.com/booksim/booksim2), its default 2 virtual channels: flit-hops per CPU-second, 16-node
-  /// torus k = 16, n = 1, uniform traffic at 0.1.
+  /// BookSim2 (github.com/booksim/booksim2), a configuration with 2 virtual channels: flit-hops per CPU-second,
+  /// 16-node torus k = 16, n = 1, uniform traffic at 0.1.
   static constexpr double kBookSimFlitHops = 0.457e6;
-  /// Arches (github.com/gaoryrt/Arches and the like: whole RISC-V cores, every unit every cycle), 16 tester groups: rays
-  /// per second of one thread.
+  /// Arches, which models whole RISC-V cores, every unit every cycle: rays per second of one thread, 16 tester groups.
   static constexpr double kArchesRays = 2673;
 };
 

@@ -84,7 +84,7 @@ class Channel {
   // The sender's.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
-  alignas(64) mutable std::atomic<Block*> spare_{nullptr};
+  mutable std::atomic<Block*> spare_{nullptr};   // beside them: touched once a block only
 };
 
 }  // namespace carousel::ringbus::cycle

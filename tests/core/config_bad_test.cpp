@@ -147,7 +147,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"TrafficNative", "workload: {traffic: {rate: 0.5}}\nengine: {kind: native}\n",
                   "test.yaml:2:16: engine.kind: workload: traffic runs in virtual time; expected cycle, found native"},
         BadConfig{"TrafficRate", "engine: {kind: cycle}\nworkload: {traffic: {rate: 0}}\n",
-                  "test.yaml:2:28: workload.traffic.rate: expected a number"},
+                  "test.yaml:2:28: workload.traffic.rate: expected a number above 0 to 1 (packets per resource and cycle), "
+                  "found 0"},
         BadConfig{"TrafficHotspot",
                   "engine: {kind: cycle}\nworkload: {traffic: {pattern: hotspot, hotspot: 8}}\n",
                   "test.yaml:2:49: workload.traffic.hotspot: expected a resource from 0 to 7, found 8"},

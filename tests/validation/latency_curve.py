@@ -29,7 +29,7 @@ def simpy(resources, depth, rate, packets):
 
 def main():
     carousel = sys.argv[1]
-    packets = int(sys.argv[2]) if len(sys.argv) > 2 else 60000
+    packets = int(sys.argv[2]) if len(sys.argv) > 2 else 40000
     print("| resources | depth | load | closed form, alone | Carousel | SimPy at this R | 99 % interval | difference |")
     print("|---:|---:|---:|---:|---:|---:|---:|---:|")
     bad = 0
