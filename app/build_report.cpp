@@ -7,9 +7,9 @@
 #include "accel/kernels.h"
 #include "app/effects.h"
 #include "app/machine_info.h"
+#include "app/program_info.h"
 #include "core/config_enums.h"
 #include "core/config_write.h"
-#include "core/version.h"
 #include "report/ratio.h"
 
 namespace carousel::app {
@@ -17,11 +17,6 @@ namespace carousel::app {
 using report::ratio;
 
 namespace {
-
-report::Program program() {
-  const BuildInfo build = build_info();
-  return {build.version, build.commit, build.compiler, build.build_type, build.checked};
-}
 
 report::SceneSummary summary(const Prepared& p) {
   const scene::Scene& s = p.scene;
@@ -197,7 +192,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   const Config& config = prepared.config();
   report::Report r;
   r.incomplete = !result.complete;
-  r.carousel = program();
+  r.carousel = program_info();
   r.config = config_json(config);
   r.scene = summary(prepared);
   r.host = host(prepared, result);

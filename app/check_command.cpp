@@ -29,10 +29,14 @@ int check_command(const CheckArguments& arguments) {
   // A topology that can deadlock gets its verdict here instead of a plain refusal.
   const Prepared p = prepare(arguments, {.force = true}, false);
   const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config().topology);
-  const MemoryNeed need = estimate(p.config(), false, p.scene, p.accel);
-  std::string text = fmt::format("scene: {}, {} triangles, {} instances\n", p.scene.name,
-                                 p.scene.unique_triangle_count(), p.scene.instances.size());
-  text += memory_text(need, usable_memory_bytes());
+  std::string text;
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
+    text = "scene: none, synthetic traffic\n";
+  } else {
+    text = fmt::format("scene: {}, {} triangles, {} instances\n", p.scene.name, p.scene.unique_triangle_count(),
+                       p.scene.instances.size());
+    text += memory_text(estimate(p.config(), false, p.scene, p.accel), usable_memory_bytes());
+  }
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
   print_result(resolved_yaml(p.config()) + "\n" + commented(text));
   return verdict.can_deadlock ? kUsage : kDone;

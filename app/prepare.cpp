@@ -67,6 +67,7 @@ void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;   // meets no scene
   const KeyPositions& positions = p.located.positions;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {

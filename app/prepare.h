@@ -31,8 +31,8 @@ struct Prepared {
   float scene_size() const;
 };
 
-/// Loads all of it. What would not fit the machine is refused before it is loaded. Throws ConfigError,
-/// SceneError and FileError; warnings go to the log.
+/// Loads all of it; for synthetic traffic the configuration only. What would not fit the machine is refused before it
+/// is loaded. Throws ConfigError, SceneError and FileError; warnings go to the log.
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits);
 
 /// The same for a configuration that is at hand as text; files it names are looked for in the working folder.

@@ -14,6 +14,7 @@
 #include "app/hit_recorder.h"
 #include "app/interrupt.h"
 #include "app/output.h"
+#include "app/traffic_report.h"
 #include "app/verdict.h"
 #include "core/atomic_file.h"
 #include "core/config_write.h"
@@ -21,8 +22,10 @@
 #include "report/ratio.h"
 #include "report/report_json.h"
 #include "report/report_table.h"
+#include "report/traffic_table.h"
 #include "ringbus/cycle_engine.h"
 #include "ringbus/native_engine.h"
+#include "ringbus/traffic_engine.h"
 
 namespace carousel::app {
 
@@ -48,6 +51,34 @@ ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& wor
   return run(p.config(), p.accel, p.scene_size(), counting, options);
 }
 
+void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
+                  const std::filesystem::path& folder) {
+  if (arguments.json)
+    print_result(report::report_json(report).dump(2) + "\n");
+  else if (!arguments.quiet)
+    print_result(table + "files        " + folder.string() + "\n");
+}
+
+/// The network alone, without rays.
+int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt) {
+  std::optional<report::ProgressLine> line;
+  if (!arguments.quiet) line.emplace(stderr);
+  ringbus::RunOptions options;
+  options.threads = p.threads;
+  options.stop = interrupt.token();
+  options.progress = [&](std::uint64_t packets) {
+    if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets);
+  };
+  const ringbus::TrafficResult result = ringbus::run_traffic(p.config(), options);
+  line.reset();
+  const report::Report report = traffic_report(p, result);
+  const std::filesystem::path folder = out_folder(arguments);
+  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
+  write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
+  print_report(arguments, report, report::traffic_table(report), folder);
+  return verdict(report);
+}
+
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
                  const Frame& frame, const report::Report& report, HitRecorder* recorder) {
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
@@ -68,6 +99,7 @@ int run_command(const RunArguments& arguments) {
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
   const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits);
   if (!p.config().vary.empty()) spdlog::warn("vary is for sweeps; run takes the values outside of it");
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return run_traffic_command(arguments, p, interrupt);
 
   Frame frame(p);
   std::optional<HitRecorder> recorder;
@@ -85,10 +117,7 @@ int run_command(const RunArguments& arguments) {
   const std::filesystem::path folder = out_folder(arguments);
   write_files(folder, arguments, p, frame, report, recorder ? &*recorder : nullptr);
 
-  if (arguments.json)
-    print_result(report::report_json(report).dump(2) + "\n");
-  else if (!arguments.quiet)
-    print_result(report::report_table(report) + "files        " + folder.string() + "\n");
+  print_report(arguments, report, report::report_table(report), folder);
   return verdict(report);
 }
 

@@ -188,6 +188,12 @@ struct TrafficConfig {
   enum class Pattern { kUniform, kTornado, kNeighbour, kHotspot, kBursty } pattern = Pattern::kUniform;
   double rate = 0.1;
   std::int64_t packets = 100000;
+  std::int64_t packet_bytes = 32;
+  std::int64_t inject_cycles = 1, eject_cycles = 1;
+  double warmup_fraction = 0.1;
+  std::int64_t hotspot = 0;         ///< resource, for hotspot
+  double hotspot_fraction = 0.25;   ///< for hotspot
+  std::int64_t burst_packets = 8;   ///< mean, for bursty
 };
 
 struct WorkloadConfig {

@@ -229,7 +229,19 @@ template <class V>
 void describe(V& v, TrafficConfig& c) {
   v.choice("pattern", c.pattern, "where packets go");
   v.field("rate", c.rate, RealRange{0, 1, true}, "packets per resource and cycle", "packets injected");
-  v.field("packets", c.packets, IntRange{1, 1'000'000'000'000}, "packets", "packets in all");
+  v.field("packets", c.packets, IntRange{1, 1'000'000'000'000}, "packets", "packets in all, warm-up included");
+  v.field("packet_bytes", c.packet_bytes, IntRange{1, 65535}, "bytes", "size of a packet");
+  v.field("inject_cycles", c.inject_cycles, IntRange{0, 1'000'000}, "cycles",
+          "from a packet's creation to its start on a free link");
+  v.field("eject_cycles", c.eject_cycles, IntRange{0, 1'000'000}, "cycles",
+          "from a packet's arrival at its last resource to its delivery");
+  v.field("warmup_fraction", c.warmup_fraction, RealRange{0, 0.9}, "",
+          "part of the time in which packets are created that goes by before anything is measured");
+  v.field("hotspot", c.hotspot, IntRange{0, kMaxResources - 1}, "", "for hotspot: the resource");
+  v.field("hotspot_fraction", c.hotspot_fraction, RealRange{0, 1}, "",
+          "for hotspot: part of the packets that go there; the rest goes anywhere");
+  v.field("burst_packets", c.burst_packets, IntRange{1, 1'000'000}, "packets",
+          "for bursty: packets created cycle after cycle, on average");
 }
 
 template <class V>

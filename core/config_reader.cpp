@@ -213,8 +213,10 @@ void Reader::workload(std::string_view key, WorkloadConfig& value, const char*) 
     report_unknown(frames_.back());
     frames_.pop_back();
     const bool from_file = node.find("rays_from"), traffic = node.find("traffic");
-    if (from_file == traffic) issues_.push_back({node.position, path(), "expected " + expected});
-    value.kind = traffic ? WorkloadConfig::Kind::kTraffic : WorkloadConfig::Kind::kRaysFrom;
+    if (from_file == traffic)
+      issues_.push_back({node.position, path(), "expected " + expected});
+    else
+      value.kind = traffic ? WorkloadConfig::Kind::kTraffic : WorkloadConfig::Kind::kRaysFrom;
   } else {
     wrong(node, expected);
   }

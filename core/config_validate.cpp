@@ -111,8 +111,22 @@ class Rules {
   void built_testers() { only("testers.any_hit", c.testers.any_hit, TestersConfig::AnyHit::kInline); }
 
   void built_workload() {
-    if (c.workload.kind == WorkloadConfig::Kind::kTraffic)
-      issue("workload", "traffic is not built yet; expected rays or {rays_from: FILE}");
+    if (c.workload.kind != WorkloadConfig::Kind::kTraffic) return;
+    if (!cycle())
+      issue("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
+    if (c.topology.shape == TopologyShape::kHierarchical || c.topology.shape == TopologyShape::kBus)
+      issue("topology.shape", fmt::format("there is no traffic on {}; expected ring, bidirectional, multi_ring or "
+                                          "point_to_point",
+                                          enum_name(c.topology.shape)));
+    const TrafficConfig& traffic = c.workload.traffic;
+    if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
+      issue("workload.traffic.hotspot", fmt::format("expected a resource from 0 to {}, found {}",
+                                                    c.topology.resources - 1, traffic.hotspot));
+    // Between bursts at least one cycle is quiet.
+    const double burst = static_cast<double>(traffic.burst_packets), most = burst / (burst + 1);
+    if (traffic.pattern == TrafficConfig::Pattern::kBursty && traffic.rate > most)
+      issue("workload.traffic.rate", fmt::format("bursts of {} packets make at most {:.4g} packets per cycle, found {}",
+                                                 traffic.burst_packets, most, traffic.rate));
   }
 
   void flow_that_can_deadlock() {

@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/traffic.h"
+
 namespace carousel::report {
 
 // The report of one run (DESIGN.md section 9, a contract): plain structs, filled by app/. Units and meanings
@@ -211,6 +213,7 @@ struct Report {
   std::optional<std::vector<Resource>> resources;
   std::optional<std::vector<Link>> links;
   std::optional<Memory> memory;
+  std::optional<Traffic> traffic;
   Shading shading;
   std::optional<Bound> bound;
   std::optional<Bottleneck> bottleneck;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "report/report.h"
+#include "report/traffic_fields.h"
 
 namespace carousel::report {
 
@@ -322,6 +323,7 @@ void describe(V& v, Report& r) {
   v.section("resources", r.resources, "each resource");
   v.section("links", r.links, "each link");
   v.section("memory", r.memory, "caches and memory of the simulated machine");
+  v.section("traffic", r.traffic, "the network alone, when workload is traffic");
   v.section("shading", r.shading, "shader workers");
   v.section("bound", r.bound, "what each class of parts alone would allow");
   v.section("bottleneck", r.bottleneck, "what limits the machine, found by lifting each class in turn");

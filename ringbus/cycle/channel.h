@@ -42,20 +42,21 @@ class Channel {
 
   /// Arrival of the first thing; kNever when there is none.
   Cycle next() const {
-    if (head_ == tail_.load(std::memory_order_acquire)) return kNever;
-    return first().arrival;
+    if (arrival_ == kNever && head_ != tail_.load(std::memory_order_acquire)) arrival_ = first().arrival;
+    return arrival_;
   }
   /// Only when next() is not kNever, as take().
   const T& front() const { return first().thing; }
   T take() {
     T thing = std::move(const_cast<Item&>(first()).thing);
+    arrival_ = kNever;
     if (++head_ % kBlock == 0) emptied_ = true;
     return thing;
   }
   std::size_t size() const { return tail_.load(std::memory_order_acquire) - head_; }
 
  private:
-  static constexpr std::size_t kBlock = 32;
+  static constexpr std::size_t kBlock = 8;
   struct Item {
     Cycle arrival = 0;
     T thing{};
@@ -78,11 +79,12 @@ class Channel {
   // The receiver's.
   alignas(64) mutable Block* head_block_;
   std::size_t head_ = 0;
+  mutable Cycle arrival_ = kNever;   // of the first thing, once it has been looked at
   mutable bool emptied_ = false;   // the head block has been read to its end, and the next one not begun
   // The sender's.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
-  alignas(64) mutable std::atomic<Block*> spare_{nullptr};
+  mutable std::atomic<Block*> spare_{nullptr};   // beside them: touched once a block only
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <deque>
 
 #include "ringbus/cycle/channel.h"
+#include "ringbus/cycle/fifo.h"
 #include "ringbus/cycle/token.h"
 
 namespace carousel::ringbus::cycle {
@@ -11,21 +12,26 @@ namespace carousel::ringbus::cycle {
 /// A place in the receiver's input queue has become free.
 struct Credit {};
 
+// What travels is a T that knows how many cycles it occupies a link, T::link_cycles: a Token, or synthetic
+// traffic.
+
 /// A link between two nodes: packets one way, credits the other.
-struct Wire {
-  Channel<Token> packets;
+template <class T>
+struct WireOf {
+  Channel<T> packets;
   Channel<Credit> credits;
 };
 
 /// Where packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A place is
 /// held until the packet is taken; the credit needs the link's latency to get back.
-struct InPort {
-  Wire* wire = nullptr;
+template <class T>
+struct InPortOf {
+  WireOf<T>* wire = nullptr;
   Cycle latency = 1;
 
   Cycle next() const { return wire->packets.next(); }
-  const Token& front() const { return wire->packets.front(); }
-  Token take(Cycle now) {
+  const T& front() const { return wire->packets.front(); }
+  T take(Cycle now) {
     wire->credits.send(now + latency, {});
     return wire->packets.take();
   }
@@ -33,16 +39,17 @@ struct InPort {
 
 /// Where packets leave: those in hand, and the near end of a link. A packet occupies the link for as many cycles
 /// as it has widths; its head arrives `latency` cycles after it started, its tail accordingly later.
-class OutPort {
+template <class T>
+class OutPortOf {
  public:
-  OutPort(Wire& wire, Cycle latency, std::uint32_t depth, std::size_t places)
+  OutPortOf(WireOf<T>& wire, Cycle latency, std::uint32_t depth, std::size_t places)
       : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
 
   bool has_place() const { return queue_.size() + reserved_ < places_; }
   void reserve() { ++reserved_; }
   void release() { --reserved_; }
   /// `ready`: not before then. `cut_through`: the receiver passes it on without waiting for the tail.
-  void push(const Token& token, Cycle ready, bool cut_through) { queue_.push_back({token, ready, cut_through}); }
+  void push(const T& token, Cycle ready, bool cut_through) { queue_.push_back({token, ready, cut_through}); }
 
   void take_credits(Cycle now) {
     while (wire_->credits.next() <= now) {
@@ -61,19 +68,26 @@ class OutPort {
       stalled_ += now - blocked_since_;
       blocked_since_ = kNever;
     }
-    const Entry& entry = queue_.front();
-    const Cycle cycles = entry.token.link_cycles;
-    wire_->packets.send(now + latency_ + (entry.cut_through ? 0 : cycles - 1), entry.token);
-    --credits_;
-    free_at_ = now + cycles;
-    busy_ += cycles;
-    ++packets_;
+    start(queue_.front(), now);
     queue_.pop_front();
     return true;
   }
   /// Free places of the receiver's queue that nothing in hand will take.
   std::int64_t spare_places() const {
     return static_cast<std::int64_t>(credits_) - static_cast<std::int64_t>(queue_.size() + reserved_);
+  }
+  /// Whether, with nothing in hand, launch() may send something that leaves the receiver `places` - 1 free places.
+  /// Takes credits when it needs them.
+  bool open(Cycle now, std::uint32_t places) {
+    if (credits_ < places) take_credits(now);
+    return queue_.empty() && free_at_ <= now && credits_ >= places;
+  }
+  /// Sends what has not been in hand.
+  void launch(const T& token, Cycle now, bool cut_through) { start({token, now, cut_through}, now); }
+  /// When it will be open(), as far as is known and if nothing else is sent before.
+  Cycle opens(std::uint32_t places) const {
+    if (!queue_.empty()) return kNever;
+    return credits_ >= places ? free_at_ : std::max(free_at_, wire_->credits.next());
   }
   /// When something can be sent, as far as is known; `want_credit`: wake for a credit even with nothing in hand.
   Cycle next(bool want_credit) const {
@@ -84,7 +98,8 @@ class OutPort {
 
   bool empty() const { return queue_.empty(); }
   std::size_t in_hand() const { return queue_.size(); }
-  PacketId front() const { return queue_.front().token.packet; }
+  PacketId front() const { return queue_.front().token.packet; }   ///< of Tokens
+  const T& first() const { return queue_.front().token; }
   bool blocked() const { return blocked_since_ != kNever; }
   Cycle busy() const { return busy_; }          ///< cycles in which the link moved something
   Cycle stalled() const { return stalled_; }    ///< cycles in which a packet waited for a credit
@@ -92,17 +107,31 @@ class OutPort {
 
  private:
   struct Entry {
-    Token token;
+    T token;
     Cycle ready = 0;
     bool cut_through = false;
   };
-  Wire* wire_;
+
+  void start(const Entry& entry, Cycle now) {
+    const Cycle cycles = entry.token.link_cycles;
+    wire_->packets.send(now + latency_ + (entry.cut_through ? 0 : cycles - 1), entry.token);
+    --credits_;
+    free_at_ = now + cycles;
+    busy_ += cycles;
+    ++packets_;
+  }
+
+  WireOf<T>* wire_;
   Cycle latency_;
   std::uint32_t credits_;
   std::size_t places_, reserved_ = 0;
-  std::deque<Entry> queue_;
+  Fifo<Entry> queue_;
   Cycle free_at_ = 0, busy_ = 0, stalled_ = 0, blocked_since_ = kNever;
   std::uint64_t packets_ = 0;
 };
+
+using Wire = WireOf<Token>;
+using InPort = InPortOf<Token>;
+using OutPort = OutPortOf<Token>;
 
 }  // namespace carousel::ringbus::cycle

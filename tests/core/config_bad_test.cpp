@@ -148,8 +148,17 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:20: shading.effects: choosing effects is not built yet; expected auto"},
         BadConfig{"IdleResourcesShade", SCENE "shading: {idle_resources_shade: true}\n",
                   "test.yaml:2:33: shading.idle_resources_shade: true is not built yet; expected false"},
-        BadConfig{"Traffic", "workload: {traffic: {rate: 0.5}}\n",
-                  "test.yaml:1:11: workload: traffic is not built yet; expected rays or {rays_from: FILE}"},
+        BadConfig{"TrafficNative", "workload: {traffic: {rate: 0.5}}\nengine: {kind: native}\n",
+                  "test.yaml:2:16: engine.kind: workload: traffic runs in virtual time; expected cycle, found native"},
+        BadConfig{"TrafficRate", "engine: {kind: cycle}\nworkload: {traffic: {rate: 0}}\n",
+                  "test.yaml:2:28: workload.traffic.rate: expected a number above 0 to 1 (packets per resource and cycle), "
+                  "found 0"},
+        BadConfig{"TrafficHotspot",
+                  "engine: {kind: cycle}\nworkload: {traffic: {pattern: hotspot, hotspot: 8}}\n",
+                  "test.yaml:2:49: workload.traffic.hotspot: expected a resource from 0 to 7, found 8"},
+        BadConfig{"TrafficBurst", "engine: {kind: cycle}\nworkload: {traffic: {pattern: bursty, rate: 0.9}}\n",
+                  "test.yaml:2:45: workload.traffic.rate: bursts of 8 packets make at most 0.8889 packets per cycle, "
+                  "found 0.9"},
         BadConfig{"FlowNone", SCENE "topology: {flow: none}\n",
                   "test.yaml:2:18: topology.flow: none lets the links fill up and stop; expected credits or "
                   "bubble, or "

@@ -27,6 +27,7 @@ inline Report sample_report() {
   b.stalls.link = 4;
   r.resources = {a, b};
   r.links = {{0, 1, 16, 600, 1.5, 9, 7}, {1, 0, 16, 600, 2.5, 11, 0}};
+  r.traffic = {1000, 1000, 4, 100, 5000, 900, 0.1, 0.09, 3.5, 16, {17.5, 16, 20, 31, 47}, {0.3, 0.6}, 12000};
   r.shading = {2, 990, 0, std::nullopt, {{"shadow", true, "one light"}}};
   r.verify = {990, 1, "pixel 3"};
   r.digest = {"0123", "4567"};
