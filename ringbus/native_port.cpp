@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -74,7 +75,10 @@ bool NativePort::receive() {
     // On a ring, what cannot leave must not come in, or the hand would be a queue without a bound. Point to
     // point, every packet there is would fit into the hand, so all may come in.
     if (!machine_.topology.direct() && !exits_[entry.direction].in_hand.empty()) continue;
-    const std::size_t count = entry.link->try_receive(batch);
+    // No more than a link holds, though the sender may refill it meanwhile: a hand that needs more places than the
+    // next resource can free at once breaks the bubble rule (the ring can fill up, every hand with something left).
+    const std::size_t most = std::min(batch.size(), entry.link->capacity());
+    const std::size_t count = entry.link->try_receive(std::span(batch).first(most));
     for (std::size_t k = 0; k < count; ++k) arrive(batch[k]);
     moved |= count > 0;
   }
