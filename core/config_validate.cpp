@@ -114,7 +114,8 @@ class Rules {
     if (c.workload.kind != WorkloadConfig::Kind::kTraffic) return;
     if (!cycle())
       issue("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
-    if (c.topology.shape == TopologyShape::kHierarchical || c.topology.shape == TopologyShape::kBus)
+    if (c.topology.shape == TopologyShape::kHierarchical || c.topology.shape == TopologyShape::kBus ||
+        c.topology.shape == TopologyShape::kIndependent)
       issue("topology.shape", fmt::format("there is no traffic on {}; expected ring, bidirectional, multi_ring or "
                                           "point_to_point",
                                           enum_name(c.topology.shape)));

@@ -159,6 +159,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"TrafficBurst", "engine: {kind: cycle}\nworkload: {traffic: {pattern: bursty, rate: 0.9}}\n",
                   "test.yaml:2:45: workload.traffic.rate: bursts of 8 packets make at most 0.8889 packets per cycle, "
                   "found 0.9"},
+        BadConfig{"TrafficWithoutLinks",
+                  "engine: {kind: cycle}\ntopology: {shape: independent}\nworkload: {traffic: {rate: 0.5}}\n",
+                  "test.yaml:2:19: topology.shape: there is no traffic on independent; expected ring, bidirectional, "
+                  "multi_ring or point_to_point"},
         BadConfig{"FlowNone", SCENE "topology: {flow: none}\n",
                   "test.yaml:2:18: topology.flow: none lets the links fill up and stop; expected credits or "
                   "bubble, or "

@@ -122,9 +122,10 @@ TEST(ShadeHelpers, SendsOneRayToEachThatIsIdle) {
   EXPECT_FALSE(helpers.any());
 }
 
-Outcome run_with(TestScene& scene, Config config, TopologyShape shape, bool help) {
+Outcome run_with(TestScene& scene, Config config, TopologyShape shape, bool help, std::size_t threads = 1) {
   Cell cell;
   cell.config = std::move(config);
+  cell.threads = threads;
   cell.config.topology.shape = shape;
   cell.config.shading.idle_resources_shade = help;
   return run_cell(scene, cell);
@@ -148,6 +149,9 @@ TEST(IdleResourcesShade, LiftsAMachineThatShadingLimits) {
     // Workers and resources together shade every ray once, and the workers make the camera rays.
     EXPECT_GE(shading + helped.result.cycle->shading_busy, 200 * (scene.rays() + 2000));
     EXPECT_LT(helped.result.cycle->cycles * 2, alone.result.cycle->cycles) << enum_name(shape);
+    const Outcome together = run_with(scene, config, shape, true, 3);
+    ASSERT_EQ(together.fault, "");
+    EXPECT_TRUE(*together.result.cycle == *helped.result.cycle) << enum_name(shape);
   }
 }
 

@@ -71,6 +71,19 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
   }
 }
 
+TEST(WhatIf, LiftsWhatTheMachineHas) {
+  const auto has = [](const Config& config, const std::string& name) {
+    const std::vector<Lift> all = lifts(config);
+    return std::any_of(all.begin(), all.end(), [&](const Lift& lift) { return lift.name == name; });
+  };
+  Config c = generous_machine();
+  c.topology.link.latency_cycles = 4;
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"}) EXPECT_TRUE(has(c, name)) << name;
+  c.topology.shape = TopologyShape::kIndependent;
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"}) EXPECT_FALSE(has(c, name)) << name;
+  EXPECT_TRUE(has(c, "memory_latency"));
+}
+
 std::int64_t pick(std::mt19937& random, std::initializer_list<std::int64_t> values) {
   return *(values.begin() + static_cast<std::ptrdiff_t>(random() % values.size()));
 }
