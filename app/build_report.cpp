@@ -148,6 +148,10 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     (*r.links)[i].utilisation = ratio(use.busy, c.cycles);
     (*r.links)[i].cycles = report::LinkCycles{use.busy, use.stalled, c.cycles - use.busy - use.stalled};
   }
+  ringbus::cycle::LatencyHistogram trips;
+  for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
+  if (r.packets && trips.count() > 0)
+    r.packets->latency = report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
   report::Memory& memory = r.memory.emplace();
   for (const ringbus::cycle::CacheResult& cache : c.caches)
     memory.caches.push_back({cache.requests, cache.lines, cache.hits, cache.merged, cache.misses,

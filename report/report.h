@@ -79,6 +79,7 @@ struct Tests {
 struct Packets {
   std::uint64_t issued = 0, retired = 0, hops = 0;
   double rays_mean = 0, local_fraction = 0, bubble_fraction = 0;
+  std::optional<Latency> latency{};
 };
 
 struct Collections {

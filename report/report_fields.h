@@ -114,6 +114,7 @@ void describe(V& v, Packets& r) {
   v.field("local_fraction", r.local_fraction, "",
           "of a packet's members, those that live where it is looked at");
   v.field("bubble_fraction", r.bubble_fraction, "", "of the visits of packets, those without a local ray");
+  v.section("latency", r.latency, "from the issue queue until they are home");
 }
 
 template <class V>

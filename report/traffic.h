@@ -4,7 +4,7 @@
 
 namespace carousel::report {
 
-struct TrafficLatency {
+struct Latency {
   double mean = 0;
   std::uint64_t p50 = 0, p95 = 0, p99 = 0, max = 0;
 };
@@ -20,7 +20,7 @@ struct Traffic {
   std::uint64_t measured = 0;
   double offered = 0, accepted = 0;
   double routers_mean = 0, zero_load_latency = 0;
-  TrafficLatency latency;
+  Latency latency;
   LinkUse link_utilisation;
   std::uint64_t flit_hops = 0;
 };

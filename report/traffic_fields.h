@@ -7,7 +7,7 @@ namespace carousel::report {
 // As report/report_fields.h, for the section `traffic`.
 
 template <class V>
-void describe(V& v, TrafficLatency& r) {
+void describe(V& v, Latency& r) {
   v.field("mean", r.mean, "cycles", "from creation to delivery of the last flit");
   v.field("p50", r.p50, "cycles", "half of the packets took no longer");
   v.field("p95", r.p95, "cycles", "19 of 20 packets took no longer");

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ringbus/cycle/clock.h"
+#include "ringbus/cycle/latency_histogram.h"
 #include "ringbus/cycle/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -41,6 +42,8 @@ struct TileResult {
   UnitLedger box, triangle, transform;       ///< busy within TileState::kTesting
   UnitLedger handler;
   StackLedger stack;
+  LatencyHistogram round_trips;              ///< of its packets, from the issue queue until they are home
+  Cycle packet_cycles = 0;                   ///< its packets under way, summed over the cycles
   friend bool operator==(const TileResult&, const TileResult&) = default;
 };
 

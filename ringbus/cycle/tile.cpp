@@ -37,7 +37,9 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       fetch_by_resource_(machine.config.memory.fetch == MemoryConfig::Fetch::kResource),
       bubble_(machine.config.topology.flow == Flow::kBubble),
       free_(machine.topology.directions()),
-      contexts_(static_cast<std::size_t>(testers_of(machine.config, id).contexts)) {
+      contexts_(static_cast<std::size_t>(testers_of(machine.config, id).contexts)),
+      trips_(static_cast<std::uint32_t>(id.value * machine.topology.directions() * machine.packets_per_direction()),
+             machine.topology.directions() * machine.packets_per_direction()) {
   resource_.set_subtree_tracer(&walk_);
   for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
     if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
@@ -251,6 +253,7 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
 void Tile::come_home(PacketId id) {
   Packet& packet = machine_.packet(id);
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
+  trips_.return_home(id.value, now_);
   resource_.retire(packet);
   free_[packet.direction].push_back(id);
 }
@@ -348,6 +351,7 @@ bool Tile::handle_issue(Cycle now) {
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   issue_.pop_front();
+  trips_.leave(id.value, now);
   trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
   occupy_handler(now, packet.members.size());
   if (tested) {
@@ -442,6 +446,8 @@ TileResult Tile::result() const {
   t.triangle.busy = tester_.triangle.busy();
   t.transform.busy = tester_.transform.busy();
   t.handler.busy = handler_busy_;
+  t.round_trips = trips_.latency();
+  t.packet_cycles = trips_.packet_cycles();
   return t;
 }
 

@@ -11,6 +11,7 @@
 #include "ringbus/cycle/packet_size.h"
 #include "ringbus/cycle/resource_agent.h"
 #include "ringbus/cycle/shade_help.h"
+#include "ringbus/cycle/round_trips.h"
 #include "ringbus/cycle/shape_port.h"
 #include "ringbus/cycle/state_clock.h"
 #include "ringbus/cycle/subtree_walk.h"
@@ -126,6 +127,7 @@ class Tile final : public ResourceAgent {
   std::vector<Context> contexts_;
   std::deque<NewRays> waiting_;
   bool storage_full_ = false;
+  RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;   // packets without rays here, and their members
   StateClock<TileState, kTileStates> clock_;
 };

@@ -71,6 +71,9 @@ TEST(CycleEngine, LedgersAddUp) {
       const cycle::Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
       for (const cycle::UnitLedger& bank : {tile.box, tile.triangle, tile.transform}) EXPECT_LE(bank.busy, testing);
       EXPECT_LE(tile.handler.busy, c.cycles);
+      // Little's law: packets under way = rate times time, over a whole run without an error.
+      EXPECT_EQ(tile.round_trips.count(), out.result.resources[r].packets_issued);
+      EXPECT_EQ(tile.packet_cycles, tile.round_trips.sum());
       // Jobs are shaded whole.
       const cycle::Cycle shaded = tile.states[static_cast<std::size_t>(cycle::TileState::kShading)];
       const cycle::Cycle job = static_cast<cycle::Cycle>(cell.config.shading.cycles_per_shade);
