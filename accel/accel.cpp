@@ -182,8 +182,10 @@ class AccelBuilder {
 
 }  // namespace
 
-Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor) {
-  return AccelBuilder(scene, config, executor).run();
+Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy) {
+  Accel accel = AccelBuilder(scene, config, executor).run();
+  accel.accuracy = accuracy;
+  return accel;
 }
 
 }  // namespace carousel::accel

@@ -29,6 +29,7 @@ struct Accel {
   BlockArray blocks;
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
   NodeKey root;                          ///< as root_key()
+  AccuracyConfig accuracy;               ///< arithmetic of the tests on it
   int width = kMaxWidth;                 ///< children a node at most
   int max_depth = 0;                     ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
   std::size_t baked_instances = 0;       ///< singular transforms, stored as world-space triangles
@@ -51,8 +52,9 @@ struct Accel {
   std::uint32_t triangles_below(NodeKey key) const;
 };
 
-/// Deterministic for any executor. Throws SceneError when the scene has more nodes or blocks than a NodeRef
+/// Deterministic for any executor; the structure itself is the same for every `accuracy`. Throws SceneError when the scene has more nodes or blocks than a NodeRef
 /// can name.
-Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor);
+Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
+            const AccuracyConfig& accuracy = {});
 
 }  // namespace carousel::accel
