@@ -68,7 +68,10 @@ std::vector<Lift> lifts(const Config& config) {
 }
 
 std::uint64_t pilot_paths(const Config& config) {
-  return 8 * static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
+  // So many that what caches miss at first counts for little: small machines, whose slots turn over sooner, otherwise
+  // take their memory for slower than it is.
+  constexpr std::int64_t kWarm = 6000;
+  return static_cast<std::uint64_t>(std::max(kWarm, 8 * config.topology.resources * config.rays.slots_per_resource));
 }
 
 double steady_rate(const cycle::CycleResult& result, std::uint64_t rays) {

@@ -45,8 +45,8 @@ using WorkloadFactory = std::function<std::unique_ptr<Workload>(const Config&)>;
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const WorkloadFactory& make_workload, std::uint64_t paths, const RunOptions& options);
 
-/// Enough paths to tell: the slots turn over so often that even twice of them reach their steady state. A path is
-/// some two or three rays.
+/// Enough paths to tell: the slots turn over so often that even twice of them reach their steady state, and caches are
+/// warm. A path is some two or three rays.
 std::uint64_t pilot_paths(const Config& config);
 
 /// Rays per kilocycle between fill and drain; of the whole run when that was too short to tell.
