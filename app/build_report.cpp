@@ -145,7 +145,11 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   }
   for (std::size_t i = 0; r.links && i < r.links->size(); ++i) {
     const ringbus::cycle::UnitLedger& use = c.links[i].use;
+    const ringbus::cycle::QueueLedger& queue = c.links[i].queue;
     (*r.links)[i].utilisation = ratio(use.busy, c.cycles);
+    (*r.links)[i].occupancy_mean = ratio(queue.packet_cycles, c.cycles);
+    (*r.links)[i].occupancy_max = queue.most;
+    (*r.links)[i].stalled = use.stalled;
     (*r.links)[i].cycles = report::LinkCycles{use.busy, use.stalled, c.cycles - use.busy - use.stalled};
   }
   ringbus::cycle::LatencyHistogram trips;

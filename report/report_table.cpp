@@ -74,9 +74,10 @@ void link_line(Table& table, const std::vector<Link>& links) {
     depth = std::max(depth, link.depth);
     mean += link.occupancy_mean * static_cast<double>(link.packets);
   }
-  table.line("links", "{} of depth {}   {} packets   occupancy {:.1f} mean, {} most   {} refused",
-             links.size(), depth, grouped(packets), ratio(mean, double(packets)), occupancy,
-             grouped(stalled));
+  const bool cycles = !links.empty() && links.front().cycles.has_value();
+  table.line("links", "{} of depth {}   {} packets   occupancy {:.1f} mean, {} most   {} {}", links.size(), depth,
+             grouped(packets), ratio(mean, double(packets)), occupancy, grouped(stalled),
+             cycles ? "cycles stalled" : "refused");
 }
 
 void test_line(Table& table, const Tests& t) {

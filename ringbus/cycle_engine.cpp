@@ -55,7 +55,9 @@ class CycleRun {
     const std::vector<std::vector<Agent*>> parts = share_out();
     auto last_report = start;
     bool stopped = false;
-    const Cycle reached = run_windows(parts, lookahead(), [&](Cycle) {
+    WakeBoard board(parts);
+    connect(board);
+    const Cycle reached = run_windows(parts, board, lookahead(), [&](Cycle) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
@@ -189,6 +191,34 @@ class CycleRun {
     return parts;
   }
 
+  const Agent& node(ResourceId id) const {
+    if (id.value < tiles_.size()) return *tiles_[id.value];
+    if (bus_) return *bus_;
+    return *bridges_[id.value - tiles_.size()];
+  }
+
+  /// Everything but credits, for which agents look when they need any.
+  void connect(WakeBoard& board) const {
+    for (std::size_t i = 0; i < wires_.size(); ++i) {
+      const Topology::Wire& wire = machine_.topology.wires()[i];
+      board.connect(wires_[i]->packets, node(wire.from), node(wire.to));
+    }
+    for (std::size_t r = 0; r < tiles_.size(); ++r) {
+      const ShapeCache& cache = *caches_[r / static_cast<std::size_t>(config_.memory.shared_by)];
+      board.connect(*new_rays_[r], *shading_, *tiles_[r]);
+      board.connect(*completed_[r], *tiles_[r], *shading_);
+      board.connect(*fetches_[r], *tiles_[r], cache);
+      board.connect(*answers_[r], cache, *tiles_[r]);
+      if (jobs_.empty()) continue;
+      board.connect(*jobs_[r], *shading_, *tiles_[r]);
+      board.connect(*help_[r], *tiles_[r], *shading_);
+    }
+    for (std::size_t c = 0; c < caches_.size(); ++c) {
+      board.connect(*lines_[2 * c], *caches_[c], *memory_);
+      board.connect(*lines_[2 * c + 1], *memory_, *caches_[c]);
+    }
+  }
+
   /// Calls `body` with each wire and which of its node's exits it is.
   template <class Body>
   void for_each_link(const Body& body) const {
@@ -239,7 +269,7 @@ class CycleRun {
     for_each_link([&](const Topology::Wire& wire, std::size_t exit) {
       const OutPort& port = out_of(wire.from)[exit];
       c.hops += port.packets();
-      c.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}});
+      c.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[c.links.size()]->queue});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s});

@@ -35,7 +35,8 @@ class TrafficRun {
     const std::vector<std::vector<Agent*>> parts = share_out();
     auto last_report = start;
     bool stopped = false;
-    run_windows(parts, link_latency(), [&](Cycle reached) {
+    WakeBoard board(parts);   // whose agents are polled
+    run_windows(parts, board, link_latency(), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
@@ -115,7 +116,7 @@ class TrafficRun {
     std::vector<std::size_t> exits(nodes_.size());
     for (const Topology::Wire& wire : topology_.wires()) {
       const TrafficNode::Out& port = nodes_[wire.from.value]->out()[exits[wire.from.value]++];
-      out.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}});
+      out.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[out.links.size()]->queue});
       out.link_packets.push_back(port.packets());
       out.hops += port.packets();
     }

@@ -38,7 +38,10 @@ class Channel {
     }
     tail_block_->items[place] = {arrival, std::move(thing)};
     tail_.store(tail + 1, std::memory_order_release);   // publishes the item, and the block's link
+    if (arrival < *wake_) *wake_ = arrival;
   }
+  /// The earliest arrival that was sent since it was last cleared is kept in `slot`, which is the sender's to write.
+  void wakes(Cycle& slot) { wake_ = &slot; }
 
   /// Arrival of the first thing; kNever when there is none.
   Cycle next() const {
@@ -52,6 +55,19 @@ class Channel {
     arrival_ = kNever;
     if (++head_ % kBlock == 0) emptied_ = true;
     return thing;
+  }
+  /// How many have arrived by `now`.
+  std::size_t arrived(Cycle now) const {
+    const std::size_t end = tail_.load(std::memory_order_acquire);
+    if (head_ == end) return 0;
+    first();   // the head block is the one that holds it
+    const Block* block = head_block_;
+    std::size_t at = head_;
+    for (; at != end; ++at) {
+      if (at != head_ && at % kBlock == 0) block = block->next;
+      if (block->items[at % kBlock].arrival > now) break;
+    }
+    return at - head_;
   }
   std::size_t size() const { return tail_.load(std::memory_order_acquire) - head_; }
 
@@ -84,6 +100,8 @@ class Channel {
   // The sender's.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
+  Cycle unheard_ = kNever;
+  Cycle* wake_ = &unheard_;
   mutable std::atomic<Block*> spare_{nullptr};   // beside them: touched once a block only
 };
 

@@ -47,9 +47,17 @@ struct TileResult {
   friend bool operator==(const TileResult&, const TileResult&) = default;
 };
 
+/// What stood in the queue at the far end of a link.
+struct QueueLedger {
+  Cycle packet_cycles = 0;   ///< packets times the cycles they waited
+  std::uint64_t most = 0;    ///< packets at once
+  friend bool operator==(const QueueLedger&, const QueueLedger&) = default;
+};
+
 struct LinkLedger {
   std::uint32_t from = 0, to = 0;
   UnitLedger use;
+  QueueLedger queue;
   friend bool operator==(const LinkLedger&, const LinkLedger&) = default;
 };
 

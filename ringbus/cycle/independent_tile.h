@@ -28,6 +28,7 @@ class IndependentTile final : public ResourceAgent {
   IndependentTile(ResourceId id, CycleMachine& machine, bool statistics, TraceWindow window, const SidePorts& ports);
 
   Cycle next() const override;
+  bool polled() const override { return false; }
   void run(Cycle end) override;
   std::string describe() const override;
 

@@ -22,6 +22,7 @@ class Memory final : public Agent {
   Memory(const MemoryConfig& config, std::vector<Client> clients);
 
   Cycle next() const override;
+  bool polled() const override { return false; }
   void run(Cycle end) override;
   std::string describe() const override { return ""; }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "ringbus/cycle/channel.h"
+#include "ringbus/cycle/cycle_result.h"
 #include "ringbus/cycle/fifo.h"
 #include "ringbus/cycle/token.h"
 
@@ -12,14 +13,13 @@ namespace carousel::ringbus::cycle {
 /// A place in the receiver's input queue has become free.
 struct Credit {};
 
-// What travels is a T that knows how many cycles it occupies a link, T::link_cycles: a Token, or synthetic
-// traffic.
-
-/// A link between two nodes: packets one way, credits the other.
+/// A link between two nodes: packets one way, credits the other. What travels is a T that knows how many cycles it
+/// occupies a link, T::link_cycles: a Token, or synthetic traffic.
 template <class T>
 struct WireOf {
   Channel<T> packets;
   Channel<Credit> credits;
+  alignas(64) QueueLedger queue;   ///< the receiver's
 };
 
 /// Where packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A place is
@@ -32,8 +32,18 @@ struct InPortOf {
   Cycle next() const { return wire->packets.next(); }
   const T& front() const { return wire->packets.front(); }
   T take(Cycle now) {
+    if (const Cycle arrival = wire->packets.next(); arrival < now) note_wait(arrival, now);
     wire->credits.send(now + latency, {});
     return wire->packets.take();
+  }
+
+ private:
+  void note_wait(Cycle arrival, Cycle now) {
+    QueueLedger& queue = wire->queue;
+    queue.packet_cycles += now - arrival;
+    // What leaves now was there until now. The queue is never longer than at the moment before something leaves it.
+    if (wire->packets.size() > queue.most)
+      queue.most = std::max<std::uint64_t>(queue.most, wire->packets.arrived(now - 1));
   }
 };
 

@@ -26,6 +26,7 @@ class ShadingAgent final : public Agent {
   ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window, std::vector<SidePorts> clients);
 
   Cycle next() const override;
+  bool polled() const override { return false; }
   void run(Cycle end) override;
   std::string describe() const override;
 

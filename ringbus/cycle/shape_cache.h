@@ -29,6 +29,7 @@ class ShapeCache final : public Agent {
              Channel<std::uint64_t>& from_memory);
 
   Cycle next() const override;
+  bool polled() const override { return false; }
   void run(Cycle end) override;
   std::string describe() const override;
 

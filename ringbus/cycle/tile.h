@@ -24,6 +24,8 @@ namespace carousel::ringbus::cycle {
 
 /// Fetches that a packet in a subtree has under way at most: a ray each, and no more than this.
 inline constexpr std::size_t kSubtreeFetches = 32;
+/// Set in the tag of a fetch that is for a test context; the others are for the issue queue.
+inline constexpr std::uint32_t kContextTag = 1u << 31;
 
 /// A resource with a clock: input queues, a handler that looks through a packet's IDs, testers, hands to leave
 /// by, and a queue of its own packets whose shapes are being fetched.
@@ -43,6 +45,7 @@ class Tile final : public ResourceAgent {
   Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, TraceWindow window, Ports ports);
 
   Cycle next() const override;
+  bool polled() const override { return may_send_; }   // credits come back unannounced
   void run(Cycle end) override;
   std::string describe() const override;
 
@@ -73,12 +76,17 @@ class Tile final : public ResourceAgent {
   };
 
   std::uint64_t hops() const;
+  Cycle next_arrival() const;
+  Cycle next_beside_ring() const;
+  Cycle next_in_hand() const;
+  bool wants_credit() const;
   bool at_rest() const;
   void step(Cycle now);
   void take_answers(Cycle now);
   void take_new_rays(Cycle now);
   bool admit();
   bool finish_tests(Cycle now);
+  bool pass_by(Cycle now);
   bool cut_through(Cycle now);
   bool handle(Cycle now);
   bool handle_arrival(std::size_t d, Cycle now);
@@ -116,9 +124,11 @@ class Tile final : public ResourceAgent {
   PacketSize packet_size_;
   Cycle link_bytes_, ids_per_cycle_;
   std::size_t issue_places_;
-  bool stays_, visit_all_, fetch_by_resource_, bubble_;
+  bool stays_, visit_all_, cuts_through_, fetch_by_resource_, bubble_;
 
   Cycle now_ = 0;
+  Cycle next_here_ = kNever;   // of tests and handler, as of the last step
+  bool may_send_ = false;      // likewise: something is in hand, or waits for credits
   Cycle handler_free_ = 0, handler_busy_ = 0;
   std::size_t next_in_ = 0, next_direction_ = 0;
   std::vector<std::vector<PacketId>> free_;   // own packets at home, by direction

@@ -4,8 +4,11 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "ringbus/ray_id.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -40,8 +43,9 @@ class Barrier {
 
 class WindowRun {
  public:
-  WindowRun(std::span<const std::vector<Agent*>> parts, Cycle lookahead, const std::function<bool(Cycle)>& go_on)
-      : parts_(parts), lookahead_(lookahead), go_on_(go_on), barrier_(parts.size()), next_(parts.size()) {}
+  WindowRun(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
+            const std::function<bool(Cycle)>& go_on)
+      : parts_(parts), board_(board), lookahead_(lookahead), go_on_(go_on), barrier_(parts.size()), next_(parts.size()) {}
 
   Cycle run() {
     {
@@ -60,11 +64,10 @@ class WindowRun {
 
   void work(std::size_t thread) {
     const std::vector<Agent*>& agents = parts_[thread];
-    std::vector<Cycle> wake(agents.size());
+    Schedule schedule(agents);
     const bool alone = parts_.size() == 1;
     for (std::uint64_t window = 0;; ++window) {
-      Cycle first = kNever;
-      for (std::size_t i = 0; i < agents.size(); ++i) first = std::min(first, wake[i] = agents[i]->next());
+      Cycle first = look(thread, schedule);
       if (!alone) {
         next_[thread].cycle = first;
         barrier_.wait();
@@ -72,7 +75,7 @@ class WindowRun {
       }
       // Everybody comes to the same conclusion. `stop_` was written before the barrier.
       if (first == kNever || stop_.load(std::memory_order_relaxed)) break;
-      run_window(agents, wake, first + lookahead_);
+      run_window(agents, schedule, first + lookahead_);
       if (thread == 0) {
         reached_ = first;
         if (window % kLook == 0 && !go_on_(first)) stop_.store(true, std::memory_order_relaxed);
@@ -81,10 +84,48 @@ class WindowRun {
     }
   }
 
-  void run_window(const std::vector<Agent*>& agents, const std::vector<Cycle>& wake, Cycle end) {
+  /// When each agent of a thread is next to run, and which of them must be asked before every window.
+  struct Schedule {
+    std::vector<Cycle> wake;
+    std::vector<std::uint8_t> polled;
+
+    explicit Schedule(const std::vector<Agent*>& agents) {
+      for (const Agent* agent : agents) {
+        wake.push_back(agent->next());
+        polled.push_back(agent->polled());
+      }
+    }
+  };
+
+  /// Between windows: what has been heard. Returns the earliest time at which an agent of the thread has to run.
+  Cycle look(std::size_t thread, Schedule& schedule) {
+    std::vector<Cycle>& wake = schedule.wake;
+    for (std::size_t from = 0; from < parts_.size(); ++from) {
+      std::vector<Cycle>& heard = board_.row(thread, from);
+      for (std::size_t i = 0; i < wake.size(); ++i) {
+        wake[i] = std::min(wake[i], heard[i]);
+        heard[i] = kNever;
+      }
+    }
+    Cycle first = kNever;
+    for (std::size_t i = 0; i < wake.size(); ++i) {
+      if (schedule.polled[i]) wake[i] = parts_[thread][i]->next();
+      first = std::min(first, wake[i]);
+    }
+    return first;
+  }
+
+  void run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle end) {
     try {
-      for (std::size_t i = 0; i < agents.size(); ++i)
-        if (wake[i] < end) agents[i]->run(end);
+      for (std::size_t i = 0; i < agents.size(); ++i) {
+        if (schedule.wake[i] >= end) {
+          if (kChecked && agents[i]->next() < end) throw std::logic_error("an agent was not woken");
+          continue;
+        }
+        agents[i]->run(end);
+        schedule.wake[i] = agents[i]->next();
+        schedule.polled[i] = agents[i]->polled();
+      }
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
@@ -95,6 +136,7 @@ class WindowRun {
   static constexpr std::uint64_t kLook = 4096;
 
   std::span<const std::vector<Agent*>> parts_;
+  WakeBoard& board_;
   Cycle lookahead_;
   const std::function<bool(Cycle)>& go_on_;
   Barrier barrier_;
@@ -107,9 +149,9 @@ class WindowRun {
 
 }  // namespace
 
-Cycle run_windows(std::span<const std::vector<Agent*>> parts, Cycle lookahead,
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
                   const std::function<bool(Cycle)>& go_on) {
-  return WindowRun(parts, lookahead, go_on).run();
+  return WindowRun(parts, board, lookahead, go_on).run();
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "ringbus/cycle/agent.h"
+#include "ringbus/cycle/wake_board.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -15,6 +16,9 @@ namespace carousel::ringbus::cycle {
 /// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `go_on` is called there now and
 /// then with the time reached; when it answers false the run ends early. Exceptions of agents pass through.
 /// Returns the last window's first cycle, the time reached.
-Cycle run_windows(std::span<const std::vector<Agent*>> parts, Cycle lookahead, const std::function<bool(Cycle)>& go_on);
+///
+/// Agents that are not polled() must have all their channels connected to `board`, which was made for `parts`.
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
+                  const std::function<bool(Cycle)>& go_on);
 
 }  // namespace carousel::ringbus::cycle

@@ -1,4 +1,6 @@
 // The cycle engine: the same hits as everybody, and the same cycles for any number of threads.
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "tests/ringbus/identity_cells.h"
@@ -56,7 +58,7 @@ TEST(CycleEngine, TakesTheSameCyclesOnAnyNumberOfThreads) {
 
 TEST(CycleEngine, LedgersAddUp) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
-  std::uint64_t transforms = 0, jobs = 0;
+  std::uint64_t transforms = 0, jobs = 0, waited = 0;
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(40)); ++seed) {
     const Cell cell = random_cell(seed + 1000);
     const Outcome out = run_cell(scene, cell);
@@ -87,6 +89,9 @@ TEST(CycleEngine, LedgersAddUp) {
     std::uint64_t hops = 0;
     for (std::size_t l = 0; l < c.links.size(); ++l) {
       EXPECT_LE(c.links[l].use.busy + c.links[l].use.stalled, c.cycles);
+      EXPECT_LE(c.links[l].queue.most, static_cast<std::uint64_t>(cell.config.topology.link.depth));
+      EXPECT_LE(c.links[l].queue.packet_cycles, c.links[l].queue.most * c.cycles);
+      waited += c.links[l].queue.packet_cycles;
       hops += out.result.links[l].statistics.packets;
     }
     EXPECT_EQ(hops, c.hops);
@@ -101,6 +106,62 @@ TEST(CycleEngine, LedgersAddUp) {
   }
   EXPECT_GT(transforms, 0u);
   EXPECT_GT(jobs, 0u);
+  EXPECT_GT(waited, 0u);
+}
+
+/// Follows a whole run: every ray that is given a slot joins a collection, is handed over and is shaded, in this
+/// order, and no more are under way than there are slots; a packet is out at most once, with one set of rays.
+class Conservation {
+ public:
+  explicit Conservation(std::uint64_t slots) : slots_(slots) {}
+
+  void follow(const cycle::Step& step) {
+    switch (step.kind) {
+      case cycle::StepKind::kPlace: placed_ += step.rays; break;
+      case cycle::StepKind::kNewRays: joined_ += step.rays; break;
+      case cycle::StepKind::kComplete: completed_ += step.rays; break;
+      case cycle::StepKind::kShade: shaded_ += step.rays; break;
+      case cycle::StepKind::kTestedRay: break;
+      case cycle::StepKind::kIssue:
+        ASSERT_TRUE(out_.emplace(step.packet, step.rays).second) << cycle::step_text(step);
+        break;
+      default: {
+        const auto packet = out_.find(step.packet);
+        ASSERT_TRUE(packet != out_.end()) << cycle::step_text(step);
+        if (step.rays == 0) packet->second = 0;   // it carried memberships, and has been to their home
+        ASSERT_EQ(packet->second, step.rays) << cycle::step_text(step);
+        if (step.kind == cycle::StepKind::kRetire) out_.erase(packet);
+      }
+    }
+    ASSERT_TRUE(shaded_ <= completed_ && completed_ <= joined_ && joined_ <= placed_ && placed_ - completed_ <= slots_)
+        << cycle::step_text(step) << ": " << placed_ << " placed, " << joined_ << " joined, " << completed_
+        << " completed, " << shaded_ << " shaded, " << slots_ << " slots";
+  }
+  void expect_all(std::uint64_t rays) const {
+    EXPECT_TRUE(out_.empty());
+    for (const std::uint64_t count : {placed_, joined_, completed_, shaded_}) EXPECT_EQ(count, rays);
+  }
+
+ private:
+  std::uint64_t slots_, placed_ = 0, joined_ = 0, completed_ = 0, shaded_ = 0;
+  std::map<std::uint32_t, std::uint32_t> out_;   // rays by packet
+};
+
+TEST(CycleEngine, ConservesRaysAndPacketsAtEveryStep) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 300, 3);
+  std::size_t epochs = 0;
+  for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(12)); ++seed) {
+    Cell cell = random_cell(seed + 3000);
+    cell.trace = {0, cycle::kNever};
+    const Outcome out = run_cell(scene, cell);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
+    ASSERT_EQ(out.fault, "");
+    Conservation conservation(static_cast<std::uint64_t>(cell.config.rays.slots_per_resource * cell.config.topology.resources));
+    for (const cycle::Step& step : out.result.cycle->steps) ASSERT_NO_FATAL_FAILURE(conservation.follow(step));
+    conservation.expect_all(scene.rays());
+    epochs += out.result.cycle->epochs.digests.size();
+  }
+  EXPECT_GT(epochs, 100u);
 }
 
 // Without flow control a small ring fills up. The run must end and say who waits for whom.

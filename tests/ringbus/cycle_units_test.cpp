@@ -1,4 +1,8 @@
 // The units of a simulated machine one by one, with mock neighbours: exactly the configured latencies.
+#include <algorithm>
+#include <random>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/line_cache.h"
@@ -189,6 +193,32 @@ TEST(Ports, ACreditNeedsTheLinksLatencyToGetBack) {
   EXPECT_TRUE(out.send(10));
   EXPECT_EQ(out.stalled(), 9u);
   EXPECT_FALSE(out.blocked());
+}
+
+// The ledger of a link's queue against counting, cycle by cycle, what has come and not been taken.
+TEST(Ports, QueueLedgerIsWhatCountingEveryCycleGives) {
+  std::mt19937 random(7);
+  Wire wire;
+  OutPort out(wire, 3, 1000, 1000);
+  InPort in{&wire, 3};
+  std::vector<Cycle> arrivals;
+  std::size_t taken = 0, sent = 0;
+  Cycle counted = 0;
+  std::uint64_t most = 0;
+  for (Cycle now = 1; taken < 500; ++now) {
+    if (sent < 500 && random() % 2 == 0) out.push(packet(static_cast<std::uint32_t>(sent++), 1), now, false);
+    if (out.send(now)) arrivals.push_back(now + 3);
+    // A receiver that pauses, and then takes several at once.
+    if (now / 16 % 3 != 0)
+      for (std::uint32_t n = random() % 3; n > 0 && in.next() <= now; --n, ++taken) in.take(now);
+    const auto come = static_cast<std::uint64_t>(
+        std::count_if(arrivals.begin(), arrivals.end(), [&](Cycle at) { return at <= now; }));
+    counted += come - taken;   // in the queue from now to now + 1
+    most = std::max(most, come - taken);
+  }
+  EXPECT_EQ(wire.queue.packet_cycles, counted);
+  EXPECT_EQ(wire.queue.most, most);
+  EXPECT_GT(most, 8u);
 }
 
 TEST(Ports, OpenLeavesTheReceiverPlaces) {

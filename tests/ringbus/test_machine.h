@@ -32,6 +32,7 @@ struct Cell {
   Config config;
   std::size_t threads = 1;
   bool tight_storage = false;   ///< bounded collection storage at its least
+  cycle::TraceWindow trace{};   ///< of the cycle engine
 
   std::string text() const {
     const Config& c = config;
@@ -131,6 +132,7 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   ScatterWorkload workload = scene.workload();
   RunOptions options;
   options.threads = cell.threads;
+  options.trace = cell.trace;
   Outcome out;
   try {
     accel::select_simd_target(c.engine.simd);

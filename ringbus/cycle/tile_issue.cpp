@@ -1,0 +1,81 @@
+// A packet's start: from a ready collection by the issue queue, where it waits for its shapes, to the handler.
+#include "ringbus/cycle/tile.h"
+
+#include <algorithm>
+
+namespace carousel::ringbus::cycle {
+
+bool Tile::may_inject(const Packet& packet) const {
+  const OutPort& out = ports_.out[exit_of(packet)];
+  // The bubble rule also leaves a place for the ring's own traffic.
+  return out.has_place() && (!bubble_ || !ports_.out_to.empty() || out.spare_places() >= 2);
+}
+
+bool Tile::handle_issue(Cycle now) {
+  if (issue_.empty() || !issue_.front().ready) return false;
+  const PacketId id = issue_.front().packet;
+  Packet& packet = machine_.packet(id);
+  const bool travels = !stays_ && machine_.topology.hops(packet) > 0;
+  if (travels && !may_inject(packet)) return false;
+  const bool tested = packet.kind == PacketKind::kTest && machine_.topology.wanted(packet, id_);
+  Context* context = tested ? free_context() : nullptr;
+  if (tested && context == nullptr) return false;
+  issue_.pop_front();
+  trips_.leave(id.value, now);
+  trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
+  occupy_handler(now, packet.members.size());
+  if (tested) {
+    if (travels) ports_.out[exit_of(packet)].reserve();
+    begin_test(*context, id, handler_free_);
+    return true;
+  }
+  if (packet.kind == PacketKind::kTest) {
+    ++passed_;
+    passed_rays_ += packet.members.size();
+  }
+  depart(id, handler_free_, false);
+  return true;
+}
+
+std::optional<PacketId> Tile::free_packet() {
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    std::vector<PacketId>& free = free_[(next_direction_ + i) % free_.size()];
+    if (free.empty()) continue;
+    const PacketId id = free.back();
+    free.pop_back();
+    next_direction_ = (next_direction_ + i + 1) % free_.size();
+    return id;
+  }
+  return std::nullopt;
+}
+
+bool Tile::fill_issue(Cycle now) {
+  bool moved = false;
+  while (issue_.size() < issue_places_ && !resource_.idle()) {
+    // Collections that are not full go only when there is nothing better to do: waiting fills them.
+    const bool nothing_else =
+        issue_.empty() && handler_free_ <= now && testers_free() && !help_.holds() &&
+        std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
+    const std::optional<PacketId> id = free_packet();
+    if (!id) return moved;
+    Packet& packet = machine_.packet(*id);
+    const Resource::Offer offer = resource_.offer(nothing_else, packet);
+    storage_full_ = offer == Resource::Offer::kStorage;
+    if (offer != Resource::Offer::kPacket) {
+      free_[packet.direction].push_back(*id);
+      return moved;
+    }
+    moved = true;
+    Issue issue{*id, next_tag_, machine_.memory.strip(packet.key), true};
+    const bool brings_shapes = packet.kind == PacketKind::kTest && !fetch_by_resource_ && !resource_.is_treelet(packet.key);
+    if (brings_shapes && !shapes_.has(issue.strip)) {
+      issue.ready = false;
+      fetch(issue.strip, issue.tag, now);
+      next_tag_ = (next_tag_ + 1) & ~kContextTag;
+    }
+    issue_.push_back(issue);
+  }
+  return moved;
+}
+
+}  // namespace carousel::ringbus::cycle
