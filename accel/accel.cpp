@@ -42,9 +42,10 @@ scene::Mesh bake(const scene::Mesh& mesh, const scene::Affine& m) {
 
 class AccelBuilder {
  public:
-  AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor)
+  AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy)
       : scene_(scene), config_(config), executor_(executor) {
     accel_.width = static_cast<int>(config.width);
+    accel_.accuracy = accuracy;
   }
 
   Accel run() {
@@ -64,7 +65,7 @@ class AccelBuilder {
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const scene::Instance& instance = scene_.instances[i];
       const scene::Mesh& mesh = scene_.meshes[instance.mesh.value];
-      if (make_transform(instance.world_from_model, accel_.instances[i].transform)) {
+      if (make_transform(instance.world_from_model, accel_.instances[i].transform, accel_.accuracy.transform)) {
         auto& shared = blas_of_mesh[instance.mesh.value];
         if (!shared) {
           shared = static_cast<std::uint32_t>(sources_.size());
@@ -127,7 +128,8 @@ class AccelBuilder {
       node.strip_size = placed.blas.tree.root_strip_size;
       node.triangles = placed.blas.tree.triangles;
       const bool baked = sources_[blas_of_[i]] != &scene_.meshes[scene_.instances[i].mesh.value];
-      node.world = baked ? placed.blas.box : world_box(scene_.instances[i].world_from_model, placed.blas.box);
+      node.world = baked ? placed.blas.box
+                         : world_box(scene_.instances[i].world_from_model, placed.blas.box, accel_.accuracy.transform);
       blas_depth = std::max(blas_depth, placed.blas.tree.depth);
       BuildPrimitive p;
       p.lo = node.world.lo;
@@ -183,9 +185,7 @@ class AccelBuilder {
 }  // namespace
 
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy) {
-  Accel accel = AccelBuilder(scene, config, executor).run();
-  accel.accuracy = accuracy;
-  return accel;
+  return AccelBuilder(scene, config, executor, accuracy).run();
 }
 
 }  // namespace carousel::accel

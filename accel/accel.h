@@ -52,8 +52,8 @@ struct Accel {
   std::uint32_t triangles_below(NodeKey key) const;
 };
 
-/// Deterministic for any executor; the structure itself is the same for every `accuracy`. Throws SceneError when the scene has more nodes or blocks than a NodeRef
-/// can name.
+/// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
+/// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
             const AccuracyConfig& accuracy = {});
 

@@ -56,7 +56,7 @@ Aabb box_of(const std::array<Vec3, 3>& p) {
 
 }  // namespace
 
-Hit brute_force(const scene::Scene& scene, const RayRequest& request) {
+Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy) {
   Hit best;
   if (!valid(request.ray)) return best;
   best.t = request.ray.tmax;
@@ -65,7 +65,7 @@ Hit brute_force(const scene::Scene& scene, const RayRequest& request) {
     const scene::Affine& m = scene.instances[i].world_from_model;
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh.value];
     InstanceTransform transform;
-    const bool baked = !make_transform(m, transform);
+    const bool baked = !make_transform(m, transform, accuracy.transform);
     if (baked) transform = InstanceTransform{};
     const auto triangle = [&](std::uint32_t primitive) {
       std::array<Vec3, 3> p;
@@ -78,7 +78,7 @@ Hit brute_force(const scene::Scene& scene, const RayRequest& request) {
     Aabb model_box;
     for (std::uint32_t primitive = 0; primitive < mesh.triangle_count(); ++primitive)
       model_box.extend(box_of(triangle(primitive)));
-    const Aabb world = baked ? model_box : world_box(m, model_box);
+    const Aabb world = baked ? model_box : world_box(m, model_box, accuracy.transform);
     float instance_entry;
     if (world.empty() || !slab(world_slab, world, request.ray.tmax, instance_entry)) continue;
     const Ray ray = transform.to_model(request.ray);

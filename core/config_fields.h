@@ -179,8 +179,12 @@ template <class V>
 void describe(V& v, AccuracyConfig& c) {
   v.choice("triangle", c.triangle, "ray against triangle");
   v.choice("box", c.box, "ray against box");
-  v.choice("transform", c.transform, "ray from world to model space");
-  v.choice("spawn", c.spawn, "how far from its surface a new ray starts");
+  v.choice("transform", c.transform,
+           "ray from world to model space: one inverse matrix; the translation first; that in fp64, rounded once; "
+           "the translation first and a rotation's transpose for its inverse");
+  v.choice("spawn", c.spawn,
+           "how far from its surface a new ray starts: 1e-4 scene units; 256 ulp (Waechter, Binder 2019); as far as "
+           "rounding can reach");
 }
 
 template <class V>

@@ -78,8 +78,6 @@ class Rules {
   void built_accuracy() {
     only("accuracy.triangle", c.accuracy.triangle, TriangleLevel::kWatertight);
     only("accuracy.box", c.accuracy.box, BoxLevel::kConservative);
-    only("accuracy.transform", c.accuracy.transform, TransformLevel::kTwoStep);
-    only("accuracy.spawn", c.accuracy.spawn, SpawnOffset::kBound);
   }
 
   void built_planes_and_bundles() {

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
 #include "accel/slab.h"
+#include "core/config_enums.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
 
@@ -130,6 +132,73 @@ TEST(WorldBox, PrunesNoHitOfTheModel) {
     }
   }
   EXPECT_GT(hits, 10000u);
+}
+
+// A ray from inside the box that the level's rounded transform takes to a point of the model has to be in the world
+// box there, or the box would cut off what the triangles report.
+TEST(WorldBox, HoldsWhatEveryLevelsTransformReaches) {
+  for (const auto& level : kEnumNames<TransformLevel>) {
+    Random random(44);
+    std::size_t reached = 0, beyond_the_corners = 0;
+    for (int i = 0; i < 100000; ++i) {
+      scene::Affine m = random_affine(random);
+      if (i % 4 == 0) m.translation = 1e6f * m.translation;
+      Aabb model;
+      model.extend(random.in_box(Vec3{-3}, Vec3{3}));
+      model.extend(random.in_box(Vec3{-3}, Vec3{3}));
+      InstanceTransform t;
+      if (!make_transform(m, t, level.value)) continue;
+      const Aabb box = world_box(m, model, level.value), tight = world_box(m, model, TransformLevel::kTwoStepDouble);
+      Vec3 corner;   // the outermost along some axis
+      const int axis = static_cast<int>(random.below(3));
+      for (int a = 0; a < 3; ++a) corner[a] = m.linear[a][axis] < 0 ? model.lo[a] : model.hi[a];
+      const Vec3 from = random.in_box(tight.lo, tight.hi);
+      DVec3 target = DMat3(m.linear) * DVec3(corner) + DVec3(m.translation);
+      // Beyond the corner, from hardly to further than the box.
+      target[axis] += std::ldexp(1.2, -static_cast<int>(random.below(12))) * (double(box.hi[axis]) - target[axis]);
+      const Ray world{from, 0, Vec3(target - DVec3(from)), kInfinity};
+      const Ray ray = t.to_model(world);
+      const DVec3 at = DVec3(ray.origin) + DVec3(ray.direction), point = DVec3(world.origin) + DVec3(world.direction);
+      // Rounding takes it to this side of the corner or to that one.
+      if (glm::any(glm::lessThan(at, DVec3(model.lo))) || glm::any(glm::greaterThan(at, DVec3(model.hi)))) continue;
+      ++reached;
+      for (int row = 0; row < 3; ++row) {
+        beyond_the_corners += point[row] < tight.lo[row] || point[row] > tight.hi[row];
+        ASSERT_GE(point[row], box.lo[row]) << level.name << " " << i;
+        ASSERT_LE(point[row], box.hi[row]) << level.name << " " << i;
+      }
+    }
+    EXPECT_GT(reached, 1000u) << level.name;
+    EXPECT_TRUE(level.value != TransformLevel::kInverseMatrix || beyond_the_corners > 100) << beyond_the_corners;
+  }
+}
+
+TEST(Transform, TransposesRotationsAndReflectionsOnly) {
+  const Mat3 turned{{0.8f, 0.6f, 0}, {-0.6f, 0.8f, 0}, {0, 0, 1}}, mirrored{{0.8f, 0.6f, 0}, {0.6f, -0.8f, 0}, {0, 0, 1}};
+  EXPECT_TRUE(is_rotation(turned));
+  EXPECT_TRUE(is_rotation(mirrored));
+  for (const float factor : {1 - 4e-7f, 1 + 4e-7f}) EXPECT_FALSE(is_rotation(factor * turned));
+  EXPECT_FALSE(is_rotation(Mat3({1, 1e-6f, 0}, {0, 1, 0}, {0, 0, 1})));
+  EXPECT_FALSE(is_rotation(Mat3(std::numeric_limits<float>::quiet_NaN())));
+  for (const Mat3& m : {turned, mirrored}) {
+    InstanceTransform t;
+    ASSERT_TRUE(make_transform({m, {1, 2, 3}}, t, TransformLevel::kTransposeIfRotation));
+    EXPECT_TRUE(t.transposed);
+    EXPECT_EQ(t.inverse_linear, glm::transpose(m));
+  }
+  const Mat3 sheared{{1, 0, 0}, {0.5f, 1, 0}, {0, 0, 1}};
+  InstanceTransform t, two_step;
+  ASSERT_TRUE(make_transform({sheared, {1, 2, 3}}, t, TransformLevel::kTransposeIfRotation));
+  ASSERT_TRUE(make_transform({sheared, {1, 2, 3}}, two_step, TransformLevel::kTwoStep));
+  EXPECT_FALSE(t.transposed);
+  EXPECT_EQ(t.inverse_linear, two_step.inverse_linear);
+}
+
+TEST(Transform, OneMatrixThatOverflowsMustBeBaked) {
+  InstanceTransform t;
+  const scene::Affine far{Mat3(1e-10f), Vec3{1e30f}};   // R^-1 T is beyond float, T is not
+  EXPECT_TRUE(make_transform(far, t, TransformLevel::kTwoStep));
+  EXPECT_FALSE(make_transform(far, t, TransformLevel::kInverseMatrix));
 }
 
 TEST(WorldBox, OfNothingIsEmpty) {
