@@ -76,8 +76,6 @@ class Rules {
   }
 
   void built_accuracy() {
-    only("accuracy.triangle", c.accuracy.triangle, TriangleLevel::kWatertight);
-    only("accuracy.box", c.accuracy.box, BoxLevel::kConservative);
     only("accuracy.transform", c.accuracy.transform, TransformLevel::kTwoStep);
     only("accuracy.spawn", c.accuracy.spawn, SpawnOffset::kBound);
   }

@@ -126,10 +126,6 @@ INSTANTIATE_TEST_SUITE_P(
             "CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
             "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
             "multi_ring, hierarchical, point_to_point, bus or independent"},
-        BadConfig{"Triangle", SCENE "accuracy: {triangle: fast}\n",
-                  "test.yaml:2:22: accuracy.triangle: fast is not built yet; expected watertight"},
-        BadConfig{"Box", SCENE "accuracy: {box: plain}\n",
-                  "test.yaml:2:17: accuracy.box: plain is not built yet; expected conservative"},
         BadConfig{"Transform", SCENE "accuracy: {transform: inverse_matrix}\n",
                   "test.yaml:2:23: accuracy.transform: inverse_matrix is not built yet; expected two_step"},
         BadConfig{"Spawn", SCENE "accuracy: {spawn: epsilon}\n",
