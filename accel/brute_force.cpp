@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
+#include "accel/double_slab.h"
+#include "accel/exact_triangle.h"
 #include "accel/ray_check.h"
 #include "accel/slab.h"
 #include "accel/transform.h"
@@ -15,52 +19,81 @@ namespace {
 struct Crossing {
   float t, u, v;
 };
+using Corners = std::array<Vec3, 3>;
 
-// Woop, Benthin, Wald 2013, appendix A, written from the paper for one triangle.
-bool watertight_scalar(const Ray& ray, const std::array<Vec3, 3>& p, Crossing& out) {
+// Woop, Benthin, Wald 2013, appendix A, written from the paper for one triangle; T is the arithmetic.
+template <class T>
+bool watertight_scalar(const Ray& ray, const Corners& p, Crossing& out) {
   const Vec3 d = ray.direction;
   int kz = 0;
   if (std::fabs(d.y) >= std::fabs(d[kz])) kz = 1;
   if (std::fabs(d.z) >= std::fabs(d[kz])) kz = 2;
   int kx = (kz + 1) % 3, ky = (kx + 1) % 3;
   if (d[kz] < 0) std::swap(kx, ky);
-  const float sx = d[kx] / d[kz], sy = d[ky] / d[kz], sz = 1.0f / d[kz];
-  float x[3], y[3], z[3];
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 a = p[i] - ray.origin;
+  const T sx = T{d[kx]} / T{d[kz]}, sy = T{d[ky]} / T{d[kz]}, sz = T{1} / T{d[kz]};
+  T x[3], y[3], z[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const T a[3] = {T{p[i].x} - ray.origin.x, T{p[i].y} - ray.origin.y, T{p[i].z} - ray.origin.z};
     x[i] = a[kx] - sx * a[kz];
     y[i] = a[ky] - sy * a[kz];
     z[i] = sz * a[kz];
   }
-  float u = x[2] * y[1] - y[2] * x[1];
-  float v = x[0] * y[2] - y[0] * x[2];
-  float w = x[1] * y[0] - y[1] * x[0];
-  if (u == 0 || v == 0 || w == 0) {
-    u = float(double(x[2]) * y[1] - double(y[2]) * x[1]);
-    v = float(double(x[0]) * y[2] - double(y[0]) * x[2]);
-    w = float(double(x[1]) * y[0] - double(y[1]) * x[0]);
+  T u = x[2] * y[1] - y[2] * x[1];
+  T v = x[0] * y[2] - y[0] * x[2];
+  T w = x[1] * y[0] - y[1] * x[0];
+  if (std::is_same_v<T, float> && (u == 0 || v == 0 || w == 0)) {
+    u = T(double(x[2]) * y[1] - double(y[2]) * x[1]);
+    v = T(double(x[0]) * y[2] - double(y[0]) * x[2]);
+    w = T(double(x[1]) * y[0] - double(y[1]) * x[0]);
   }
   if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
-  const float det = u + (v + w);
+  const T det = u + (v + w);
   if (det == 0) return false;
-  const float inverse = 1.0f / det;
-  out = {(u * z[0] + (v * z[1] + w * z[2])) * inverse, v * inverse, w * inverse};
-  return out.t >= ray.tmin && out.t <= std::numeric_limits<float>::max();
+  const T inverse = T{1} / det;
+  out = {float((u * z[0] + (v * z[1] + w * z[2])) * inverse), float(v * inverse), float(w * inverse)};
+  return true;
 }
 
-Aabb box_of(const std::array<Vec3, 3>& p) {
+// Möller, Trumbore 1997, section 2.
+bool moller_trumbore_scalar(const Ray& ray, const Corners& p, Crossing& out) {
+  const auto cross = [](const Vec3& a, const Vec3& b) {
+    return Vec3{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const auto dot = [](const Vec3& a, const Vec3& b) { return a.x * b.x + (a.y * b.y + a.z * b.z); };
+  const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0], across = cross(ray.direction, e2);
+  const float inverse = 1.0f / dot(e1, across);
+  const Vec3 s = ray.origin - p[0], q = cross(s, e1);
+  out = {dot(e2, q) * inverse, dot(s, across) * inverse, dot(ray.direction, q) * inverse};
+  return out.u >= 0 && out.v >= 0 && out.u + out.v <= 1;
+}
+
+bool crosses(TriangleLevel level, const Ray& ray, const Corners& p, Crossing& out) {
+  switch (level) {
+    case TriangleLevel::kFast: return moller_trumbore_scalar(ray, p, out);
+    case TriangleLevel::kWatertight: return watertight_scalar<float>(ray, p, out);
+    case TriangleLevel::kDouble: return watertight_scalar<double>(ray, p, out);
+    case TriangleLevel::kExact: break;
+  }
+  ExactCrossing crossing;
+  if (!exact_triangle(ray, p, crossing)) return false;
+  out = {crossing.t, crossing.u, crossing.v};
+  return true;
+}
+
+Aabb box_of(const Corners& p) {
   Aabb box;
   for (const Vec3& v : p) box.extend(v);
   return box;
 }
 
-}  // namespace
-
-Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy) {
+// Slab is SlabRay or DoubleSlabRay.
+template <class Slab>
+Hit every_triangle(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy) {
   Hit best;
   if (!valid(request.ray)) return best;
   best.t = request.ray.tmax;
-  const SlabRay world_slab(request.ray);
+  const float widening = far_widening(accuracy.box);
+  const Slab world_slab(request.ray, widening);
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Affine& m = scene.instances[i].world_from_model;
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh.value];
@@ -68,7 +101,7 @@ Hit brute_force(const scene::Scene& scene, const RayRequest& request, const Accu
     const bool baked = !make_transform(m, transform, accuracy.transform);
     if (baked) transform = InstanceTransform{};
     const auto triangle = [&](std::uint32_t primitive) {
-      std::array<Vec3, 3> p;
+      Corners p;
       for (std::uint32_t k = 0; k < 3; ++k) {
         p[k] = mesh.positions[mesh.indices[3 * primitive + k]];
         if (baked) p[k] = m.linear * p[k] + m.translation;
@@ -82,12 +115,13 @@ Hit brute_force(const scene::Scene& scene, const RayRequest& request, const Accu
     float instance_entry;
     if (world.empty() || !slab(world_slab, world, request.ray.tmax, instance_entry)) continue;
     const Ray ray = transform.to_model(request.ray);
-    const SlabRay model_slab(ray);
+    const Slab model_slab(ray, widening);
     for (std::uint32_t primitive = 0; primitive < mesh.triangle_count(); ++primitive) {
-      const std::array<Vec3, 3> p = triangle(primitive);
+      const Corners p = triangle(primitive);
       Crossing crossing;
       float entry;
-      if (!watertight_scalar(ray, p, crossing)) continue;
+      if (!crosses(accuracy.triangle, ray, p, crossing)) continue;
+      if (!(crossing.t >= ray.tmin && crossing.t <= std::numeric_limits<float>::max())) continue;
       if (!slab(model_slab, box_of(p), request.ray.tmax, entry)) continue;
       const float t = std::max(std::max(crossing.t, entry), instance_entry);
       // Instances and primitives are visited in rising order, so an equal t never replaces an earlier hit.
@@ -96,6 +130,13 @@ Hit brute_force(const scene::Scene& scene, const RayRequest& request, const Accu
   }
   if (!best.valid()) best = Hit{};
   return best;
+}
+
+}  // namespace
+
+Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy) {
+  return accuracy.box == BoxLevel::kDouble ? every_triangle<DoubleSlabRay>(scene, request, accuracy)
+                                           : every_triangle<SlabRay>(scene, request, accuracy);
 }
 
 }  // namespace carousel::accel

@@ -6,14 +6,14 @@
 #define CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
 #endif
 
-#include <new>
-
 #include <hwy/highway.h>
 
 #include "accel/accel.h"
+#include "accel/double_slab-inl.h"
+#include "accel/frame_ray.h"
 #include "accel/kernels.h"
 #include "accel/slab-inl.h"
-#include "accel/watertight-inl.h"
+#include "accel/triangle_block-inl.h"
 #include "core/test_counts.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,49 +31,6 @@ struct DepthFirstStack {
   };
   Entry entries[kStackCapacity];
 };
-
-/// All that testing needs of a ray, above the instances or below one: in world or in model space. Built in its
-/// place: copying what was just written piece by piece would stall on the stores.
-struct FrameRay {
-  SlabRay slab;
-  WatertightRay watertight;
-  std::uint32_t instance;
-  float instance_entry;   ///< of the ray into the instance's world box
-
-  HWY_INLINE FrameRay(const Ray& ray, std::uint32_t i, float entry)
-      : slab(ray), watertight(ray), instance(i), instance_entry(entry) {}
-};
-
-/// A frame of `ray`, given in world space, to test shapes of `instance`; kNoInstance for the world itself. An
-/// instance without a transform is tested in world space, and its world box is the union of the boxes below it:
-/// entered no later than any of them, it decides nothing.
-HWY_INLINE void enter_frame(const Accel& accel, std::uint32_t instance, const Ray& ray, FrameRay* frame,
-                            TestCounts& counts) {
-  if (instance == kNoInstance || accel.instances[instance].transform.identity) {
-    new (frame) FrameRay(ray, instance, ray.tmin);
-    return;
-  }
-  const InstanceNode& node = accel.instances[instance];
-  float entry;
-  slab(SlabRay(ray), node.world, kInfinity, entry);
-  ++counts.transforms;
-  new (frame) FrameRay(node.transform.to_model(ray), instance, entry);
-}
-
-/// Storage for a FrameRay to be built in.
-union FrameStorage {
-  FrameRay ray;
-  FrameStorage() {}
-};
-
-/// Not inlined: its registers would push the traversal's own into memory.
-HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay& ray, Hit& hit) {
-  bool changed = false;
-  for (std::uint32_t b = 0; b < leaf.blocks(); ++b, lanes >>= kBlockTriangles)
-    changed |= watertight_block(accel.blocks[leaf.first_block() + b], ray.watertight, ray.slab, lanes,
-                                ray.instance_entry, ray.instance, hit);
-  return changed;
-}
 
 HWY_INLINE void prefetch_lines(const void* bytes) {
   for (std::size_t line = 0; line < sizeof(Node); line += 64)
@@ -120,10 +77,10 @@ enum class Then { kPop, kEnter, kStop };
 /// Visits everything below `root`, until `visit_other(ref)`, which tests what is not an inner node, returns kStop;
 /// after kEnter it goes on with the node that `ref` has been set to. Adds the boxes tested to `boxes`. True when it
 /// was stopped.
-template <class VisitOther>
-HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const SlabRay& slab_ray, const Hit& hit,
+template <class Slab, class VisitOther>
+HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const Slab& slab_ray, const Hit& hit,
                             DepthFirstStack& stack, std::uint64_t& boxes, const VisitOther& visit_other) {
-  const SlabLanes ray(slab_ray);
+  const auto ray = in_registers(slab_ray);
   const Node* const nodes = accel.nodes.data();
   DepthFirstStack::Entry* top = stack.entries;
   NodeRef ref = root;
@@ -160,7 +117,8 @@ struct TraceStacks {
 };
 
 /// Goes on into an instance without a transform: true, and `ref` is its root.
-HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay& frame) {
+template <class Slab>
+HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay<Slab>& frame) {
   const InstanceNode& instance = accel.instances[ref.instance_index()];
   if (!instance.transform.identity) return false;
   frame.instance = ref.instance_index();
@@ -169,26 +127,29 @@ HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay& frame
 }
 
 /// Traces `ray` below an instance with a transform. True when a search for any hit has found one.
+template <class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
                                  TraceStacks& stacks, TestCounts& counts);
 
 /// The same below `root`, in the frame that was made from `ray`. In the world frame, instances without a transform are
 /// entered in passing; `level` is 0 there and 1 below an instance with one.
-HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, const Ray& ray, FrameRay& frame, bool any_hit, Hit& hit,
-                              TraceStacks& stacks, int level, TestCounts& counts) {
+template <class Slab>
+HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, const Ray& ray, FrameRay<Slab>& frame, bool any_hit,
+                              Hit& hit, TraceStacks& stacks, int level, TestCounts& counts) {
   return depth_first(accel, root, frame.slab, hit, stacks.at[level], counts.box, [&](NodeRef& ref) HWY_ATTR {
     if (HWY_LIKELY(ref.kind() == NodeRef::Kind::kLeaf)) {
       counts.triangle += ref.triangles();
       return test_leaf(accel, ref, ~0u, frame, hit) && any_hit ? Then::kStop : Then::kPop;
     }
     if (enter_instance(accel, ref, frame)) return Then::kEnter;
-    return trace_instance(accel, ref, ray, any_hit, hit, stacks, counts) ? Then::kStop : Then::kPop;
+    return trace_instance<Slab>(accel, ref, ray, any_hit, hit, stacks, counts) ? Then::kStop : Then::kPop;
   });
 }
 
+template <class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
                                  TraceStacks& stacks, TestCounts& counts) {
-  FrameStorage below;
+  FrameStorage<Slab> below;
   enter_frame(accel, instance.instance_index(), ray, &below.ray, counts);
   const NodeRef root = accel.instances[instance.instance_index()].root;
   return trace_frame(accel, root, ray, below.ray, any_hit, hit, stacks, 1, counts);

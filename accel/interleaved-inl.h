@@ -16,9 +16,10 @@ HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
 /// A ray on its way.
+template <class Slab>
 struct Walker {
   RayRecord* record;
-  FrameStorage frame;
+  FrameStorage<Slab> frame;
   bool any_hit;
   NodeRef ref;               ///< the inner node to be visited next
   std::uint32_t mask;        ///< which of its children are hit
@@ -29,9 +30,10 @@ struct Walker {
 
 /// Takes a walker on from `ref`, or when it hit no child from its stack, to its next inner node; false when its ray is
 /// done.
-HWY_INLINE bool walk_on(const Accel& accel, Walker& walker, bool any, NodeRef ref, TraceStacks& stacks,
+template <class Slab>
+HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, NodeRef ref, TraceStacks& stacks,
                         TestCounts& counts) {
-  FrameRay& frame = walker.frame.ray;
+  FrameRay<Slab>& frame = walker.frame.ray;
   Hit& hit = walker.record->hit;
   for (;; any = false) {
     if (!any) {
@@ -42,7 +44,7 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker& walker, bool any, NodeRef re
       ref = NodeRef::from_bits(walker.top->ref);
     }
     if (HWY_UNLIKELY(ref.kind() == NodeRef::Kind::kInstance) && !enter_instance(accel, ref, frame)) {
-      if (trace_instance(accel, ref, walker.record->ray, walker.any_hit, hit, stacks, counts)) return false;
+      if (trace_instance<Slab>(accel, ref, walker.record->ray, walker.any_hit, hit, stacks, counts)) return false;
       continue;
     }
     if (ref.is_inner()) {

@@ -9,9 +9,9 @@
 #include <hwy/highway.h>
 
 #include "accel/depth_first-inl.h"
+#include "accel/double_slab-inl.h"
 #include "accel/interleaved-inl.h"
 #include "accel/slab-inl.h"
-#include "accel/watertight-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -29,13 +29,16 @@ HWY_INLINE void settle(RayRecord& record) {
   if (record.tag.kind == RayKind::kShadow && record.hit.valid()) record.tag.flags |= kRayDone;
 }
 
-void TestBoxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+// Slab: SlabRay, or DoubleSlabRay for accuracy.box: double.
+template <class Slab>
+void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
                const StripHits& hits, TestCounts& counts) {
   const Node& node = accel.nodes[key.ref.node()];
   const InstanceTransform* transform =
       key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
   lanes &= (1u << node.count) - 1;
   const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes));
+  const float widening = far_widening(accel.accuracy.box);
   alignas(64) float nearest[kMaxWidth];
   std::copy(hits.nearest, hits.nearest + kMaxWidth, nearest);
   for (std::size_t i = 0; i < members.count; ++i) {
@@ -45,11 +48,11 @@ void TestBoxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMe
       continue;
     }
     const bool move = transform != nullptr && !transform->identity;
-    const SlabRay ray(move ? transform->to_model(record.ray) : record.ray);
+    const Slab ray(move ? transform->to_model(record.ray) : record.ray, widening);
     counts.transforms += move;
     counts.box += boxes;
     alignas(64) float entry[kMaxWidth];
-    const std::uint32_t mask = slab_node(node, SlabLanes(ray), record.hit.t, entry, nearest) & lanes;
+    const std::uint32_t mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes;
     hits.masks[i] = static_cast<std::uint8_t>(mask);
     if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
   }
@@ -57,7 +60,8 @@ void TestBoxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMe
     if (lanes >> lane & 1) hits.nearest[lane] = nearest[lane];
 }
 
-void TestTriangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+template <class Slab>
+void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
                    TestCounts& counts) {
   lanes &= (1u << key.ref.triangles()) - 1;
   const std::uint64_t tested = static_cast<std::uint64_t>(std::popcount(lanes));
@@ -65,28 +69,30 @@ void TestTriangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const R
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
     counts.triangle += tested;
-    FrameStorage frame;
+    FrameStorage<Slab> frame;
     enter_frame(accel, key.instance, record.ray, &frame.ray, counts);
     test_leaf(accel, key.ref, lanes, frame.ray, record.hit);
     settle(record);
   }
 }
 
-void TestStrip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-               const StripHits& hits, TestCounts& counts) {
+template <class Slab>
+void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                 const StripHits& hits, TestCounts& counts) {
   if (key.ref.is_inner())
-    TestBoxes(accel, key, lanes, members, hits, counts);
+    test_boxes<Slab>(accel, key, lanes, members, hits, counts);
   else
-    TestTriangles(accel, key, lanes, members, counts);
+    test_triangles<Slab>(accel, key, lanes, members, counts);
 }
 
-void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
+template <class Slab>
+void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
   TraceStacks stacks;
   TestCounts counts;
   for (std::size_t i = 0; i < members.count; ++i) {
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
-    FrameStorage frame;
+    FrameStorage<Slab> frame;
     enter_frame(accel, key.instance, record.ray, &frame.ray, counts);
     const bool any_hit = record.tag.kind == RayKind::kShadow;
     trace_frame(accel, key.ref, record.ray, frame.ray, any_hit, record.hit, stacks, 0, counts);
@@ -95,16 +101,17 @@ void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, Te
   total += counts;
 }
 
-void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
+template <class Slab>
+void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
   constexpr std::size_t kWalkers = 4;   // two gain half as much, six nothing more
   const Node* const nodes = accel.nodes.data();
   TraceStacks stacks;
   TestCounts counts;
   std::size_t next = 0;
-  Walker walkers[kWalkers];
-  Walker* active[kWalkers];
+  Walker<Slab> walkers[kWalkers];
+  Walker<Slab>* active[kWalkers];
   std::size_t count = 0;
-  const auto start = [&](Walker& walker) HWY_ATTR {
+  const auto start = [&](Walker<Slab>& walker) HWY_ATTR {
     while (next < members.count) {
       RayRecord& record = member<8>(members, next++);
       if (record.tag.flags & kRayDone) continue;
@@ -117,17 +124,17 @@ void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members
     }
     return false;
   };
-  for (Walker& walker : walkers)
+  for (Walker<Slab>& walker : walkers)
     if (start(walker)) active[count++] = &walker;
   while (count > 0) {
     for (std::size_t k = 0; k < count; ++k) {
-      Walker& walker = *active[k];
+      Walker<Slab>& walker = *active[k];
       const Node& node = nodes[walker.ref.node()];
       counts.box += node.count;
-      walker.mask = slab_node(node, SlabLanes(walker.frame.ray.slab), walker.record->hit.t, walker.entry);
+      walker.mask = slab_node(node, in_registers(walker.frame.ray.slab), walker.record->hit.t, walker.entry);
     }
     for (std::size_t k = 0; k < count;) {
-      Walker& walker = *active[k];
+      Walker<Slab>& walker = *active[k];
       const bool any = walker.mask != 0;
       NodeRef ref;
       if (any) ref = nearest_child(accel, nodes[walker.ref.node()], walker.mask, walker.entry, walker.top);
@@ -142,6 +149,22 @@ void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members
     }
   }
   total += counts;
+}
+
+void TestStrip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+               const StripHits& hits, TestCounts& counts) {
+  const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
+  (in_double ? test_shapes<DoubleSlabRay> : test_shapes<SlabRay>)(accel, key, lanes, members, hits, counts);
+}
+
+void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+  const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
+  (in_double ? trace_one_by_one<DoubleSlabRay> : trace_one_by_one<SlabRay>)(accel, key, members, counts);
+}
+
+void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+  const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
+  (in_double ? trace_in_turn<DoubleSlabRay> : trace_in_turn<SlabRay>)(accel, key, members, counts);
 }
 
 }  // namespace carousel::accel::HWY_NAMESPACE

@@ -60,6 +60,8 @@ struct SlabLanes {
   }
 };
 
+HWY_INLINE SlabLanes in_registers(const SlabRay& ray) { return SlabLanes(ray); }
+
 /// One ray against the eight boxes of a node: bit l of the result when lane l is entered before tmax; all
 /// eight entries (never below tmin) are stored. `nearest`, unless null, is lowered to the entries of lanes hit.
 HWY_INLINE std::uint32_t slab_node(const Node& node, const SlabLanes& ray, float tmax, float* HWY_RESTRICT entry,

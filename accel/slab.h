@@ -7,6 +7,7 @@
 
 #include "accel/node.h"
 #include "core/aabb.h"
+#include "core/config.h"
 #include "core/ray.h"
 
 namespace carousel::accel {
@@ -17,6 +18,10 @@ namespace carousel::accel {
 /// right for the exact ray may disagree with the rounded triangle test, which opens leaks.
 inline constexpr float kFarWidening = 1.0f + 0x1p-20f;   // 16 u
 
+/// The widening that a level asks for. In double the slab's own rounding needs next to none of it, but the float
+/// triangle kernels move their hits as far as ever.
+constexpr float far_widening(BoxLevel level) { return level == BoxLevel::kPlain ? 1.0f : kFarWidening; }
+
 /// A ray as the slab test wants it. A box hit by it is hit by every box around it, entered no later: each
 /// operation is monotone in the plane. The arrays are written a register at a time (x, y, z, unused).
 struct SlabRay {
@@ -24,18 +29,19 @@ struct SlabRay {
 
   alignas(16) float origin[4];
   alignas(16) float inverse_near[4];
-  alignas(16) float inverse_far[4];   ///< widened by kFarWidening
+  alignas(16) float inverse_far[4];   ///< widened
   std::uint32_t near_row[3];          ///< byte offsets of rows of Node::plane: row axis, or axis + 3
   std::uint32_t far_row[3];
   float tmin;
 
-  [[gnu::always_inline]] explicit SlabRay(const Ray& ray) : tmin(ray.tmin) {
+  /// `widening` is that of the level: far_widening().
+  [[gnu::always_inline]] explicit SlabRay(const Ray& ray, float widening = kFarWidening) : tmin(ray.tmin) {
     using Float4 = float __attribute__((vector_size(16)));
     using Int4 = std::int32_t __attribute__((vector_size(16)));
     const Float4 o{ray.origin.x, ray.origin.y, ray.origin.z, 0.0f};
     const Float4 d{ray.direction.x, ray.direction.y, ray.direction.z, 1.0f};
     const Float4 inverse = 1.0f / d;
-    const Float4 far = inverse * kFarWidening;
+    const Float4 far = inverse * widening;
     // The reciprocal of a denormal overflows: a finite stand-in for the near planes, too early rather than too
     // late, and infinity for the far ones. A zero keeps its infinity.
     constexpr float kMax = std::numeric_limits<float>::max();

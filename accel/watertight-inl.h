@@ -8,28 +8,35 @@
 #define CAROUSEL_ACCEL_WATERTIGHT_INL_H_
 #endif
 
-#include <bit>
-#include <limits>
+#include <type_traits>
 
 #include <hwy/highway.h>
 
 #include "accel/node.h"
-#include "accel/slab-inl.h"
-#include "accel/slab.h"
 #include "accel/watertight.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// The kernel proper, for the lanes from `i` on: bit l of the result when triangle i + l is crossed by the
-/// ray's line (whatever the distance); stores t and the weights of the second and third vertex.
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Floats as lanes of the arithmetic that is wanted.
 template <class D>
-HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::size_t i, const WatertightRay& ray,
-                                          float* HWY_RESTRICT t, float* HWY_RESTRICT second,
-                                          float* HWY_RESTRICT third) {
+HWY_INLINE hn::Vec<D> load_floats(D d, const float* p) {
+  if constexpr (std::is_same_v<hn::TFromD<D>, float>)
+    return hn::Load(d, p);
+  else
+    return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), p));
+}
+
+/// For the lanes from `i` on: bit l of the result when triangle i + l is crossed by the ray's line (whatever the
+/// distance); stores t and the weights of the second and third vertex. T is float or double.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::size_t i, const WatertightRay<T>& ray,
+                                          T* HWY_RESTRICT t, T* HWY_RESTRICT second, T* HWY_RESTRICT third) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   const auto load = [&](int vertex, int axis) HWY_ATTR {
-    return hn::Sub(hn::Load(d, block.vertex[vertex][axis] + i), hn::Set(d, ray.origin[axis]));
+    return hn::Sub(load_floats(d, block.vertex[vertex][axis] + i), hn::Set(d, ray.origin[axis]));
   };
   const auto sx = hn::Set(d, ray.sx), sy = hn::Set(d, ray.sy), sz = hn::Set(d, ray.sz);
   const auto akz = load(0, ray.kz), bkz = load(1, ray.kz), ckz = load(2, ray.kz);
@@ -42,21 +49,24 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
   auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
 
   const auto zero = hn::Zero(d);
-  const auto on_edge = hn::Or(hn::Eq(u, zero), hn::Or(hn::Eq(v, zero), hn::Eq(w, zero)));
-  if (HWY_UNLIKELY(!hn::AllFalse(d, on_edge))) {
-    // A zero may be a rounded one; doubles hold the products exactly, so their sign is the true one.
-    alignas(16) float a[2][kLanes], b[2][kLanes], c[2][kLanes], edge[3][kLanes];
-    hn::Store(ax, d, a[0]), hn::Store(ay, d, a[1]);
-    hn::Store(bx, d, b[0]), hn::Store(by, d, b[1]);
-    hn::Store(cx, d, c[0]), hn::Store(cy, d, c[1]);
-    hn::Store(u, d, edge[0]), hn::Store(v, d, edge[1]), hn::Store(w, d, edge[2]);
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      if (edge[0][l] != 0.0f && edge[1][l] != 0.0f && edge[2][l] != 0.0f) continue;
-      edge[0][l] = static_cast<float>(double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]));
-      edge[1][l] = static_cast<float>(double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]));
-      edge[2][l] = static_cast<float>(double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]));
+  // A zero may be a rounded one. Doubles hold the products of floats exactly, so their sign is the true one; in
+  // double a rounded zero is let count as an edge for both its triangles: no leak either.
+  if constexpr (std::is_same_v<T, float>) {
+    const auto on_edge = hn::Or(hn::Eq(u, zero), hn::Or(hn::Eq(v, zero), hn::Eq(w, zero)));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, on_edge))) {
+      alignas(16) float a[2][kLanes], b[2][kLanes], c[2][kLanes], edge[3][kLanes];
+      hn::Store(ax, d, a[0]), hn::Store(ay, d, a[1]);
+      hn::Store(bx, d, b[0]), hn::Store(by, d, b[1]);
+      hn::Store(cx, d, c[0]), hn::Store(cy, d, c[1]);
+      hn::Store(u, d, edge[0]), hn::Store(v, d, edge[1]), hn::Store(w, d, edge[2]);
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        if (edge[0][l] != 0.0f && edge[1][l] != 0.0f && edge[2][l] != 0.0f) continue;
+        edge[0][l] = static_cast<float>(double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]));
+        edge[1][l] = static_cast<float>(double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]));
+        edge[2][l] = static_cast<float>(double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]));
+      }
+      u = hn::Load(d, edge[0]), v = hn::Load(d, edge[1]), w = hn::Load(d, edge[2]);
     }
-    u = hn::Load(d, edge[0]), v = hn::Load(d, edge[1]), w = hn::Load(d, edge[2]);
   }
 
   const auto any_negative = hn::Or(hn::Lt(u, zero), hn::Or(hn::Lt(v, zero), hn::Lt(w, zero)));
@@ -67,49 +77,13 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
 
   const auto scaled_t = hn::Add(hn::Mul(u, hn::Mul(sz, akz)),
                                 hn::Add(hn::Mul(v, hn::Mul(sz, bkz)), hn::Mul(w, hn::Mul(sz, ckz))));
-  const auto inverse_det = hn::Div(hn::Set(d, 1.0f), det);
+  const auto inverse_det = hn::Div(hn::Set(d, T{1}), det);
   hn::Store(hn::Mul(scaled_t, inverse_det), d, t);
   hn::Store(hn::Mul(v, inverse_det), d, second);
   hn::Store(hn::Mul(w, inverse_det), d, third);
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(d, outside, bits);
   return ~std::uint32_t{bits[0]} & ((1u << kLanes) - 1);
-}
-
-/// Tests the triangles of `block` that `lanes` selects and lowers `hit` to the smallest (t', instance,
-/// primitive), where t' also counts the entries of the triangle's own box and of the instance's world box
-/// (`instance_entry`). True when the hit changed.
-HWY_INLINE bool watertight_block(const TriangleBlock& block, const WatertightRay& ray, const SlabRay& slab_ray,
-                                 std::uint32_t lanes, float instance_entry, std::uint32_t instance, Hit& hit) {
-  const hn::CappedTag<float, kBlockTriangles> d;
-  constexpr std::size_t kLanes = hn::MaxLanes(d);
-  alignas(16) float t[kBlockTriangles], second[kBlockTriangles], third[kBlockTriangles];
-  std::uint32_t inside = 0;
-  for (std::size_t i = 0; i < kBlockTriangles; i += kLanes)
-    inside |= watertight_lanes(d, block, i, ray, t + i, second + i, third + i) << i;
-  inside &= lanes & ((1u << kBlockTriangles) - 1);
-
-  bool changed = false;
-  for (; inside != 0; inside &= inside - 1) {
-    const int l = std::countr_zero(inside);
-    // Negated comparisons also turn NaN away.
-    if (!(t[l] >= slab_ray.tmin && t[l] <= std::numeric_limits<float>::max() && t[l] <= hit.t)) continue;
-    Aabb box;
-    for (int k = 0; k < 3; ++k)
-      box.extend(Vec3{block.vertex[k][0][l], block.vertex[k][1][l], block.vertex[k][2][l]});
-    float entry;
-    if (!slab(slab_ray, box, hit.t, entry)) continue;
-    float distance = entry > t[l] ? entry : t[l];
-    distance = instance_entry > distance ? instance_entry : distance;
-    const std::uint32_t primitive = block.primitive[l];
-    const bool nearer = distance < hit.t ||
-                        (distance == hit.t && (instance < hit.instance ||
-                                               (instance == hit.instance && primitive < hit.primitive)));
-    if (!nearer) continue;
-    hit = {distance, second[l], third[l], instance, primitive};
-    changed = true;
-  }
-  return changed;
 }
 
 }  // namespace carousel::accel::HWY_NAMESPACE

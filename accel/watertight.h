@@ -8,10 +8,12 @@ namespace carousel::accel {
 
 /// Per-ray constants of the watertight test: the axis the ray mostly runs along is z, and shearing makes the
 /// ray's direction (0, 0, 1) (Woop, Benthin, Wald 2013, "Watertight ray/triangle intersection", section 3).
+/// T is the arithmetic: float for accuracy.triangle: watertight, double for double.
+template <class T>
 struct WatertightRay {
-  float origin[3];
+  T origin[3];
   int kx, ky, kz;
-  float sx, sy, sz;
+  T sx, sy, sz;
 
   [[gnu::always_inline]] explicit WatertightRay(const Ray& ray) : origin{ray.origin.x, ray.origin.y, ray.origin.z} {
     const Vec3& d = ray.direction;
@@ -24,8 +26,8 @@ struct WatertightRay {
     kx = after[0];
     ky = after[1];
     // One division for all three.
-    using Float4 = float __attribute__((vector_size(16)));
-    const Float4 shear = Float4{d[kx], d[ky], 1.0f, 1.0f} / d[kz];
+    typedef T T4 __attribute__((vector_size(4 * sizeof(T))));
+    const T4 shear = T4{T{d[kx]}, T{d[ky]}, T{1}, T{1}} / T{d[kz]};
     sx = shear[0];
     sy = shear[1];
     sz = shear[2];

@@ -60,7 +60,7 @@ BENCHMARK(ray_setup_slab);
 void ray_setup_watertight(benchmark::State& state) {
   const Setting& s = Setting::get();
   for (auto _ : state)
-    for (const RayRecord& record : s.rays) benchmark::DoNotOptimize(accel::WatertightRay(record.ray));
+    for (const RayRecord& record : s.rays) benchmark::DoNotOptimize(accel::WatertightRay<float>(record.ray));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(s.rays.size()));
 }
 BENCHMARK(ray_setup_watertight);

@@ -177,8 +177,12 @@ void describe(V& v, BvhConfig& c) {
 
 template <class V>
 void describe(V& v, AccuracyConfig& c) {
-  v.choice("triangle", c.triangle, "ray against triangle");
-  v.choice("box", c.box, "ray against box");
+  v.choice("triangle", c.triangle,
+           "ray against triangle: fast leaks at shared edges, watertight does not, double is that in 64 bits, exact "
+           "decides without rounding");
+  v.choice("box", c.box,
+           "ray against box: plain drops some boxes that rays graze, conservative widens them to drop none, double does "
+           "so in 64 bits");
   v.choice("transform", c.transform,
            "ray from world to model space: one inverse matrix; the translation first; that in fp64, rounded once; "
            "the translation first and a rotation's transpose for its inverse");

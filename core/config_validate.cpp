@@ -21,7 +21,6 @@ class Rules {
   std::vector<ConfigIssue> check() {
     one_scene();
     built_shape();
-    built_accuracy();
     built_planes_and_bundles();
     built_packets();
     built_shading();
@@ -73,11 +72,6 @@ class Rules {
           fmt::format("the {} engine has no {}; expected ring, bidirectional{}",
                       enum_name(c.engine.kind), enum_name(shape),
                       cycle() ? ", multi_ring, hierarchical, point_to_point, bus or independent" : " or point_to_point"));
-  }
-
-  void built_accuracy() {
-    only("accuracy.triangle", c.accuracy.triangle, TriangleLevel::kWatertight);
-    only("accuracy.box", c.accuracy.box, BoxLevel::kConservative);
   }
 
   void built_planes_and_bundles() {

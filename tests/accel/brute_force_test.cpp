@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/verifying_workload.h"
+#include "tests/accel/brute_force_answers.h"
 #include "tests/accel/simd_guard.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
@@ -11,35 +11,8 @@
 namespace carousel::accel {
 namespace {
 
-class BruteForce {
- public:
-  BruteForce(const scene::Scene& scene, const RayBatch& rays) : rays_(rays) {
-    for (const RayRequest& ray : rays) expected_.push_back({ray.ray, brute_force(scene, ray), ray.tag});
-  }
-  /// How many answers of the structure are others, one ray after another and interleaved.
-  std::size_t differences(const Accel& accel) const {
-    std::size_t differences = 0;
-    for (auto* const tracer : {trace_depth_first, trace_depth_first_interleaved}) {
-      HitBatch got;
-      TestCounts counts;
-      tracer(accel, rays_, got, counts);
-      for (std::size_t i = 0; i < expected_.size(); ++i) differences += !same_result(expected_[i], got.at(i));
-    }
-    return differences;
-  }
-  std::size_t hits() const {
-    std::size_t hits = 0;
-    for (const RayResult& r : expected_) hits += r.hit.valid();
-    return hits;
-  }
-
- private:
-  RayBatch rays_;
-  HitBatch expected_;
-};
-
 void expect_equal_for_every_tree(const scene::Scene& scene, std::size_t rays) {
-  const BruteForce brute(scene, mixed_rays(scene, rays, 11));
+  const BruteForceAnswers brute(scene, mixed_rays(scene, rays, 11));
   EXPECT_GT(brute.hits(), rays / 4);
   EXPECT_LT(brute.hits(), rays);
   for (std::int64_t width = 2; width <= 8; ++width)
@@ -60,7 +33,7 @@ TEST(BruteForce, AgreesOnEverySimdTarget) {
 #endif
   for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kInstances, BuiltinScene::kSliver}) {
     const scene::Scene scene = small_builtin(builtin, 200, 6);
-    const BruteForce brute(scene, mixed_rays(scene, 900, 12));
+    const BruteForceAnswers brute(scene, mixed_rays(scene, 900, 12));
     for (const std::int64_t width : {3, 8}) {
       const Accel accel = build_sequential(scene, width);
       for (const SimdTarget target : targets) {
@@ -85,7 +58,7 @@ TEST(BruteForce, AgreesOnRaysOfAnyBits) {
     if (i % 7 == 0) r.ray.tmax = random.any_bits();
     rays.push_back(r);
   }
-  const BruteForce brute(scene, rays);
+  const BruteForceAnswers brute(scene, rays);
   EXPECT_GT(brute.hits(), 50u);
   for (const SimdTarget target : usable_simd_targets()) {
     const SimdGuard guard;
@@ -99,7 +72,7 @@ TEST(BruteForce, AgreesOnGeometryOfAnyScale) {
   for (const float scale : {1e-38f, 1e-20f, 1e-6f, 1e6f, 1e15f, 1e25f}) {
     scene::Scene scene = icosphere_scene(1, Vec3{0}, 1);
     for (Vec3& p : scene.meshes[0].positions) p = p * scale;
-    const BruteForce brute(scene, mixed_rays(scene, 600, 14));
+    const BruteForceAnswers brute(scene, mixed_rays(scene, 600, 14));
     EXPECT_EQ(brute.differences(build_sequential(scene)), 0u) << scale;
   }
 }
@@ -122,7 +95,7 @@ TEST(BruteForce, AgreesOnSingularMirroredAndSkewedInstances) {
   place({1e-39f, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 2, 2});    // its inverse does not
   const Accel accel = build_sequential(scene);
   EXPECT_EQ(accel.baked_instances, 4u);
-  const BruteForce brute(scene, mixed_rays(scene, 1500, 15));
+  const BruteForceAnswers brute(scene, mixed_rays(scene, 1500, 15));
   EXPECT_GT(brute.hits(), 300u);
   for (const std::int64_t width : {2, 5, 8}) EXPECT_EQ(brute.differences(build_sequential(scene, width)), 0u);
 }
@@ -136,7 +109,7 @@ TEST(BruteForce, AgreesOnDegenerateTriangles) {
     corners.insert(corners.end(), {a, i % 8 == 0 ? a : b, c});
   }
   const scene::Scene scene = scene_of(soup(corners));
-  const BruteForce brute(scene, mixed_rays(scene, 1500, 17));
+  const BruteForceAnswers brute(scene, mixed_rays(scene, 1500, 17));
   for (const std::int64_t leaf : {1, 4, 16}) EXPECT_EQ(brute.differences(build_sequential(scene, 8, leaf)), 0u);
 }
 

@@ -59,11 +59,12 @@ inline scene::Scene small_builtin(BuiltinScene builtin, std::int64_t triangles =
   return scene::make_builtin(config);
 }
 
-inline Accel build_sequential(const scene::Scene& scene, std::int64_t width = 8, std::int64_t leaf = 4) {
+inline Accel build_sequential(const scene::Scene& scene, std::int64_t width = 8, std::int64_t leaf = 4,
+                              const AccuracyConfig& accuracy = {}) {
   BvhConfig config;
   config.width = width;
   config.leaf_triangles = leaf;
-  return build(scene, config, *make_sequential_executor());
+  return build(scene, config, *make_sequential_executor(), accuracy);
 }
 
 }  // namespace carousel::accel

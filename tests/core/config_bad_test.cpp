@@ -126,10 +126,6 @@ INSTANTIATE_TEST_SUITE_P(
             "CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
             "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
             "multi_ring, hierarchical, point_to_point, bus or independent"},
-        BadConfig{"Triangle", SCENE "accuracy: {triangle: fast}\n",
-                  "test.yaml:2:22: accuracy.triangle: fast is not built yet; expected watertight"},
-        BadConfig{"Box", SCENE "accuracy: {box: plain}\n",
-                  "test.yaml:2:17: accuracy.box: plain is not built yet; expected conservative"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 2}\n",
                   "test.yaml:2:22: cull_planes.count: 2 is not built yet; expected 0"},
         BadConfig{"Bundles", SCENE "bundles: {size: 16}\n",

@@ -63,8 +63,14 @@ inline bool possible(const Config& c) {
 /// A scene with its reference digest; structures are built once a (width, leaf size).
 class TestScene {
  public:
-  TestScene(scene::Scene scene, std::uint32_t paths, std::uint8_t bounces, float away = 0.5f)
-      : scene_(std::move(scene)), bounds_(scene_.bounds()), paths_(paths), bounces_(bounces), away_(away) {
+  TestScene(scene::Scene scene, std::uint32_t paths, std::uint8_t bounces, float away = 0.5f,
+            const AccuracyConfig& accuracy = {})
+      : scene_(std::move(scene)),
+        bounds_(scene_.bounds()),
+        paths_(paths),
+        bounces_(bounces),
+        away_(away),
+        accuracy_(accuracy) {
     ScatterWorkload reference = workload();
     accel::run_reference(accel(BvhConfig{}), reference);
     digest_ = reference.digest();
@@ -73,7 +79,8 @@ class TestScene {
 
   const accel::Accel& accel(const BvhConfig& bvh) {
     auto& built = accels_[{bvh.width, bvh.leaf_triangles}];
-    if (!built) built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor()));
+    if (!built)
+      built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor(), accuracy_));
     return *built;
   }
   ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 6 + run_seed(), away_); }
@@ -93,6 +100,7 @@ class TestScene {
   std::uint32_t paths_;
   std::uint8_t bounces_;
   float away_;
+  AccuracyConfig accuracy_;
   std::map<std::pair<std::int64_t, std::int64_t>, std::unique_ptr<accel::Accel>> accels_;
   HitsDigest digest_;
   std::uint64_t rays_ = 0;

@@ -1,0 +1,105 @@
+// No box that the exact ray meets is missed: what tests/accel/hard_box_test.cpp shows case by case, over boxes and rays
+// made to be hard.
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/accel/adversarial_cases.h"
+#include "tests/accel/box_levels.h"
+#include "tests/accel/exact_box.h"
+#include "tests/accel/test_rays.h"
+#include "tests/random_runs.h"
+
+namespace carousel::accel {
+namespace {
+
+float up(float x) { return std::nextafter(x, kInfinity); }
+float down(float x) { return std::nextafter(x, -kInfinity); }
+
+struct BoxCase {
+  Ray ray;
+  Aabb box;
+  float tmax = kInfinity;
+};
+
+float wild_power(Random& random, int least, int most) {
+  return std::ldexp(1.0f, least + static_cast<int>(random.below(static_cast<std::uint32_t>(most - least))));
+}
+
+// Boxes of any place and size whose corners, edges and faces are aimed at, some ulps off. `reach` is that of their
+// exponents, `pace` that of the time it takes to get there.
+BoxCase box_case(Random& random, int reach, int pace) {
+  BoxCase c;
+  const float place = wild_power(random, -reach, reach), size = place * wild_power(random, -30, 2);
+  const Vec3 centre = random.in_box(Vec3{-place}, Vec3{place});
+  c.box.extend(random.below(8) ? centre + random.in_box(Vec3{-size}, Vec3{size}) : centre);
+  c.box.extend(random.below(8) ? centre + random.in_box(Vec3{-size}, Vec3{size}) : centre);
+  c.ray.origin = random.in_box(Vec3{-4 * place}, Vec3{4 * place});
+  Vec3 aim;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint32_t where = random.below(3);
+    aim[axis] = where == 0 ? c.box.lo[axis] : where == 1 ? c.box.hi[axis] : random.uniform(c.box.lo[axis], c.box.hi[axis]);
+    if (random.below(8) == 0) c.ray.origin[axis] = aim[axis];
+  }
+  c.ray.direction = aim - c.ray.origin;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint32_t how = random.below(6);
+    if (how == 0) c.ray.direction[axis] = up(c.ray.direction[axis]);
+    if (how == 1) c.ray.direction[axis] = down(c.ray.direction[axis]);
+    if (random.below(32) == 0) c.ray.direction[axis] = random.below(2) ? 0.0f : -0.0f;
+  }
+  c.ray.direction = c.ray.direction * wild_power(random, -pace, pace);
+  return c;
+}
+
+struct MissCount {
+  int exact = 0;
+  int late = 0;          // entries of level double that are off
+  int missed[3] = {};   // by level
+};
+
+MissCount missed_boxes(int reach, int pace, std::uint64_t number) {
+  Random random(1000 * std::uint64_t{run_seed()} + number);
+  const int cases = adversarial_cases() / 4;
+  MissCount count;
+  for (int i = 0; i < cases; ++i) {
+    const BoxCase c = box_case(random, reach, pace);
+    if (c.ray.direction == Vec3{0} || !std::isfinite(c.ray.direction.x + c.ray.direction.y + c.ray.direction.z)) continue;
+    const ExactBox exact(c.ray, c.box, c.tmax);
+    if (!exact.hit()) continue;
+    ++count.exact;
+    for (const auto& level : kEnumNames<BoxLevel>) {
+      const BoxAnswer answer = box_answer(level.value, c.ray, c.box, c.tmax);
+      count.missed[static_cast<int>(level.value)] += !answer.hit;
+      if (level.value != BoxLevel::kDouble || !answer.hit || !(answer.entry < std::numeric_limits<float>::max())) continue;
+      // Rounded up, but no further than a float and the double's own error.
+      count.late += exact.compare_entry(up(answer.entry)) > 0;
+      count.late += answer.entry > 0 && exact.compare_entry(down(down(answer.entry))) < 0;
+    }
+  }
+  std::cout << "CAROUSEL_SEED=" << run_seed() << ": " << count.exact << " boxes met: plain misses " << count.missed[0] << ", conservative " << count.missed[1]
+            << ", double " << count.missed[2] << "\n";
+  return count;
+}
+
+TEST(BoxProperty, ConservativeAndDoubleMissNoBoxTheExactRayMeets) {
+  const MissCount count = missed_boxes(20, 10, 51);
+  EXPECT_GT(count.exact, adversarial_cases() / 10);
+  EXPECT_GT(count.missed[static_cast<int>(BoxLevel::kPlain)], count.exact / 1000);   // or nothing was hard
+  EXPECT_EQ(count.missed[static_cast<int>(BoxLevel::kConservative)], 0);
+  EXPECT_EQ(count.missed[static_cast<int>(BoxLevel::kDouble)], 0);
+  EXPECT_EQ(count.late, 0);
+}
+
+// Distances below the normal floats, too, where a relative widening need not widen: conservative promises nothing there.
+TEST(BoxProperty, DoubleMissesNoBoxOfAnyExponent) {
+  const MissCount count = missed_boxes(100, 140, 52);
+  EXPECT_GT(count.exact, adversarial_cases() / 20);
+  EXPECT_EQ(count.missed[static_cast<int>(BoxLevel::kDouble)], 0);
+  EXPECT_EQ(count.late, 0);
+}
+
+}  // namespace
+}  // namespace carousel::accel
