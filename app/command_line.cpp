@@ -11,6 +11,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "app/accuracy/accuracy_command.h"
 #include "app/check_command.h"
 #include "app/compare_command.h"
 #include "app/exit_status.h"
@@ -62,14 +63,15 @@ std::string usage_hint(const CLI::App& program, int argc, const char* const* arg
 }
 
 struct Arguments {
+  AccuracyArguments accuracy;
   RunArguments run;
   CheckArguments check;
   CompareArguments compare;
   SchemaArguments schema;
 };
 
-void add_config_options(CLI::App& command, ConfigArguments& arguments) {
-  command.add_option("config", arguments.config, "configuration, YAML or JSON")->required();
+void add_config_options(CLI::App& command, ConfigArguments& arguments, bool required = true) {
+  command.add_option("config", arguments.config, "configuration, YAML or JSON")->required(required);
   command
       .add_option("--set", arguments.sets, "key.path=value: set a key of the configuration; may be repeated")
       ->allow_extra_args(false)
@@ -96,6 +98,19 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   CLI::App* check =
       program.add_subcommand("check", "validate, print the resolved config, say whether it can deadlock");
   add_config_options(*check, arguments.check);
+
+  CLI::App* accuracy = program.add_subcommand("accuracy", "what accuracy costs in time");
+  AccuracyArguments& a = arguments.accuracy;
+  add_config_options(*accuracy, a, false);
+  accuracy->add_option("--out", a.out, "folder for table and picture (default out/<config name>)")->type_name("DIR");
+  accuracy->add_option("--rays", a.rays, "rays of the scene to compare, at most")->check(CLI::Range(1u, 10'000'000u))->capture_default_str();
+  accuracy->add_option("--hard-rays", a.hard_rays, "rays of each built-in hard case")
+      ->check(CLI::Range(1u, 10'000'000u))
+      ->capture_default_str();
+  accuracy->add_option("--repetitions", a.repetitions, "of each timing, in turn")->check(CLI::Range(1, 1000))->capture_default_str();
+  accuracy->add_option("--seed", a.seed, "of the hard cases")->capture_default_str();
+  accuracy->add_flag("--json", a.json, "print JSON instead of the table");
+  accuracy->add_flag("--quiet", a.quiet, "print nothing but errors (and the results with --json)");
 
   CLI::App* compare = program.add_subcommand("compare", "two reports side by side");
   compare->add_option("a", arguments.compare.a, "report.json, or its folder")->required();
@@ -128,9 +143,10 @@ int run_command_line(int argc, const char* const* argv) {
     spdlog::error("{}\ncarousel --help tells the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
-  log_to_stderr(arguments.run.quiet);
+  log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
   if (program.got_subcommand("check")) return check_command(arguments.check);
+  if (program.got_subcommand("accuracy")) return accuracy_command(arguments.accuracy);
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
   return schema_command(arguments.schema);
 }

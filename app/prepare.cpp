@@ -92,9 +92,9 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   return p;
 }
 
-Prepared prepare_config(const std::string& text, const std::string& name) {
+Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets) {
   Prepared p;
-  p.located = parse_located_config(text, name, {}, {.force = true});
+  p.located = parse_located_config(text, name, sets, {.force = true});
   prepare_located(p, false);
   return p;
 }

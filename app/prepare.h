@@ -36,7 +36,7 @@ struct Prepared {
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits);
 
 /// The same for a configuration that is at hand as text; files it names are looked for in the working folder.
-Prepared prepare_config(const std::string& text, const std::string& name);
+Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {});
 
 /// A file that a configuration names: in the configuration's folder, else in the working one.
 std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file);

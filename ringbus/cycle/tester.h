@@ -3,6 +3,7 @@
 #include "core/config.h"
 #include "core/ids.h"
 #include "core/test_counts.h"
+#include "ringbus/cycle/level_cycles.h"
 #include "ringbus/cycle/unit_bank.h"
 
 namespace carousel::ringbus::cycle {
@@ -38,11 +39,11 @@ struct Tester {
   UnitBank box, triangle, transform;
 };
 
-/// Those of a resource: the machine's, unless it has its own.
-inline const TestersConfig& testers_of(const Config& config, ResourceId id) {
+/// Those of a resource, at the levels of accuracy: the machine's, unless it has its own.
+inline TestersConfig testers_of(const Config& config, ResourceId id) {
   for (const ResourceOverride& one : config.topology.overrides)
-    if (one.resource == id.value) return one.testers;
-  return config.testers;
+    if (one.resource == id.value) return at_levels(one.testers, config.accuracy);
+  return at_levels(config.testers, config.accuracy);
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "accel/accel.h"
+#include "accel/exact_reference.h"
+#include "core/workload.h"
+#include "report/accuracy.h"
+
+namespace carousel::app {
+
+using HitList = std::vector<Hit>;
+
+/// Answers of the depth-first tracer, in the order of the rays.
+HitList trace(const accel::Accel& accel, const RayBatch& rays);
+
+/// Exact answers, in the order of the rays, on all cores. A shadow ray's is its first hit.
+std::vector<accel::ExactHit> exact_answers(const accel::ExactReference& reference, const RayBatch& rays);
+
+/// What is wrong with `hits`. Of shadow rays only whether they hit counts.
+report::HitErrors compare(const RayBatch& rays, const HitList& hits, const std::vector<accel::ExactHit>& exact);
+
+}  // namespace carousel::app
