@@ -22,9 +22,17 @@ Accel exact_level(const scene::Scene& scene, BoxLevel box) {
   return build_sequential(scene, 8, 4, accuracy);
 }
 
-// Behind the origin by so little that the nearest float is 0: the box decides, and either answer is right.
-bool at_its_end(const TriangleOracle& oracle) {
-  return oracle.hit() && oracle.compare_t(0) < 0 && oracle.t_is_nearest(0.0f);
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+bool in_range(const TriangleOracle& oracle) {
+  return oracle.hit() && oracle.compare_t(0) >= 0 && oracle.compare_t(kLargest) <= 0;
+}
+
+// Outside of [0, largest float] by so little that the nearest float is its end: the boxes decide, and either answer is
+// right.
+bool at_an_end(const TriangleOracle& oracle) {
+  return oracle.hit() && ((oracle.compare_t(0) < 0 && oracle.t_is_nearest(0.0f)) ||
+                          (oracle.compare_t(kLargest) > 0 && oracle.t_is_nearest(kLargest)));
 }
 
 TEST(ExactLevel, LosesAndInventsNothingInRoundedBoxes) {
@@ -37,8 +45,8 @@ TEST(ExactLevel, LosesAndInventsNothingInRoundedBoxes) {
     TriangleCase c = triangle_case(kind, random);
     if (c.ray.direction == Vec3{0}) continue;
     const TriangleOracle oracle(c.ray, c.corners);
-    if (at_its_end(oracle)) continue;
-    const bool exact = oracle.hit() && oracle.compare_t(0) >= 0;
+    if (at_an_end(oracle)) continue;
+    const bool exact = in_range(oracle);
     const scene::Scene scene = scene_of(soup({c.corners[0], c.corners[1], c.corners[2]}));
     for (const BoxLevel box : {BoxLevel::kConservative, BoxLevel::kDouble}) {
       const Hit hit = trace_one(exact_level(scene, box), RayRequest{c.ray, {}});
@@ -58,9 +66,8 @@ TEST(ExactLevel, LosesAndInventsNothingAtAnyExponentInDoubleBoxes) {
     const TriangleCase c = triangle_case(i % 2 ? TriangleCaseKind::kScaledGrid : TriangleCaseKind::kWildExponents, random);
     if (c.ray.direction == Vec3{0} || !std::isfinite(c.ray.direction.x + c.ray.direction.y + c.ray.direction.z)) continue;
     const TriangleOracle oracle(c.ray, c.corners);
-    if (at_its_end(oracle)) continue;
-    const bool exact = oracle.hit() && oracle.compare_t(0) >= 0 &&
-                       oracle.compare_t(std::numeric_limits<float>::max()) <= 0;
+    if (at_an_end(oracle)) continue;
+    const bool exact = in_range(oracle);
     const scene::Scene scene = scene_of(soup({c.corners[0], c.corners[1], c.corners[2]}));
     const Hit hit = trace_one(exact_level(scene, BoxLevel::kDouble), RayRequest{c.ray, {}});
     hits += hit.valid();

@@ -1,10 +1,20 @@
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
 #include "core/config.h"
 #include "core/config_enums.h"
+
+namespace carousel {
+
+/// For Google Test's messages.
+inline void PrintTo(const AccuracyConfig& accuracy, std::ostream* out) {
+  *out << enum_name(accuracy.triangle) << " and " << enum_name(accuracy.box);
+}
+
+}  // namespace carousel
 
 namespace carousel::accel {
 

@@ -86,6 +86,25 @@ TEST_P(Levels, AgreeOnDegenerateTriangles) {
     EXPECT_EQ(brute.differences(build_sequential(scene, 8, leaf, GetParam())), 0u);
 }
 
+// Faces on faces: t' is often the entry into the triangle's box, and ties are many.
+TEST_P(Levels, AgreeOnCoincidentFacesAlongTheAxes) {
+  Random random(48);
+  std::vector<Vec3> faces, corners;
+  for (int i = 0; i < 12; ++i) {
+    Vec3 p[3] = {random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1})};
+    p[1][i % 3] = p[2][i % 3] = p[0][i % 3];
+    faces.insert(faces.end(), p, p + 3);
+  }
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t face = 3 * random.below(12), turn = random.below(3);
+    for (std::size_t k = 0; k < 3; ++k) corners.push_back(faces[face + (k + turn) % 3]);
+  }
+  const scene::Scene scene = scene_of(soup(corners));
+  const BruteForceAnswers brute(scene, mixed_rays(scene, 1500, 49), GetParam());
+  for (const std::int64_t leaf : {1, 4, 16})
+    EXPECT_EQ(brute.differences(build_sequential(scene, 8, leaf, GetParam())), 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, Levels, testing::ValuesIn(triangle_and_box_levels()), [](const auto& level) {
   return std::string(enum_name(level.param.triangle)) + "_" + std::string(enum_name(level.param.box));
 });
