@@ -22,6 +22,7 @@ class Rules {
     one_scene();
     built_shape();
     built_accuracy();
+    stored_transform_fits();
     built_planes_and_bundles();
     built_packets();
     built_shading();
@@ -78,6 +79,23 @@ class Rules {
   void built_accuracy() {
     only("accuracy.triangle", c.accuracy.triangle, TriangleLevel::kWatertight);
     only("accuracy.box", c.accuracy.box, BoxLevel::kConservative);
+  }
+
+  void stored_transform_fits() {
+    using Data = AccuracyConfig::InstanceData;
+    const AccuracyConfig& a = c.accuracy;
+    if (!a.instance_data) return;
+    const bool one_matrix = a.transform == TransformLevel::kInverseMatrix;
+    if (*a.instance_data == (one_matrix ? Data::kRt : Data::kInverse))
+      issue("accuracy.instance_data",
+            fmt::format("transform: {} {}; expected forward or {}, found {}", enum_name(a.transform),
+                        one_matrix ? "has the translation multiplied in" : "subtracts the translation first",
+                        one_matrix ? "inverse" : "rt", enum_name(*a.instance_data)));
+    const bool forward = *a.instance_data == Data::kForward;
+    if (a.invert && (*a.invert == AccuracyConfig::Invert::kVisit) != forward)
+      issue("accuracy.invert", fmt::format("instance_data: {} {}; expected {}, found {}", enum_name(*a.instance_data),
+                                           forward ? "stores nothing inverted" : "is stored inverted",
+                                           forward ? "visit" : "build", enum_name(*a.invert)));
   }
 
   void built_planes_and_bundles() {
