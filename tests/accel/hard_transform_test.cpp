@@ -80,7 +80,7 @@ TEST(HardTransform, RandomMatricesAndOffsets) {
     }
   }
   std::string table = fmt::format("\n{} random sets (scale 0.1 to 10, mirrored or not, a third pure rotations; |T| 1 to "
-                                  "1e6; offset 1e-3 to 1e6), seed {}:\n\n| method | median | worst | median where |T| > "
+                                  "1e6; offset 1e-3 to 1e6), seed {}:\n\n| method | median | worst | median where \\|T\\| > "
                                   "1000 offset | worst there |\n|---|---:|---:|---:|---:|\n", sets, seed);
   for (const TransformMethod& method : methods)
     table += fmt::format("| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} |\n", method.name, all[method.name].median(),
