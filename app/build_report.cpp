@@ -43,7 +43,7 @@ report::SceneSummary summary(const Prepared& p) {
 report::Tests tests(const TestCounts& counts, std::uint64_t rays) {
   const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
   return {kind(counts.box), kind(counts.plane), kind(counts.triangle), kind(counts.bundle),
-          kind(counts.transforms)};
+          kind(counts.transforms), kind(counts.inversions)};
 }
 
 report::Resource resource(std::size_t number, const ringbus::ResourceStatistics& s,
@@ -142,6 +142,10 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i) {
     (*r.resources)[i].units = units(c.tiles[i], c.cycles);
     if (config.topology.shape == TopologyShape::kIndependent) (*r.resources)[i].stack = stack(c.tiles[i].stack);
+    if (config.accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore) {
+      const ringbus::TransformedRayBytes& bytes = c.tiles[i].transformed_rays;
+      (*r.resources)[i].transformed_rays = {bytes.written, bytes.read, bytes.peak};
+    }
   }
   for (std::size_t i = 0; r.links && i < r.links->size(); ++i) {
     const ringbus::cycle::UnitLedger& use = c.links[i].use;

@@ -150,6 +150,12 @@ struct AccuracyConfig {
   BoxLevel box = BoxLevel::kConservative;
   TransformLevel transform = TransformLevel::kTwoStep;
   SpawnOffset spawn = SpawnOffset::kBound;
+  // How the cycle engine's hardware gets there; no hit depends on these.
+  enum class TransformedRay { kRecompute, kStore } transformed_ray = TransformedRay::kRecompute;
+  enum class InstanceData { kForward, kRt, kInverse };
+  std::optional<InstanceData> instance_data;   ///< absent: what `transform` reads
+  enum class Invert { kBuild, kVisit };
+  std::optional<Invert> invert;                ///< absent: as `instance_data` needs
 };
 
 struct CullPlanesConfig {

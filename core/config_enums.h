@@ -59,6 +59,12 @@ CAROUSEL_ENUM(BoxLevel, {BoxLevel::kPlain, "plain"}, {BoxLevel::kConservative, "
 CAROUSEL_ENUM(TransformLevel, {TransformLevel::kInverseMatrix, "inverse_matrix"},
               {TransformLevel::kTwoStep, "two_step"}, {TransformLevel::kTwoStepDouble, "two_step_double"},
               {TransformLevel::kTransposeIfRotation, "transpose_if_rotation"});
+CAROUSEL_ENUM(AccuracyConfig::TransformedRay, {AccuracyConfig::TransformedRay::kRecompute, "recompute"},
+              {AccuracyConfig::TransformedRay::kStore, "store"});
+CAROUSEL_ENUM(AccuracyConfig::InstanceData, {AccuracyConfig::InstanceData::kForward, "forward"},
+              {AccuracyConfig::InstanceData::kRt, "rt"}, {AccuracyConfig::InstanceData::kInverse, "inverse"});
+CAROUSEL_ENUM(AccuracyConfig::Invert, {AccuracyConfig::Invert::kBuild, "build"},
+              {AccuracyConfig::Invert::kVisit, "visit"});
 CAROUSEL_ENUM(SpawnOffset, {SpawnOffset::kEpsilon, "epsilon"}, {SpawnOffset::kUlp, "ulp"},
               {SpawnOffset::kBound, "bound"});
 CAROUSEL_ENUM(CullPlanesConfig::Nodes, {CullPlanesConfig::Nodes::kLeaves, "leaves"},

@@ -189,6 +189,12 @@ void describe(V& v, AccuracyConfig& c) {
   v.choice("spawn", c.spawn,
            "how far from its surface a new ray starts: 1e-4 scene units; 256 ulp (Waechter, Binder 2019); as far as "
            "rounding can reach");
+  v.choice("transformed_ray", c.transformed_ray,
+           "cycle: a ray is brought to model space at each visit, or once an instance and kept (24 bytes)");
+  v.choice("instance_data", c.instance_data,
+           "cycle: what is stored of an instance: its matrix, the inverse of the linear part beside the translation, or "
+           "the inverse matrix; absent: what the transform reads");
+  v.choice("invert", c.invert, "cycle: when a stored matrix is inverted; absent: at a visit if it is stored forward");
 }
 
 template <class V>

@@ -21,6 +21,7 @@ class Rules {
   std::vector<ConfigIssue> check() {
     one_scene();
     built_shape();
+    stored_transform_fits();
     built_planes_and_bundles();
     built_packets();
     built_shading();
@@ -72,6 +73,23 @@ class Rules {
           fmt::format("the {} engine has no {}; expected ring, bidirectional{}",
                       enum_name(c.engine.kind), enum_name(shape),
                       cycle() ? ", multi_ring, hierarchical, point_to_point, bus or independent" : " or point_to_point"));
+  }
+
+  void stored_transform_fits() {
+    using Data = AccuracyConfig::InstanceData;
+    const AccuracyConfig& a = c.accuracy;
+    if (!a.instance_data) return;
+    const bool one_matrix = a.transform == TransformLevel::kInverseMatrix;
+    if (*a.instance_data == (one_matrix ? Data::kRt : Data::kInverse))
+      issue("accuracy.instance_data",
+            fmt::format("transform: {} {}; expected forward or {}, found {}", enum_name(a.transform),
+                        one_matrix ? "has the translation multiplied in" : "subtracts the translation first",
+                        one_matrix ? "inverse" : "rt", enum_name(*a.instance_data)));
+    const bool forward = *a.instance_data == Data::kForward;
+    if (a.invert && (*a.invert == AccuracyConfig::Invert::kVisit) != forward)
+      issue("accuracy.invert", fmt::format("instance_data: {} {}; expected {}, found {}", enum_name(*a.instance_data),
+                                           forward ? "stores nothing inverted" : "is stored inverted",
+                                           forward ? "visit" : "build", enum_name(*a.invert)));
   }
 
   void built_planes_and_bundles() {

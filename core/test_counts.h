@@ -8,6 +8,7 @@ namespace carousel {
 /// brought from world to model space.
 struct TestCounts {
   std::uint64_t box = 0, triangle = 0, plane = 0, bundle = 0, transforms = 0;
+  std::uint64_t inversions = 0;   ///< of an instance's matrix, before rays are transformed
 
   TestCounts& operator+=(const TestCounts& o) {
     box += o.box;
@@ -15,6 +16,7 @@ struct TestCounts {
     plane += o.plane;
     bundle += o.bundle;
     transforms += o.transforms;
+    inversions += o.inversions;
     return *this;
   }
   friend bool operator==(const TestCounts&, const TestCounts&) = default;

@@ -73,7 +73,7 @@ struct TestKind {
 };
 
 struct Tests {
-  TestKind box, plane, triangle, bundle, transforms;
+  TestKind box, plane, triangle, bundle, transforms, inversions{};
 };
 
 struct Packets {
@@ -107,6 +107,11 @@ struct Stack {
   std::uint64_t pushed_bytes = 0, popped_bytes = 0, peak_bytes = 0, ray_peak_bytes = 0;
 };
 
+/// Model-space rays kept beside the records.
+struct TransformedRays {
+  std::uint64_t written_bytes = 0, read_bytes = 0, peak_bytes = 0;
+};
+
 struct Resource {
   std::uint64_t resource = 0;
   std::uint64_t rays_admitted = 0, rays_completed = 0;
@@ -116,6 +121,7 @@ struct Resource {
   Stalls stalls;
   std::optional<Units> units{};
   std::optional<Stack> stack{};
+  std::optional<TransformedRays> transformed_rays{};
 };
 
 struct LinkCycles {

@@ -103,6 +103,7 @@ void describe(V& v, Tests& r) {
   v.section("triangle", r.triangle, "ray against triangle");
   v.section("bundle", r.bundle, "bundle of rays against box");
   v.section("transforms", r.transforms, "rays brought from world to model space");
+  v.section("inversions", r.inversions, "instances' matrices inverted at a visit, with accuracy.invert: visit");
 }
 
 template <class V>
@@ -165,6 +166,13 @@ void describe(V& v, Stack& r) {
 }
 
 template <class V>
+void describe(V& v, TransformedRays& r) {
+  v.field("written_bytes", r.written_bytes, "bytes", "24 a ray and instance");
+  v.field("read_bytes", r.read_bytes, "bytes", "at later visits");
+  v.field("peak_bytes", r.peak_bytes, "bytes", "kept at once");
+}
+
+template <class V>
 void describe(V& v, Resource& r) {
   v.field("resource", r.resource, "", "number of the resource");
   v.field("rays_admitted", r.rays_admitted, "rays", "that got a slot here");
@@ -185,6 +193,7 @@ void describe(V& v, Resource& r) {
   v.section("stalls", r.stalls, "what could not proceed at once");
   v.section("units", r.units, "cycles of its units; each unit's add up to engine.cycles");
   v.section("stack", r.stack, "of its rays, with topology.shape: independent");
+  v.section("transformed_rays", r.transformed_rays, "in model space, with accuracy.transformed_ray: store");
 }
 
 template <class V>

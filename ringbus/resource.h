@@ -15,6 +15,7 @@
 #include "ringbus/packet.h"
 #include "ringbus/ray_stacks.h"
 #include "ringbus/ray_store.h"
+#include "ringbus/transform_account.h"
 
 namespace carousel::ringbus {
 
@@ -43,6 +44,8 @@ class Resource {
   ResourceId id() const { return store_.owner(); }
   /// Before the first test. Not owned.
   void set_subtree_tracer(SubtreeTracer* tracer) { subtree_tracer_ = tracer; }
+  /// Before the first test: whose transforms are counted instead of the kernels'. Not owned.
+  void set_transform_account(TransformAccount* account) { transforms_ = account; }
   /// Whether `key` is a subtree that is crossed in one visit.
   bool is_treelet(accel::NodeKey key) const { return is_treelet(config_, accel_, key); }
 
@@ -97,6 +100,7 @@ class Resource {
             std::uint32_t lanes);
 
   void gather_local(const Packet& packet);
+  TestCounts transforms_of(accel::NodeKey key);
   void test_spread(Packet& packet);
   void test_ordered(Packet& packet);
   void settle(std::uint32_t slot, std::int32_t pending_change);
@@ -111,6 +115,7 @@ class Resource {
   const accel::Accel& accel_;
   EventSink* sink_;
   SubtreeTracer* subtree_tracer_ = nullptr;
+  TransformAccount* transforms_ = nullptr;
   bool ordered_, single_, bounded_;
   std::uint32_t floor_blocks_;
   RayStore& store_;

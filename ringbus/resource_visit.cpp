@@ -50,18 +50,35 @@ void Resource::settle(std::uint32_t slot, std::int32_t pending_change) {
 void Resource::complete(std::uint32_t slot) {
   accel::finish_record(store_.record(slot), completed_);
   if (ordered_) stacks_->clear(slot);
+  if (transforms_ != nullptr) transforms_->forget(slot);
   store_.retire(slot);
   freed_slots_.push_back(slot);
+}
+
+// Before the tests, which may complete rays.
+TestCounts Resource::transforms_of(accel::NodeKey key) {
+  TestCounts counts;
+  if (!transforms_->moves(key.instance)) return counts;
+  for (const std::uint32_t slot : local_slots_)
+    if ((store_.record(slot).tag.flags & accel::kRayDone) == 0) counts.transforms += transforms_->needs(slot, key.instance);
+  counts.inversions = counts.transforms > 0 && transforms_->inverts(key.instance);   // one for all rays of the visit
+  return counts;
 }
 
 void Resource::test(Packet& packet) {
   gather_local(packet);
   tests_ = TestCounts{};
   if (!local_slots_.empty()) {
+    const bool accounted = transforms_ != nullptr && !is_treelet(packet.key);   // a subtree's tracer does it itself
+    const TestCounts moved = accounted ? transforms_of(packet.key) : TestCounts{};
     if (ordered_)
       test_ordered(packet);
     else
       test_spread(packet);
+    if (accounted) {
+      tests_.transforms = moved.transforms;
+      tests_.inversions = moved.inversions;
+    }
   }
   record({.kind = EventKind::kTest, .resource = id(), .key = packet.key,
           .rays = static_cast<std::uint32_t>(local_slots_.size()), .tests = tests_, .members = packet.members});

@@ -7,7 +7,7 @@
 namespace carousel::ringbus::cycle {
 
 CycleMachine::CycleMachine(const Config& c, const accel::Accel& a)
-    : config(c), accel(a), topology(c.topology), memory(a),
+    : config(c), accel(a), topology(c.topology), memory(a, c.accuracy),
       packets(make_packets(c, topology, packets_per_direction())), stores(make_ray_stores(c)),
       control(c, stores, Resource::initial_tests(c, a)) {}
 

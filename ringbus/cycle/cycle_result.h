@@ -7,6 +7,7 @@
 #include "ringbus/cycle/clock.h"
 #include "ringbus/cycle/latency_histogram.h"
 #include "ringbus/cycle/trace.h"
+#include "ringbus/transform_account.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -42,6 +43,7 @@ struct TileResult {
   UnitLedger box, triangle, transform;       ///< busy within TileState::kTesting
   UnitLedger handler;
   StackLedger stack;
+  TransformedRayBytes transformed_rays;      ///< kept beside the records
   LatencyHistogram round_trips;              ///< of its packets, from the issue queue until they are home
   Cycle packet_cycles = 0;                   ///< its packets under way, summed over the cycles
   friend bool operator==(const TileResult&, const TileResult&) = default;

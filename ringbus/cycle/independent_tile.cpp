@@ -1,6 +1,7 @@
 #include "ringbus/cycle/independent_tile.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -20,7 +21,8 @@ IndependentTile::IndependentTile(ResourceId id, CycleMachine& machine, bool stat
       fetches_(machine.config.memory, ports),
       completed_port_(machine.config, ports),
       help_(machine.config, ports),
-      threads_(store_.slots()) {}
+      transforms_(machine.config.accuracy, machine.accel, store_.slots()),
+      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false}) {}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
@@ -34,7 +36,7 @@ void IndependentTile::run(Cycle end) {
 void IndependentTile::step(Cycle now) {
   take_new_rays(now);
   while (fetches_.next() <= now)
-    for (const std::uint32_t slot : fetches_.take()) test(slot, now);
+    for (const std::uint32_t slot : fetches_.take()) fetched(slot, now);
   do {
     while (!tests_.empty() && tests_.top().done <= now) {
       const std::uint32_t slot = tests_.top().slot;
@@ -83,7 +85,20 @@ void IndependentTile::go_on(std::uint32_t slot, Cycle now) {
     return;
   }
   thread.strip = *next;
-  if (fetches_.want(machine_.memory.strip(*next), slot, now)) test(slot, now);
+  const ShapeSpan transform = machine_.memory.transform(next->instance);
+  thread.fetches_transform = thread.walk.enters(next->instance) && transform.bytes > 0 && !fetches_.want(transform, slot, now);
+  if (!thread.fetches_transform) want_strip(slot, now);
+}
+
+void IndependentTile::fetched(std::uint32_t slot, Cycle now) {
+  if (std::exchange(threads_[slot].fetches_transform, false))
+    want_strip(slot, now);
+  else
+    test(slot, now);
+}
+
+void IndependentTile::want_strip(std::uint32_t slot, Cycle now) {
+  if (fetches_.want(machine_.memory.strip(threads_[slot].strip), slot, now)) test(slot, now);
 }
 
 void IndependentTile::test_held_back(Cycle now) {
@@ -114,6 +129,7 @@ void IndependentTile::complete(std::uint32_t slot) {
   stack_.popped_bytes += bytes.popped;
   --active_;
   accel::finish_record(store_.record(slot), completed_);
+  transforms_.forget(slot);
   store_.retire(slot);
   freed_slots_.push_back(slot);
 }
@@ -134,6 +150,7 @@ TileResult IndependentTile::result() const {
   t.triangle.busy = tester_.triangle.busy();
   t.transform.busy = tester_.transform.busy();
   t.stack = stack_;
+  t.transformed_rays = transforms_.bytes();
   return t;
 }
 

@@ -45,6 +45,7 @@ class IndependentTile final : public ResourceAgent {
     RayId ray;
     RayWalk walk;
     accel::NodeKey strip;   // fetched or in test
+    bool fetches_transform; // first
   };
   /// A ray in test. Of those that end at one time the one that began first goes on first.
   struct Test {
@@ -58,6 +59,8 @@ class IndependentTile final : public ResourceAgent {
   void take_new_rays(Cycle now);
   void go_on(std::uint32_t slot, Cycle now);
   void test(std::uint32_t slot, Cycle now);
+  void fetched(std::uint32_t slot, Cycle now);
+  void want_strip(std::uint32_t slot, Cycle now);
   void test_held_back(Cycle now);
   void complete(std::uint32_t slot);
   void hand_over(Cycle now);
@@ -78,6 +81,7 @@ class IndependentTile final : public ResourceAgent {
   CompletedPort completed_port_;
   ShadeHelp help_;
 
+  TransformAccount transforms_;
   std::vector<Thread> threads_;   // by slot
   std::priority_queue<Test, std::vector<Test>, std::greater<>> tests_;
   std::vector<std::uint32_t> held_back_;   // slots of rays that are ready, but the resource shades

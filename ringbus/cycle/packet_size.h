@@ -13,7 +13,7 @@ namespace carousel::ringbus::cycle {
 ///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte), or with ordered traversal the next
 ///   node 12 (key 8, entry 4)
 ///   per shape of a strip of boxes: nearest entry 4, for the policy `nearest`
-///   with `carry: data` the shapes themselves
+///   with `carry: data` the shapes themselves, and below an instance what is stored of its transform
 class PacketSize {
  public:
   explicit PacketSize(const Config& config)
@@ -29,7 +29,7 @@ class PacketSize {
       bytes += 12 * rays;
     else if (packet.key.ref.is_inner() && !treelet)
       bytes += rays + (entries_ ? 4 * accel::kMaxWidth : 0);
-    if (data_ && !treelet) bytes += memory.strip(packet.key).bytes;
+    if (data_ && !treelet) bytes += memory.strip(packet.key).bytes + memory.transform(packet.key.instance).bytes;
     return bytes;
   }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "accel/accel.h"
+#include "accel/instance_data.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -12,10 +13,15 @@ struct ShapeSpan {
   std::uint32_t bytes = 0;
 };
 
-/// Where the acceleration structure lies: nodes first, then triangles, as they are laid out in the host's.
+/// Where the acceleration structure lies: nodes first, then triangles, as they are laid out in the host's, then what
+/// is stored of each instance's transform, from a 64-byte border on.
 class ShapeMemory {
  public:
-  explicit ShapeMemory(const accel::Accel& accel) : blocks_at_(accel.nodes.size() * sizeof(accel::Node)) {}
+  ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
+      : accel_(accel),
+        blocks_at_(accel.nodes.size() * sizeof(accel::Node)),
+        instances_at_((blocks_at_ + accel.blocks.size() * sizeof(accel::TriangleBlock) + 63) / 64 * 64),
+        instance_bytes_(accel::instance_bytes(accuracy)) {}
 
   /// The strip below `key`: a node with its children's boxes, or a leaf's triangles.
   ShapeSpan strip(accel::NodeKey key) const {
@@ -24,8 +30,16 @@ class ShapeMemory {
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
   }
 
+  /// What testing in `instance` needs of its transform; no bytes above the instances and where rays are not moved.
+  ShapeSpan transform(std::uint32_t instance) const {
+    if (instance == kNoInstance || accel_.instances[instance].transform.identity) return {};
+    return {instances_at_ + std::uint64_t{instance} * ((instance_bytes_ + 63) / 64 * 64), instance_bytes_};
+  }
+
  private:
-  std::uint64_t blocks_at_;
+  const accel::Accel& accel_;
+  std::uint64_t blocks_at_, instances_at_;
+  std::uint32_t instance_bytes_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -7,6 +7,8 @@ namespace carousel::ringbus::cycle {
 void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) {
   account_.chain = 0;
   account_.strips.clear();
+  account_.instances.clear();
+  entered_.clear();
   std::fill(seen_.begin(), seen_.end(), 0);
   for (std::size_t i = 0; i < members.count; ++i)
     account_.chain = std::max(account_.chain, walk_ray(from, {members.records, members.slots + i, 1}, counts));
@@ -18,8 +20,12 @@ std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers
   walk_.start(from);
   while (const std::optional<accel::NodeKey> key = walk_.next(record)) {
     note(*key);
-    const TestCounts tests = walk_.test(accel_, *key, ray);
-    cycles += (key->ref.is_inner() ? step_.box : step_.triangle) + tests.transforms * step_.transform;
+    TestCounts tests = walk_.test(accel_, *key, ray);
+    if (tests.transforms > 0 && !entered_.insert(key->instance).second)
+      tests.inversions = 0;   // another ray's visit has done it
+    else if (tests.transforms > 0)
+      account_.instances.push_back(key->instance);
+    cycles += (key->ref.is_inner() ? step_.box : step_.triangle) + (tests.transforms + accel::kInversionPasses * tests.inversions) * step_.transform;
     counts += tests;
   }
   return cycles;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <unordered_set>
 #include <vector>
 
 #include "accel/accel.h"
@@ -21,8 +22,11 @@ class SubtreeWalk final : public SubtreeTracer {
   struct Account {
     std::uint64_t chain = 0;                 ///< cycles of the slowest ray
     std::vector<accel::NodeKey> strips;      ///< read by any of them, once each, in order of the first reading
+    std::vector<std::uint32_t> instances;    ///< whose transform was read, in the same way
   };
-  SubtreeWalk(const accel::Accel& accel, const StepCycles& step) : accel_(accel), step_(step) {}
+  /// Keeps references.
+  SubtreeWalk(const accel::Accel& accel, const StepCycles& step, TransformAccount& transforms)
+      : accel_(accel), step_(step), walk_(transforms) {}
 
   void trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) override;
   /// Of the last trace().
@@ -36,6 +40,7 @@ class SubtreeWalk final : public SubtreeTracer {
   StepCycles step_;
   Account account_;
   RayWalk walk_;
+  std::unordered_set<std::uint32_t> entered_;   // instances by any of the rays
   std::vector<std::uint32_t> seen_;   // by a hash of the strip: its place in account_.strips, plus one
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "accel/instance_data.h"
 #include "core/config.h"
 #include "core/ids.h"
 #include "core/test_counts.h"
@@ -9,14 +10,15 @@
 namespace carousel::ringbus::cycle {
 
 /// A resource's test units. Transforms, boxes and triangles are pipelined: a ray's boxes are tested when it has
-/// been transformed, while the next one is.
+/// been transformed, while the next one is. A matrix that is inverted first takes its passes through the transform
+/// unit ahead of the rays.
 struct Tester {
   explicit Tester(const TestersConfig& config)
       : box(config.box), triangle(config.triangle), transform(config.transform) {}
 
   /// When the answers to the tests of one strip are there; started at `at`.
   Cycle strip(Cycle at, const TestCounts& counts) {
-    const UnitBank::Reservation moved = transform.reserve(at, counts.transforms);
+    const UnitBank::Reservation moved = transform.reserve(inverted(at, counts), counts.transforms);
     UnitBank& bank = counts.box > 0 ? box : triangle;
     const UnitBank::Reservation tested = bank.reserve(moved.first, counts.box + counts.triangle);
     // The last ray to be transformed is tested last.
@@ -25,18 +27,26 @@ struct Tester {
 
   /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
   Cycle walk(Cycle at, const TestCounts& counts, Cycle chain) {
-    return std::max({at + chain, transform.reserve(at, counts.transforms).last, box.reserve(at, counts.box).last,
+    return std::max({at + chain, transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last,
                      triangle.reserve(at, counts.triangle).last});
   }
 
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const TestCounts& counts) {
-    const Cycle moved = transform.reserve_beside(at, counts.transforms).last;
+    const Cycle moved = transform.reserve_beside(inverted(at, counts), counts.transforms).last;
     UnitBank& bank = counts.box > 0 ? box : triangle;
     return bank.reserve_beside(moved, counts.box + counts.triangle).last;
   }
 
   UnitBank box, triangle, transform;
+
+ private:
+  static std::uint64_t passes(const TestCounts& counts) {
+    return counts.transforms + accel::kInversionPasses * counts.inversions;
+  }
+  Cycle inverted(Cycle at, const TestCounts& counts) {
+    return transform.reserve(at, accel::kInversionPasses * counts.inversions).last;
+  }
 };
 
 /// Those of a resource, at the levels of accuracy: the machine's, unless it has its own.

@@ -19,7 +19,8 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
     : machine_(machine),
       id_(id),
       trace_(id.value, window),
-      walk_(machine.accel, step_cycles(testers_of(machine.config, id))),
+      transforms_(machine.config.accuracy, machine.accel, machine.stores[id.value]->slots()),
+      walk_(machine.accel, step_cycles(testers_of(machine.config, id)), transforms_),
       resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], statistics ? &sink_ : nullptr),
       ports_(std::move(ports)),
       tester_(testers_of(machine.config, id)),
@@ -40,6 +41,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       trips_(static_cast<std::uint32_t>(id.value * machine.topology.directions() * machine.packets_per_direction()),
              machine.topology.directions() * machine.packets_per_direction()) {
   resource_.set_subtree_tracer(&walk_);
+  resource_.set_transform_account(&transforms_);
   for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
     if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
 }
@@ -69,7 +71,7 @@ Cycle Tile::next_beside_ring() const {
   return first;
 }
 
-bool Tile::wants_credit() const { return bubble_ && !issue_.empty() && issue_.front().ready; }
+bool Tile::wants_credit() const { return bubble_ && !issue_.empty() && issue_.front().ready(); }
 
 Cycle Tile::next_in_hand() const {
   Cycle first = kNever;
@@ -84,7 +86,7 @@ Cycle Tile::next_in_hand() const {
 
 bool Tile::handler_wanted() const {
   // Collections that are not full go when the handler has nothing else to do.
-  if (issue_.empty() ? !resource_.idle() : issue_.front().ready) return true;
+  if (issue_.empty() ? !resource_.idle() : issue_.front().ready()) return true;
   return std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now_; });
 }
 
@@ -133,7 +135,7 @@ TileState Tile::classify(Cycle now) const {
   if (fetching) return TileState::kMemory;
   for (const OutPort& out : ports_.out)
     if (out.blocked()) return TileState::kLink;
-  if (!issue_.empty()) return issue_.front().ready ? TileState::kLink : TileState::kMemory;
+  if (!issue_.empty()) return issue_.front().ready() ? TileState::kLink : TileState::kMemory;
   if (storage_full_) return TileState::kStorage;
   if (!resource_.idle() && resource_.packets_in_flight() > 0 &&
       std::all_of(free_.begin(), free_.end(), [](const std::vector<PacketId>& f) { return f.empty(); }))
@@ -203,6 +205,7 @@ TileResult Tile::result() const {
   t.triangle.busy = tester_.triangle.busy();
   t.transform.busy = tester_.transform.busy();
   t.handler.busy = handler_busy_;
+  t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();
   t.packet_cycles = trips_.packet_cycles();
   return t;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -71,8 +72,9 @@ class Tile final : public ResourceAgent {
   struct Issue {
     PacketId packet;
     std::uint32_t tag = 0;
-    ShapeSpan strip;
-    bool ready = false;
+    std::uint32_t outstanding = 0;   // fetches under way
+
+    bool ready() const { return outstanding == 0; }
   };
 
   std::uint64_t hops() const;
@@ -97,6 +99,8 @@ class Tile final : public ResourceAgent {
   Context* free_context();
   bool testers_free() const;
   void begin_test(Context& context, PacketId id, Cycle at);
+  std::array<ShapeSpan, 2> shape_data(accel::NodeKey key, bool transform) const;
+  bool lacks(const ShapeSpan& span);
   void begin_fetch(Context& context, const ShapeSpan& strip, Cycle now);
   void end_test(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
@@ -114,6 +118,7 @@ class Tile final : public ResourceAgent {
   ResourceId id_;
   StatisticsSink sink_;
   Trace trace_;
+  TransformAccount transforms_;
   SubtreeWalk walk_;
   Resource resource_;
   Ports ports_;

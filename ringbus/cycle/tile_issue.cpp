@@ -12,7 +12,7 @@ bool Tile::may_inject(const Packet& packet) const {
 }
 
 bool Tile::handle_issue(Cycle now) {
-  if (issue_.empty() || !issue_.front().ready) return false;
+  if (issue_.empty() || !issue_.front().ready()) return false;
   const PacketId id = issue_.front().packet;
   Packet& packet = machine_.packet(id);
   const bool travels = !stays_ && machine_.topology.hops(packet) > 0;
@@ -66,11 +66,15 @@ bool Tile::fill_issue(Cycle now) {
       return moved;
     }
     moved = true;
-    Issue issue{*id, next_tag_, machine_.memory.strip(packet.key), true};
+    Issue issue{*id, next_tag_};
     const bool brings_shapes = packet.kind == PacketKind::kTest && !fetch_by_resource_ && !resource_.is_treelet(packet.key);
-    if (brings_shapes && !shapes_.has(issue.strip)) {
-      issue.ready = false;
-      fetch(issue.strip, issue.tag, now);
+    if (brings_shapes) {
+      // The issuer cannot know whether all rays have their copies, so it brings the transform in any case.
+      for (const ShapeSpan& span : shape_data(packet.key, true)) {
+        if (!lacks(span)) continue;
+        fetch(span, issue.tag, now);
+        ++issue.outstanding;
+      }
       next_tag_ = (next_tag_ + 1) & ~kContextTag;
     }
     issue_.push_back(issue);

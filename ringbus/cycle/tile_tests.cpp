@@ -16,6 +16,12 @@ Tile::Context* Tile::free_context() {
   return nullptr;
 }
 
+std::array<ShapeSpan, 2> Tile::shape_data(accel::NodeKey key, bool transform) const {
+  return {machine_.memory.strip(key), transform ? machine_.memory.transform(key.instance) : ShapeSpan{}};
+}
+
+bool Tile::lacks(const ShapeSpan& span) { return span.bytes > 0 && !shapes_.has(span); }
+
 void Tile::begin_fetch(Context& context, const ShapeSpan& strip, Cycle now) {
   ++context.outstanding;
   fetch(strip, kContextTag | static_cast<std::uint32_t>(&context - contexts_.data()), now);
@@ -32,6 +38,8 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     // Each ray fetches the strip it needs next, so as many fetches are under way as there are rays.
     context.done = tester_.walk(at, context.counts, walk_.account().chain);
     context.strips.clear();
+    for (const std::uint32_t instance : walk_.account().instances)
+      if (const ShapeSpan span = machine_.memory.transform(instance); !shapes_.has(span)) context.strips.push_back(span);
     for (const accel::NodeKey key : walk_.account().strips)
       if (const ShapeSpan strip = machine_.memory.strip(key); !shapes_.has(strip)) context.strips.push_back(strip);
     std::reverse(context.strips.begin(), context.strips.end());
@@ -40,10 +48,11 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
       begin_fetch(context, context.strips.back(), at);
       context.strips.pop_back();
     }
-  } else if (const ShapeSpan strip = machine_.memory.strip(packet.key); fetch_by_resource_ && !shapes_.has(strip)) {
-    begin_fetch(context, strip, at);
   } else {
-    context.done = tester_.strip(at, context.counts);
+    if (fetch_by_resource_)
+      for (const ShapeSpan& span : shape_data(packet.key, context.counts.transforms > 0))
+        if (lacks(span)) begin_fetch(context, span, at);
+    if (context.outstanding == 0) context.done = tester_.strip(at, context.counts);
   }
   if (context.outstanding > 0) context.phase = Context::Phase::kFetching;
 }
@@ -82,7 +91,8 @@ void Tile::take_answers(Cycle now) {
   while (shapes_.next() <= now) {
     const std::uint32_t tag = shapes_.take();
     if ((tag & kContextTag) == 0) {
-      for (Issue& issue : issue_) issue.ready |= issue.tag == tag;
+      for (Issue& issue : issue_)
+        if (issue.tag == tag && !issue.ready()) --issue.outstanding;
       continue;
     }
     Context& context = contexts_[tag & ~kContextTag];

@@ -1,16 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
-#include <iostream>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "accel/transform.h"
 #include "tests/accel/placements.h"
+#include "tests/publish.h"
 
 namespace carousel::accel {
 
@@ -57,11 +54,5 @@ struct TransformErrors {
   }
   double worst() const { return relative.empty() ? 0 : *std::max_element(relative.begin(), relative.end()); }
 };
-
-/// Prints a table, and appends it to the file that CAROUSEL_TABLES names: script/accuracy-tables makes docs of it.
-inline void publish(const std::string& table) {
-  std::cout << table;
-  if (const char* file = std::getenv("CAROUSEL_TABLES")) std::ofstream(file, std::ios::app) << table;
-}
 
 }  // namespace carousel::accel

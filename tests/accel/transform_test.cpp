@@ -6,7 +6,9 @@
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
+#include "accel/brute_force.h"
 #include "accel/slab.h"
+#include "accel/verifying_workload.h"
 #include "core/config_enums.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
@@ -192,6 +194,20 @@ TEST(Transform, TransposesRotationsAndReflectionsOnly) {
   ASSERT_TRUE(make_transform({sheared, {1, 2, 3}}, two_step, TransformLevel::kTwoStep));
   EXPECT_FALSE(t.transposed);
   EXPECT_EQ(t.inverse_linear, two_step.inverse_linear);
+}
+
+TEST(Transform, EveryLevelIsTracedAsBruteForceDoes) {
+  const scene::Scene scene = small_builtin(BuiltinScene::kInstances, 100, 8);
+  const RayBatch rays = mixed_rays(scene, 600, 45);
+  for (const auto& level : kEnumNames<TransformLevel>) {
+    AccuracyConfig accuracy;
+    accuracy.transform = level.value;
+    const HitBatch got = trace(build(scene, BvhConfig{}, *make_sequential_executor(), accuracy), rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const RayResult expected{rays[i].ray, brute_force(scene, rays[i], accuracy), rays[i].tag};
+      ASSERT_TRUE(same_result(expected, got[i])) << level.name << " ray " << i;
+    }
+  }
 }
 
 TEST(Transform, OneMatrixThatOverflowsMustBeBaked) {

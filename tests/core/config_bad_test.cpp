@@ -126,6 +126,17 @@ INSTANTIATE_TEST_SUITE_P(
             "CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
             "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
             "multi_ring, hierarchical, point_to_point, bus or independent"},
+        BadConfig{"InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\n",
+                  "test.yaml:2:27: accuracy.instance_data: transform: two_step subtracts the translation first; expected "
+                  "forward or rt, found inverse"},
+        BadConfig{"TwoStepsForOneMatrix", SCENE "accuracy: {transform: inverse_matrix, instance_data: rt}\n",
+                  "test.yaml:2:54: accuracy.instance_data: transform: inverse_matrix has the translation multiplied in; "
+                  "expected forward or inverse, found rt"},
+        BadConfig{"ForwardInvertedAtBuild", SCENE "accuracy: {instance_data: forward, invert: build}\n",
+                  "test.yaml:2:44: accuracy.invert: instance_data: forward stores nothing inverted; expected visit, found "
+                  "build"},
+        BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\n",
+                  "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 2}\n",
                   "test.yaml:2:22: cull_planes.count: 2 is not built yet; expected 0"},
         BadConfig{"Bundles", SCENE "bundles: {size: 16}\n",

@@ -35,7 +35,8 @@ TEST(RayWalk, PushesAllChildrenHitButTheNearest) {
     std::fill(std::begin(nearest), std::end(nearest), kInfinity);
     TestCounts counts;
     accel::test_strip(accel, accel.root_key(), ~0u, ray, {&mask, nearest, entry}, counts);
-    RayWalk walk;
+    TransformAccount transforms({}, accel, records.size());
+    RayWalk walk(transforms);
     walk.start(accel.root_key());
     ASSERT_EQ(walk.next(records[slot]), accel.root_key());
     EXPECT_EQ(walk.test(accel, accel.root_key(), ray), counts);
@@ -70,10 +71,11 @@ TEST(RayWalk, FindsWhatTheKernelsFindAndLeavesNothingOnTheStack) {
   const accel::Accel& accel = scene.accel(BvhConfig{});
   std::vector<RayRecord> records = records_of(scene), expected = records;
   std::uint64_t transforms = 0, by_strip = 0;
+  TransformAccount account({}, accel, records.size());
   for (std::uint32_t slot = 0; slot < records.size(); ++slot) {
     TestCounts ignored;
     accel::trace_subtree(accel, accel.root_key(), {expected.data(), &slot, 1}, ignored);
-    RayWalk walk;
+    RayWalk walk(account);
     walk.start(accel.root_key());
     std::uint32_t last = kNoInstance;
     while (const std::optional<accel::NodeKey> key = walk.next(records[slot])) {

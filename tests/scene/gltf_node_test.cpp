@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -33,6 +34,51 @@ TEST(GltfNode, HierarchyIsComposedInDoubleAndRoundedOnce) {
   const int middle = b.push("nodes", {{"translation", {-1e8, 0, 0}}, {"children", {0}}});
   b.node({{"translation", {100000000.5, 0, 0}}, {"children", {middle}}});
   EXPECT_EQ(b.load().instances[0].world_from_model.translation, Vec3(0.5f, 0, 0));
+}
+
+// Turned, scaled, mirrored and moved at each of four levels, against the nodes applied to points one after another.
+TEST(GltfNode, NestedTransformsComposeToTheirProduct) {
+  using Real = long double;
+  using Point = std::array<Real, 3>;
+  struct Level {
+    std::array<double, 4> q;
+    std::array<double, 3> s, t;
+  };
+  const std::array<Level, 4> levels{{{{0.1, -0.5, 0.3, std::sqrt(0.65)}, {2, 0.5, -1}, {1e4, -20, 3}},
+                                     {{0.6, 0, 0, 0.8}, {1, 1, 1}, {-9999.5, 20, 5e3}},
+                                     {{0, -0.28, 0, 0.96}, {0.1, 3, 1}, {0.25, 0, -7}},
+                                     {{0.5, 0.5, 0.5, 0.5}, {-1, -2, 1}, {0, 1, 2}}}};   // innermost last
+  GltfBuilder b = GltfBuilder::square();
+  b.json["scenes"][0]["nodes"] = Json::array();
+  int node = 0;   // the square's
+  b.json["nodes"][0].update({{"rotation", levels[3].q}, {"scale", levels[3].s}, {"translation", levels[3].t}});
+  for (std::size_t i = 2; i > 0; --i)
+    node = b.push("nodes", {{"rotation", levels[i].q}, {"scale", levels[i].s}, {"translation", levels[i].t}, {"children", {node}}});
+  b.node({{"rotation", levels[0].q}, {"scale", levels[0].s}, {"translation", levels[0].t}, {"children", {node}}});
+  const Affine m = b.load().instances[0].world_from_model;
+
+  const auto place = [&](Point x) {
+    for (std::size_t i = levels.size(); i-- > 0;) {
+      const auto& [q, s, t] = levels[i];
+      for (std::size_t a = 0; a < 3; ++a) x[a] *= s[a];
+      const auto cross = [&](const Point& v) {
+        return Point{q[1] * v[2] - q[2] * v[1], q[2] * v[0] - q[0] * v[2], q[0] * v[1] - q[1] * v[0]};
+      };
+      const Point once = cross(x), twice = cross(once);   // x + 2 w (q x x) + 2 q x (q x x)
+      for (std::size_t a = 0; a < 3; ++a) x[a] += 2 * q[3] * once[a] + 2 * twice[a] + t[a];
+    }
+    return x;
+  };
+  const Point origin = place({0, 0, 0});
+  for (std::size_t row = 0; row < 3; ++row) {
+    const int r = static_cast<int>(row);
+    EXPECT_LE(std::fabs(m.translation[r] - origin[row]), 0x1p-24L * std::fabs(origin[row]) + 1e-9L);   // one rounding
+    for (int c = 0; c < 3; ++c) {
+      Point unit{0, 0, 0};
+      unit[static_cast<std::size_t>(c)] = 1;
+      EXPECT_NEAR(m.linear[c][r], static_cast<double>(place(unit)[row] - origin[row]), 1e-6);
+    }
+  }
 }
 
 TEST(GltfNode, InstancesFollowDepthFirstNodeOrder) {

@@ -2,10 +2,14 @@
 #include <random>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "core/config_enums.h"
 #include "shading/spawn_point.h"
+#include "tests/publish.h"
 #include "tests/shading/small_scenes.h"
 
 namespace carousel::shading {
@@ -37,7 +41,8 @@ class SelfIntersection : public testing::Test {
   float uniform(float lo, float hi) { return std::uniform_real_distribution<float>(lo, hi)(random_); }
   Vec3 vector(float r) { return {uniform(-r, r), uniform(-r, r), uniform(-r, r)}; }
 
-  int count(const Vec3& v0, const Vec3& v1, const Vec3& v2, const scene::Affine& placement = {}) {
+  int count(const Vec3& v0, const Vec3& v1, const Vec3& v2, const scene::Affine& placement = {},
+            SpawnOffset offset = SpawnOffset::kBound) {
     scene::Scene scene = empty_scene();
     add_material(scene, matte(Vec3{1}));
     add_mesh(scene, {v0, v1, v2}, {0, 1, 2}, 0, placement);
@@ -51,11 +56,14 @@ class SelfIntersection : public testing::Test {
       const Vec3 d = glm::normalize(vector(1));
       const double cosine = glm::dot(g.normal, DVec3(d));
       if (std::abs(cosine) < 1e-3) continue;
-      const Vec3 o = spawn_point(g, cosine > 0 ? Side::kFront : Side::kBack, SpawnOffset::kBound);
+      const Vec3 o = spawn_point(g, cosine > 0 ? Side::kFront : Side::kBack, offset);
+      farthest_ = std::max(farthest_, glm::length(DVec3(o) - g.position));
       met += meets(inverse * (o - placement.translation), inverse * d, v0, v1, v2) ? 1 : 0;
     }
     return met;
   }
+
+  double farthest_ = 0;   // that a point has been moved
 
  private:
   std::mt19937 random_{7};
@@ -90,6 +98,37 @@ TEST_F(SelfIntersection, NeverInInstances) {
                                   vector(std::pow(10.0f, uniform(-2, 6)))};
     ASSERT_EQ(count(vector(1), vector(1), vector(1), placement), 0);
   }
+}
+
+// How far is far enough, for surfaces far from the world's origin: the hard cases of issue 5 as a table.
+TEST_F(SelfIntersection, FarAwayOnlyTheBoundIsAlwaysEnough) {
+  std::string table = "\nRays that meet the triangle they leave, of 100,000 from each: triangles of unit size |T| away, as "
+                      "vertices of one mesh and as instances; and how far the points were moved at most.\n\n| spawn | 1e4, mesh | 1e4, "
+                      "instances | moved | 1e6, mesh | 1e6, instances | moved |\n|---|---:|---:|---:|---:|---:|---:|\n";
+  for (const auto& offset : kEnumNames<SpawnOffset>) {
+    table += fmt::format("| {} |", offset.name);
+    for (const float away : {1e4f, 1e6f}) {
+      int of_mesh = 0, of_instances = 0;
+      farthest_ = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const Vec3 t = away * glm::normalize(vector(1));
+        of_mesh += count(t + vector(1), t + vector(1), t + vector(1), {}, offset.value);
+        const Mat3 turned(glm::rotate(DMat4(1.0), double(uniform(0, 6)), glm::normalize(DVec3(vector(1)))));
+        of_instances += count(vector(1), vector(1), vector(1), {turned, t}, offset.value);
+      }
+      table += fmt::format(" {} | {} | {:.2g} |", of_mesh, of_instances, farthest_);
+      if (offset.value == SpawnOffset::kBound) {
+        EXPECT_EQ(of_mesh, 0);
+        EXPECT_EQ(of_instances, 0);
+      }
+      if (offset.value == SpawnOffset::kEpsilon) {
+        EXPECT_GT(of_mesh, 10000);
+        EXPECT_GT(of_instances, 10000);
+      }
+    }
+    table += "\n";
+  }
+  publish(table);
 }
 
 }  // namespace
