@@ -9,7 +9,7 @@ namespace carousel::report {
 
 namespace {
 
-constexpr double kWidth = 900, kHeight = 560, kLeft = 90, kRight = 250, kTop = 50, kBottom = 70;
+constexpr double kWidth = 980, kHeight = 560, kLeft = 90, kRight = 300, kTop = 50, kBottom = 70;
 
 double parts_per_million(const AccuracyRow& row) {
   std::uint64_t rays = row.scene.rays;
@@ -23,15 +23,16 @@ class Axes {
   explicit Axes(const std::vector<AccuracyRow>& rows) {
     double most_errors = 1;
     for (const AccuracyRow& row : rows) {
-      most_time_ = std::max(most_time_, row.ns_per_ray.most);
+      most_time_ = std::max(most_time_, row.ns_per_ray.median);
       most_errors = std::max(most_errors, parts_per_million(row));
       if (const double errors = parts_per_million(row); errors > 0) least_power_ = std::min(least_power_, std::floor(std::log10(errors)));
     }
-    most_time_ *= 1.05;
+    most_time_ *= 1.2;
     least_power_ -= 1;   // where none stand
     most_power_ = std::ceil(std::log10(most_errors) + 0.1);
   }
-  double x(double time) const { return kLeft + (kWidth - kLeft - kRight) * time / most_time_; }
+  /// What would be beyond the right edge stands there.
+  double x(double time) const { return kLeft + (kWidth - kLeft - kRight) * std::min(1.0, time / most_time_); }
   double y_of_power(double power) const {
     return kHeight - kBottom - (kHeight - kTop - kBottom) * (power - least_power_) / (most_power_ - least_power_);
   }
