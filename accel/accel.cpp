@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "accel/blas.h"
+#include "accel/cull_planes.h"
 #include "accel/sah_build.h"
 #include "core/error.h"
 
@@ -42,8 +43,9 @@ scene::Mesh bake(const scene::Mesh& mesh, const scene::Affine& m) {
 
 class AccelBuilder {
  public:
-  AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy)
-      : scene_(scene), config_(config), executor_(executor) {
+  AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
+               const CullPlanesConfig& planes)
+      : scene_(scene), config_(config), executor_(executor), planes_(planes) {
     accel_.width = static_cast<int>(config.width);
     accel_.accuracy = accuracy;
   }
@@ -52,7 +54,11 @@ class AccelBuilder {
     place_instances();
     build_blases();
     join_blases();
+    add_cull_planes(accel_, planes_, executor_);   // before there are nodes of the top level
+    const std::size_t below = accel_.nodes.size();
     build_tlas();
+    for (std::size_t i = below; i < accel_.nodes.size(); ++i)
+      accel_.nodes[i].first_plane = static_cast<std::uint32_t>(accel_.planes.size());
     return std::move(accel_);
   }
 
@@ -175,6 +181,7 @@ class AccelBuilder {
   const scene::Scene& scene_;
   const BvhConfig& config_;
   Executor& executor_;
+  const CullPlanesConfig& planes_;
   Accel accel_;
   std::vector<const scene::Mesh*> sources_;   // one a BLAS
   std::vector<std::unique_ptr<scene::Mesh>> baked_;
@@ -184,8 +191,9 @@ class AccelBuilder {
 
 }  // namespace
 
-Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy) {
-  return AccelBuilder(scene, config, executor, accuracy).run();
+Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
+            const CullPlanesConfig& planes) {
+  return AccelBuilder(scene, config, executor, accuracy, planes).run();
 }
 
 }  // namespace carousel::accel

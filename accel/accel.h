@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "accel/cull_plane.h"
 #include "accel/node.h"
 #include "accel/transform.h"
 #include "core/aabb.h"
@@ -27,6 +28,7 @@ struct InstanceNode {
 struct Accel {
   NodeArray nodes;
   BlockArray blocks;
+  std::vector<CullPlane> planes;         ///< in order of the nodes; empty without cull_planes
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
   NodeKey root;                          ///< as root_key()
   AccuracyConfig accuracy;               ///< arithmetic of the tests on it
@@ -36,7 +38,7 @@ struct Accel {
 
   std::size_t size_bytes() const {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) +
-           instances.size() * sizeof(InstanceNode);
+           planes.size() * sizeof(CullPlane) + instances.size() * sizeof(InstanceNode);
   }
   /// Where every ray starts: the top level's root, or the root of the only instance.
   NodeKey root_key() const { return root; }
@@ -53,8 +55,8 @@ struct Accel {
 };
 
 /// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
-/// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
+/// boxes are padded. Cull planes are for nodes below the instances. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
-            const AccuracyConfig& accuracy = {});
+            const AccuracyConfig& accuracy = {}, const CullPlanesConfig& planes = {});
 
 }  // namespace carousel::accel

@@ -6,9 +6,12 @@
 #define CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
 #endif
 
+#include <type_traits>
+
 #include <hwy/highway.h>
 
 #include "accel/accel.h"
+#include "accel/cull_plane_test.h"
 #include "accel/double_slab-inl.h"
 #include "accel/frame_ray.h"
 #include "accel/kernels.h"
@@ -71,16 +74,26 @@ HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint
   return NodeRef::from_bits(nearest.ref);
 }
 
+/// Takes the lanes from `mask`, children whose boxes the ray hits, that the node's planes show to be missed.
+template <class Slab>
+HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& slab, const Vec3& direction,
+                              std::uint32_t mask, TestCounts& counts) {
+  if constexpr (std::is_same_v<Slab, SlabRay>)   // planes need accuracy.box: conservative
+    if (HWY_UNLIKELY(node.plane_counts != 0) && mask != 0)
+      return cull_lanes(node, accel.planes.data(), CullRay(slab.origin, direction), mask, counts);
+  return mask;
+}
+
 /// What is to be done after visiting something that is not an inner node.
 enum class Then { kPop, kEnter, kStop };
 
 /// Visits everything below `root`, until `visit_other(ref)`, which tests what is not an inner node, returns kStop;
-/// after kEnter it goes on with the node that `ref` has been set to. Adds the boxes tested to `boxes`. True when it
-/// was stopped.
+/// after kEnter it goes on with the node that `ref` has been set to. Adds the boxes and planes tested to `counts`. True
+/// when it was stopped.
 template <class Slab, class VisitOther>
-HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const Slab& slab_ray, const Hit& hit,
-                            DepthFirstStack& stack, std::uint64_t& boxes, const VisitOther& visit_other) {
-  const auto ray = in_registers(slab_ray);
+HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const FrameRay<Slab>& frame, const Hit& hit,
+                            DepthFirstStack& stack, TestCounts& counts, const VisitOther& visit_other) {
+  const auto ray = in_registers(frame.slab);
   const Node* const nodes = accel.nodes.data();
   DepthFirstStack::Entry* top = stack.entries;
   NodeRef ref = root;
@@ -90,19 +103,20 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const Slab& slab_r
       const Node& node = nodes[ref.node()];
       alignas(64) float entry[kMaxWidth];
       tested += node.count;
-      const std::uint32_t mask = slab_node(node, ray, hit.t, entry);
+      const std::uint32_t hits = slab_node(node, ray, hit.t, entry);
+      const std::uint32_t mask = cull(accel, node, frame.slab, frame.direction, hits, counts);
       if (mask == 0) goto pop;
       ref = nearest_child(accel, node, mask, entry, top);
     }
     if (const Then then = visit_other(ref); then != Then::kPop) {
       if (then == Then::kEnter) continue;
-      boxes += tested;
+      counts.box += tested;
       return true;
     }
   pop:
     do {
       if (top == stack.entries) {
-        boxes += tested;
+        counts.box += tested;
         return false;
       }
       --top;
@@ -136,7 +150,7 @@ HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray
 template <class Slab>
 HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, const Ray& ray, FrameRay<Slab>& frame, bool any_hit,
                               Hit& hit, TraceStacks& stacks, int level, TestCounts& counts) {
-  return depth_first(accel, root, frame.slab, hit, stacks.at[level], counts.box, [&](NodeRef& ref) HWY_ATTR {
+  return depth_first(accel, root, frame, hit, stacks.at[level], counts, [&](NodeRef& ref) HWY_ATTR {
     if (HWY_LIKELY(ref.kind() == NodeRef::Kind::kLeaf)) {
       counts.triangle += ref.triangles();
       return test_leaf(accel, ref, ~0u, frame, hit) && any_hit ? Then::kStop : Then::kPop;

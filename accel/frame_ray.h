@@ -38,12 +38,14 @@ struct FrameRay {
   TriangleRay triangle;
   std::uint32_t instance;
   float instance_entry;   ///< of the ray into the instance's world box
+  Vec3 direction;         ///< for the plane test, which few configurations have
 
   [[gnu::always_inline]] FrameRay(const AccuracyConfig& accuracy, const Ray& ray, std::uint32_t i, float entry)
       : slab(ray, far_widening(accuracy.box)),
         triangle(ray, accuracy.triangle),
         instance(i),
-        instance_entry(entry) {}
+        instance_entry(entry),
+        direction(ray.direction) {}
 };
 
 /// Storage for a FrameRay to be built in.

@@ -48,11 +48,20 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
       continue;
     }
     const bool move = transform != nullptr && !transform->identity;
-    const Slab ray(move ? transform->to_model(record.ray) : record.ray, widening);
+    const Ray model = move ? transform->to_model(record.ray) : record.ray;
+    const Slab ray(model, widening);
     counts.transforms += move;
     counts.box += boxes;
     alignas(64) float entry[kMaxWidth];
-    const std::uint32_t mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes;
+    std::uint32_t mask;
+    if (node.plane_counts == 0) {
+      mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes;
+    } else {
+      mask = slab_node(node, in_registers(ray), record.hit.t, entry) & lanes;
+      mask = cull(accel, node, ray, model.direction, mask, counts);
+      for (int lane = 0; lane < kMaxWidth; ++lane)
+        if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
+    }
     hits.masks[i] = static_cast<std::uint8_t>(mask);
     if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
   }
@@ -131,7 +140,9 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
       Walker<Slab>& walker = *active[k];
       const Node& node = nodes[walker.ref.node()];
       counts.box += node.count;
-      walker.mask = slab_node(node, in_registers(walker.frame.ray.slab), walker.record->hit.t, walker.entry);
+      const FrameRay<Slab>& frame = walker.frame.ray;
+      walker.mask = slab_node(node, in_registers(frame.slab), walker.record->hit.t, walker.entry);
+      walker.mask = cull(accel, node, frame.slab, frame.direction, walker.mask, counts);
     }
     for (std::size_t k = 0; k < count;) {
       Walker<Slab>& walker = *active[k];

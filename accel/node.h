@@ -64,6 +64,8 @@ struct alignas(64) Node {
   std::uint8_t strip_size[kMaxWidth];   ///< shapes below each child: its children, or its triangles
   std::uint8_t count = 0;               ///< children, in lanes 0..count-1
   std::uint32_t triangles = 0;          ///< below this node, instances counted each time; saturates
+  std::uint32_t first_plane = 0;        ///< in Accel::planes: lane by lane, where there are any
+  std::uint32_t plane_counts = 0;       ///< cull planes of each child, four bits a lane
 
   Node() {
     for (int lane = 0; lane < kMaxWidth; ++lane) {

@@ -54,7 +54,7 @@ void build_accel(Prepared& p) {
   const Stopwatch watch;
   accel::select_simd_target(p.config().engine.simd);
   const auto executor = make_tbb_executor(p.threads);
-  p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
+  p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy, p.config().cull_planes);
   p.build_seconds = watch.seconds();
   if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
     throw ConfigError(std::move(issues));

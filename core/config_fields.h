@@ -199,10 +199,10 @@ void describe(V& v, AccuracyConfig& c) {
 
 template <class V>
 void describe(V& v, CullPlanesConfig& c) {
-  v.field("count", c.count, IntRange{0, 16}, "planes per node", "cull planes; 0 is none");
-  v.choice("nodes", c.nodes, "nodes that get planes");
+  v.field("count", c.count, IntRange{0, 8}, "planes per child", "cull planes at most; 0 is none");
+  v.choice("nodes", c.nodes, "children that get planes");
   v.field("shared_normals", c.shared_normals, "", "siblings share their planes' normals");
-  v.choice("fit", c.fit, "what the planes are moved up to");
+  v.choice("fit", c.fit, "what the planes of inner children are moved up to; those of leaves to vertices");
 }
 
 template <class V>

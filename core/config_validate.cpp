@@ -93,8 +93,21 @@ class Rules {
   }
 
   void built_planes_and_bundles() {
-    only("cull_planes.count", c.cull_planes.count, std::int64_t{0}, std::to_string(c.cull_planes.count), "0");
+    only("cull_planes.shared_normals", c.cull_planes.shared_normals, false, "true", "false");
+    if (c.cull_planes.count > 0) planes_need_bounded_errors();
     only("bundles.size", c.bundles.size, std::int64_t{0}, std::to_string(c.bundles.size), "0");
+  }
+
+  // The plane test's slack covers what these kernels may round, and has no bound for others.
+  void planes_need_bounded_errors() {
+    if (c.accuracy.triangle != TriangleLevel::kWatertight && c.accuracy.triangle != TriangleLevel::kExact)
+      issue("accuracy.triangle", fmt::format("cull planes could lose hits of {}; expected watertight or exact, or "
+                                             "cull_planes.count: 0",
+                                             enum_name(c.accuracy.triangle)));
+    if (c.accuracy.box != BoxLevel::kConservative)
+      issue("accuracy.box", fmt::format("cull planes go with conservative boxes; expected conservative, found {}, or "
+                                        "cull_planes.count: 0",
+                                        enum_name(c.accuracy.box)));
   }
 
   void built_packets() {

@@ -8,6 +8,7 @@ namespace carousel {
 /// brought from world to model space.
 struct TestCounts {
   std::uint64_t box = 0, triangle = 0, plane = 0, bundle = 0, transforms = 0;
+  std::uint64_t culled = 0;       ///< children whose box was hit, which a plane showed to be missed
   std::uint64_t inversions = 0;   ///< of an instance's matrix, before rays are transformed
 
   TestCounts& operator+=(const TestCounts& o) {
@@ -16,6 +17,7 @@ struct TestCounts {
     plane += o.plane;
     bundle += o.bundle;
     transforms += o.transforms;
+    culled += o.culled;
     inversions += o.inversions;
     return *this;
   }

@@ -137,8 +137,16 @@ INSTANTIATE_TEST_SUITE_P(
                   "build"},
         BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\n",
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
-        BadConfig{"CullPlanes", SCENE "cull_planes: {count: 2}\n",
-                  "test.yaml:2:22: cull_planes.count: 2 is not built yet; expected 0"},
+        BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
+                  "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
+        BadConfig{"CullPlanesShared", SCENE "cull_planes: {count: 2, shared_normals: true}\n",
+                  "test.yaml:2:41: cull_planes.shared_normals: true is not built yet; expected false"},
+        BadConfig{"CullPlanesOfFastTriangles", SCENE "cull_planes: {count: 2}\naccuracy: {triangle: fast}\n",
+                  "test.yaml:3:22: accuracy.triangle: cull planes could lose hits of fast; expected watertight or "
+                  "exact, or cull_planes.count: 0"},
+        BadConfig{"CullPlanesOfPlainBoxes", SCENE "cull_planes: {count: 2}\naccuracy: {box: plain}\n",
+                  "test.yaml:3:17: accuracy.box: cull planes go with conservative boxes; expected conservative, found "
+                  "plain, or cull_planes.count: 0"},
         BadConfig{"Bundles", SCENE "bundles: {size: 16}\n",
                   "test.yaml:2:17: bundles.size: 16 is not built yet; expected 0"},
         BadConfig{"Carry", SCENE "packets: {carry: data}\n",

@@ -1,0 +1,124 @@
+#include "accel/cull_planes.h"
+
+#include <array>
+
+#include "accel/plane_candidates.h"
+
+namespace carousel::accel {
+
+namespace {
+
+using LanePlanes = std::array<std::vector<CullPlane>, kMaxWidth>;
+
+class PlaneBuilder {
+ public:
+  PlaneBuilder(Accel& accel, const CullPlanesConfig& config, Executor& executor)
+      : accel_(accel), config_(config), executor_(executor), found_(accel.nodes.size()) {}
+
+  void run() {
+    executor_.parallel_for(found_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) leaf_lanes(i);
+    });
+    if (config_.nodes != CullPlanesConfig::Nodes::kLeaves)
+      for (std::size_t i = found_.size(); i-- > 0;) inner_lanes(i);   // children come after their parents
+    store();
+  }
+
+ private:
+  // The triangles themselves, planes through their edges, and corners.
+  void leaf_lanes(std::size_t index) {
+    const Node& node = accel_.nodes[index];
+    std::vector<Vec3> corners;
+    for (int lane = 0; lane < node.count; ++lane) {
+      if (node.child[lane].kind() != NodeRef::Kind::kLeaf) continue;
+      corners.clear();
+      append_corners(node.child[lane], corners);
+      const Aabb box = child_box(node, lane);
+      PlaneChoice choice(box, corners);
+      for (std::size_t i = 0; i < corners.size(); i += 3) {
+        const std::array<DVec3, 3> p{DVec3(corners[i]), DVec3(corners[i + 1]), DVec3(corners[i + 2])};
+        choice.offer_both(glm::cross(p[1] - p[0], p[2] - p[0]));
+        for (std::size_t k = 0; k < 3; ++k)
+          for (const DVec3& axis : {DVec3(1, 0, 0), DVec3(0, 1, 0), DVec3(0, 0, 1)})
+            choice.offer_both(glm::cross(p[(k + 1) % 3] - p[k], axis));
+      }
+      choice.offer_octants();
+      found_[index][static_cast<std::size_t>(lane)] = choice.best(static_cast<int>(config_.count));
+    }
+  }
+
+  // The children's own planes, moved out until everything below is behind them.
+  void inner_lanes(std::size_t index) {
+    const Node& node = accel_.nodes[index];
+    std::vector<Vec3> points;
+    for (int lane = 0; lane < node.count; ++lane) {
+      if (!node.child[lane].is_inner()) continue;
+      const std::size_t below = node.child[lane].node();
+      points.clear();
+      if (config_.fit == CullPlanesConfig::Fit::kVertices)
+        append_corners(node.child[lane], points);
+      else
+        append_box_corners(accel_.nodes[below], points);
+      const Aabb box = child_box(node, lane);
+      PlaneChoice choice(box, points);
+      for (const std::vector<CullPlane>& planes : found_[below])
+        for (const CullPlane& plane : planes) choice.offer({plane.normal[0], plane.normal[1], plane.normal[2]});
+      choice.offer_octants();
+      found_[index][static_cast<std::size_t>(lane)] = choice.best(static_cast<int>(config_.count));
+    }
+  }
+
+  /// Of all triangles below, three by three.
+  void append_corners(NodeRef ref, std::vector<Vec3>& out) const {
+    if (ref.is_inner()) {
+      const Node& node = accel_.nodes[ref.node()];
+      for (int lane = 0; lane < node.count; ++lane) append_corners(node.child[lane], out);
+      return;
+    }
+    for (std::uint32_t i = 0; i < ref.triangles(); ++i) {
+      const TriangleBlock& block = accel_.blocks[ref.first_block() + i / kBlockTriangles];
+      for (const auto& vertex : block.vertex)
+        out.push_back({vertex[0][i % kBlockTriangles], vertex[1][i % kBlockTriangles], vertex[2][i % kBlockTriangles]});
+    }
+  }
+  static void append_box_corners(const Node& node, std::vector<Vec3>& out) {
+    for (int lane = 0; lane < node.count; ++lane) {
+      const Aabb box = child_box(node, lane);
+      for (int corner = 0; corner < 8; ++corner)
+        out.push_back({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                       corner & 4 ? box.hi.z : box.lo.z});
+    }
+  }
+
+  bool wanted(NodeRef child) const {
+    using Nodes = CullPlanesConfig::Nodes;
+    return config_.nodes == Nodes::kAll || child.is_inner() == (config_.nodes == Nodes::kInner);
+  }
+
+  void store() {
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      Node& node = accel_.nodes[i];
+      node.first_plane = static_cast<std::uint32_t>(accel_.planes.size());
+      for (int lane = 0; lane < node.count; ++lane) {
+        const std::vector<CullPlane>& planes = found_[i][static_cast<std::size_t>(lane)];
+        if (!wanted(node.child[lane])) continue;
+        accel_.planes.insert(accel_.planes.end(), planes.begin(), planes.end());
+        node.plane_counts |= static_cast<std::uint32_t>(planes.size()) << (4 * lane);
+      }
+    }
+    accel_.planes.shrink_to_fit();
+  }
+
+  Accel& accel_;
+  const CullPlanesConfig& config_;
+  Executor& executor_;
+  std::vector<LanePlanes> found_;   // by node and lane
+};
+
+}  // namespace
+
+void add_cull_planes(Accel& accel, const CullPlanesConfig& config, Executor& executor) {
+  if (config.count > 0) PlaneBuilder(accel, config, executor).run();
+}
+
+}  // namespace carousel::accel
