@@ -74,10 +74,11 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     if (busy <= 0 || parts <= 0) return;
     out.classes.push_back({name, 1000 * rays * parts / busy});
   };
-  double box = 0, triangle = 0, transform = 0, handler = 0, link = 0;
+  double box = 0, triangle = 0, plane = 0, transform = 0, handler = 0, link = 0;
   for (const ringbus::cycle::TileResult& tile : c.tiles) {
     box += static_cast<double>(tile.box.busy);
     triangle += static_cast<double>(tile.triangle.busy);
+    plane += static_cast<double>(tile.plane.busy);
     transform += static_cast<double>(tile.transform.busy);
     handler += static_cast<double>(tile.handler.busy);
   }
@@ -85,6 +86,7 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
   const double tiles = static_cast<double>(c.tiles.size());
   add("box_tests", tiles, box);
   add("triangle_tests", tiles, triangle);
+  add("plane_tests", tiles, plane);
   add("transforms", tiles, transform);
   add("handling", tiles, handler);
   add("link_bandwidth", static_cast<double>(c.links.size()), link);

@@ -43,7 +43,7 @@ report::SceneSummary summary(const Prepared& p) {
 report::Tests tests(const TestCounts& counts, std::uint64_t rays) {
   const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
   return {kind(counts.box), kind(counts.plane), kind(counts.triangle), kind(counts.bundle),
-          kind(counts.transforms), kind(counts.inversions)};
+          kind(counts.transforms), kind(counts.inversions), kind(counts.culled)};
 }
 
 report::Resource resource(std::size_t number, const ringbus::ResourceStatistics& s,
@@ -113,7 +113,7 @@ report::Rate rate(std::uint64_t rays, std::uint64_t cycles, std::int64_t clock_m
   return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
 }
 
-report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles) {
+report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, bool planes) {
   using ringbus::cycle::TileState;
   const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
   const auto bank = [&](const ringbus::cycle::UnitLedger& ledger) {
@@ -122,7 +122,10 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
                               in(TileState::kCredits), in(TileState::kStorage),
                               in(TileState::kShading), in(TileState::kIdle)};
   };
-  return {bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.handler.busy, cycles - tile.handler.busy};
+  report::Units out{bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.handler.busy,
+                    cycles - tile.handler.busy};
+  if (planes) out.plane = bank(tile.plane);
+  return out;
 }
 
 report::Stack stack(const ringbus::cycle::StackLedger& ledger) {
@@ -140,7 +143,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);
   }
   for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i) {
-    (*r.resources)[i].units = units(c.tiles[i], c.cycles);
+    (*r.resources)[i].units = units(c.tiles[i], c.cycles, config.cull_planes.count > 0);
     if (config.topology.shape == TopologyShape::kIndependent) (*r.resources)[i].stack = stack(c.tiles[i].stack);
     if (config.accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore) {
       const ringbus::TransformedRayBytes& bytes = c.tiles[i].transformed_rays;

@@ -73,7 +73,7 @@ struct TestKind {
 };
 
 struct Tests {
-  TestKind box, plane, triangle, bundle, transforms, inversions{};
+  TestKind box, plane, triangle, bundle, transforms, inversions{}, culled{};
 };
 
 struct Packets {
@@ -100,6 +100,7 @@ struct UnitCycles {
 struct Units {
   UnitCycles box, triangle, transform;
   std::uint64_t handler_busy = 0, handler_idle = 0;
+  std::optional<UnitCycles> plane{};
 };
 
 /// What moved onto the stacks of a resource's rays and from them.

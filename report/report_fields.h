@@ -104,6 +104,7 @@ void describe(V& v, Tests& r) {
   v.section("bundle", r.bundle, "bundle of rays against box");
   v.section("transforms", r.transforms, "rays brought from world to model space");
   v.section("inversions", r.inversions, "instances' matrices inverted at a visit, with accuracy.invert: visit");
+  v.section("culled", r.culled, "children whose box was hit, which a cull plane showed to be missed");
 }
 
 template <class V>
@@ -152,6 +153,7 @@ template <class V>
 void describe(V& v, Units& r) {
   v.section("box", r.box, "testers of boxes");
   v.section("triangle", r.triangle, "testers of triangles");
+  v.section("plane", r.plane, "testers of cull planes");
   v.section("transform", r.transform, "transform units");
   v.field("handler_busy", r.handler_busy, "cycles", "looking through packets' IDs");
   v.field("handler_idle", r.handler_idle, "cycles", "the rest");

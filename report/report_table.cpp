@@ -82,7 +82,7 @@ void link_line(Table& table, const std::vector<Link>& links) {
 
 void test_line(Table& table, const Tests& t) {
   std::string rare;
-  for (const auto& [name, test] : {std::pair{"plane", t.plane}, std::pair{"bundle", t.bundle}})
+  for (const auto& [name, test] : {std::pair{"plane", t.plane}, std::pair{"culled", t.culled}, std::pair{"bundle", t.bundle}})
     if (test.count > 0) rare += fmt::format("   {} {:.2f}", name, test.per_ray);
   table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray,
              t.triangle.per_ray, t.transforms.per_ray, rare);

@@ -148,6 +148,7 @@ TileResult IndependentTile::result() const {
   t.states = clock_.times();
   t.box.busy = tester_.box.busy();
   t.triangle.busy = tester_.triangle.busy();
+  t.plane.busy = tester_.plane.busy();
   t.transform.busy = tester_.transform.busy();
   t.stack = stack_;
   t.transformed_rays = transforms_.bytes();

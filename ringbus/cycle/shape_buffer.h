@@ -14,12 +14,20 @@ class ShapeBuffer {
   explicit ShapeBuffer(const MemoryConfig& config)
       : cache_(static_cast<std::uint64_t>(config.shape_buffer_kib) * 1024, sizeof(accel::Node), 16) {}
 
-  bool has(const ShapeSpan& strip) { return cache_.touch(tag(strip)); }
-  void keep(const ShapeSpan& strip) { cache_.insert(tag(strip)); }
+  /// All of it.
+  bool has(const ShapeSpan& strip) {
+    bool all = true;
+    for (std::uint32_t at = 0; at < strip.bytes; at += kPlace) all &= cache_.touch(tag(strip.address + at));
+    return all;
+  }
+  void keep(const ShapeSpan& strip) {
+    for (std::uint32_t at = 0; at < strip.bytes; at += kPlace) cache_.insert(tag(strip.address + at));
+  }
 
  private:
-  // Strips begin at multiples of 32; an odd factor spreads them over the sets and keeps them apart.
-  static std::uint64_t tag(const ShapeSpan& strip) { return std::rotr(strip.address * 0x9e3779b97f4a7c15ull, 40); }
+  static constexpr std::uint32_t kPlace = sizeof(accel::Node);
+  // Strips begin at multiples of 16; an odd factor spreads them over the sets and keeps them apart.
+  static std::uint64_t tag(std::uint64_t address) { return std::rotr(address * 0x9e3779b97f4a7c15ull, 40); }
   LineCache cache_;
 };
 

@@ -13,19 +13,24 @@ struct ShapeSpan {
   std::uint32_t bytes = 0;
 };
 
-/// Where the acceleration structure lies: nodes first, then triangles, as they are laid out in the host's, then what
-/// is stored of each instance's transform, from a 64-byte border on.
+/// Where the acceleration structure lies: nodes first, each with its children's cull planes behind it, then triangles as
+/// they are laid out in the host's, then what is stored of each instance's transform, from a 64-byte border on.
 class ShapeMemory {
  public:
   ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
       : accel_(accel),
-        blocks_at_(accel.nodes.size() * sizeof(accel::Node)),
+        blocks_at_((accel.nodes.size() * sizeof(accel::Node) + accel.planes.size() * sizeof(accel::CullPlane) + 63) / 64 * 64),
         instances_at_((blocks_at_ + accel.blocks.size() * sizeof(accel::TriangleBlock) + 63) / 64 * 64),
         instance_bytes_(accel::instance_bytes(accuracy)) {}
 
-  /// The strip below `key`: a node with its children's boxes, or a leaf's triangles.
+  /// The strip below `key`: a node with its children's boxes and planes, or a leaf's triangles.
   ShapeSpan strip(accel::NodeKey key) const {
-    if (key.ref.is_inner()) return {std::uint64_t{key.ref.node()} * sizeof(accel::Node), sizeof(accel::Node)};
+    if (key.ref.is_inner()) {
+      const accel::Node& node = accel_.nodes[key.ref.node()];
+      const std::uint32_t planes = node.plane_counts == 0 ? 0 : accel::plane_count(node);
+      return {std::uint64_t{key.ref.node()} * sizeof(accel::Node) + node.first_plane * sizeof(accel::CullPlane),
+              static_cast<std::uint32_t>(sizeof(accel::Node) + planes * sizeof(accel::CullPlane))};
+    }
     return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
   }

@@ -25,6 +25,7 @@ std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers
       tests.inversions = 0;   // another ray's visit has done it
     else if (tests.transforms > 0)
       account_.instances.push_back(key->instance);
+    if (tests.plane > 0) cycles += step_.plane;
     cycles += (key->ref.is_inner() ? step_.box : step_.triangle) + (tests.transforms + accel::kInversionPasses * tests.inversions) * step_.transform;
     counts += tests;
   }

@@ -15,9 +15,9 @@ namespace carousel::ringbus::cycle {
 /// that does so has to do: the kernels' own walk is faster on the host but keeps no account.
 class SubtreeWalk final : public SubtreeTracer {
  public:
-  /// Cycles that one ray needs for a strip of boxes, of triangles, and to be transformed.
+  /// Cycles that one ray needs for a strip of boxes, of triangles, for planes, and to be transformed.
   struct StepCycles {
-    std::uint64_t box = 1, triangle = 1, transform = 1;
+    std::uint64_t box = 1, triangle = 1, plane = 1, transform = 1;
   };
   struct Account {
     std::uint64_t chain = 0;                 ///< cycles of the slowest ray

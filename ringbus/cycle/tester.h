@@ -10,11 +10,11 @@
 namespace carousel::ringbus::cycle {
 
 /// A resource's test units. Transforms, boxes and triangles are pipelined: a ray's boxes are tested when it has
-/// been transformed, while the next one is. A matrix that is inverted first takes its passes through the transform
+/// been transformed, while the next one is, and its planes when its boxes have been. A matrix that is inverted first takes its passes through the transform
 /// unit ahead of the rays.
 struct Tester {
   explicit Tester(const TestersConfig& config)
-      : box(config.box), triangle(config.triangle), transform(config.transform) {}
+      : box(config.box), triangle(config.triangle), plane(config.plane), transform(config.transform) {}
 
   /// When the answers to the tests of one strip are there; started at `at`.
   Cycle strip(Cycle at, const TestCounts& counts) {
@@ -22,23 +22,26 @@ struct Tester {
     UnitBank& bank = counts.box > 0 ? box : triangle;
     const UnitBank::Reservation tested = bank.reserve(moved.first, counts.box + counts.triangle);
     // The last ray to be transformed is tested last.
-    return counts.transforms > 0 ? std::max(tested.last, moved.last + bank.latency()) : tested.last;
+    const Cycle last = counts.transforms > 0 ? std::max(tested.last, moved.last + bank.latency()) : tested.last;
+    if (counts.plane == 0) return last;
+    return std::max(plane.reserve(tested.first, counts.plane).last, last + plane.latency());
   }
 
   /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
   Cycle walk(Cycle at, const TestCounts& counts, Cycle chain) {
     return std::max({at + chain, transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last,
-                     triangle.reserve(at, counts.triangle).last});
+                     plane.reserve(at, counts.plane).last, triangle.reserve(at, counts.triangle).last});
   }
 
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const TestCounts& counts) {
     const Cycle moved = transform.reserve_beside(inverted(at, counts), counts.transforms).last;
     UnitBank& bank = counts.box > 0 ? box : triangle;
-    return bank.reserve_beside(moved, counts.box + counts.triangle).last;
+    const Cycle tested = bank.reserve_beside(moved, counts.box + counts.triangle).last;
+    return plane.reserve_beside(tested, counts.plane).last;
   }
 
-  UnitBank box, triangle, transform;
+  UnitBank box, triangle, plane, transform;
 
  private:
   static std::uint64_t passes(const TestCounts& counts) {

@@ -10,7 +10,7 @@ namespace {
 
 SubtreeWalk::StepCycles step_cycles(const TestersConfig& testers) {
   const auto latency = [](const TesterUnits& units) { return static_cast<std::uint64_t>(units.latency_cycles); };
-  return {latency(testers.box), latency(testers.triangle), latency(testers.transform)};
+  return {latency(testers.box), latency(testers.triangle), latency(testers.plane), latency(testers.transform)};
 }
 
 }  // namespace
@@ -203,6 +203,7 @@ TileResult Tile::result() const {
   t.states = clock_.times();
   t.box.busy = tester_.box.busy();
   t.triangle.busy = tester_.triangle.busy();
+  t.plane.busy = tester_.plane.busy();
   t.transform.busy = tester_.transform.busy();
   t.handler.busy = handler_busy_;
   t.transformed_rays = transforms_.bytes();

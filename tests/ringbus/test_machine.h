@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -78,9 +79,13 @@ class TestScene {
   }
 
   const accel::Accel& accel(const BvhConfig& bvh) {
-    auto& built = accels_[{bvh.width, bvh.leaf_triangles}];
+    const CullPlanesConfig none{};
+    return accel(bvh, none);
+  }
+  const accel::Accel& accel(const BvhConfig& bvh, const CullPlanesConfig& planes) {
+    auto& built = accels_[{bvh.width, bvh.leaf_triangles, planes.count, planes.nodes, planes.fit}];
     if (!built)
-      built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor(), accuracy_));
+      built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor(), accuracy_, planes));
     return *built;
   }
   ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 6 + run_seed(), away_); }
@@ -101,7 +106,9 @@ class TestScene {
   std::uint8_t bounces_;
   float away_;
   AccuracyConfig accuracy_;
-  std::map<std::pair<std::int64_t, std::int64_t>, std::unique_ptr<accel::Accel>> accels_;
+  /// Width, leaf size, and planes: count, nodes, fit.
+  using Built = std::tuple<std::int64_t, std::int64_t, std::int64_t, CullPlanesConfig::Nodes, CullPlanesConfig::Fit>;
+  std::map<Built, std::unique_ptr<accel::Accel>> accels_;
   HitsDigest digest_;
   std::uint64_t rays_ = 0;
 };
@@ -130,7 +137,7 @@ struct Outcome {
 
 /// Sets storage to what the cell asks for, runs it, and checks digest, counts and conservation.
 inline Outcome run_cell(TestScene& scene, Cell cell) {
-  const accel::Accel& accel = scene.accel(cell.config.bvh);
+  const accel::Accel& accel = scene.accel(cell.config.bvh, cell.config.cull_planes);
   Config& c = cell.config;
   if (c.collections.when_full == WhenFull::kSpill)
     c.collections.capacity = 4 * c.packets.rays;

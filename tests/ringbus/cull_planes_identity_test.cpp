@@ -1,0 +1,66 @@
+// With planes or without: one digest, in the tracer, on the native ring and on the cycle engine.
+#include <gtest/gtest.h>
+
+#include "tests/ringbus/factors.h"
+#include "tests/ringbus/identity_cells.h"
+
+namespace carousel::ringbus {
+namespace {
+
+using Nodes = CullPlanesConfig::Nodes;
+using Fit = CullPlanesConfig::Fit;
+
+std::vector<CullPlanesConfig> all_planes() {
+  std::vector<CullPlanesConfig> all;
+  for (const std::int64_t count : {1, 2, 4, 8})
+    for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll})
+      for (const Fit fit : {Fit::kVertices, Fit::kBoxes}) all.push_back({count, nodes, false, fit});
+  return all;
+}
+
+std::vector<TestScene> scenes() {
+  std::vector<TestScene> all;
+  all.emplace_back(builtin_scene(BuiltinScene::kInstances, 0, 300), 150, 3);
+  all.emplace_back(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 150, 3);
+  all.emplace_back(builtin_scene(BuiltinScene::kSpheres, 3000, 0), 150, 3);
+  all.emplace_back(builtin_scene(BuiltinScene::kSliver, 300, 0), 100, 2);
+  return all;
+}
+
+/// Each way to have planes on a machine drawn for it; somewhere they must cull.
+void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number) {
+  std::uint64_t culled = 0;
+  for (TestScene& scene : scenes()) {
+    std::mt19937 random(number + 7919 * run_seed());
+    for (const CullPlanesConfig& planes : all_planes()) {
+      std::vector<int> row(factors.size());
+      do {
+        for (std::size_t f = 0; f < row.size(); ++f) row[f] = static_cast<int>(random() % factors[f].levels.size());
+      } while (!possible(cell_of(factors, row).config));
+      Cell cell = cell_of(factors, row);
+      cell.config.cull_planes = planes;
+      const Outcome outcome = run_cell(scene, cell);
+      EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << planes.count << " planes, nodes "
+                                   << enum_name(planes.nodes) << ", fit " << enum_name(planes.fit) << ": " << cell.text();
+      culled += outcome.sum.tests.culled;
+    }
+  }
+  EXPECT_GT(culled, 1000u);
+}
+
+TEST(CullPlanesIdentity, TracerGivesOneDigest) {
+  std::uint64_t culled = 0;
+  for (TestScene& scene : scenes())
+    for (const CullPlanesConfig& planes : all_planes()) {
+      ScatterWorkload workload = scene.workload();
+      const accel::ReferenceRun run = accel::run_reference(scene.accel(BvhConfig{}, planes), workload);
+      EXPECT_EQ(workload.digest().hex(), scene.digest().hex()) << planes.count << " " << enum_name(planes.nodes);
+      culled += run.tests.culled;
+    }
+  EXPECT_GT(culled, 1000u);
+}
+TEST(CullPlanesIdentity, NativeRingGivesTheTracersDigest) { expect_one_digest(machine_factors(), 3); }
+TEST(CullPlanesIdentity, CycleEngineGivesTheTracersDigest) { expect_one_digest(cycle_factors(), 4); }
+
+}  // namespace
+}  // namespace carousel::ringbus
