@@ -1,5 +1,6 @@
 // Cull planes: what they hold, exactly; what they must never lose; what they are worth.
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
 
 #include <fmt/format.h>
@@ -69,15 +70,16 @@ std::size_t ray_count() {
 
 // One triangle a leaf and eight planes everywhere: nothing else holds a ray up. Where every triangle has planes of its
 // own and of all nodes above, no hit may be missing, be it one that only rounding makes.
-TEST(CullPlanes, LoseNoHitThatIsFoundWithoutThem) {
+void expect_none_lost(const AccuracyConfig& accuracy, std::size_t total) {
   const std::vector<HardMesh> meshes = hard_meshes();
   std::size_t hits = 0, lost = 0;
   TestCounts counts;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const HardMesh& mesh = meshes[m];
-    const Accel plain = build_sequential(mesh.scene, 8, 1);
-    const Accel planes = with_planes(mesh.scene, 8, Nodes::kAll, 1, m % 2 == 0 ? Fit::kVertices : Fit::kBoxes);
-    std::size_t left = ray_count() / meshes.size(), mesh_lost = 0;
+    const Accel plain = build_sequential(mesh.scene, 8, 1, accuracy);
+    const Accel planes =
+        with_planes(mesh.scene, 8, Nodes::kAll, 1, m % 2 == 0 ? Fit::kVertices : Fit::kBoxes, accuracy);
+    std::size_t left = total / meshes.size(), mesh_lost = 0;
     for (std::uint64_t batch = 0; left > 0; ++batch) {
       const std::size_t count = std::min<std::size_t>(left, 20000);
       const std::uint64_t seed = std::uint64_t{run_seed()} << 32 | m << 24 | batch;
@@ -99,10 +101,18 @@ TEST(CullPlanes, LoseNoHitThatIsFoundWithoutThem) {
     }
     lost += mesh_lost;
   }
-  std::cout << ray_count() << " rays, " << hits << " hits, " << counts.culled << " culled, " << lost << " lost\n";
+  std::cout << total << " rays, " << hits << " hits, " << counts.culled << " culled, " << lost << " lost\n";
   EXPECT_EQ(lost, 0u);
-  EXPECT_GT(hits, ray_count() / 4);
-  EXPECT_GT(counts.culled, ray_count() / 4);
+  EXPECT_GT(hits, total / 4);
+  EXPECT_GT(counts.culled, total / 4);
+}
+
+TEST(CullPlanes, LoseNoHitThatIsFoundWithoutThem) { expect_none_lost({}, ray_count()); }
+
+TEST(CullPlanes, LoseNoHitOfExactTriangles) {
+  AccuracyConfig accuracy;
+  accuracy.triangle = TriangleLevel::kExact;
+  expect_none_lost(accuracy, ray_count() / 20);
 }
 
 TEST(CullPlanes, GiveTheAnswersOfBruteForce) {

@@ -39,6 +39,7 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
       } while (!possible(cell_of(factors, row).config));
       Cell cell = cell_of(factors, row);
       cell.config.cull_planes = planes;
+      if (cell.config.engine.kind == EngineKind::kCycle) cell.threads = 1;   // threads: tests/ringbus/identity_test.cpp
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << planes.count << " planes, nodes "
                                    << enum_name(planes.nodes) << ", fit " << enum_name(planes.fit) << ": " << cell.text();
