@@ -55,10 +55,7 @@ class AccelBuilder {
     build_blases();
     join_blases();
     add_cull_planes(accel_, planes_, executor_);   // before there are nodes of the top level
-    const std::size_t below = accel_.nodes.size();
     build_tlas();
-    for (std::size_t i = below; i < accel_.nodes.size(); ++i)
-      accel_.nodes[i].first_plane = static_cast<std::uint32_t>(accel_.planes.size());
     return std::move(accel_);
   }
 

@@ -29,6 +29,8 @@ struct Accel {
   NodeArray nodes;
   BlockArray blocks;
   std::vector<CullPlane> planes;         ///< in order of the nodes; empty without cull_planes
+  bool shared_normals = false;           ///< of siblings; `planes` repeats them
+  std::uint64_t plane_bytes = 0;         ///< of the planes, normals that are shared counted once
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
   NodeKey root;                          ///< as root_key()
   AccuracyConfig accuracy;               ///< arithmetic of the tests on it
@@ -38,7 +40,7 @@ struct Accel {
 
   std::size_t size_bytes() const {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) +
-           planes.size() * sizeof(CullPlane) + instances.size() * sizeof(InstanceNode);
+           plane_bytes + instances.size() * sizeof(InstanceNode);
   }
   /// Where every ray starts: the top level's root, or the root of the only instance.
   NodeKey root_key() const { return root; }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "accel/node.h"
 #include "core/aabb.h"
 
@@ -29,6 +31,15 @@ inline std::uint32_t plane_count(const Node& node) {
   std::uint32_t sum = 0;
   for (int lane = 0; lane < kMaxWidth; ++lane) sum += static_cast<std::uint32_t>(plane_count(node, lane));
   return sum;
+}
+
+/// What is stored of a node's planes: with shared normals those once, and a distance a plane.
+inline std::uint32_t plane_bytes(const Node& node, bool shared_normals) {
+  const std::uint32_t planes = node.plane_counts == 0 ? 0 : plane_count(node);
+  if (!shared_normals) return planes * static_cast<std::uint32_t>(sizeof(CullPlane));
+  int normals = 0;
+  for (int lane = 0; lane < kMaxWidth; ++lane) normals = std::max(normals, plane_count(node, lane));
+  return static_cast<std::uint32_t>(normals) * 12 + planes * 4;
 }
 
 inline Aabb child_box(const Node& node, int lane) {

@@ -13,7 +13,11 @@ using LanePlanes = std::array<std::vector<CullPlane>, kMaxWidth>;
 class PlaneBuilder {
  public:
   PlaneBuilder(Accel& accel, const CullPlanesConfig& config, Executor& executor)
-      : accel_(accel), config_(config), executor_(executor), found_(accel.nodes.size()) {}
+      : accel_(accel),
+        config_(config),
+        executor_(executor),
+        most_(config.shared_normals ? kMaxCullPlanes : static_cast<int>(config.count)),
+        found_(accel.nodes.size()) {}
 
   void run() {
     executor_.parallel_for(found_.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -21,6 +25,10 @@ class PlaneBuilder {
     });
     if (config_.nodes != CullPlanesConfig::Nodes::kLeaves)
       for (std::size_t i = found_.size(); i-- > 0;) inner_lanes(i);   // children come after their parents
+    if (config_.shared_normals)
+      executor_.parallel_for(found_.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) share_normals(i);
+      });
     store();
   }
 
@@ -28,44 +36,62 @@ class PlaneBuilder {
   // The triangles themselves, planes through their edges, and corners.
   void leaf_lanes(std::size_t index) {
     const Node& node = accel_.nodes[index];
-    std::vector<Vec3> corners;
     for (int lane = 0; lane < node.count; ++lane) {
       if (node.child[lane].kind() != NodeRef::Kind::kLeaf) continue;
-      corners.clear();
-      append_corners(node.child[lane], corners);
-      const Aabb box = child_box(node, lane);
-      PlaneChoice choice(box, corners);
-      for (std::size_t i = 0; i < corners.size(); i += 3) {
-        const std::array<DVec3, 3> p{DVec3(corners[i]), DVec3(corners[i + 1]), DVec3(corners[i + 2])};
+      const BoxedPoints child = below(node, lane);
+      PlaneChoice choice(child);
+      for (std::size_t i = 0; i < child.points.size(); i += 3) {
+        const std::array<DVec3, 3> p{DVec3(child.points[i]), DVec3(child.points[i + 1]), DVec3(child.points[i + 2])};
         choice.offer_both(glm::cross(p[1] - p[0], p[2] - p[0]));
         for (std::size_t k = 0; k < 3; ++k)
           for (const DVec3& axis : {DVec3(1, 0, 0), DVec3(0, 1, 0), DVec3(0, 0, 1)})
             choice.offer_both(glm::cross(p[(k + 1) % 3] - p[k], axis));
       }
       choice.offer_octants();
-      found_[index][static_cast<std::size_t>(lane)] = choice.best(static_cast<int>(config_.count));
+      found_[index][static_cast<std::size_t>(lane)] = choice.best(most_);
     }
   }
 
   // The children's own planes, moved out until everything below is behind them.
   void inner_lanes(std::size_t index) {
     const Node& node = accel_.nodes[index];
-    std::vector<Vec3> points;
     for (int lane = 0; lane < node.count; ++lane) {
       if (!node.child[lane].is_inner()) continue;
-      const std::size_t below = node.child[lane].node();
-      points.clear();
-      if (config_.fit == CullPlanesConfig::Fit::kVertices)
-        append_corners(node.child[lane], points);
-      else
-        append_box_corners(accel_.nodes[below], points);
-      const Aabb box = child_box(node, lane);
-      PlaneChoice choice(box, points);
-      for (const std::vector<CullPlane>& planes : found_[below])
+      const BoxedPoints child = below(node, lane);
+      PlaneChoice choice(child);
+      for (const std::vector<CullPlane>& planes : found_[node.child[lane].node()])
         for (const CullPlane& plane : planes) choice.offer({plane.normal[0], plane.normal[1], plane.normal[2]});
       choice.offer_octants();
-      found_[index][static_cast<std::size_t>(lane)] = choice.best(static_cast<int>(config_.count));
+      found_[index][static_cast<std::size_t>(lane)] = choice.best(most_);
     }
+  }
+
+  /// What a lane's planes are fitted to.
+  BoxedPoints below(const Node& node, int lane) const {
+    BoxedPoints child;
+    child.box = child_box(node, lane);
+    if (node.child[lane].is_inner() && config_.fit == CullPlanesConfig::Fit::kBoxes)
+      append_box_corners(accel_.nodes[node.child[lane].node()], child.points);
+    else
+      append_corners(node.child[lane], child.points);
+    return child;
+  }
+
+  // The lanes' own choices are the candidates.
+  void share_normals(std::size_t index) {
+    const Node& node = accel_.nodes[index];
+    std::vector<BoxedPoints> siblings;
+    std::vector<std::size_t> lanes;
+    std::vector<CullPlane> candidates;
+    for (int lane = 0; lane < node.count; ++lane) {
+      if (!wanted(node.child[lane])) continue;
+      siblings.push_back(below(node, lane));
+      lanes.push_back(static_cast<std::size_t>(lane));
+      const std::vector<CullPlane>& own = found_[index][lanes.back()];
+      candidates.insert(candidates.end(), own.begin(), own.end());
+    }
+    std::vector<std::vector<CullPlane>> planes = shared_planes(siblings, candidates, static_cast<int>(config_.count));
+    for (std::size_t i = 0; i < lanes.size(); ++i) found_[index][lanes[i]] = std::move(planes[i]);
   }
 
   /// Of all triangles below, three by three.
@@ -107,11 +133,14 @@ class PlaneBuilder {
       }
     }
     accel_.planes.shrink_to_fit();
+    accel_.shared_normals = config_.shared_normals;
+    for (const Node& node : accel_.nodes) accel_.plane_bytes += plane_bytes(node, accel_.shared_normals);
   }
 
   Accel& accel_;
   const CullPlanesConfig& config_;
   Executor& executor_;
+  int most_;   // planes a lane to begin with
   std::vector<LanePlanes> found_;   // by node and lane
 };
 

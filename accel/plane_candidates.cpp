@@ -19,7 +19,6 @@ bool set_normal(const DVec3& direction, CullPlane& plane) {
   return true;
 }
 
-/// A normal without an entry along an axis belongs to the octants on both sides.
 bool in_octant(const CullPlane& plane, std::size_t octant) {
   for (int axis = 0; axis < 3; ++axis)
     if ((octant >> axis & 1u) != 0 ? plane.normal[axis] > 0 : plane.normal[axis] < 0) return false;
@@ -65,20 +64,33 @@ double empty_part(const CullPlane& plane, const Aabb& box) {
   return std::clamp(volume / (6 * side[0] * side[1] * side[2]), 0.0, 1.0);
 }
 
-void PlaneChoice::offer(const DVec3& direction) {
-  Candidate candidate;
-  if (!set_normal(direction, candidate.plane)) return;
-  candidate.plane.distance = distance_along(candidate.plane, box_, points_);
-  if (!std::isfinite(candidate.plane.distance)) return;
-  candidate.empty = empty_part(candidate.plane, box_);
+void OctantBest::offer(const CullPlane& plane, double worth) {
   for (std::size_t i = 0; i < octants_.size(); ++i)
-    if (in_octant(candidate.plane, i) && candidate.empty > octants_[i].empty) octants_[i] = candidate;
+    if (in_octant(plane, i) && worth > octants_[i].worth) octants_[i] = {plane, worth};
+}
+
+std::vector<CullPlane> OctantBest::best(int most, double least) const {
+  std::array<Candidate, 8> sorted = octants_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
+  std::vector<CullPlane> planes;
+  for (const Candidate& candidate : sorted) {
+    const bool again = !planes.empty() && planes.back() == candidate.plane;   // the best of several octants
+    if (static_cast<int>(planes.size()) < most && candidate.worth > least && !again) planes.push_back(candidate.plane);
+  }
+  return planes;
+}
+
+void PlaneChoice::offer(const DVec3& direction) {
+  CullPlane plane{};
+  if (!set_normal(direction, plane)) return;
+  plane.distance = distance_along(plane, child_.box, child_.points);
+  if (std::isfinite(plane.distance)) best_.offer(plane, empty_part(plane, child_.box));
 }
 
 void PlaneChoice::offer_octants() {
   DVec3 direction;
   for (int axis = 0; axis < 3; ++axis) {
-    const double extent = double(box_.hi[axis]) - box_.lo[axis];
+    const double extent = double(child_.box.hi[axis]) - child_.box.lo[axis];
     if (!(extent > 0)) return;   // flat: nothing to cut off
     direction[axis] = 1 / extent;
   }
@@ -87,14 +99,30 @@ void PlaneChoice::offer_octants() {
            signs & 4 ? -direction.z : direction.z});
 }
 
-std::vector<CullPlane> PlaneChoice::best(int most) const {
-  std::array<Candidate, 8> sorted = octants_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) { return a.empty > b.empty; });
-  std::vector<CullPlane> planes;
-  for (const Candidate& candidate : sorted) {
-    const bool again = !planes.empty() && planes.back() == candidate.plane;   // the best of several octants
-    if (static_cast<int>(planes.size()) < most && candidate.empty > kLeastEmptyPart && !again)
-      planes.push_back(candidate.plane);
+std::vector<CullPlane> PlaneChoice::best(int most) const { return best_.best(most, kLeastEmptyPart); }
+
+std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedPoints>& siblings,
+                                                  const std::vector<CullPlane>& candidates, int most) {
+  OctantBest choice;
+  for (CullPlane plane : candidates) {
+    double worth = 0;
+    for (const BoxedPoints& child : siblings) {
+      plane.distance = distance_along(plane, child.box, child.points);
+      worth += child.box.half_area() * empty_part(plane, child.box);
+    }
+    plane.distance = 0;   // equal directions are equal planes
+    choice.offer(plane, worth);
+  }
+  const std::vector<CullPlane> directions = choice.best(most, 0);
+  std::vector<std::vector<CullPlane>> planes;
+  for (const BoxedPoints& child : siblings) {
+    std::vector<CullPlane>& own = planes.emplace_back(directions);
+    double empty = 0;
+    for (CullPlane& plane : own) {
+      plane.distance = distance_along(plane, child.box, child.points);
+      empty = std::fmax(empty, empty_part(plane, child.box));
+    }
+    if (!(empty > kLeastEmptyPart)) own.clear();
   }
   return planes;
 }

@@ -9,6 +9,12 @@
 
 namespace carousel::accel {
 
+/// A child: its box, and what stands in it.
+struct BoxedPoints {
+  Aabb box;
+  std::vector<Vec3> points;
+};
+
 /// How far `n` points along the farthest of the points, from a box's plane_centre(): rounded up, so that with a plane at
 /// this distance no point is cut off. Infinite when there is no such float.
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points);
@@ -16,11 +22,26 @@ float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<
 /// The part of the box's volume that the plane cuts off, between 0 and 1. An estimate: it decides what is worth having.
 double empty_part(const CullPlane& plane, const Aabb& box);
 
-/// Of the planes offered for one box, the best in each octant of directions: planes of different octants cut off
-/// different corners.
+/// The best plane in each octant of directions: planes of different octants cut off different corners.
+class OctantBest {
+ public:
+  /// A normal without an entry along an axis belongs to the octants on both sides.
+  void offer(const CullPlane& plane, double worth);
+  /// Up to `most` planes, the best first, all worth more than `least`.
+  std::vector<CullPlane> best(int most, double least) const;
+
+ private:
+  struct Candidate {
+    CullPlane plane{};
+    double worth = 0;
+  };
+  std::array<Candidate, 8> octants_{};
+};
+
+/// Planes for one child, the best of those offered.
 class PlaneChoice {
  public:
-  PlaneChoice(const Aabb& box, const std::vector<Vec3>& points) : box_(box), points_(points) {}
+  explicit PlaneChoice(const BoxedPoints& child) : child_(child) {}
 
   /// Any length of `direction`, which need not be of use.
   void offer(const DVec3& direction);
@@ -34,13 +55,14 @@ class PlaneChoice {
   std::vector<CullPlane> best(int most) const;
 
  private:
-  struct Candidate {
-    CullPlane plane{};
-    double empty = 0;
-  };
-  const Aabb& box_;
-  const std::vector<Vec3>& points_;
-  std::array<Candidate, 8> octants_{};
+  const BoxedPoints& child_;
+  OctantBest best_;
 };
+
+/// Planes for siblings that share their normals: of the candidates' directions those that cut most off all boxes
+/// together, a box counting by its area, as rays meet it. As many for each sibling, in the same order; none for one that
+/// has nothing to cut off.
+std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedPoints>& siblings,
+                                                  const std::vector<CullPlane>& candidates, int most);
 
 }  // namespace carousel::accel

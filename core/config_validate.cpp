@@ -93,7 +93,6 @@ class Rules {
   }
 
   void built_planes_and_bundles() {
-    only("cull_planes.shared_normals", c.cull_planes.shared_normals, false, "true", "false");
     if (c.cull_planes.count > 0) planes_need_bounded_errors();
     only("bundles.size", c.bundles.size, std::int64_t{0}, std::to_string(c.bundles.size), "0");
   }

@@ -26,7 +26,7 @@ class ShapeBuffer {
 
  private:
   static constexpr std::uint32_t kPlace = sizeof(accel::Node);
-  // Strips begin at multiples of 16; an odd factor spreads them over the sets and keeps them apart.
+  // An odd factor spreads them over the sets and keeps them apart.
   static std::uint64_t tag(std::uint64_t address) { return std::rotr(address * 0x9e3779b97f4a7c15ull, 40); }
   LineCache cache_;
 };

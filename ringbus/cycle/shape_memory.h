@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "accel/accel.h"
 #include "accel/instance_data.h"
@@ -19,17 +20,24 @@ class ShapeMemory {
  public:
   ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
       : accel_(accel),
-        blocks_at_((accel.nodes.size() * sizeof(accel::Node) + accel.planes.size() * sizeof(accel::CullPlane) + 63) / 64 * 64),
+        blocks_at_((accel.nodes.size() * sizeof(accel::Node) + accel.plane_bytes + 63) / 64 * 64),
         instances_at_((blocks_at_ + accel.blocks.size() * sizeof(accel::TriangleBlock) + 63) / 64 * 64),
-        instance_bytes_(accel::instance_bytes(accuracy)) {}
+        instance_bytes_(accel::instance_bytes(accuracy)) {
+    if (accel.planes.empty()) return;
+    planes_before_.reserve(accel.nodes.size() + 1);
+    planes_before_.push_back(0);
+    for (const accel::Node& node : accel.nodes)
+      planes_before_.push_back(planes_before_.back() + accel::plane_bytes(node, accel.shared_normals));
+  }
 
   /// The strip below `key`: a node with its children's boxes and planes, or a leaf's triangles.
   ShapeSpan strip(accel::NodeKey key) const {
     if (key.ref.is_inner()) {
-      const accel::Node& node = accel_.nodes[key.ref.node()];
-      const std::uint32_t planes = node.plane_counts == 0 ? 0 : accel::plane_count(node);
-      return {std::uint64_t{key.ref.node()} * sizeof(accel::Node) + node.first_plane * sizeof(accel::CullPlane),
-              static_cast<std::uint32_t>(sizeof(accel::Node) + planes * sizeof(accel::CullPlane))};
+      const std::uint32_t node = key.ref.node();
+      const std::uint64_t address = std::uint64_t{node} * sizeof(accel::Node);
+      if (planes_before_.empty()) return {address, sizeof(accel::Node)};
+      const std::uint64_t planes = planes_before_[node + 1] - planes_before_[node];
+      return {address + planes_before_[node], static_cast<std::uint32_t>(sizeof(accel::Node) + planes)};
     }
     return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
@@ -45,6 +53,7 @@ class ShapeMemory {
   const accel::Accel& accel_;
   std::uint64_t blocks_at_, instances_at_;
   std::uint32_t instance_bytes_;
+  std::vector<std::uint64_t> planes_before_;   // bytes, by node; empty without planes
 };
 
 }  // namespace carousel::ringbus::cycle

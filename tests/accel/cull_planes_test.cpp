@@ -21,13 +21,14 @@ using Nodes = CullPlanesConfig::Nodes;
 using Fit = CullPlanesConfig::Fit;
 
 Accel with_planes(const scene::Scene& scene, std::int64_t count, Nodes nodes, std::int64_t leaf = 4,
-                  Fit fit = Fit::kVertices, const AccuracyConfig& accuracy = {}) {
+                  Fit fit = Fit::kVertices, const AccuracyConfig& accuracy = {}, bool shared = false) {
   BvhConfig bvh;
   bvh.leaf_triangles = leaf;
   CullPlanesConfig planes;
   planes.count = count;
   planes.nodes = nodes;
   planes.fit = fit;
+  planes.shared_normals = shared;
   return build(scene, bvh, *make_sequential_executor(), accuracy, planes);
 }
 
@@ -78,7 +79,7 @@ void expect_none_lost(const AccuracyConfig& accuracy, std::size_t total) {
     const HardMesh& mesh = meshes[m];
     const Accel plain = build_sequential(mesh.scene, 8, 1, accuracy);
     const Accel planes =
-        with_planes(mesh.scene, 8, Nodes::kAll, 1, m % 2 == 0 ? Fit::kVertices : Fit::kBoxes, accuracy);
+        with_planes(mesh.scene, 8, Nodes::kAll, 1, m % 2 == 0 ? Fit::kVertices : Fit::kBoxes, accuracy, m % 3 == 2);
     std::size_t left = total / meshes.size(), mesh_lost = 0;
     for (std::uint64_t batch = 0; left > 0; ++batch) {
       const std::size_t count = std::min<std::size_t>(left, 20000);
@@ -173,7 +174,8 @@ TEST(CullPlanes, CutOffNoVertexExactly) {
   std::size_t planes = 0;
   for (const HardMesh& mesh : hard_meshes())
     for (const Fit fit : {Fit::kVertices, Fit::kBoxes})
-      EXPECT_EQ(cut_off(with_planes(mesh.scene, 8, Nodes::kAll, 2, fit), planes), 0u) << mesh.name;
+      for (const bool shared : {false, true})
+        EXPECT_EQ(cut_off(with_planes(mesh.scene, 8, Nodes::kAll, 2, fit, {}, shared), planes), 0u) << mesh.name;
   EXPECT_GT(planes, 10000u);
 }
 
@@ -199,6 +201,30 @@ TEST(CullPlanes, StandOnlyWhereTheyAreWanted) {
     EXPECT_EQ(seen, accel.planes.size());
     EXPECT_GT(seen, 0u);
   }
+}
+
+TEST(CullPlanes, ShareTheirNormalsAmongSiblings) {
+  const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 2000);
+  const Accel accel = with_planes(scene, 4, Nodes::kAll, 4, Fit::kVertices, {}, true);
+  std::size_t bytes = 0, shared = 0;
+  for (const Node& node : accel.nodes) {
+    const CullPlane* plane = accel.planes.data() + node.first_plane;
+    const CullPlane* first = plane;   // the first lane's that has any
+    int normals = 0;
+    for (int lane = 0; lane < node.count; ++lane) {
+      const int count = plane_count(node, lane);
+      if (count == 0) continue;
+      EXPECT_TRUE(normals == 0 || count == normals);
+      normals = count;
+      for (int i = 0; i < count; ++i, ++plane, ++shared)
+        EXPECT_EQ(std::memcmp(plane->normal, first[i].normal, sizeof(plane->normal)), 0);
+      bytes += 4 * static_cast<std::size_t>(count);
+    }
+    bytes += 12 * static_cast<std::size_t>(normals);
+  }
+  EXPECT_GT(shared, 500u);
+  EXPECT_EQ(accel.plane_bytes, bytes);
+  EXPECT_EQ(accel.size_bytes(), build_sequential(scene).size_bytes() + bytes);
 }
 
 /// Half of a square's box is empty; the other triangle is far away, so that there is a node.

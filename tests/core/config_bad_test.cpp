@@ -139,8 +139,6 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
                   "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
-        BadConfig{"CullPlanesShared", SCENE "cull_planes: {count: 2, shared_normals: true}\n",
-                  "test.yaml:2:41: cull_planes.shared_normals: true is not built yet; expected false"},
         BadConfig{"CullPlanesOfFastTriangles", SCENE "cull_planes: {count: 2}\naccuracy: {triangle: fast}\n",
                   "test.yaml:3:22: accuracy.triangle: cull planes could lose hits of fast; expected watertight or "
                   "exact, or cull_planes.count: 0"},

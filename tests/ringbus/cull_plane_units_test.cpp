@@ -47,9 +47,10 @@ TEST(PlaneUnits, ServeSingleRaysAndWalks) {
   EXPECT_EQ(walk.walk(0, {.box = 8, .plane = 100}, 20), 49 * 3 + 5);
 }
 
-TEST(PlaneBytes, StandBehindTheirNodesWithoutOverlap) {
+void expect_behind_their_nodes(bool shared_normals) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 2000, 0), 10, 1);
-  const accel::Accel& accel = scene.accel({}, {.count = 4, .nodes = CullPlanesConfig::Nodes::kAll});
+  const accel::Accel& accel =
+      scene.accel({}, {.count = 4, .nodes = CullPlanesConfig::Nodes::kAll, .shared_normals = shared_normals});
   const ShapeMemory memory(accel, {});
   std::uint64_t end = 0, bytes = 0;
   for (std::uint32_t i = 0; i < accel.nodes.size(); ++i) {
@@ -59,9 +60,19 @@ TEST(PlaneBytes, StandBehindTheirNodesWithoutOverlap) {
     end = span.address + span.bytes;
     bytes += span.bytes;
   }
-  EXPECT_EQ(bytes, accel.nodes.size() * sizeof(accel::Node) + accel.planes.size() * sizeof(accel::CullPlane));
+  EXPECT_EQ(bytes, accel.nodes.size() * sizeof(accel::Node) + accel.plane_bytes);
+  if (shared_normals) {
+    EXPECT_LT(2 * accel.plane_bytes, accel.planes.size() * sizeof(accel::CullPlane));
+  } else {
+    EXPECT_EQ(accel.plane_bytes, accel.planes.size() * sizeof(accel::CullPlane));
+  }
   EXPECT_GE(memory.strip({0, accel::NodeRef::leaf(0, 4)}).address, end);
   EXPECT_GT(accel.planes.size(), 0u);
+}
+
+TEST(PlaneBytes, StandBehindTheirNodesWithoutOverlap) {
+  expect_behind_their_nodes(false);
+  expect_behind_their_nodes(true);
 }
 
 TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {

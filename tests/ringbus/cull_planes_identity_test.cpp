@@ -14,7 +14,7 @@ std::vector<CullPlanesConfig> all_planes() {
   std::vector<CullPlanesConfig> all;
   for (const std::int64_t count : {1, 2, 4, 8})
     for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll})
-      for (const Fit fit : {Fit::kVertices, Fit::kBoxes}) all.push_back({count, nodes, false, fit});
+      for (const Fit fit : {Fit::kVertices, Fit::kBoxes}) all.push_back({count, nodes, all.size() % 3 == 2, fit});
   return all;
 }
 
@@ -42,7 +42,8 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
       if (cell.config.engine.kind == EngineKind::kCycle) cell.threads = 1;   // threads: tests/ringbus/identity_test.cpp
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << planes.count << " planes, nodes "
-                                   << enum_name(planes.nodes) << ", fit " << enum_name(planes.fit) << ": " << cell.text();
+                                    << enum_name(planes.nodes) << ", fit " << enum_name(planes.fit)
+                                   << (planes.shared_normals ? ", shared: " : ": ") << cell.text();
       culled += outcome.sum.tests.culled;
     }
   }
