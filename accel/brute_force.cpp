@@ -74,7 +74,7 @@ bool crosses(TriangleLevel level, const Ray& ray, const Corners& p, Crossing& ou
     case TriangleLevel::kDouble: return watertight_scalar<double>(ray, p, out);
     case TriangleLevel::kExact: break;
   }
-  ExactCrossing crossing;
+  NearestCrossing crossing;
   if (!exact_triangle(ray, p, crossing)) return false;
   out = {crossing.t, crossing.u, crossing.v};
   return true;

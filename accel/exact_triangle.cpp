@@ -98,7 +98,7 @@ bool finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && 
 
 }  // namespace
 
-bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, ExactCrossing& out) {
+bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, NearestCrossing& out) {
   if (!finite(ray.origin) || !finite(ray.direction) || !finite(p[0]) || !finite(p[1]) || !finite(p[2])) return false;
   const double d[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
   const Offset corner[3] = {{p[0], ray.origin}, {p[1], ray.origin}, {p[2], ray.origin}};

@@ -8,7 +8,7 @@ namespace carousel::accel {
 
 /// Where a ray's line crosses a triangle, each number the float nearest to the exact one (ties to even), a zero
 /// always +0; t is infinite when no float is near.
-struct ExactCrossing {
+struct NearestCrossing {
   float t;
   float u, v;   ///< weights of the second and third corner
 };
@@ -19,6 +19,6 @@ struct ExactCrossing {
 /// Whether t lies in the ray's range is a question for the rounded t, as at the other levels: rounding is
 /// monotone, so nothing that exactly lies in a range of floats is lost.
 /// Ten to a hundred times slower where the ray meets an edge exactly than where it does not.
-bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, ExactCrossing& out);
+bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, NearestCrossing& out);
 
 }  // namespace carousel::accel

@@ -102,7 +102,7 @@ HWY_INLINE bool exact_block(const TriangleBlock& block, std::uint32_t lanes, con
     const std::array<Vec3, 3> p = corners(block, l);
     float entry;
     if (!slab(ray.slab, box_of(p), hit.t, entry)) continue;
-    ExactCrossing crossing;
+    NearestCrossing crossing;
     if (!exact_triangle(ray.triangle.line, p, crossing)) continue;
     c.t[l] = crossing.t, c.second[l] = crossing.u, c.third[l] = crossing.v;
     c.inside |= 1u << l;

@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "app/accuracy/accuracy_command.h"
+#include "app/accuracy/certify_command.h"
 #include "app/check_command.h"
 #include "app/compare_command.h"
 #include "app/exit_status.h"
@@ -26,7 +27,7 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "check", "compare", "schema"};
+const std::vector<std::string> kCommands{"run", "check", "accuracy", "compare", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.
@@ -112,6 +113,17 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   accuracy->add_flag("--json", a.json, "print JSON instead of the table");
   accuracy->add_flag("--quiet", a.quiet, "print nothing but errors (and the results with --json)");
 
+  CLI::Option* certify = accuracy->add_flag("--certify", a.certify, "try hard cases of what the levels promise instead; a configuration chooses one level");
+  CLI::Option* cases = accuracy->add_option("--cases", a.cases, "with --certify: of each property")->needs(certify);
+  accuracy->add_option("--seconds", a.seconds, "with --certify: until then")
+      ->check(CLI::PositiveNumber)
+      ->needs(certify)
+      ->excludes(cases)
+      ->capture_default_str();
+  accuracy->add_option("--reproduce", a.reproduce, "try one case again, as --certify prints it, or those in a file")
+      ->excludes(certify)
+      ->type_name("CASE");
+
   CLI::App* compare = program.add_subcommand("compare", "two reports side by side");
   compare->add_option("a", arguments.compare.a, "report.json, or its folder")->required();
   compare->add_option("b", arguments.compare.b, "the other")->required();
@@ -146,7 +158,11 @@ int run_command_line(int argc, const char* const* argv) {
   log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
   if (program.got_subcommand("check")) return check_command(arguments.check);
-  if (program.got_subcommand("accuracy")) return accuracy_command(arguments.accuracy);
+  if (program.got_subcommand("accuracy")) {
+    const AccuracyArguments& accuracy = arguments.accuracy;
+    if (accuracy.certify) return certify_command(accuracy);
+    return accuracy.reproduce.empty() ? accuracy_command(accuracy) : reproduce_command(accuracy);
+  }
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
   return schema_command(arguments.schema);
 }

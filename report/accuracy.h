@@ -45,7 +45,7 @@ struct ModelledCost {
 /// One combination of levels of the tests.
 struct AccuracyRow {
   std::string triangle, box, transform;
-  Spread ns_per_ray;                       ///< depth-first, one thread
+  Spread ns_per_ray;                       ///< depth-first, CPU time of one thread
   std::optional<ModelledCost> modelled;    ///< absent if the cycle engine has not the configured machine
   HitErrors scene;
   std::vector<HitErrors> hard;             ///< by Accuracy::hard

@@ -25,7 +25,6 @@ namespace carousel::app {
 
 namespace {
 
-constexpr const char* kBuiltIn = "schema_version: 1\nscene: {builtin: instances}\nimage: {width: 96, height: 96, samples: 2}\n";
 /// Pictures are made small enough that so many camera rays draw one.
 constexpr std::int64_t kCameraRays = 20000, kSampledPixels = 48 * 48;
 constexpr std::size_t kModelledRays = 20000;
@@ -196,7 +195,7 @@ class Trial {
 
 int accuracy_command(const AccuracyArguments& arguments) {
   const InterruptScope interrupt;
-  const Prepared p = arguments.config.empty() ? prepare_config(kBuiltIn, "built-in", arguments.sets)
+  const Prepared p = arguments.config.empty() ? prepare_config(kBuiltInConfig, "built-in", arguments.sets)
                                               : prepare(arguments, {}, false);
   if (p.config().workload.kind != WorkloadConfig::Kind::kRays)
     throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});

@@ -24,7 +24,7 @@ class LevelledAccel {
   std::map<TransformLevel, accel::Accel> built_;
 };
 
-/// Time a ray, nanoseconds on one thread, of each of `levels`: all of them in turn, `repetitions` times, each round
+/// CPU time a ray, nanoseconds on one thread, of each of `levels`: all of them in turn, `repetitions` times, each round
 /// starting with another one, so that whatever else the machine does meets all alike. `stopped` is asked in between.
 std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels, const RayBatch& rays,
                                         int repetitions, const std::function<bool()>& stopped);

@@ -38,12 +38,14 @@ bool Tile::handle_issue(Cycle now) {
 }
 
 std::optional<PacketId> Tile::free_packet() {
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    std::vector<PacketId>& free = free_[(next_direction_ + i) % free_.size()];
-    if (free.empty()) continue;
-    const PacketId id = free.back();
-    free.pop_back();
-    next_direction_ = (next_direction_ + i + 1) % free_.size();
+  const std::size_t directions = free_.size();
+  for (std::size_t i = 0; i < directions; ++i) {
+    // Asked at every step: no division.
+    const std::size_t d = next_direction_ + i < directions ? next_direction_ + i : next_direction_ + i - directions;
+    if (free_[d].empty()) continue;
+    const PacketId id = free_[d].back();
+    free_[d].pop_back();
+    next_direction_ = d + 1 < directions ? d + 1 : 0;
     return id;
   }
   return std::nullopt;

@@ -68,13 +68,14 @@ class WindowRun {
     const bool alone = parts_.size() == 1;
     for (std::uint64_t window = 0;; ++window) {
       Cycle first = look(thread, schedule);
+      // Written within windows only, so here, between two of them, everybody reads the same.
+      const bool stop = stop_.load(std::memory_order_relaxed);
       if (!alone) {
         next_[thread].cycle = first;
         barrier_.wait();
         for (const Next& other : next_) first = std::min(first, other.cycle);
       }
-      // Everybody comes to the same conclusion. `stop_` was written before the barrier.
-      if (first == kNever || stop_.load(std::memory_order_relaxed)) break;
+      if (first == kNever || stop) break;   // everybody comes to the same conclusion
       run_window(agents, schedule, first + lookahead_);
       if (thread == 0) {
         reached_ = first;

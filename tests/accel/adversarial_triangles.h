@@ -1,125 +1,16 @@
 #pragma once
 
-#include <array>
-#include <bit>
-#include <cmath>
 #include <ios>
-#include <limits>
 #include <sstream>
 #include <string>
 
-#include "core/ray.h"
+#include "accel/certificate/triangle_cases.h"
 #include "tests/accel/test_rays.h"
 
 namespace carousel::accel {
 
-/// A ray and a triangle made to be hard to decide.
-struct TriangleCase {
-  Ray ray;
-  std::array<Vec3, 3> corners;
-};
-
-enum class TriangleCaseKind {
-  kRandom,
-  kEdgeAimed,       ///< at a point of an edge, some ulps off
-  kCornerAimed,
-  kGrid,            ///< small whole numbers: on edges, in planes, without area
-  kScaledGrid,      ///< the same times powers of two, one an axis
-  kWildExponents,   ///< anything from 2^-149 to 2^128
-  kSliver,
-  kDegenerate,      ///< corners that coincide or stand on a line
-  kEdgeOn,          ///< in the triangle's plane, some ulps off
-  kOnSurface,       ///< starts on the triangle
-};
-inline constexpr int kTriangleCaseKinds = 10;
 inline constexpr const char* kTriangleCaseNames[kTriangleCaseKinds] = {
     "Random", "EdgeAimed", "CornerAimed", "Grid", "ScaledGrid", "WildExponents", "Sliver", "Degenerate", "EdgeOn", "OnSurface"};
-
-/// `x` moved by up to `most` ulps.
-inline float nudged(float x, int most, Random& random) {
-  const int steps = static_cast<int>(random.below(static_cast<std::uint32_t>(2 * most + 1))) - most;
-  for (int i = 0; i < std::abs(steps); ++i) x = std::nextafter(x, steps < 0 ? -kInfinity : kInfinity);
-  return x;
-}
-inline Vec3 nudged(const Vec3& p, int most, Random& random) {
-  return {nudged(p.x, most, random), nudged(p.y, most, random), nudged(p.z, most, random)};
-}
-
-/// A finite float of any exponent.
-inline float wild(Random& random) {
-  for (;;)
-    if (const float x = random.any_bits(); std::isfinite(x)) return x;
-}
-
-inline Vec3 grid_point(Random& random, int reach) {
-  const auto whole = [&] { return static_cast<float>(static_cast<int>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach); };
-  return {whole(), whole(), whole()};
-}
-
-inline TriangleCase triangle_case(TriangleCaseKind kind, Random& random) {
-  TriangleCase c;
-  auto& p = c.corners;
-  for (Vec3& corner : p) corner = random.in_box(Vec3{-1}, Vec3{1});
-  c.ray.origin = random.in_box(Vec3{-3}, Vec3{3});
-  const float s = random.uniform();
-  Vec3 aim = p[0] + s * (p[1] - p[0]);
-  switch (kind) {
-    case TriangleCaseKind::kRandom: aim = random.in_box(Vec3{-1}, Vec3{1}); break;
-    case TriangleCaseKind::kEdgeAimed: break;
-    case TriangleCaseKind::kCornerAimed: aim = p[random.below(3)]; break;
-    case TriangleCaseKind::kGrid:
-    case TriangleCaseKind::kScaledGrid: {
-      for (Vec3& corner : p) corner = grid_point(random, 3);
-      c.ray.origin = grid_point(random, 4);
-      c.ray.direction = random.below(2) ? grid_point(random, 2) : p[random.below(3)] - c.ray.origin;
-      if (kind == TriangleCaseKind::kGrid) return c;
-      // Signs and zeros of determinants survive other units on each axis; t with another unit of direction scales.
-      Vec3 unit;
-      for (int axis = 0; axis < 3; ++axis) unit[axis] = std::ldexp(1.0f, static_cast<int>(random.below(240)) - 120);
-      for (Vec3* v : {&p[0], &p[1], &p[2], &c.ray.origin, &c.ray.direction}) *v = *v * unit;
-      return c;
-    }
-    case TriangleCaseKind::kWildExponents: {
-      // Wild alone almost never hits: the aim is a mean of wild corners, and some numbers are wild afterwards.
-      for (Vec3& corner : p) corner = {wild(random) * 0.25f, wild(random) * 0.25f, wild(random) * 0.25f};
-      const float u = random.uniform(), v = random.uniform() * (1 - u);
-      c.ray.origin = random.below(3) ? Vec3{wild(random), wild(random), wild(random)} * 0.25f : Vec3{0};
-      c.ray.direction = (p[0] * (1 - u - v) + p[1] * u + p[2] * v) - c.ray.origin;
-      if (random.below(4) == 0) c.ray.direction = c.ray.direction * std::ldexp(1.0f, -static_cast<int>(random.below(140)));
-      if (random.below(8) == 0) p[random.below(3)][static_cast<int>(random.below(3))] = wild(random);
-      return c;
-    }
-    case TriangleCaseKind::kSliver:
-      p[2] = nudged(p[0] + random.uniform() * (p[1] - p[0]), 3, random);
-      aim = nudged(aim, 2, random);
-      break;
-    case TriangleCaseKind::kDegenerate: {
-      const Vec3 a = grid_point(random, 50), step = grid_point(random, 3);
-      for (Vec3& corner : p) corner = (a + step * static_cast<float>(random.below(5))) * 0x1p-6f;
-      aim = p[random.below(3)];
-      c.ray.origin = grid_point(random, 100) * 0x1p-6f;
-      break;
-    }
-    case TriangleCaseKind::kEdgeOn: {
-      // On a grid fine enough for the sums to be exact.
-      for (Vec3& corner : p) corner = grid_point(random, 1000) * 0x1p-10f;
-      const float a = static_cast<float>(static_cast<int>(random.below(9)) - 4), b = static_cast<float>(static_cast<int>(random.below(9)) - 4);
-      c.ray.origin = p[0] + a * (p[1] - p[0]) + b * (p[2] - p[0]);
-      c.ray.direction = p[random.below(3)] - c.ray.origin;
-      if (random.below(4)) c.ray.direction = nudged(c.ray.direction, 1, random);
-      if (random.below(4)) c.ray.origin = nudged(c.ray.origin, 1, random);
-      return c;
-    }
-    case TriangleCaseKind::kOnSurface: {
-      const float u = random.below(2) ? random.uniform() : 0.0f;   // or on an edge
-      c.ray.origin = nudged(p[0] + s * (1 - u) * (p[1] - p[0]) + u * (p[2] - p[0]), 1, random);
-      c.ray.direction = random.in_box(Vec3{-1}, Vec3{1});
-      return c;
-    }
-  }
-  c.ray.direction = nudged(aim - c.ray.origin, 2, random);
-  return c;
-}
 
 /// With every bit, to be seen again.
 inline std::string text(const TriangleCase& c) {

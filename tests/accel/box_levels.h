@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "accel/certificate/kernel_answers.h"
 #include "accel/double_slab.h"
 #include "accel/kernels.h"
 #include "accel/slab.h"
@@ -12,11 +13,6 @@
 #include "tests/accel/simd_guard.h"
 
 namespace carousel::accel {
-
-struct BoxAnswer {
-  bool hit;
-  float entry;
-};
 
 /// The scalar test of a level.
 inline BoxAnswer box_answer(BoxLevel level, const Ray& ray, const Aabb& box, float tmax = kInfinity) {

@@ -7,9 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "accel/certificate/box_cases.h"
+#include "accel/certificate/exact_box.h"
 #include "tests/accel/adversarial_cases.h"
 #include "tests/accel/box_levels.h"
-#include "tests/accel/exact_box.h"
 #include "tests/accel/test_rays.h"
 #include "tests/random_runs.h"
 
@@ -18,42 +19,6 @@ namespace {
 
 float up(float x) { return std::nextafter(x, kInfinity); }
 float down(float x) { return std::nextafter(x, -kInfinity); }
-
-struct BoxCase {
-  Ray ray;
-  Aabb box;
-  float tmax = kInfinity;
-};
-
-float wild_power(Random& random, int least, int most) {
-  return std::ldexp(1.0f, least + static_cast<int>(random.below(static_cast<std::uint32_t>(most - least))));
-}
-
-// Boxes of any place and size whose corners, edges and faces are aimed at, some ulps off. `reach` is that of their
-// exponents, `pace` that of the time it takes to get there.
-BoxCase box_case(Random& random, int reach, int pace) {
-  BoxCase c;
-  const float place = wild_power(random, -reach, reach), size = place * wild_power(random, -30, 2);
-  const Vec3 centre = random.in_box(Vec3{-place}, Vec3{place});
-  c.box.extend(random.below(8) ? centre + random.in_box(Vec3{-size}, Vec3{size}) : centre);
-  c.box.extend(random.below(8) ? centre + random.in_box(Vec3{-size}, Vec3{size}) : centre);
-  c.ray.origin = random.in_box(Vec3{-4 * place}, Vec3{4 * place});
-  Vec3 aim;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::uint32_t where = random.below(3);
-    aim[axis] = where == 0 ? c.box.lo[axis] : where == 1 ? c.box.hi[axis] : random.uniform(c.box.lo[axis], c.box.hi[axis]);
-    if (random.below(8) == 0) c.ray.origin[axis] = aim[axis];
-  }
-  c.ray.direction = aim - c.ray.origin;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::uint32_t how = random.below(6);
-    if (how == 0) c.ray.direction[axis] = up(c.ray.direction[axis]);
-    if (how == 1) c.ray.direction[axis] = down(c.ray.direction[axis]);
-    if (random.below(32) == 0) c.ray.direction[axis] = random.below(2) ? 0.0f : -0.0f;
-  }
-  c.ray.direction = c.ray.direction * wild_power(random, -pace, pace);
-  return c;
-}
 
 struct MissCount {
   int exact = 0;

@@ -9,7 +9,7 @@
 #include "tests/accel/adversarial_triangles.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
-#include "tests/accel/triangle_oracle.h"
+#include "accel/certificate/triangle_oracle.h"
 #include "tests/random_runs.h"
 
 namespace carousel::accel {

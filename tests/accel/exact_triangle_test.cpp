@@ -9,7 +9,7 @@
 #include "tests/accel/adversarial_cases.h"
 #include "tests/accel/adversarial_triangles.h"
 #include "tests/accel/test_rays.h"
-#include "tests/accel/triangle_oracle.h"
+#include "accel/certificate/triangle_oracle.h"
 #include "tests/random_runs.h"
 
 namespace carousel::accel {
@@ -25,7 +25,7 @@ TEST_P(ExactTriangle, DecidesAndRoundsAsBigIntegersDo) {
   for (int i = 0; i < cases; ++i) {
     const TriangleCase c = triangle_case(kind, random);
     const TriangleOracle oracle(c.ray, c.corners);
-    ExactCrossing crossing;
+    NearestCrossing crossing;
     const bool hit = exact_triangle(c.ray, c.corners, crossing);
     (hit ? hits : misses) += 1;
     if (hit == oracle.hit() && (!hit || (oracle.t_is_nearest(crossing.t) && oracle.u_is_nearest(crossing.u) &&
@@ -57,7 +57,7 @@ TEST(ExactTriangleEdges, SharedEdgeIsHitInBoth) {
     Ray ray;
     ray.origin = from;
     ray.direction = 0.5f * (a + b) - from;   // exact on this grid
-    ExactCrossing one, other;
+    NearestCrossing one, other;
     const bool hit = exact_triangle(ray, {a, b, left}, one);
     if (TriangleOracle(ray, {b, a, right}).hit()) {
       ASSERT_TRUE(exact_triangle(ray, {b, a, right}, other));
@@ -75,7 +75,7 @@ TEST(ExactTriangleEdges, NothingIsHitWithoutNumbers) {
   const std::array<Vec3, 3> p{Vec3{-1, -1, 0}, Vec3{1, -1, 0}, Vec3{0, 1, 0}};
   Ray ray;
   ray.origin = {0, 0, -1};
-  ExactCrossing crossing;
+  NearestCrossing crossing;
   ASSERT_TRUE(exact_triangle(ray, p, crossing));
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity}) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/accel/box_levels.h"
-#include "tests/accel/exact_box.h"
+#include "accel/certificate/exact_box.h"
 
 namespace carousel::accel {
 namespace {

@@ -12,7 +12,7 @@
 #include "tests/accel/levels.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
-#include "tests/accel/triangle_oracle.h"
+#include "accel/certificate/triangle_oracle.h"
 #include "tests/random_runs.h"
 
 namespace carousel::accel {

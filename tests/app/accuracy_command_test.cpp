@@ -25,78 +25,66 @@ std::uint64_t wrong(const Json& errors) {
   return errors.at("missed").get<std::uint64_t>() + errors.at("extra").get<std::uint64_t>() + errors.at("other").get<std::uint64_t>();
 }
 
-class AccuracyCommand : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    program_ = new Program;
-    program_->write("a.yaml", kConfig);
-    outcome_ = new Outcome(program_->run({"accuracy", "a.yaml", "--rays", "2000", "--hard-rays", "4000", "--repetitions", "2"}));
-    if (outcome_->status == 0) report_ = new Json(Json::parse(program_->read("out/a/accuracy.json")));
-  }
-  static void TearDownTestSuite() {
-    delete program_, program_ = nullptr;
-    delete outcome_, outcome_ = nullptr;
-    delete report_, report_ = nullptr;
-  }
-  void SetUp() override { ASSERT_NE(report_, nullptr) << outcome_->err; }
-
-  static Program* program_;
-  static Outcome* outcome_;
-  static Json* report_;
-};
-Program* AccuracyCommand::program_ = nullptr;
-Outcome* AccuracyCommand::outcome_ = nullptr;
-Json* AccuracyCommand::report_ = nullptr;
-
-TEST_F(AccuracyCommand, FindsTheLeaksOfTheFastLevelAndNoneOfTheWatertightOnes) {
-  EXPECT_GT(level(*report_, "fast", "plain", "two_step").at("leaks"), 0);
+void finds_the_leaks_of_the_fast_level_and_none_of_the_watertight_ones(const Json& report) {
+  EXPECT_GT(level(report, "fast", "plain", "two_step").at("leaks"), 0);
   for (const auto& [triangle, box] : {std::pair{"watertight", "conservative"}, {"double", "double"}, {"exact", "double"}}) {
-    const Json& row = level(*report_, triangle, box, "two_step");
+    const Json& row = level(report, triangle, box, "two_step");
     EXPECT_EQ(row.at("leaks"), 0) << triangle;
     EXPECT_EQ(row.at("hard").at("edges").at("missed"), 0) << triangle;
   }
 }
 
-TEST_F(AccuracyCommand, ExactTestsAgreeWithTheReferenceWhereNoTransformRounds) {
-  const Json& row = level(*report_, "exact", "double", "two_step");
+void exact_tests_agree_with_the_reference_where_no_transform_rounds(const Json& report) {
+  const Json& row = level(report, "exact", "double", "two_step");
   for (const char* name : {"edges", "slivers"}) EXPECT_EQ(wrong(row.at("hard").at(name)), 0u) << name;
-  EXPECT_GT(wrong(level(*report_, "fast", "plain", "two_step").at("hard").at("slivers")), 0u);
+  EXPECT_GT(wrong(level(report, "fast", "plain", "two_step").at("hard").at("slivers")), 0u);
 }
 
-TEST_F(AccuracyCommand, OneInverseMatrixLosesFarMeshes) {
+void one_inverse_matrix_loses_far_meshes(const Json& report) {
   const auto far = [&](const char* transform) {
-    return level(*report_, "watertight", "conservative", transform).at("hard").at("far mesh");
+    return level(report, "watertight", "conservative", transform).at("hard").at("far mesh");
   };
   EXPECT_GT(far("inverse_matrix").at("missed").get<int>(), 10 * far("two_step").at("missed").get<int>());
 }
 
-TEST_F(AccuracyCommand, ABoundedSpawnOffsetNeverHitsItsOwnTriangle) {
-  for (const Json& row : report_->at("spawn")) {
+void a_bounded_spawn_offset_never_hits_its_own_triangle(const Json& report) {
+  for (const Json& row : report.at("spawn")) {
     EXPECT_GT(row.at("bounces"), 100);
     if (row.at("spawn") == "bound") EXPECT_EQ(row.at("self_hits").get<int>() + row.at("far_self_hits").get<int>(), 0);
     if (row.at("spawn") == "epsilon") EXPECT_GT(row.at("far_self_hits"), 0);
   }
 }
 
-TEST_F(AccuracyCommand, TimesModelledCyclesAndPicturesAreThere) {
-  for (const Json& row : report_->at("levels")) {
+void times_modelled_cycles_and_pictures_are_there(const Json& report) {
+  for (const Json& row : report.at("levels")) {
     EXPECT_GT(row.at("ns_per_ray").at("least"), 0);
     EXPECT_LE(row.at("ns_per_ray").at("least"), row.at("ns_per_ray").at("most"));
     EXPECT_GT(row.at("modelled_cycles_per_ray"), 0);
     EXPECT_EQ(row.at("picture").at("pixels"), 24 * 24);
   }
   // The machine waits for its shaders; its testers work longer all the same.
-  EXPECT_GT(level(*report_, "double", "double", "two_step").at("modelled_tester_cycles_per_ray").get<double>(),
-            2 * level(*report_, "watertight", "conservative", "two_step").at("modelled_tester_cycles_per_ray").get<double>());
-  EXPECT_GE(report_->at("sampling").at("rows").size(), 6u);
-  EXPECT_NEAR(report_->at("sampling").at("slope").get<double>(), -0.5, 0.2);
+  EXPECT_GT(level(report, "double", "double", "two_step").at("modelled_tester_cycles_per_ray").get<double>(),
+            2 * level(report, "watertight", "conservative", "two_step").at("modelled_tester_cycles_per_ray").get<double>());
+  EXPECT_GE(report.at("sampling").at("rows").size(), 6u);
+  EXPECT_NEAR(report.at("sampling").at("slope").get<double>(), -0.5, 0.2);
 }
 
-TEST_F(AccuracyCommand, PrintsATableWithAVerdictAndWritesAPicture) {
-  EXPECT_THAT(outcome_->out, HasSubstr("watertight"));
-  EXPECT_THAT(outcome_->out, HasSubstr("cheapest safe level"));
-  EXPECT_THAT(outcome_->out, HasSubstr("Monte Carlo: -0.50"));
-  EXPECT_THAT(program_->read("out/a/accuracy.svg"), HasSubstr("</svg>"));
+// One run for all: it takes a while, and each test is a process of its own.
+TEST(AccuracyCommand, MeasuresWhatEachLevelGetsWrongAndCosts) {
+  const Program program;
+  program.write("a.yaml", kConfig);
+  const Outcome outcome = program.run({"accuracy", "a.yaml", "--rays", "2000", "--hard-rays", "4000", "--repetitions", "2"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json report = Json::parse(program.read("out/a/accuracy.json"));
+  finds_the_leaks_of_the_fast_level_and_none_of_the_watertight_ones(report);
+  exact_tests_agree_with_the_reference_where_no_transform_rounds(report);
+  one_inverse_matrix_loses_far_meshes(report);
+  a_bounded_spawn_offset_never_hits_its_own_triangle(report);
+  times_modelled_cycles_and_pictures_are_there(report);
+  EXPECT_THAT(outcome.out, HasSubstr("watertight"));
+  EXPECT_THAT(outcome.out, HasSubstr("cheapest safe level"));
+  EXPECT_THAT(outcome.out, HasSubstr("Monte Carlo: -0.50"));
+  EXPECT_THAT(program.read("out/a/accuracy.svg"), HasSubstr("</svg>"));
 }
 
 TEST(AccuracyCommandErrors, TrafficHasNoPictures) {

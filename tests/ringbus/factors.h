@@ -66,8 +66,12 @@ inline std::vector<Factor> machine_factors() {
 inline std::vector<Factor> cycle_factors() {
   using I = std::int64_t;
   std::vector<Factor> factors = machine_factors();
-  std::erase_if(factors, [](const Factor& f) { return f.name == "queue" || f.name == "placement" || f.name == "shape"; });
+  std::erase_if(factors, [](const Factor& f) {
+    // Of threads there is a test of its own: more than there are cores wait for each other in every window.
+    return f.name == "queue" || f.name == "placement" || f.name == "shape" || f.name == "threads";
+  });
   const std::vector<Factor> more{
+      factor<std::size_t>("threads", {1, 2}, [](Cell& c, std::size_t v) { c.threads = v; }),
       factor<int>("engine", {0}, [](Cell& c, int) { c.config.engine.kind = EngineKind::kCycle; }),
       factor("placement", std::vector{Placement::kBalanced, Placement::kRoundRobin},
              [](Cell& c, Placement v) { c.config.rays.placement = v; }),

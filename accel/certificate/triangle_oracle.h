@@ -9,6 +9,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include "accel/certificate/big_quotient.h"
 #include "core/ray.h"
 
 namespace carousel::accel {
@@ -44,6 +45,10 @@ class TriangleOracle {
   bool t_is_nearest(float t) const { return is_nearest(t, depth_, facing_); }
   bool u_is_nearest(float u) const { return is_nearest(u, second_, whole_); }
   bool v_is_nearest(float v) const { return is_nearest(v, third_, whole_); }
+  /// Of the plane, rounded: infinite where the ray does not cross it.
+  double t() const { return facing_ == 0 ? kInfinity : big_quotient(depth_, facing_); }
+  double u() const { return whole_ == 0 ? kInfinity : big_quotient(second_, whole_); }
+  double v() const { return whole_ == 0 ? kInfinity : big_quotient(third_, whole_); }
   /// Sign of the exact t - x.
   int compare_t(float x) const { return Int((depth_ << 200) - integer(x, -200) * facing_).sign() * facing_.sign(); }
 

@@ -4,6 +4,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include "accel/certificate/big_quotient.h"
 #include "core/aabb.h"
 #include "core/ray.h"
 
@@ -30,6 +31,10 @@ class ExactBox {
   }
 
   bool hit() const { return !beside_ && (endless_ || !less(far_, near_)); }
+  /// The exact entry, rounded; never below tmin.
+  double entry() const {
+    return std::ldexp(big_quotient(near_.top, near_.bottom), -kScale);
+  }
   /// Sign of the exact entry - x.
   int compare_entry(float x) const { return Int(near_.top - integer(x) * near_.bottom).sign(); }
 
