@@ -59,7 +59,8 @@ TEST(GltfNode, NestedTransformsComposeToTheirProduct) {
 
   const auto place = [&](Point x) {
     for (std::size_t i = levels.size(); i-- > 0;) {
-      const auto& [q, s, t] = levels[i];
+      const auto& [rotation, s, t] = levels[i];
+      const auto& q = rotation;   // Clang 14 captures no structured bindings
       for (std::size_t a = 0; a < 3; ++a) x[a] *= s[a];
       const auto cross = [&](const Point& v) {
         return Point{q[1] * v[2] - q[2] * v[1], q[2] * v[0] - q[0] * v[2], q[0] * v[1] - q[1] * v[0]};
