@@ -14,12 +14,12 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-/// Where threads wait for each other, twice a window. It spins for a little, if there is a core for everyone, and
-/// then sleeps: whoever is woken runs soon even on a busy machine, while one that yields goes behind everybody.
+/// Where threads wait for each other, twice a window. It spins for about as long as waking a sleeper takes, if there is
+/// a core for everyone, and then sleeps: whoever is woken runs soon even on a busy machine, while one that yields goes behind everybody.
 class Barrier {
  public:
   explicit Barrier(std::size_t threads)
-      : threads_(threads), spins_(threads <= std::thread::hardware_concurrency() ? 2000 : 0) {}
+      : threads_(threads), spins_(threads <= std::thread::hardware_concurrency() ? 100000 : 0) {}
 
   void wait() {
     const std::size_t turn = turn_.load(std::memory_order_relaxed);
