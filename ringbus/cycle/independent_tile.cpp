@@ -146,10 +146,7 @@ void IndependentTile::hand_over(Cycle now) {
 TileResult IndependentTile::result() const {
   TileResult t;
   t.states = clock_.times();
-  t.box.busy = tester_.box.busy();
-  t.triangle.busy = tester_.triangle.busy();
-  t.plane.busy = tester_.plane.busy();
-  t.transform.busy = tester_.transform.busy();
+  tester_.account(t);
   t.stack = stack_;
   t.transformed_rays = transforms_.bytes();
   return t;

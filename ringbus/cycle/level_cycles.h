@@ -6,8 +6,8 @@ namespace carousel::ringbus::cycle {
 
 /// What a test in 64 bits takes of a unit built for 32: a product of two 53-bit significands is four of 27 bits, so
 /// its multipliers are gone through four times. Everything in 32 bits costs the same: Möller-Trumbore has 27 products
-/// a triangle, the watertight test 24, and what a conservative box adds is one product a ray. An exact test is charged
-/// as its filter in 64 bits, which settles all but a few in a million.
+/// a triangle, the watertight test 21, and what a conservative box adds is three products a ray. An exact test is
+/// charged as its filter in 64 bits; what the filter leaves to longer arithmetic is not charged.
 inline constexpr std::int64_t kDoublePasses = 4;
 
 /// The testers as configured are built for 32 bits; as they are at the levels of `accuracy`.

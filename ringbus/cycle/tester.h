@@ -4,6 +4,7 @@
 #include "core/config.h"
 #include "core/ids.h"
 #include "core/test_counts.h"
+#include "ringbus/cycle/cycle_result.h"
 #include "ringbus/cycle/level_cycles.h"
 #include "ringbus/cycle/unit_bank.h"
 
@@ -39,6 +40,14 @@ struct Tester {
     UnitBank& bank = counts.box > 0 ? box : triangle;
     const Cycle tested = bank.reserve_beside(moved, counts.box + counts.triangle).last;
     return plane.reserve_beside(tested, counts.plane).last;
+  }
+
+  /// Fills in how long each bank was busy.
+  void account(TileResult& result) const {
+    result.box.busy = box.busy();
+    result.triangle.busy = triangle.busy();
+    result.plane.busy = plane.busy();
+    result.transform.busy = transform.busy();
   }
 
   UnitBank box, triangle, plane, transform;

@@ -95,7 +95,8 @@ void Tile::run(Cycle end) {
   for (;;) {
     const Cycle arrival = next_arrival(), now = std::min(arrival, rest);
     if (now >= end) return;
-    if (now < rest && pass_by(now)) continue;
+    // Not with the bubble rule, under which what waits to get in must see every credit.
+    if (now < rest && !bubble_ && cut_through(now, true)) continue;
     step(now);
     rest = next_beside_ring();
   }
@@ -110,7 +111,7 @@ void Tile::step(Cycle now) {
   while (again) {
     again = finish_tests(now);
     again |= help_.step(now, testers_free());
-    again |= cut_through(now);
+    again |= cut_through(now, false);
     again |= handle(now);
     again |= admit();
     again |= fill_issue(now);
@@ -201,10 +202,7 @@ ResourceStatistics Tile::statistics() const {
 TileResult Tile::result() const {
   TileResult t;
   t.states = clock_.times();
-  t.box.busy = tester_.box.busy();
-  t.triangle.busy = tester_.triangle.busy();
-  t.plane.busy = tester_.plane.busy();
-  t.transform.busy = tester_.transform.busy();
+  tester_.account(t);
   t.handler.busy = handler_busy_;
   t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();

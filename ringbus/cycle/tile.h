@@ -88,8 +88,8 @@ class Tile final : public ResourceAgent {
   void take_new_rays(Cycle now);
   bool admit();
   bool finish_tests(Cycle now);
-  bool pass_by(Cycle now);
-  bool cut_through(Cycle now);
+  /// `at_once`: only what finds its link free; the others are taken in hand.
+  bool cut_through(Cycle now, bool at_once);
   bool handle(Cycle now);
   bool handle_arrival(std::size_t d, Cycle now);
   bool handle_issue(Cycle now);

@@ -35,34 +35,23 @@ void Tile::occupy_handler(Cycle now, std::size_t ids) {
   handler_busy_ += cycles;
 }
 
-bool Tile::cut_through(Cycle now) {
+bool Tile::cut_through(Cycle now, bool at_once) {
   if (!cuts_through_) return false;
   bool moved = false;
   for (std::size_t d = 0; d < ports_.in.size(); ++d) {
     InPort& in = ports_.in[d];
-    while (in.next() <= now && in.front().skip > 0 && ports_.out[d].has_place()) {
+    OutPort& out = ports_.out[d];
+    while (in.next() <= now && in.front().skip > 0 && (at_once ? out.open(now, 1) : out.has_place())) {
       Token token = in.take(now);
       --token.skip;
-      ports_.out[d].push(token, now, token.skip > 0);
+      if (at_once)
+        out.launch(token, now, token.skip > 0);
+      else
+        out.push(token, now, token.skip > 0);
       moved = true;
     }
   }
   return moved;
-}
-
-bool Tile::pass_by(Cycle now) {
-  if (!cuts_through_ || bubble_) return false;
-  bool passed = false;
-  for (std::size_t d = 0; d < ports_.in.size(); ++d) {
-    InPort& in = ports_.in[d];
-    while (in.next() <= now && in.front().skip > 0 && ports_.out[d].open(now, 1)) {
-      Token token = in.take(now);
-      --token.skip;
-      ports_.out[d].launch(token, now, token.skip > 0);
-      passed = true;
-    }
-  }
-  return passed;
 }
 
 bool Tile::handle(Cycle now) {
