@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <mutex>
 #include <stdexcept>
@@ -14,14 +15,20 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-/// Where threads wait for each other, twice a window. It spins for about as long as waking a sleeper takes, if there is
-/// a core for everyone, and then sleeps: whoever is woken runs soon even on a busy machine, while one that yields goes behind everybody.
+/// Where threads wait for each other, twice a window. A thread spins for about as long as waking a sleeper takes, if
+/// there is a core for everyone, and then sleeps: whoever is woken runs soon even on a busy machine, while one that
+/// yields goes behind everybody. Spinning in vain on a busy machine takes the core from the very thread that is waited
+/// for, so whoever had to sleep spins for half as long the next time.
 class Barrier {
  public:
-  explicit Barrier(std::size_t threads)
-      : threads_(threads), spins_(threads <= std::thread::hardware_concurrency() ? 100000 : 0) {}
+  explicit Barrier(std::size_t threads) : threads_(threads), spins_(threads <= std::thread::hardware_concurrency()) {}
 
-  void wait() {
+  /// `patience` is the caller's own, kept from one wait to the next.
+  struct Patience {
+    std::chrono::nanoseconds spin = kLongest;
+  };
+
+  void wait(Patience& patience) {
     const std::size_t turn = turn_.load(std::memory_order_relaxed);
     // Acquire and release: whoever leaves sees what everyone did before arriving.
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
@@ -30,13 +37,29 @@ class Barrier {
       turn_.notify_all();
       return;
     }
-    for (int spins = 0; turn_.load(std::memory_order_acquire) == turn; ++spins)
-      if (spins >= spins_) turn_.wait(turn, std::memory_order_acquire);
+    if (spins_ && spun(turn, patience.spin)) {
+      patience.spin = std::min(kLongest, patience.spin * 2);
+      return;
+    }
+    patience.spin = std::max(kShortest, patience.spin / 2);
+    while (turn_.load(std::memory_order_acquire) == turn) turn_.wait(turn, std::memory_order_acquire);
   }
 
  private:
+  static constexpr std::chrono::nanoseconds kLongest = std::chrono::microseconds(100), kShortest = std::chrono::microseconds(1);
+
+  /// Whether the turn ended while the caller looked on.
+  bool spun(std::size_t turn, std::chrono::nanoseconds at_most) const {
+    const auto end = std::chrono::steady_clock::now() + at_most;
+    do {
+      for (int looks = 0; looks < 64; ++looks)
+        if (turn_.load(std::memory_order_acquire) != turn) return true;
+    } while (std::chrono::steady_clock::now() < end);
+    return false;
+  }
+
   std::size_t threads_;
-  int spins_;
+  bool spins_;
   alignas(64) std::atomic<std::size_t> arrived_{0};
   alignas(64) std::atomic<std::size_t> turn_{0};
 };
@@ -66,13 +89,14 @@ class WindowRun {
     const std::vector<Agent*>& agents = parts_[thread];
     Schedule schedule(agents);
     const bool alone = parts_.size() == 1;
+    Barrier::Patience patience;
     for (std::uint64_t window = 0;; ++window) {
       Cycle first = look(thread, schedule);
       // Written within windows only, so here, between two of them, everybody reads the same.
       const bool stop = stop_.load(std::memory_order_relaxed);
       if (!alone) {
         next_[thread].cycle = first;
-        barrier_.wait();
+        barrier_.wait(patience);
         for (const Next& other : next_) first = std::min(first, other.cycle);
       }
       if (first == kNever || stop) break;   // everybody comes to the same conclusion
@@ -81,7 +105,7 @@ class WindowRun {
         reached_ = first;
         if (window % kLook == 0 && !go_on_(first)) stop_.store(true, std::memory_order_relaxed);
       }
-      if (!alone) barrier_.wait();
+      if (!alone) barrier_.wait(patience);
     }
   }
 
