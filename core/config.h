@@ -168,8 +168,24 @@ struct CullPlanesConfig {
 struct BundlesConfig {
   std::int64_t size = 0;
   enum class Form { kInterval, kSilhouette } form = Form::kInterval;
+  enum class Edges { kSerial, kParallel } edges = Edges::kSerial;
   enum class Order { kAllHitFirst, kAnyHitFirst, kParallel, kAllHitOnly, kAnyHitOnly } order = Order::kAllHitFirst;
+  bool strict = false;
   enum class Lifetime { kPersistent, kReformed } lifetime = Lifetime::kPersistent;
+  struct Builder {
+    std::int64_t open = 16, rays_per_cycle = 2, age = 64;
+    enum class Similarity { kGrowth, kSolidAngle, kComponentRange, kOriginBox } similarity = Similarity::kGrowth;
+    enum class Measure { kAbsolute, kPercent } measure = Measure::kAbsolute;
+    double threshold = 0.1;
+    bool same_origin = false, same_signs = true;
+  } builder;
+  enum class Sources { kAll, kCamera, kShader } sources = Sources::kAll;
+  enum class Split { kTester, kBuilder } split = Split::kTester;
+  std::int64_t min_rays = 2;
+  struct SplitBelow {
+    std::int64_t depth = 255;
+    double box_size = 0;
+  } split_below;
 };
 
 struct MemoryConfig {

@@ -73,6 +73,18 @@ CAROUSEL_ENUM(CullPlanesConfig::Fit, {CullPlanesConfig::Fit::kVertices, "vertice
               {CullPlanesConfig::Fit::kBoxes, "boxes"});
 CAROUSEL_ENUM(BundlesConfig::Form, {BundlesConfig::Form::kInterval, "interval"},
               {BundlesConfig::Form::kSilhouette, "silhouette"});
+CAROUSEL_ENUM(BundlesConfig::Edges, {BundlesConfig::Edges::kSerial, "serial"},
+              {BundlesConfig::Edges::kParallel, "parallel"});
+CAROUSEL_ENUM(BundlesConfig::Builder::Similarity, {BundlesConfig::Builder::Similarity::kGrowth, "growth"},
+              {BundlesConfig::Builder::Similarity::kSolidAngle, "solid_angle"},
+              {BundlesConfig::Builder::Similarity::kComponentRange, "component_range"},
+              {BundlesConfig::Builder::Similarity::kOriginBox, "origin_box"});
+CAROUSEL_ENUM(BundlesConfig::Builder::Measure, {BundlesConfig::Builder::Measure::kAbsolute, "absolute"},
+              {BundlesConfig::Builder::Measure::kPercent, "percent"});
+CAROUSEL_ENUM(BundlesConfig::Sources, {BundlesConfig::Sources::kAll, "all"},
+              {BundlesConfig::Sources::kCamera, "camera"}, {BundlesConfig::Sources::kShader, "shader"});
+CAROUSEL_ENUM(BundlesConfig::Split, {BundlesConfig::Split::kTester, "tester"},
+              {BundlesConfig::Split::kBuilder, "builder"});
 CAROUSEL_ENUM(BundlesConfig::Order, {BundlesConfig::Order::kAllHitFirst, "all_hit_first"},
               {BundlesConfig::Order::kAnyHitFirst, "any_hit_first"},
               {BundlesConfig::Order::kParallel, "parallel"},

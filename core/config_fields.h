@@ -206,11 +206,37 @@ void describe(V& v, CullPlanesConfig& c) {
 }
 
 template <class V>
+void describe(V& v, BundlesConfig::Builder& c) {
+  v.field("open", c.open, IntRange{1, 1024}, "bundles", "bundles that still take rays");
+  v.field("rays_per_cycle", c.rays_per_cycle, IntRange{1, 1024}, "rays/cycle", "cycle: rays the builder looks at");
+  v.field("age", c.age, IntRange{1, 1'000'000}, "rays", "rays looked at before an open bundle is sent on as it is");
+  v.choice("similarity", c.similarity, "what must stay small when a ray joins");
+  v.choice("measure", c.measure, "whether the threshold is of the size itself or of its growth by the ray");
+  v.field("threshold", c.threshold, RealRange{0, 1e6}, "",
+          "absolute: of the scene's size for origins, of a unit vector for directions; percent: growth");
+  v.field("same_origin", c.same_origin, "", "only rays that start at one point join");
+  v.field("same_signs", c.same_signs, "", "only rays whose directions lie in one octant join");
+}
+
+template <class V>
+void describe(V& v, BundlesConfig::SplitBelow& c) {
+  v.field("depth", c.depth, IntRange{0, 255}, "strips", "bundles split below this depth");
+  v.field("box_size", c.box_size, RealRange{0, 1}, "of the scene's size", "bundles split at nodes smaller than this");
+}
+
+template <class V>
 void describe(V& v, BundlesConfig& c) {
   v.field("size", c.size, IntRange{0, 64}, "rays", "rays of a bundle at most; 0 is no bundles");
   v.choice("form", c.form, "how a bundle is tested");
+  v.choice("edges", c.edges, "cycle: whether a silhouette's edges are tested one after another");
   v.choice("order", c.order, "which of the bundle's tests come first");
+  v.field("strict", c.strict, "", "a bundle goes down whole only if each of its rays surely hits the box");
   v.choice("lifetime", c.lifetime, "whether bundles stay together from node to node");
+  v.section("builder", c.builder, "which rays make a bundle");
+  v.choice("sources", c.sources, "rays that bundles are made of");
+  v.choice("split", c.split, "where the rays of a split bundle go: on their own, or to the builder");
+  v.field("min_rays", c.min_rays, IntRange{2, 64}, "rays", "fewer than these travel on their own");
+  v.section("split_below", c.split_below, "where bundles are split whatever they hit");
 }
 
 template <class V>
