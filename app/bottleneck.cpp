@@ -74,11 +74,13 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     if (busy <= 0 || parts <= 0) return;
     out.classes.push_back({name, 1000 * rays * parts / busy});
   };
-  double box = 0, triangle = 0, plane = 0, transform = 0, handler = 0, link = 0;
+  double box = 0, triangle = 0, plane = 0, bundle = 0, reads = 0, transform = 0, handler = 0, link = 0;
   for (const ringbus::cycle::TileResult& tile : c.tiles) {
     box += static_cast<double>(tile.box.busy);
     triangle += static_cast<double>(tile.triangle.busy);
     plane += static_cast<double>(tile.plane.busy);
+    bundle += static_cast<double>(tile.bundle.busy);
+    reads += static_cast<double>(tile.ray_reads.busy);
     transform += static_cast<double>(tile.transform.busy);
     handler += static_cast<double>(tile.handler.busy);
   }
@@ -87,6 +89,8 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
   add("box_tests", tiles, box);
   add("triangle_tests", tiles, triangle);
   add("plane_tests", tiles, plane);
+  add("bundle_tests", tiles, bundle);
+  add("ray_reads", tiles, reads);
   add("transforms", tiles, transform);
   add("handling", tiles, handler);
   add("link_bandwidth", static_cast<double>(c.links.size()), link);

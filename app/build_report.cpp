@@ -46,6 +46,26 @@ report::Tests tests(const TestCounts& counts, std::uint64_t rays) {
           kind(counts.transforms), kind(counts.inversions), kind(counts.culled)};
 }
 
+report::BundleTests bundle_tests(const ringbus::BundleCounts& c, std::size_t depth) {
+  const auto difference = [](std::uint64_t a, std::uint64_t b) { return static_cast<std::int64_t>(a) - static_cast<std::int64_t>(b); };
+  return {depth, c.all, c.none, c.split, c.lane_rays - c.split_rays,
+          difference(c.visit_rays, c.visits + c.touched + c.taken_apart)};
+}
+
+report::Bundles bundles(const std::vector<ringbus::BundleCounts>& by_depth) {
+  report::Bundles out;
+  ringbus::BundleCounts sum;
+  for (std::size_t depth = 0; depth < by_depth.size(); ++depth) {
+    sum += by_depth[depth];
+    out.by_depth.push_back(bundle_tests(by_depth[depth], depth));
+  }
+  out.sum = bundle_tests(sum, by_depth.size() - 1);
+  out.formed = sum.formed;
+  out.rays_mean = ratio(sum.formed_rays, sum.formed);
+  out.ray_bytes_spared = out.sum.ray_reads_spared * static_cast<std::int64_t>(sizeof(RayRecord));
+  return out;
+}
+
 report::Resource resource(std::size_t number, const ringbus::ResourceStatistics& s,
                           const ringbus::CollectionStore::Statistics& c) {
   using ringbus::StallReason;
@@ -90,6 +110,8 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
   collections.fullness_mean =
       ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.rays));
   r.tests = tests(sum.tests, rays);
+  r.tests->ray_reads = {sum.reads, ratio(sum.reads, rays)};
+  if (!sum.bundles.empty()) r.tests->bundles = bundles(sum.bundles);
   r.packets = report::Packets{sum.packets_issued,
                               sum.packets_retired,
                               sum.hops,
@@ -113,7 +135,7 @@ report::Rate rate(std::uint64_t rays, std::uint64_t cycles, std::int64_t clock_m
   return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
 }
 
-report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, bool planes) {
+report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, const Config& config) {
   using ringbus::cycle::TileState;
   const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
   const auto bank = [&](const ringbus::cycle::UnitLedger& ledger) {
@@ -124,7 +146,9 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
   };
   report::Units out{bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.handler.busy,
                     cycles - tile.handler.busy};
-  if (planes) out.plane = bank(tile.plane);
+  if (config.cull_planes.count > 0) out.plane = bank(tile.plane);
+  if (config.bundles.size > 0) out.bundle = bank(tile.bundle);
+  if (config.rays.reads_per_cycle > 0) out.ray_reads = bank(tile.ray_reads);
   return out;
 }
 
@@ -143,7 +167,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);
   }
   for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i) {
-    (*r.resources)[i].units = units(c.tiles[i], c.cycles, config.cull_planes.count > 0);
+    (*r.resources)[i].units = units(c.tiles[i], c.cycles, config);
     if (config.topology.shape == TopologyShape::kIndependent) (*r.resources)[i].stack = stack(c.tiles[i].stack);
     if (config.accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore) {
       const ringbus::TransformedRayBytes& bytes = c.tiles[i].transformed_rays;

@@ -119,6 +119,7 @@ struct TopologyConfig {
 struct RaysConfig {
   std::int64_t slots_per_resource = 1024;
   Placement placement = Placement::kBalanced;
+  std::int64_t reads_per_cycle = 0;
 };
 
 struct PacketsConfig {

@@ -143,6 +143,8 @@ void describe(V& v, RaysConfig& c) {
   v.field("slots_per_resource", c.slots_per_resource, IntRange{1, kMaxSlots}, "rays",
           "rays a resource stores at a time");
   v.choice("placement", c.placement, "which resource takes a new ray");
+  v.field("reads_per_cycle", c.reads_per_cycle, IntRange{0, 1024}, "records/cycle",
+          "cycle: rays or bundles whose data a resource's testers get from its store; 0: as many as they want");
 }
 
 template <class V>

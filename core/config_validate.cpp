@@ -1,6 +1,7 @@
 #include "core/config_validate.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 #include <fmt/format.h>
@@ -94,7 +95,33 @@ class Rules {
 
   void built_planes_and_bundles() {
     if (c.cull_planes.count > 0) planes_need_bounded_errors();
-    only("bundles.size", c.bundles.size, std::int64_t{0}, std::to_string(c.bundles.size), "0");
+    if (c.bundles.size > 0) bundles_fit();
+  }
+
+  // A bundle has one owner, which answers for all of its rays at one visit.
+  void bundles_fit() {
+    const BundlesConfig& b = c.bundles;
+    if (b.size == 1) issue("bundles.size", "expected 2 rays or more, or 0 for none; found 1");
+    if (b.size > c.rays.slots_per_resource)
+      issue("bundles.size", fmt::format("a bundle's rays live in one resource; expected at most rays.slots_per_resource = "
+                                        "{}, found {}",
+                                        c.rays.slots_per_resource, b.size));
+    const std::string without = ", or bundles.size: 0";
+    if (c.collections.traversal == Traversal::kOrdered)
+      issue("collections.traversal", "rays of a bundle go several ways at once; expected spread or treelet, found ordered" + without);
+    if (c.packets.shapes == PacketShapes::kSingle)
+      issue("packets.shapes", "a bundle is tested against a whole strip; expected strip, found single" + without);
+    if (c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed)
+      issue("rays.placement", fmt::format("bundles are made before their rays have slots; expected balanced or round_robin, "
+                                          "found {}{}",
+                                          enum_name(c.rays.placement), without));
+    if (c.topology.shape == TopologyShape::kIndependent)
+      issue("topology.shape", "independent resources trace single rays; expected a ring or another network, found "
+                              "independent" + without);
+    if (std::bit_width(static_cast<std::uint64_t>(c.topology.resources - 1)) +
+            std::bit_width(static_cast<std::uint64_t>(2 * c.rays.slots_per_resource)) > 32)
+      issue("rays.slots_per_resource", fmt::format("IDs of 32 bits name bundles as well; expected fewer slots than {}{}",
+                                                   c.rays.slots_per_resource, without));
   }
 
   // The plane test's slack covers what these kernels may round, and has no bound for others.

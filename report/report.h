@@ -72,8 +72,24 @@ struct TestKind {
   double per_ray = 0;
 };
 
+/// What became of the child boxes that bundles were tested against, at one depth or in all.
+struct BundleTests {
+  std::uint64_t depth = 0, all_hit = 0, all_miss = 0, split = 0;
+  std::uint64_t box_tests_spared = 0;
+  std::int64_t ray_reads_spared = 0;
+};
+
+struct Bundles {
+  std::uint64_t formed = 0;
+  double rays_mean = 0;
+  BundleTests sum;
+  std::int64_t ray_bytes_spared = 0;
+  std::vector<BundleTests> by_depth;
+};
+
 struct Tests {
-  TestKind box, plane, triangle, bundle, transforms, inversions{}, culled{};
+  TestKind box, plane, triangle, bundle, transforms, inversions{}, culled{}, ray_reads{};
+  std::optional<Bundles> bundles{};
 };
 
 struct Packets {
@@ -100,7 +116,7 @@ struct UnitCycles {
 struct Units {
   UnitCycles box, triangle, transform;
   std::uint64_t handler_busy = 0, handler_idle = 0;
-  std::optional<UnitCycles> plane{};
+  std::optional<UnitCycles> plane{}, bundle{}, ray_reads{};
 };
 
 /// What moved onto the stacks of a resource's rays and from them.

@@ -97,6 +97,25 @@ void describe(V& v, TestKind& r) {
 }
 
 template <class V>
+void describe(V& v, BundleTests& r) {
+  v.field("depth", r.depth, "strips", "below the root; of the sum, the deepest");
+  v.field("all_hit", r.all_hit, "boxes", "every ray of a bundle went on to");
+  v.field("all_miss", r.all_miss, "boxes", "no ray of a bundle went on to");
+  v.field("split", r.split, "boxes", "left to the single rays");
+  v.field("box_tests_spared", r.box_tests_spared, "tests", "ray against box");
+  v.field("ray_reads_spared", r.ray_reads_spared, "records", "less than without bundles, splitting and dissolving counted");
+}
+
+template <class V>
+void describe(V& v, Bundles& r) {
+  v.field("formed", r.formed, "bundles", "of new rays, and of the rays of split bundles");
+  v.field("rays_mean", r.rays_mean, "rays/bundle", "when formed");
+  v.section("sum", r.sum, "over all depths");
+  v.field("ray_bytes_spared", r.ray_bytes_spared, "bytes", "of the records spared");
+  v.section("by_depth", r.by_depth, "from the root down");
+}
+
+template <class V>
 void describe(V& v, Tests& r) {
   v.section("box", r.box, "ray against box");
   v.section("plane", r.plane, "ray against cull plane");
@@ -105,6 +124,8 @@ void describe(V& v, Tests& r) {
   v.section("transforms", r.transforms, "rays brought from world to model space");
   v.section("inversions", r.inversions, "instances' matrices inverted at a visit, with accuracy.invert: visit");
   v.section("culled", r.culled, "children whose box was hit, which a cull plane showed to be missed");
+  v.section("ray_reads", r.ray_reads, "records of rays or bundles read by testers");
+  v.section("bundles", r.bundles, "what they were good for, with bundles.size");
 }
 
 template <class V>
@@ -154,6 +175,8 @@ void describe(V& v, Units& r) {
   v.section("box", r.box, "testers of boxes");
   v.section("triangle", r.triangle, "testers of triangles");
   v.section("plane", r.plane, "testers of cull planes");
+  v.section("bundle", r.bundle, "testers of bundles");
+  v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
   v.section("transform", r.transform, "transform units");
   v.field("handler_busy", r.handler_busy, "cycles", "looking through packets' IDs");
   v.field("handler_idle", r.handler_idle, "cycles", "the rest");

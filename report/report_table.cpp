@@ -86,6 +86,11 @@ void test_line(Table& table, const Tests& t) {
     if (test.count > 0) rare += fmt::format("   {} {:.2f}", name, test.per_ray);
   table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray,
              t.triangle.per_ray, t.transforms.per_ray, rare);
+  if (const auto& b = t.bundles) {
+    const std::uint64_t boxes = b->sum.all_hit + b->sum.all_miss + b->sum.split;
+    table.line("bundles", "{} of {:.1f} rays   of their boxes {} all hit, {} all missed, {} split", grouped(b->formed), b->rays_mean,
+               percent(ratio(b->sum.all_hit, boxes)), percent(ratio(b->sum.all_miss, boxes)), percent(ratio(b->sum.split, boxes)));
+  }
 }
 
 void packet_lines(Table& table, const Report& report) {

@@ -27,7 +27,7 @@ class CycleRun {
  public:
   CycleRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
            const RunOptions& options)
-      : config_(config), options_(options), machine_(config, accel) {
+      : config_(config), options_(options), machine_(config, accel, scene_size) {
     const std::size_t resources = machine_.topology.resources();
     make_wires();
     std::vector<SidePorts> sides;

@@ -7,6 +7,7 @@
 #include "accel/node.h"
 #include "core/ids.h"
 #include "core/test_counts.h"
+#include "ringbus/bundle_counts.h"
 #include "ringbus/packet.h"
 
 namespace carousel::ringbus {
@@ -37,7 +38,10 @@ struct Event {
   std::optional<PacketId> packet = std::nullopt;
   accel::NodeKey key{};
   std::uint32_t rays = 0;
+  std::uint32_t reads = 0;   ///< kTest: records of rays and bundles that were read
+  std::uint16_t depth = 0;   ///< kTest: of `key`
   TestCounts tests{};
+  const BundleCounts* bundles = nullptr;   ///< kTest with bundles; valid during the call only
   StallReason reason = StallReason::kNone;
   std::span<const PacketMember> members{};   ///< valid during the call only
 };

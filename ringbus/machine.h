@@ -16,7 +16,7 @@ namespace carousel::ringbus {
 /// What the native engine's resources share: the wires, the packets that travel on them, and the ways to and
 /// from shading.
 struct Machine {
-  Machine(const Config& config, const accel::Accel& accel);
+  Machine(const Config& config, const accel::Accel& accel, float scene_size);
 
   Packet& packet(PacketId id) { return packets[id.value]; }
 

@@ -4,6 +4,7 @@
 
 #include "core/workload.h"
 #include "ringbus/packet.h"
+#include "ringbus/ray_store.h"
 #include "ringbus/topology.h"
 
 namespace carousel::ringbus {
@@ -16,6 +17,10 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   const std::uint64_t next = ordered ? sizeof(NextNode) : 0;
   MemoryEstimate e;
   e.ray_store = resources * slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));
+  if (config.bundles.size > 0) {
+    const BundleRoom room = bundle_room(config);
+    e.ray_store += resources * (room.loaded + room.own) * (sizeof(accel::BundleRecord) + (room.rays + 2) * sizeof(std::uint32_t));
+  }
   const bool independent = config.topology.shape == TopologyShape::kIndependent;
   if (ordered || independent) {
     const std::uint64_t entries = u(config.bvh.width - 1) * u(max_depth) + 1;

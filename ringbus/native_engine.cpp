@@ -24,7 +24,7 @@ class NativeRun {
  public:
   NativeRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
             const RunOptions& options)
-      : options_(options), machine_(config, accel) {
+      : options_(options), machine_(config, accel, scene_size) {
     const std::uint32_t resources = static_cast<std::uint32_t>(config.topology.resources);
     for (std::uint32_t r = 0; r < resources; ++r) {
       sinks_.push_back(options.statistics ? std::make_unique<StatisticsSink>() : nullptr);

@@ -6,7 +6,7 @@
 namespace carousel::ringbus {
 
 RayControl::RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores,
-                       std::int32_t initial_tests)
+                       std::int32_t initial_tests, float scene_size)
     : placement_(config.rays.placement),
       rays_travel_(placement_ == Placement::kFirstTaker || placement_ == Placement::kAddressed),
       local_(config.collections.home == Home::kLocal || config.topology.shape == TopologyShape::kIndependent),
@@ -20,9 +20,12 @@ RayControl::RayControl(const Config& config, std::span<const std::unique_ptr<Ray
   for (std::uint32_t r = 0; r < resources_; ++r) {
     for (std::uint32_t slot = stores[r]->slots(); slot-- > 0;) slots_[r].free.push_back(slot);
     slots_[r].count = stores[r]->slots();
+    for (std::uint32_t bundle = stores[r]->room().loaded; bundle-- > 0;)
+      slots_[r].free_bundles.push_back(stores[r]->slots() + bundle);
     total += stores[r]->slots();
   }
   // Groups are placed whole where possible; waiting for more than a quarter of the slots would idle the ring.
+  if (config.bundles.size > 0) builder_.emplace(config.bundles, scene_size);
   enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_ : total) / 4);
 }
 
@@ -65,7 +68,7 @@ std::optional<RayId> RayControl::load(ResourceId resource, const RayRequest& req
 void RayControl::free(ResourceId resource, std::span<const std::uint32_t> slots) {
   SlotList& list = slots_[resource.value];
   const std::lock_guard lock(list.mutex);
-  list.free.insert(list.free.end(), slots.begin(), slots.end());
+  for (const std::uint32_t slot : slots) (stores_[resource.value]->is_bundle(slot) ? list.free_bundles : list.free).push_back(slot);
   list.count.store(list.free.size(), std::memory_order_relaxed);
 }
 
@@ -101,6 +104,7 @@ void RayControl::send(ResourceId resource, RayGroup&& group) {
 
 /// Places groups from the front of `rays` while there is room; returns how many rays were placed.
 std::size_t RayControl::place(std::span<const RayRequest> rays) {
+  if (builder_) return place_bundles(rays);
   std::size_t done = 0;
   while (done < rays.size()) {
     const std::span<const RayRequest> next = rays.subspan(done, std::min(group_rays_, rays.size() - done));
@@ -134,6 +138,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
 
 void RayControl::submit(const RayBatch& rays) {
   const std::lock_guard lock(waiting_mutex_);
+  if (builder_) return submit_bundles(rays);
   const std::size_t placed = waiting_head_ == waiting_.size() ? place(rays) : 0;
   if (placed == rays.size()) return;
   waiting_.insert(waiting_.end(), rays.begin() + static_cast<std::ptrdiff_t>(placed), rays.end());
@@ -144,6 +149,10 @@ bool RayControl::place_waiting() {
   // Relaxed: a hint; shader workers ask again and again.
   if (!any_waiting_.load(std::memory_order_relaxed)) return false;
   const std::lock_guard lock(waiting_mutex_);
+  return place_all_waiting();
+}
+
+bool RayControl::place_all_waiting() {
   const std::size_t placed = place(std::span(waiting_).subspan(waiting_head_));
   waiting_head_ += placed;
   if (2 * waiting_head_ >= waiting_.size()) {

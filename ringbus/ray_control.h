@@ -11,6 +11,7 @@
 #include "core/config.h"
 #include "core/ids.h"
 #include "core/workload.h"
+#include "ringbus/bundle_builder.h"
 #include "ringbus/ray_store.h"
 
 namespace carousel::ringbus {
@@ -26,12 +27,14 @@ struct RayGroup {
 /// Gives new rays a slot and an ID, in slots that completed rays freed. The rays of one group (as many as a
 /// packet carries) are spread over the resources, so that every packet finds work everywhere, and the group's
 /// IDs go to one resource, which issues it from its root collection; with `home: local` and
-/// independent resources a whole group lives where it is issued. With first_taker and addressed placement the rays travel instead, and resources ask for
+/// independent resources a whole group lives where it is issued. With bundles each of them has one owner, and a group
+/// as many bundles and single rays as a packet carries IDs. With first_taker and addressed placement the rays travel instead, and resources ask for
 /// slots as packets pass. Any thread may call.
 class RayControl {
  public:
   /// `stores` by resource; `initial_tests` is what a ray waits for at the root.
-  RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores, std::int32_t initial_tests);
+  RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores, std::int32_t initial_tests,
+             float scene_size);
 
   /// Places a batch, behind those that still wait for slots.
   void submit(const RayBatch& rays);
@@ -42,7 +45,7 @@ class RayControl {
 
   /// A slot of `resource` for a ray that has travelled there; nothing when it has none.
   std::optional<RayId> load(ResourceId resource, const RayRequest& request);
-  /// Gives back slots that completed rays no longer need.
+  /// Gives back slots that completed rays, and the bundles they were in, no longer need.
   void free(ResourceId resource, std::span<const std::uint32_t> slots);
 
   bool rays_travel() const { return rays_travel_; }
@@ -58,6 +61,7 @@ class RayControl {
   struct alignas(128) SlotList {
     std::mutex mutex;
     std::vector<std::uint32_t> free;   // last freed, first used: its record is still in cache
+    std::vector<std::uint32_t> free_bundles;
     std::atomic<std::size_t> count{0};
   };
   struct alignas(128) Inbox {
@@ -67,6 +71,10 @@ class RayControl {
   };
 
   std::size_t place(std::span<const RayRequest> rays);
+  bool place_all_waiting();
+  void submit_bundles(const RayBatch& rays);
+  std::size_t place_bundles(std::span<const RayRequest> rays);
+  std::size_t load_bundle(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids);
   void send(ResourceId resource, RayGroup&& group);
@@ -83,9 +91,14 @@ class RayControl {
   std::unique_ptr<Inbox[]> inboxes_;
   std::atomic<std::uint64_t> slot_waits_{0}, slots_used_{0};
 
-  std::mutex waiting_mutex_;      // guards the three below
+  std::mutex waiting_mutex_;      // guards what follows
   RayBatch waiting_;              // oldest at waiting_head_
   std::size_t waiting_head_ = 0;
+  std::optional<BundleBuilder> builder_;
+  std::vector<std::uint8_t> waiting_bundles_;   // rays of each bundle, single rays among them, oldest at its head
+  std::size_t waiting_bundles_head_ = 0;
+  std::vector<std::uint32_t> order_, members_;   // scratch
+  std::vector<std::uint8_t> sizes_;              // scratch
   std::uint32_t turn_ = 0;
   std::atomic<bool> any_waiting_{false};
 };

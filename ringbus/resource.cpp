@@ -6,10 +6,11 @@
 
 namespace carousel::ringbus {
 
-std::uint32_t reserve_blocks(const CollectionsConfig& config, int width, int max_depth) {
+std::uint32_t reserve_blocks(const Config& config, int width, int max_depth) {
   // A ray is in one collection at a time, and admission counts a block for each.
-  if (config.traversal == Traversal::kOrdered) return 0;
-  return static_cast<std::uint32_t>((width - 1) * (max_depth + 1) + width);
+  if (config.collections.traversal == Traversal::kOrdered) return 0;
+  const int children = width * static_cast<int>(std::max<std::int64_t>(1, config.bundles.size));
+  return static_cast<std::uint32_t>((children - 1) * (max_depth + 1) + children);
 }
 
 namespace {
@@ -36,10 +37,17 @@ Resource::Resource(const Config& config, const accel::Accel& accel, float scene_
       ordered_(config.collections.traversal == Traversal::kOrdered),
       single_(config.packets.shapes == PacketShapes::kSingle),
       bounded_(config.collections.when_full == WhenFull::kReserve),
-      floor_blocks_(reserve_blocks(config.collections, accel.width, accel.max_depth)),
+      floor_blocks_(reserve_blocks(config, accel.width, accel.max_depth)),
       store_(store),
-      collections_(collection_settings(config, accel, scene_size)) {
+      collections_(collection_settings(config, accel, scene_size)),
+      bundled_(config.bundles.size > 0),
+      reformed_(config.bundles.lifetime == BundlesConfig::Lifetime::kReformed),
+      rebuilds_(reformed_ || config.bundles.split == BundlesConfig::Split::kBuilder),
+      split_below_(static_cast<float>(config.bundles.split_below.box_size) * scene_size) {
   if (ordered_) stacks_.emplace(store_.slots(), accel.width, accel.max_depth);
+  if (bundled_ && rebuilds_) builder_.emplace(config.bundles, scene_size);
+  const std::uint32_t loaded = store.slots() + store.room().loaded;
+  for (std::uint32_t bundle = store.room().own; bundle-- > 0;) free_bundles_.push_back(loaded + bundle);
 }
 
 bool Resource::is_treelet(const Config& config, const accel::Accel& accel, accel::NodeKey key) {
@@ -90,7 +98,8 @@ void Resource::admit(std::span<const RayId> rays) {
 std::uint32_t Resource::blocks_needed(accel::NodeKey key, std::uint32_t rays) const {
   if (ordered_) return rays;
   if (!key.ref.is_inner() || is_treelet(key)) return 0;
-  return single_ ? 1 : accel_.nodes[key.ref.node()].count;
+  if (single_) return 1;
+  return accel_.nodes[key.ref.node()].count * static_cast<std::uint32_t>(std::max<std::int64_t>(1, config_.bundles.size));
 }
 
 bool Resource::fits(std::uint32_t needed, std::uint32_t freed) const {

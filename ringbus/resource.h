@@ -10,6 +10,8 @@
 #include "accel/kernels.h"
 #include "core/config.h"
 #include "core/workload.h"
+#include "ringbus/bundle_builder.h"
+#include "ringbus/bundle_counts.h"
 #include "ringbus/collection_store.h"
 #include "ringbus/events.h"
 #include "ringbus/packet.h"
@@ -22,7 +24,8 @@ namespace carousel::ringbus {
 /// Collection blocks that must stay free so that draining deepest first cannot run out (DESIGN.md section 4):
 /// a packet retired at each level leaves at most width - 1 more blocks than it took, and one more strip's worth
 /// is in flight.
-std::uint32_t reserve_blocks(const CollectionsConfig& config, int width, int max_depth);
+/// With bundles an ID may become as many at one level as a bundle has rays.
+std::uint32_t reserve_blocks(const Config& config, int width, int max_depth);
 
 /// Takes rays through a whole subtree; for an engine that wants an account of it. Without one the kernels do.
 class SubtreeTracer {
@@ -62,9 +65,10 @@ class Resource {
 
   /// Tests the packet's members that live here and writes the answers into it.
   void test(Packet& packet);
-  /// What the last test() did, and with how many rays.
+  /// What the last test() did, with how many rays, and how many records of rays and bundles it read for that.
   const TestCounts& last_tests() const { return tests_; }
   std::size_t last_rays() const { return local_slots_.size(); }
+  std::uint32_t last_reads() const { return reads_; }
   /// Takes back a packet of its own: hits join the children's collections.
   void retire(Packet& packet);
   /// Takes the members of a membership packet that has reached its home.
@@ -103,6 +107,14 @@ class Resource {
   TestCounts transforms_of(accel::NodeKey key);
   void test_spread(Packet& packet);
   void test_ordered(Packet& packet);
+  void find_bundles();
+  bool bundles_go_on(const Packet& packet) const;
+  void expand_bundles(Packet& packet);
+  void settle_expanded();
+  void test_whole(Packet& packet);
+  void regroup(Packet& packet);
+  void send_alone(Packet& packet, std::uint32_t slot, std::uint8_t mask);
+  void settle_bundle(std::uint32_t slot, std::int32_t pending_change);
   void settle(std::uint32_t slot, std::int32_t pending_change);
   void complete(std::uint32_t slot);
   void retire_spread(Packet& packet);
@@ -127,12 +139,33 @@ class Resource {
   HitBatch completed_;
   std::vector<std::uint32_t> freed_slots_;
 
+  // With bundles (resource_bundles.cpp).
+  std::optional<BundleBuilder> builder_;
+  bool bundled_, reformed_, rebuilds_;
+  float split_below_ = 0;                       // the surface area of a box at which bundles split
+  std::vector<std::uint32_t> free_bundles_;     // of the owner's own
+  struct LocalBundle {
+    std::uint32_t slot, member;
+  };
+  struct OnTheirOwn {   // a ray that leaves its bundle for some of a node's children
+    std::uint32_t slot;
+    std::uint8_t mask;
+  };
+  std::vector<LocalBundle> local_bundles_;
+  std::vector<OnTheirOwn> leaving_;
+  std::vector<std::int32_t> bundle_changes_;    // of the local bundles' pending counts
+  RayBatch regrouped_;
+  std::vector<std::uint32_t> order_, bundle_slots_;
+  std::vector<std::uint8_t> sizes_;
+  BundleCounts bundles_;
+
   // Scratch of the calls, kept so that nothing is allocated per packet.
   std::vector<std::uint32_t> local_slots_, local_members_;
   std::vector<std::uint8_t> masks_;
   std::vector<float> entries_;
   std::vector<RayId> ids_;
   TestCounts tests_;
+  std::uint32_t reads_ = 0;
 };
 
 }  // namespace carousel::ringbus

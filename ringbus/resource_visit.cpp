@@ -68,20 +68,30 @@ TestCounts Resource::transforms_of(accel::NodeKey key) {
 void Resource::test(Packet& packet) {
   gather_local(packet);
   tests_ = TestCounts{};
-  if (!local_slots_.empty()) {
+  bundles_ = BundleCounts{};
+  if (bundled_) find_bundles();
+  reads_ = static_cast<std::uint32_t>(local_slots_.size() + local_bundles_.size());
+  const std::size_t seen = reads_;
+  const bool whole = bundled_ && bundles_go_on(packet);
+  if (!local_bundles_.empty() && !whole) expand_bundles(packet);
+  if (seen > 0) {
     const bool accounted = transforms_ != nullptr && !is_treelet(packet.key);   // a subtree's tracer does it itself
     const TestCounts moved = accounted ? transforms_of(packet.key) : TestCounts{};
     if (ordered_)
       test_ordered(packet);
+    else if (whole)
+      test_whole(packet);
     else
       test_spread(packet);
+    if (!whole) settle_expanded();
     if (accounted) {
       tests_.transforms = moved.transforms;
       tests_.inversions = moved.inversions;
     }
   }
   record({.kind = EventKind::kTest, .resource = id(), .key = packet.key,
-          .rays = static_cast<std::uint32_t>(local_slots_.size()), .tests = tests_, .members = packet.members});
+          .rays = static_cast<std::uint32_t>(seen), .reads = reads_, .depth = packet.depth, .tests = tests_,
+          .bundles = bundled_ ? &bundles_ : nullptr, .members = packet.members});
 }
 
 void Resource::test_spread(Packet& packet) {

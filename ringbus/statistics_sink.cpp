@@ -1,5 +1,7 @@
 #include "ringbus/statistics_sink.h"
 
+#include <algorithm>
+
 namespace carousel::ringbus {
 
 ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) {
@@ -16,6 +18,9 @@ ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) 
   memberships += o.memberships;
   for (std::size_t i = 0; i < stalls.size(); ++i) stalls[i] += o.stalls[i];
   tests += o.tests;
+  reads += o.reads;
+  bundles.resize(std::max(bundles.size(), o.bundles.size()));
+  for (std::size_t depth = 0; depth < o.bundles.size(); ++depth) bundles[depth] += o.bundles[depth];
   return *this;
 }
 
@@ -33,6 +38,11 @@ void StatisticsSink::record(const Event& event) {
       s.local_rays += event.rays;
       s.seen_rays += event.members.size();
       s.tests += event.tests;
+      s.reads += event.reads;
+      if (event.bundles != nullptr) {
+        if (s.bundles.size() <= event.depth) s.bundles.resize(event.depth + std::size_t{1});
+        s.bundles[event.depth] += *event.bundles;
+      }
       break;
     case EventKind::kHop: ++s.hops; break;
     case EventKind::kRetire:

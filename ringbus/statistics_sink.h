@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "ringbus/events.h"
 
@@ -16,6 +17,8 @@ struct ResourceStatistics {
   std::uint64_t memberships = 0;             ///< ray IDs that joined collections at retirement
   std::array<std::uint64_t, 6> stalls{};     ///< by StallReason
   TestCounts tests;
+  std::uint64_t reads = 0;                   ///< records of rays and bundles read for tests
+  std::vector<BundleCounts> bundles;         ///< by depth in strips; empty without bundles
 
   ResourceStatistics& operator+=(const ResourceStatistics& o);
   friend bool operator==(const ResourceStatistics&, const ResourceStatistics&) = default;

@@ -46,6 +46,9 @@ std::vector<Lift> lifts(const Config& config) {
   all.push_back(units_lift("box_tests", "box", &TestersConfig::box));
   all.push_back(units_lift("triangle_tests", "triangle", &TestersConfig::triangle));
   if (config.cull_planes.count > 0) all.push_back(units_lift("plane_tests", "plane", &TestersConfig::plane));
+  if (config.bundles.size > 0) all.push_back(units_lift("bundle_tests", "bundle", &TestersConfig::bundle));
+  if (config.rays.reads_per_cycle > 0)
+    all.push_back({"ray_reads", "twice rays.reads_per_cycle", [](Config& c) { c.rays.reads_per_cycle *= 2; }});
   all.push_back(units_lift("transforms", "transform", &TestersConfig::transform));
   const bool independent = config.topology.shape == TopologyShape::kIndependent;
   if (!independent) all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});

@@ -16,7 +16,7 @@ namespace carousel::ringbus::cycle {
 /// What the agents of a simulated machine share: the packets, which belong to whoever holds their ID, and the ray
 /// records, which belong to their owners.
 struct CycleMachine {
-  CycleMachine(const Config& config, const accel::Accel& accel);
+  CycleMachine(const Config& config, const accel::Accel& accel, float scene_size);
 
   Packet& packet(PacketId id) { return packets[id.value]; }
   /// Packets of a resource and direction.

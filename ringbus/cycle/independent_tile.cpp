@@ -17,7 +17,7 @@ IndependentTile::IndependentTile(ResourceId id, CycleMachine& machine, bool stat
       statistics_(statistics),
       trace_(id.value, window),
       ports_(ports),
-      tester_(testers_of(machine.config, id)),
+      tester_(testers_of(machine.config, id), machine.config.rays.reads_per_cycle),
       fetches_(machine.config.memory, ports),
       completed_port_(machine.config, ports),
       help_(machine.config, ports),

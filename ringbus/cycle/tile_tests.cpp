@@ -32,11 +32,12 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   resource_.test(packet);
   context.packet = id;
   context.counts = resource_.last_tests();
+  context.reads = resource_.last_reads();
   context.subtree = resource_.is_treelet(packet.key);
   context.phase = Context::Phase::kComputing;
   if (context.subtree) {
     // Each ray fetches the strip it needs next, so as many fetches are under way as there are rays.
-    context.done = tester_.walk(at, context.counts, walk_.account().chain);
+    context.done = tester_.walk(at, context.counts, context.reads, walk_.account().chain);
     context.strips.clear();
     for (const std::uint32_t instance : walk_.account().instances)
       if (const ShapeSpan span = machine_.memory.transform(instance); !shapes_.has(span)) context.strips.push_back(span);
@@ -52,7 +53,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     if (fetch_by_resource_)
       for (const ShapeSpan& span : shape_data(packet.key, context.counts.transforms > 0))
         if (lacks(span)) begin_fetch(context, span, at);
-    if (context.outstanding == 0) context.done = tester_.strip(at, context.counts);
+    if (context.outstanding == 0) context.done = tester_.strip(at, context.counts, context.reads);
   }
   if (context.outstanding > 0) context.phase = Context::Phase::kFetching;
 }
@@ -104,7 +105,7 @@ void Tile::take_answers(Cycle now) {
     if (context.outstanding > 0) continue;
     context.phase = Context::Phase::kComputing;
     context.done = context.subtree ? std::max(context.done, now + tester_.box.latency())
-                                   : tester_.strip(now, context.counts);
+                                   : tester_.strip(now, context.counts, context.reads);
   }
 }
 

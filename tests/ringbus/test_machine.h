@@ -57,6 +57,11 @@ inline bool possible(const Config& c) {
   if (c.engine.kind == EngineKind::kCycle && c.packets.carry == PacketCarry::kData &&
       c.memory.fetch != MemoryConfig::Fetch::kPacket)
     return false;
+  if (c.bundles.size > 0 &&
+      (c.bundles.size > c.rays.slots_per_resource || c.collections.traversal == Traversal::kOrdered ||
+       c.packets.shapes == PacketShapes::kSingle || c.topology.shape == TopologyShape::kIndependent ||
+       c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed))
+    return false;
   if (c.collections.home == Home::kHash && c.collections.when_full != WhenFull::kSpill) return false;
   return c.topology.flow != Flow::kBubble || c.topology.link.depth >= 2;
 }
