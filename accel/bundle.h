@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "core/ray.h"
@@ -9,6 +10,8 @@ namespace carousel::accel {
 
 /// Similar rays, seen as one (US 11308683, fig. 2): bounds of where they start and where they go, one cache line
 /// beside the ray's own. World space; every ray has tmin = 0 and is valid().
+/// Of directions, -0 counts as less than +0: the slab test goes by the sign bit, and so the bounds have the same sign
+/// exactly when all rays have it.
 struct alignas(64) BundleRecord {
   float origin_min[3], origin_max[3];
   float direction_min[3], direction_max[3];
@@ -31,8 +34,9 @@ struct alignas(64) BundleRecord {
     for (int axis = 0; axis < 3; ++axis) {
       origin_min[axis] = std::min(origin_min[axis], ray.origin[axis]);
       origin_max[axis] = std::max(origin_max[axis], ray.origin[axis]);
-      direction_min[axis] = std::min(direction_min[axis], ray.direction[axis]);
-      direction_max[axis] = std::max(direction_max[axis], ray.direction[axis]);
+      const float d = ray.direction[axis];
+      if (d < direction_min[axis] || (d == direction_min[axis] && std::signbit(d))) direction_min[axis] = d;
+      if (d > direction_max[axis] || (d == direction_max[axis] && !std::signbit(d))) direction_max[axis] = d;
     }
     tmax = std::max(tmax, range_end);
   }
