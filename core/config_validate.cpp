@@ -106,18 +106,18 @@ class Rules {
       issue("bundles.size", fmt::format("a bundle's rays live in one resource; expected at most rays.slots_per_resource = "
                                         "{}, found {}",
                                         c.rays.slots_per_resource, b.size));
-    const std::string without = ", or bundles.size: 0";
+    constexpr std::string_view without = ", or bundles.size: 0";
     if (c.collections.traversal == Traversal::kOrdered)
-      issue("collections.traversal", "rays of a bundle go several ways at once; expected spread or treelet, found ordered" + without);
+      issue("collections.traversal", fmt::format("rays of a bundle go several ways at once; expected spread or treelet, found ordered{}", without));
     if (c.packets.shapes == PacketShapes::kSingle)
-      issue("packets.shapes", "a bundle is tested against a whole strip; expected strip, found single" + without);
+      issue("packets.shapes", fmt::format("a bundle is tested against a whole strip; expected strip, found single{}", without));
     if (c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed)
       issue("rays.placement", fmt::format("bundles are made before their rays have slots; expected balanced or round_robin, "
                                           "found {}{}",
                                           enum_name(c.rays.placement), without));
     if (c.topology.shape == TopologyShape::kIndependent)
-      issue("topology.shape", "independent resources trace single rays; expected a ring or another network, found "
-                              "independent" + without);
+      issue("topology.shape", fmt::format("independent resources trace single rays; expected a ring or another network, "
+                                          "found independent{}", without));
     if (std::bit_width(static_cast<std::uint64_t>(c.topology.resources - 1)) +
             std::bit_width(static_cast<std::uint64_t>(2 * c.rays.slots_per_resource)) > 32)
       issue("rays.slots_per_resource", fmt::format("IDs of 32 bits name bundles as well; expected fewer slots than {}{}",

@@ -200,7 +200,7 @@ void describe(V& v, TransformedRays& r) {
 template <class V>
 void describe(V& v, Resource& r) {
   v.field("resource", r.resource, "", "number of the resource");
-  v.field("rays_admitted", r.rays_admitted, "rays", "that got a slot here");
+  v.field("rays_admitted", r.rays_admitted, "IDs", "of rays, or of bundles of them, that joined its root collection");
   v.field("rays_completed", r.rays_completed, "rays", "handed over to shading");
   v.field("packets_issued", r.packets_issued, "packets", "from its collections");
   v.field("packets_retired", r.packets_retired, "packets", "of its own that came back");

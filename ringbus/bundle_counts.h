@@ -16,6 +16,7 @@ struct BundleCounts {
   std::uint64_t touched = 0;     ///< records of rays that were read all the same, when bundles split or dissolved
   std::uint64_t taken_apart = 0;   ///< bundles whose rays were tested one by one: leaves, subtrees, instances
   std::uint64_t formed = 0, formed_rays = 0;   ///< counted when they dissolve
+  std::uint64_t loaded = 0, loaded_rays = 0;   ///< of these, those of new rays: the others were made of split ones
 
   BundleCounts& operator+=(const BundleCounts& o) {
     all += o.all;
@@ -29,6 +30,8 @@ struct BundleCounts {
     taken_apart += o.taken_apart;
     formed += o.formed;
     formed_rays += o.formed_rays;
+    loaded += o.loaded;
+    loaded_rays += o.loaded_rays;
     return *this;
   }
   friend bool operator==(const BundleCounts&, const BundleCounts&) = default;

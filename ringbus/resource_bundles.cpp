@@ -104,6 +104,8 @@ void Resource::settle_bundle(std::uint32_t slot, std::int32_t pending_change) {
   for (const std::uint32_t ray : store_.rays_of(slot)) settle(ray, -1);
   store_.retire(slot);
   const bool own = slot >= store_.slots() + store_.room().loaded;
+  bundles_.loaded += !own;
+  bundles_.loaded_rays += own ? 0u : bundle.count;
   (own ? free_bundles_ : freed_slots_).push_back(slot);
 }
 

@@ -16,7 +16,7 @@ namespace carousel::ringbus::cycle {
 /// rays that leave a bundle are tested after it.
 struct Tester {
   /// `reads_per_cycle`: as rays.reads_per_cycle.
-  Tester(const TestersConfig& config, std::int64_t reads_per_cycle)
+  explicit Tester(const TestersConfig& config, std::int64_t reads_per_cycle = 0)
       : box(config.box),
         triangle(config.triangle),
         plane(config.plane),
@@ -26,7 +26,7 @@ struct Tester {
         reads_cost_(reads_per_cycle > 0) {}
 
   /// When the answers to the tests of one strip are there; started at `at`, for `reads` records.
-  Cycle strip(Cycle at, const TestCounts& counts, std::uint64_t reads) {
+  Cycle strip(Cycle at, const TestCounts& counts, std::uint64_t reads = 0) {
     const UnitBank::Reservation read = store.reserve(at, reads_cost_ ? reads : 0);
     const UnitBank::Reservation bundled = bundle.reserve(read.first, counts.bundle);
     const UnitBank::Reservation moved = transform.reserve(inverted(bundled.first, counts), counts.transforms);
@@ -42,7 +42,7 @@ struct Tester {
   }
 
   /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
-  Cycle walk(Cycle at, const TestCounts& counts, std::uint64_t reads, Cycle chain) {
+  Cycle walk(Cycle at, const TestCounts& counts, Cycle chain, std::uint64_t reads = 0) {
     return std::max({at + chain, store.reserve(at, reads_cost_ ? reads : 0).last, transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last,
                      plane.reserve(at, counts.plane).last, triangle.reserve(at, counts.triangle).last});
   }

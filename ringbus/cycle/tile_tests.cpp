@@ -37,7 +37,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   context.phase = Context::Phase::kComputing;
   if (context.subtree) {
     // Each ray fetches the strip it needs next, so as many fetches are under way as there are rays.
-    context.done = tester_.walk(at, context.counts, context.reads, walk_.account().chain);
+    context.done = tester_.walk(at, context.counts, walk_.account().chain, context.reads);
     context.strips.clear();
     for (const std::uint32_t instance : walk_.account().instances)
       if (const ShapeSpan span = machine_.memory.transform(instance); !shapes_.has(span)) context.strips.push_back(span);

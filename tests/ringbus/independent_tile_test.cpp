@@ -13,7 +13,7 @@ namespace {
 class LoneTile {
  public:
   LoneTile(TestScene& scene, const Config& config)
-      : config_(config), machine_(config_, scene.accel(config_.bvh)), scene_(scene),
+      : config_(config), machine_(config_, scene.accel(config_.bvh), scene.size()), scene_(scene),
         tile_(ResourceId(0), machine_, true, TraceWindow{}, {&new_rays_, &completed_, &fetch_, &fetched_}) {}
 
   /// Loads the scene's rays [first, first + count), at cycle 0; `copies` times each.
