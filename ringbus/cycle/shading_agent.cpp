@@ -17,11 +17,15 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       latency_(control_latency(machine.config)),
       slots_(static_cast<std::size_t>(machine.config.topology.resources * machine.config.rays.slots_per_resource)),
       group_(static_cast<std::size_t>(machine.config.packets.rays)),
+      gather_(group_),
+      builder_rate_(static_cast<Cycle>(machine.config.bundles.builder.rays_per_cycle)),
       queues_(machine.config.shading, static_cast<std::uint64_t>(machine.config.image.seed)),
       helpers_(clients_, latency_),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
   for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
+  const BundlesConfig& bundles = machine.config.bundles;
+  if (bundles.size > 0) gather_ = std::max(group_, std::min(slots_ / 4, static_cast<std::size_t>(bundles.size * bundles.builder.open)));
 }
 
 Cycle ShadingAgent::next() const {
@@ -131,9 +135,10 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
 }
 
 void ShadingAgent::place(Cycle now) {
-  const bool full = gathered_.size() >= group_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
+  const bool full = gathered_.size() >= gather_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
   bool placed = machine_.control.place_waiting();
   if (full || (last && !gathered_.empty())) {
+    if (machine_.config.bundles.size > 0) builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
     machine_.control.submit(gathered_);
     gathered_.clear();
     placed = true;
@@ -144,10 +149,13 @@ void ShadingAgent::place(Cycle now) {
     groups_.clear();
     machine_.control.collect(ResourceId(r), groups_);
     for (RayGroup& group : groups_) {
-      Cycle loaded = now;
+      Cycle loaded = std::max(now, builder_free_);
       for (const RayId id : group.ids) {
+        const RayStore& store = *machine_.stores[layout.owner(id).value];
+        const std::uint32_t slot = layout.slot(id);
+        const std::size_t records = store.is_bundle(slot) ? 1 + store.rays_of(slot).size() : 1;
         Cycle& port = load_free_[layout.owner(id).value];
-        port = std::max(port, now) + load_cycles_;
+        port = std::max(port, now) + load_cycles_ * records;
         loaded = std::max(loaded, port);
       }
       trace_.note(now, StepKind::kPlace, 0, group.ids.size());

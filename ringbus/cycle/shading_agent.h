@@ -18,7 +18,8 @@ namespace carousel::ringbus::cycle {
 /// Ray control and the pool of shader workers. A worker takes the ray that has waited longest in its queue, and needs
 /// shading.cycles_per_shade for it, as for making a camera ray. What the workers have no hand free for goes to
 /// resources that have nothing to test, with `idle_resources_shade`. New rays gather until they fill a packet, or until
-/// no worker has anything to do, and are then given slots; a record of 64 bytes needs its owner's load port for as
+/// no worker has anything to do, and are then given slots; with bundles they gather until they would fill those that
+/// the builder holds open, and go through it `builder.rays_per_cycle` a cycle. A record of 64 bytes needs its owner's load port for as
 /// many link widths as it has.
 class ShadingAgent final : public Agent {
  public:
@@ -69,6 +70,8 @@ class ShadingAgent final : public Agent {
   Trace trace_;
   Cycle shade_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
+  std::size_t gather_;                       // new rays that are worth giving slots
+  Cycle builder_rate_, builder_free_ = 0;
   ShadeQueues queues_;
   ShadeHelpers helpers_;
   std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;
