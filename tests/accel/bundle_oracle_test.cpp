@@ -121,10 +121,16 @@ void expect_sound(BundlesConfig::Form form, std::uint64_t bundles, int reach, in
 std::uint64_t bundles() { return static_cast<std::uint64_t>(adversarial_cases()); }
 
 TEST(BundleOracle, IntervalsClaimNothingThatIsWrongOfARay) {
-  expect_sound(BundlesConfig::Form::kInterval, bundles() * 3 / 4, 20, 10, 84);
+  expect_sound(BundlesConfig::Form::kInterval, bundles() / 2, 20, 10, 84);
 }
 TEST(BundleOracle, IntervalsOfAnyExponentClaimNothingThatIsWrongOfARay) {
-  expect_sound(BundlesConfig::Form::kInterval, bundles() / 4, 83, 83, 85);
+  expect_sound(BundlesConfig::Form::kInterval, bundles() / 5, 83, 83, 85);
+}
+TEST(BundleOracle, SilhouettesClaimNothingThatIsWrongOfARay) {
+  expect_sound(BundlesConfig::Form::kSilhouette, bundles() / 2, 20, 10, 88);
+}
+TEST(BundleOracle, SilhouettesOfAnyExponentClaimNothingThatIsWrongOfARay) {
+  expect_sound(BundlesConfig::Form::kSilhouette, bundles() / 5, 83, 83, 89);
 }
 
 }  // namespace
