@@ -1,0 +1,153 @@
+#include "accel/bundle_silhouette.h"
+
+#include <iostream>
+#include <string>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "accel/bundle_interval.h"
+#include "accel/bundle_test.h"
+#include "accel/certificate/adversarial_numbers.h"
+#include "core/config_enums.h"
+#include "tests/accel/bundle_cases.h"
+#include "tests/accel/test_rays.h"
+#include "tests/random_runs.h"
+
+namespace carousel::accel {
+namespace {
+
+using Edges = BundlesConfig::Edges;
+using Order = BundlesConfig::Order;
+
+constexpr Aabb kUnit{{-1, -1, -1}, {1, 1, 1}};
+
+Ray ray(const Vec3& origin, const Vec3& direction, float end = kInfinity) { return {origin, 0, direction, end}; }
+
+/// A narrow bundle from `eye` towards `aim`.
+std::vector<Ray> towards(const Vec3& aim, const Vec3& eye, float end = kInfinity) {
+  const Vec3 d = aim - eye;
+  return {ray(eye, d, end), ray(eye, d + Vec3{0x1p-10f}, end)};
+}
+
+BundleAnswer test(const std::vector<Ray>& rays, Order order, Edges edges = Edges::kSerial, const Aabb& box = kUnit) {
+  Accel accel;
+  Node node;
+  set_child(node, 0, box);
+  BundlesConfig config;
+  config.form = BundlesConfig::Form::kSilhouette;
+  config.order = order;
+  config.edges = edges;
+  TestCounts counts;
+  const BundleAnswer answer = test_bundle(accel, node, 1, record_of(rays), config, counts);
+  EXPECT_GE(counts.bundle, 1u);
+  return answer;
+}
+
+TEST(BundleSilhouette, HasFourEdgesWhereOneFaceIsSeenAndSixOfMore) {
+  struct Expected {
+    Vec3 eye;
+    int edges;
+  };
+  for (const Expected& e : {Expected{{0, 0, -4}, 4}, {{0, 4, 0}, 4}, {{-4, 0, -4}, 6}, {{4, 3, -4}, 6}, {{-4, -4, -4}, 6},
+                            {{0, 0, 0}, 0}}) {
+    for (const Edges edges : {Edges::kSerial, Edges::kParallel}) {
+      const BundleAnswer answer = test(towards({0.2f, 0.3f, 0.25f}, e.eye), Order::kAllHitOnly, edges);
+      EXPECT_EQ(answer.all, 1) << e.eye.x << " " << e.eye.y << " " << e.eye.z;
+      EXPECT_EQ(answer.edges, e.edges) << e.eye.x << " " << e.eye.y << " " << e.eye.z;
+    }
+  }
+}
+
+TEST(BundleSilhouette, OneAfterAnotherStopsAtTheFirstEdgeThatDecides) {
+  const std::vector<Ray> past = towards({-3, 2.5f, 0}, {-4, -4, -4});   // leaves y before it enters x
+  for (const Order order : {Order::kAnyHitOnly, Order::kAllHitOnly}) {
+    const BundleAnswer serial = test(past, order, Edges::kSerial), parallel = test(past, order, Edges::kParallel);
+    EXPECT_EQ(serial.edges, 1) << enum_name(order);
+    EXPECT_EQ(parallel.edges, 6) << enum_name(order);
+    EXPECT_EQ(serial.all, 0) << enum_name(order);
+    EXPECT_EQ(parallel.all, 0) << enum_name(order);
+    EXPECT_EQ(serial.undecided, parallel.undecided) << enum_name(order);
+  }
+}
+
+TEST(BundleSilhouette, BothTestsCountTheirEdges) {
+  EXPECT_EQ(test(towards({0, 0, 0}, {-4, -4, -4}), Order::kParallel).edges, 12);
+  EXPECT_EQ(test(towards({0, 0, 0}, {-4, -4, -4}), Order::kAllHitFirst).edges, 6);
+}
+
+TEST(BundleSilhouette, NeedsNoEdgeForBoxesBehindOrBeyondTheRange) {
+  for (const BundleAnswer& answer : {test(towards({0, 0, 9}, {0, 0, 4}), Order::kAnyHitFirst),
+                                     test(towards({0, 0, 0}, {0, 0, -4}, 0.5f), Order::kAnyHitFirst)}) {
+    EXPECT_EQ(answer.all | answer.undecided, 0);
+    EXPECT_EQ(answer.edges, 0);
+  }
+}
+
+// With "<" for "<=" every ray along an axis would be lost.
+TEST(BundleSilhouette, RaysAlongAnAxisHitWhereTheyTouch) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {1.0f, -1.0f}) {
+      for (const float zero : {0.0f, -0.0f}) {
+        std::vector<Ray> rays;
+        for (const float side : {-1.0f, 1.0f}) {
+          Ray r = ray(Vec3{side}, Vec3{zero});
+          r.origin[axis] = -4 * sign;
+          r.direction[axis] = sign;
+          rays.push_back(r);
+        }
+        EXPECT_EQ(test(rays, Order::kAllHitOnly).all, 1);
+        EXPECT_EQ(test(rays, Order::kAnyHitFirst).all, 1);
+        for (Ray& r : rays) r.origin[(axis + 1) % 3] = 1.5f;
+        EXPECT_EQ(test(rays, Order::kAnyHitOnly).all, 0);
+      }
+    }
+  }
+}
+
+TEST(BundleSilhouette, LeavesWhatItIsNotForToIntervals) {
+  const auto applies = [](const std::vector<Ray>& rays) { return BundleSilhouette::applies(record_of(rays)); };
+  EXPECT_TRUE(applies(towards({0, 0, 0}, {-4, -4, -4})));
+  EXPECT_FALSE(applies({ray({0, 0, -4}, {-0.1f, 0, 1}), ray({0, 0, -4}, {0.1f, 0, 1})}));
+  EXPECT_FALSE(applies({ray({0, 0, -4}, {0.0f, 0, 1}), ray({0, 0, -4}, {-0.0f, 0, 1})}));
+  EXPECT_FALSE(applies({ray({0, 0, -4}, {1e-38f, 0, 1}), ray({0, 0, -4}, {1e-40f, 0, 1})}));
+  EXPECT_FALSE(applies({ray({0, 0, -4}, {1e38f, 0, 1}), ray({0, 0, -4}, {1, 0, 1})}));
+  const BundleAnswer mixed = test({ray({0, 0, -4}, {-0.1f, 0, 1}), ray({0, 0, -4}, {0.1f, 0, 1})}, Order::kAllHitOnly);
+  EXPECT_EQ(mixed.all, 1);
+  EXPECT_EQ(mixed.edges, 0);
+  EXPECT_EQ(test({ray({-4, -4, -4}, {1, 1, 1})}, Order::kAllHitOnly).edges, 0);   // one ray
+}
+
+// Both take the same ranges to their ends; only the slack and rounding differ.
+TEST(BundleSilhouette, SettlesWhatIntervalsSettle) {
+  SCOPED_TRACE("CAROUSEL_SEED=" + std::to_string(run_seed()));
+  Random random(1000 * std::uint64_t{run_seed()} + 90);
+  int boxes = 0, by_interval = 0, by_silhouette = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Vec3 eye = random.uniform(2, 30) * Vec3(random_direction(random)), apart = Vec3{random.below(2) ? 0.0f : 0.1f};
+    const Vec3 aim = random.in_box(Vec3{-2}, Vec3{2});
+    std::vector<Ray> rays;
+    for (int k = 0; k < 16; ++k) {
+      const Vec3 from = eye + random.in_box(-apart, apart);
+      rays.push_back(ray(from, aim + random.in_box(Vec3{-0.05f}, Vec3{0.05f}) - from, random.uniform(0.5f, 2)));
+    }
+    const BundleRecord record = record_of(rays);
+    if (!BundleSilhouette::applies(record)) continue;
+    const BundleInterval<float> interval(record, kFarWidening);
+    const BundleSilhouette silhouette(record, BoxLevel::kConservative, Edges::kSerial);
+    unsigned edges = 0;
+    const bool all = silhouette.all_hit(kUnit, edges), none = silhouette.all_miss(kUnit, edges);
+    ++boxes;
+    by_interval += interval.all_hit(kUnit) || interval.all_miss(kUnit);
+    by_silhouette += all || none;
+    ASSERT_FALSE(all && interval.all_miss(kUnit)) << i;
+    ASSERT_FALSE(none && interval.all_hit(kUnit)) << i;
+  }
+  std::cout << boxes << " boxes, settled by intervals " << by_interval << ", by silhouettes " << by_silhouette << "\n";
+  EXPECT_GT(boxes, 80000);
+  EXPECT_GT(by_silhouette, boxes / 2);
+  EXPECT_NEAR(by_silhouette, by_interval, boxes / 1000);
+}
+
+}  // namespace
+}  // namespace carousel::accel
