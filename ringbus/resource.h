@@ -69,6 +69,8 @@ class Resource {
   const TestCounts& last_tests() const { return tests_; }
   std::size_t last_rays() const { return local_slots_.size(); }
   std::uint32_t last_reads() const { return reads_; }
+  /// Passes of its bundles through a bundle unit: one a test, or one an edge of a silhouette.
+  std::uint32_t last_bundle_passes() const { return bundle_passes_; }
   /// Takes back a packet of its own: hits join the children's collections.
   void retire(Packet& packet);
   /// Takes the members of a membership packet that has reached its home.
@@ -165,7 +167,7 @@ class Resource {
   std::vector<float> entries_;
   std::vector<RayId> ids_;
   TestCounts tests_;
-  std::uint32_t reads_ = 0;
+  std::uint32_t reads_ = 0, bundle_passes_ = 0;
 };
 
 }  // namespace carousel::ringbus

@@ -111,11 +111,14 @@ void Resource::settle_bundle(std::uint32_t slot, std::int32_t pending_change) {
 
 void Resource::test_whole(Packet& packet) {
   const accel::Node& node = accel_.nodes[packet.key.ref.node()];
+  const bool edge_by_edge = config_.bundles.edges == BundlesConfig::Edges::kSerial;
   leaving_.clear();
   for (const LocalBundle& local : local_bundles_) {
     const std::span<const std::uint32_t> rays = store_.rays_of(local.slot);
+    const std::uint64_t tests_before = tests_.bundle;
     const accel::BundleAnswer answer =
         accel::test_bundle(accel_, node, packet.lanes, store_.bundle(local.slot), config_.bundles, tests_);
+    bundle_passes_ += edge_by_edge && answer.edges > 0 ? answer.edges : static_cast<std::uint32_t>(tests_.bundle - tests_before);
     for (std::uint32_t lanes = answer.all; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
       packet.nearest[lane] = std::min(packet.nearest[lane], answer.entry[lane]);

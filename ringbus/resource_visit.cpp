@@ -69,6 +69,7 @@ void Resource::test(Packet& packet) {
   gather_local(packet);
   tests_ = TestCounts{};
   bundles_ = BundleCounts{};
+  bundle_passes_ = 0;
   if (bundled_) find_bundles();
   reads_ = static_cast<std::uint32_t>(local_slots_.size() + local_bundles_.size());
   const std::size_t seen = reads_;

@@ -25,18 +25,19 @@ struct Tester {
         store({std::max<std::int64_t>(1, reads_per_cycle), 1, 0}),
         reads_cost_(reads_per_cycle > 0) {}
 
-  /// When the answers to the tests of one strip are there; started at `at`, for `reads` records.
-  Cycle strip(Cycle at, const TestCounts& counts, std::uint64_t reads = 0) {
+  /// When the answers to the tests of one strip are there; started at `at`, for `reads` records, with so many passes through
+  /// the bundle units.
+  Cycle strip(Cycle at, const TestCounts& counts, std::uint64_t reads = 0, std::uint64_t bundle_passes = 0) {
     const UnitBank::Reservation read = store.reserve(at, reads_cost_ ? reads : 0);
-    const UnitBank::Reservation bundled = bundle.reserve(read.first, counts.bundle);
+    const UnitBank::Reservation bundled = bundle.reserve(read.first, bundle_passes);
     const UnitBank::Reservation moved = transform.reserve(inverted(bundled.first, counts), counts.transforms);
     UnitBank& bank = counts.box > 0 ? box : triangle;
     const UnitBank::Reservation tested = bank.reserve(moved.first, counts.box + counts.triangle);
     // What is last to be read, to be transformed or to leave its bundle is tested last.
     Cycle last = std::max(tested.last, bundled.last);
-    if (counts.bundle > 0) last = std::max(last, read.last + bundle.latency());
+    if (bundle_passes > 0) last = std::max(last, read.last + bundle.latency());
     if (counts.transforms > 0) last = std::max(last, moved.last + bank.latency());
-    if (counts.box + counts.triangle > 0) last = std::max(last, std::max(read.last, bundled.last) + (reads_cost_ || counts.bundle > 0 ? bank.latency() : 0));
+    if (counts.box + counts.triangle > 0) last = std::max(last, std::max(read.last, bundled.last) + (reads_cost_ || bundle_passes > 0 ? bank.latency() : 0));
     if (counts.plane == 0) return last;
     return std::max(plane.reserve(tested.first, counts.plane).last, last + plane.latency());
   }

@@ -66,6 +66,7 @@ class Tile final : public ResourceAgent {
     Cycle done = 0;                       // kComputing: then; kFetching a subtree: of its tests
     TestCounts counts;                    // of tests that begin when the shapes are there
     std::uint32_t reads = 0;              // records for them
+    std::uint32_t bundle_passes = 0;
     bool subtree = false;
     std::uint32_t outstanding = 0;        // fetches under way
     std::vector<ShapeSpan> strips;        // a subtree's, yet to be fetched, last first

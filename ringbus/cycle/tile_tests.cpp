@@ -33,6 +33,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   context.packet = id;
   context.counts = resource_.last_tests();
   context.reads = resource_.last_reads();
+  context.bundle_passes = resource_.last_bundle_passes();
   context.subtree = resource_.is_treelet(packet.key);
   context.phase = Context::Phase::kComputing;
   if (context.subtree) {
@@ -53,7 +54,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     if (fetch_by_resource_)
       for (const ShapeSpan& span : shape_data(packet.key, context.counts.transforms > 0))
         if (lacks(span)) begin_fetch(context, span, at);
-    if (context.outstanding == 0) context.done = tester_.strip(at, context.counts, context.reads);
+    if (context.outstanding == 0) context.done = tester_.strip(at, context.counts, context.reads, context.bundle_passes);
   }
   if (context.outstanding > 0) context.phase = Context::Phase::kFetching;
 }
@@ -105,7 +106,7 @@ void Tile::take_answers(Cycle now) {
     if (context.outstanding > 0) continue;
     context.phase = Context::Phase::kComputing;
     context.done = context.subtree ? std::max(context.done, now + tester_.box.latency())
-                                   : tester_.strip(now, context.counts, context.reads);
+                                   : tester_.strip(now, context.counts, context.reads, context.bundle_passes);
   }
 }
 

@@ -145,8 +145,27 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"CullPlanesOfPlainBoxes", SCENE "cull_planes: {count: 2}\naccuracy: {box: plain}\n",
                   "test.yaml:3:17: accuracy.box: cull planes go with conservative boxes; expected conservative, found "
                   "plain, or cull_planes.count: 0"},
-        BadConfig{"Bundles", SCENE "bundles: {size: 16}\n",
-                  "test.yaml:2:17: bundles.size: 16 is not built yet; expected 0"},
+        BadConfig{"BundleOfOne", SCENE "bundles: {size: 1}\n",
+                  "test.yaml:2:17: bundles.size: expected 2 rays or more, or 0 for none; found 1"},
+        BadConfig{"BundlesLargerThanTheStore", SCENE "bundles: {size: 16}\nrays: {slots_per_resource: 8}\n",
+                  "test.yaml:2:17: bundles.size: a bundle's rays live in one resource; expected at most "
+                  "rays.slots_per_resource = 8, found 16"},
+        BadConfig{"BundlesInOrder", SCENE "bundles: {size: 16}\ncollections: {traversal: ordered}\n",
+                  "test.yaml:3:27: collections.traversal: rays of a bundle go several ways at once; expected spread or "
+                  "treelet, found ordered, or bundles.size: 0"},
+        BadConfig{"BundlesShapeByShape", SCENE "bundles: {size: 16}\npackets: {shapes: single}\n",
+                  "test.yaml:3:19: packets.shapes: a bundle is tested against a whole strip; expected strip, found "
+                  "single, or bundles.size: 0"},
+        BadConfig{"BundlesLookForSlots", SCENE "bundles: {size: 16}\nrays: {placement: addressed}\n",
+                  "test.yaml:3:19: rays.placement: bundles are made before their rays have slots; expected balanced or "
+                  "round_robin, found addressed, or bundles.size: 0"},
+        BadConfig{"BundlesOnIndependentResources",
+                  SCENE "bundles: {size: 16}\ntopology: {shape: independent}\nengine: {kind: cycle}\n",
+                  "test.yaml:3:19: topology.shape: independent resources trace single rays; expected a ring or another "
+                  "network, found independent, or bundles.size: 0"},
+        BadConfig{"BundleSimilarity", SCENE "bundles: {builder: {similarity: origin}}\n",
+                  "test.yaml:2:33: bundles.builder.similarity: expected one of growth, solid_angle, component_range, "
+                  "origin_box, found 'origin'; did you mean 'origin_box'?"},
         BadConfig{"Carry", SCENE "packets: {carry: data}\n",
                   "test.yaml:2:18: packets.carry: data is not built yet; expected reference"},
         BadConfig{"Results", SCENE "packets: {results: message}\n",
