@@ -57,17 +57,14 @@ class BundleInterval {
   }
 
   /// Every ray whose range ends where the bundle's does meets the box, by exact arithmetic. Of a bundle in double
-  /// without widening: of floats, its distances are off by less than 2^-51, never overflow, and are infinite only
-  /// beside a zero.
+  /// without widening: of floats, its distances are off by less than 2^-51 and never overflow. (One is infinite only
+  /// where a direction may be zero, and then a finite exit along another axis contradicts it.)
   bool all_hit_exactly(const Aabb& box) const
     requires std::is_same_v<Real, double>
   {
     const Crossings crossings = narrowest(box);
     double near[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      if (crossings.near[axis] == kEndless) return false;
-      near[axis] = crossings.near[axis] * (1 + 0x1p-49);
-    }
+    for (int axis = 0; axis < 3; ++axis) near[axis] = crossings.near[axis] * (1 + 0x1p-49);
     return crossings.meet(near, tmax_);
   }
 

@@ -11,6 +11,7 @@
 
 #include "accel/bundle_test.h"
 #include "accel/certificate/box_cases.h"
+#include "accel/certificate/exact_box.h"
 #include "core/config_enums.h"
 #include "tests/accel/adversarial_cases.h"
 #include "tests/accel/box_levels.h"
@@ -128,6 +129,25 @@ TEST(BundleInterval, StrictIsOfTheBoxThatIsNotWidened) {
   config.strict = true;
   EXPECT_EQ(verdict(test_bundle(accel, node, 1, record, config, counts), 0), Verdict::kAll);
   EXPECT_EQ(verdict(test_bundle(accel, node, 1, hit_by_rounding, config, counts), 0), Verdict::kUndecided);
+}
+
+TEST(BundleInterval, StrictIsExactBeyondDoubles) {
+  // x = 1 is reached a 2^-60 after y = 1 is left, which no double shows.
+  const Aabb box{{1, -1, -1}, {2, 1, 1}};
+  const auto verdict_from = [&](float x) {
+    BundlesConfig config;
+    config.strict = true;
+    Accel accel;
+    accel.accuracy.box = BoxLevel::kDouble;
+    Node node;
+    set_child(node, 0, box);
+    TestCounts counts;
+    const Vec3 eye{x, 0, 0}, direction{1, 1, 0.125f};
+    EXPECT_EQ(ExactBox(ray(eye, direction), box, kInfinity).hit(), x >= 0);
+    return verdict(test_bundle(accel, node, 1, record_of({ray(eye, direction), ray(eye, direction)}), config, counts), 0);
+  };
+  EXPECT_EQ(verdict_from(-0x1p-60f), Verdict::kUndecided);
+  EXPECT_EQ(verdict_from(0x1p-30f), Verdict::kAll);
 }
 
 TEST(BundleInterval, SlowRaysAreNotSaidToMissWhereTheirReciprocalOverflows) {

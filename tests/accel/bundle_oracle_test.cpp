@@ -124,13 +124,13 @@ TEST(BundleOracle, IntervalsClaimNothingThatIsWrongOfARay) {
   expect_sound(BundlesConfig::Form::kInterval, bundles() / 2, 20, 10, 84);
 }
 TEST(BundleOracle, IntervalsOfAnyExponentClaimNothingThatIsWrongOfARay) {
-  expect_sound(BundlesConfig::Form::kInterval, bundles() / 5, 83, 83, 85);
+  expect_sound(BundlesConfig::Form::kInterval, bundles() / 5, 83, 140, 85);
 }
 TEST(BundleOracle, SilhouettesClaimNothingThatIsWrongOfARay) {
   expect_sound(BundlesConfig::Form::kSilhouette, bundles() / 2, 20, 10, 88);
 }
 TEST(BundleOracle, SilhouettesOfAnyExponentClaimNothingThatIsWrongOfARay) {
-  expect_sound(BundlesConfig::Form::kSilhouette, bundles() / 5, 83, 83, 89);
+  expect_sound(BundlesConfig::Form::kSilhouette, bundles() / 5, 83, 140, 89);
 }
 
 }  // namespace

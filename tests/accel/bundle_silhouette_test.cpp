@@ -9,6 +9,7 @@
 #include "accel/bundle_interval.h"
 #include "accel/bundle_test.h"
 #include "accel/certificate/adversarial_numbers.h"
+#include "accel/slab.h"
 #include "core/config_enums.h"
 #include "tests/accel/bundle_cases.h"
 #include "tests/accel/test_rays.h"
@@ -116,6 +117,23 @@ TEST(BundleSilhouette, LeavesWhatItIsNotForToIntervals) {
   EXPECT_EQ(mixed.all, 1);
   EXPECT_EQ(mixed.edges, 0);
   EXPECT_EQ(test({ray({-4, -4, -4}, {1, 1, 1})}, Order::kAllHitOnly).edges, 0);   // one ray
+}
+
+// The slab test finds boxes hit where all distances are below the least float.
+TEST(BundleSilhouette, ClaimsNothingOfDistancesThatUnderflow) {
+  const float s = 0x1p-100f, pace = 0x1p60f;
+  const std::vector<Ray> fast{ray(Vec3{0}, {pace, pace, 0}), ray(Vec3{0}, {pace, pace, 0})};
+  ASSERT_TRUE(BundleSilhouette::applies(record_of(fast)));
+  for (const Aabb& box : {Aabb{{s, -s, -s}, {2 * s, s / 4, s}}, Aabb{{-2 * s, -s, -s}, {-s, s, s}}}) {
+    float entry;
+    ASSERT_TRUE(slab(SlabRay(fast[0]), box, kInfinity, entry));
+    const BundleAnswer answer = test(fast, Order::kAnyHitFirst, Edges::kSerial, box);
+    EXPECT_NE(answer.all | answer.undecided, 0);
+  }
+  // At a slower pace they are what they are: missed.
+  const std::vector<Ray> slow{ray(Vec3{0}, {1, 1, 0}), ray(Vec3{0}, {1, 1, 0})};
+  for (const Aabb& box : {Aabb{{4 * s, -s, -s}, {8 * s, s, s}}, Aabb{{-4 * s, -s, -s}, {-2 * s, s, s}}})
+    EXPECT_EQ(test(slow, Order::kAnyHitFirst, Edges::kSerial, box).undecided, 0);
 }
 
 // Both take the same ranges to their ends; only the slack and rounding differ.
