@@ -86,5 +86,22 @@ void expect_one_digest(const std::vector<Factor>& machine, std::uint32_t number)
 TEST(BundlesIdentity, NativeRingGivesTheTracersDigest) { expect_one_digest(machine_factors(), 5); }
 TEST(BundlesIdentity, CycleEngineGivesTheTracersDigest) { expect_one_digest(cycle_factors(), 6); }
 
+TEST(BundlesIdentity, CycleEngineTakesTheSameCyclesOnAnyNumberOfThreads) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 150, 3);
+  const std::vector<Factor> machine = cycle_factors(), bundles = bundle_factors();
+  std::mt19937 random(9 + 7919 * run_seed());
+  for (int i = 0; i < cell_count(8); ++i) {
+    Cell cell = draw(random, machine, bundles);
+    cell.threads = 1;
+    const Outcome alone = run_cell(scene, cell);
+    ASSERT_TRUE(alone.result.cycle.has_value()) << alone.fault;
+    for (const std::size_t threads : {2, 3}) {
+      cell.threads = threads;
+      EXPECT_TRUE(run_cell(scene, cell).result.cycle == alone.result.cycle)
+          << "CAROUSEL_SEED=" << run_seed() << " " << text(cell.config.bundles) << "; " << cell.text();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace carousel::ringbus
