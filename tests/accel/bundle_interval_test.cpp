@@ -224,15 +224,15 @@ TEST(BundleInterval, OneRayGetsTheAnswerOfItsOwnTest) {
     const BundleRecord record = record_of({c.ray});
     for (const auto& level : kEnumNames<BoxLevel>) {
       const BoxAnswer single = box_answer(level.value, c.ray, c.box, c.ray.tmax);
-      const auto expect_same = [&](const auto& interval) {
-        ASSERT_EQ(interval.all_hit(c.box), single.hit) << i << " " << level.name;
-        ASSERT_EQ(interval.all_miss(c.box), !single.hit) << i << " " << level.name;
-        if (single.hit) { ASSERT_EQ(interval.entry(c.box), single.entry) << i << " " << level.name; }
+      const auto expect_same = [&](const auto& interval, const auto& box) {
+        ASSERT_EQ(interval.all_hit(box), single.hit) << i << " " << level.name;
+        ASSERT_EQ(interval.all_miss(box), !single.hit) << i << " " << level.name;
+        if (single.hit) { ASSERT_EQ(round_up(interval.entry(box)), single.entry) << i << " " << level.name; }
       };
       if (level.value == BoxLevel::kDouble) {
-        expect_same(BundleInterval<double>(record, kFarWidening));
+        expect_same(BundleInterval<double>(record, kFarWidening), planes_of<double>(c.box));
       } else {
-        expect_same(BundleInterval<float>(record, far_widening(level.value)));
+        expect_same(BundleInterval<float>(record, far_widening(level.value)), planes_of<float>(c.box));
       }
       hits += single.hit;
     }
