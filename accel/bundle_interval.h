@@ -126,9 +126,13 @@ class BundleInterval {
 
    private:
     template <class V>
-    V to_near(const BoxPlanes<V>& box, Real origin) const { return backwards ? origin - box.hi[axis] : box.lo[axis] - origin; }
+    V to_near(const BoxPlanes<V>& box, Real origin) const {
+      return backwards ? origin - box.hi[axis] : box.lo[axis] - origin;
+    }
     template <class V>
-    V to_far(const BoxPlanes<V>& box, Real origin) const { return backwards ? origin - box.lo[axis] : box.hi[axis] - origin; }
+    V to_far(const BoxPlanes<V>& box, Real origin) const {
+      return backwards ? origin - box.lo[axis] : box.hi[axis] - origin;
+    }
     // Before the start is as good as at the start.
     template <class V>
     static V entry(V way, Real pace) { return way > 0 ? way * pace : V{}; }

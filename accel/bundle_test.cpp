@@ -39,8 +39,8 @@ std::uint32_t bits_of(const Mask& mask) {
   return bits;
 }
 
-/// The interval form at one level of accuracy. Lanes of its functions are those from `first` on; they answer for `lanes`
-/// and maybe others.
+/// The interval form at one level of accuracy. Lanes of its functions are those from `first` on; they answer for
+/// `lanes` and maybe others.
 template <class Real>
 class IntervalForm {
  public:

@@ -50,8 +50,8 @@ TEST(BundleSilhouette, HasFourEdgesWhereOneFaceIsSeenAndSixOfMore) {
     Vec3 eye;
     int edges;
   };
-  for (const Expected& e : {Expected{{0, 0, -4}, 4}, {{0, 4, 0}, 4}, {{-4, 0, -4}, 6}, {{4, 3, -4}, 6}, {{-4, -4, -4}, 6},
-                            {{0, 0, 0}, 0}}) {
+  for (const Expected& e : {Expected{{0, 0, -4}, 4}, {{0, 4, 0}, 4}, {{-4, 0, -4}, 6}, {{4, 3, -4}, 6},
+                            {{-4, -4, -4}, 6}, {{0, 0, 0}, 0}}) {
     for (const Edges edges : {Edges::kSerial, Edges::kParallel}) {
       const BundleAnswer answer = test(towards({0.2f, 0.3f, 0.25f}, e.eye), Order::kAllHitOnly, edges);
       EXPECT_EQ(answer.all, 1) << e.eye.x << " " << e.eye.y << " " << e.eye.z;
