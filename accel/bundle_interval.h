@@ -22,11 +22,26 @@
 
 namespace carousel::accel {
 
+/// Planes of one box, or of as many as a vector type `V` has lanes. Boxes are those of nodes: lo <= hi, or the inverted
+/// infinite one of an unused lane.
+template <class V>
+struct BoxPlanes {
+  V lo[3], hi[3];
+};
+
+template <class Real>
+BoxPlanes<Real> planes_of(const Aabb& box) {
+  return {{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
+}
+
 /// A bundle as its tests want it. `Real` says which slab test it answers for: SlabRay's (float) or DoubleSlabRay's.
-/// Boxes are those of nodes: lo <= hi, or the inverted infinite one of an unused lane.
+/// Where `V` is a vector type, answers are masks and entries of its lanes.
 template <class Real>
 class BundleInterval {
  public:
+  template <class V>
+  using Mask = decltype(V{} < V{});
+
   /// `widening` is that of the level: far_widening().
   BundleInterval(const BundleRecord& bundle, float widening) : tmax_(bundle.tmax) {
     // The kernel's own reciprocals, stand-ins for those that overflow included.
@@ -45,41 +60,48 @@ class BundleInterval {
   }
 
   /// AnyHit fails: the slab test of every ray misses.
-  bool all_miss(const Aabb& box) const {
-    const Reach reach = widest(box);
+  template <class V>
+  Mask<V> all_miss(const BoxPlanes<V>& box) const {
+    const Reach<V> reach = widest(box);
     return reach.near > reach.far;
   }
 
   /// AllHit: the slab test hits for every ray whose range ends where the bundle's does.
-  bool all_hit(const Aabb& box) const {
-    const Crossings crossings = narrowest(box);
+  template <class V>
+  Mask<V> all_hit(const BoxPlanes<V>& box) const {
+    const Crossings<V> crossings = narrowest(box);
     return crossings.meet(crossings.near, tmax_);
   }
 
   /// Every ray whose range ends where the bundle's does meets the box, by exact arithmetic. Of a bundle in double
   /// without widening: of floats, its distances are off by less than 2^-51 and never overflow. (One is infinite only
   /// where a direction may be zero, and then a finite exit along another axis contradicts it.)
-  bool all_hit_exactly(const Aabb& box) const
+  template <class V>
     requires std::is_same_v<Real, double>
-  {
-    const Crossings crossings = narrowest(box);
-    double near[3];
+  Mask<V> all_hit_exactly(const BoxPlanes<V>& box) const {
+    const Crossings<V> crossings = narrowest(box);
+    V near[3];
     for (int axis = 0; axis < 3; ++axis) near[axis] = crossings.near[axis] * (1 + 0x1p-49);
     return crossings.meet(near, tmax_);
   }
 
-  /// No ray that hits the box enters it before this; not below 0.
-  float entry(const Aabb& box) const {
-    const Reach reach = widest(box);
-    if constexpr (std::is_same_v<Real, double>)
-      return round_up(reach.near);
-    else
-      return reach.near;
+  /// No ray that hits the box enters it before this; not below 0. In double to be rounded up, as those of the slab
+  /// test are.
+  template <class V>
+  V entry(const BoxPlanes<V>& box) const {
+    return widest(box).near;
   }
 
  private:
   using SlabTest = std::conditional_t<std::is_same_v<Real, float>, SlabRay, DoubleSlabRay>;
   static constexpr Real kEndless = std::numeric_limits<Real>::infinity();
+
+  template <class V>
+  static V all(Real x) { return V{} + x; }
+  template <class V>
+  static V lesser(V a, V b) { return a < b ? a : b; }
+  template <class V>
+  static V greater(V a, V b) { return a > b ? a : b; }
 
   /// Sizes of the reciprocals of a direction; by default those of a zero.
   struct Pace {
@@ -93,74 +115,79 @@ class BundleInterval {
     Real hindmost, foremost;   ///< origins, along the direction
     Pace fastest, slowest;
 
-    Real earliest_entry(const Aabb& box) const {
-      const Real way = to(near_plane(box), foremost);
-      return way > 0 ? way * fastest.near : 0;   // before the start is as good as at the start
-    }
-    Real latest_entry(const Aabb& box) const {
-      const Real way = to(near_plane(box), hindmost);
-      return way > 0 ? way * slowest.near : 0;
-    }
-    // 0 * inf, on a plane and along it, bounds nothing.
-    Real latest_exit(const Aabb& box) const {
-      const Real way = to(far_plane(box), hindmost);
-      return endless_if_nan(way * (way < 0 ? fastest.far : slowest.far));
-    }
-    Real earliest_exit(const Aabb& box) const {
-      const Real way = to(far_plane(box), foremost);
-      return endless_if_nan(way * (way < 0 ? slowest.far : fastest.far));
-    }
+    template <class V>
+    V earliest_entry(const BoxPlanes<V>& box) const { return entry(to_near(box, foremost), fastest.near); }
+    template <class V>
+    V latest_entry(const BoxPlanes<V>& box) const { return entry(to_near(box, hindmost), slowest.near); }
+    template <class V>
+    V latest_exit(const BoxPlanes<V>& box) const { return exit(to_far(box, hindmost), slowest.far, fastest.far); }
+    template <class V>
+    V earliest_exit(const BoxPlanes<V>& box) const { return exit(to_far(box, foremost), fastest.far, slowest.far); }
 
    private:
-    Real near_plane(const Aabb& box) const { return backwards ? box.hi[axis] : box.lo[axis]; }
-    Real far_plane(const Aabb& box) const { return backwards ? box.lo[axis] : box.hi[axis]; }
-    Real to(Real plane, Real origin) const { return backwards ? origin - plane : plane - origin; }
-    static Real endless_if_nan(Real x) { return x < kEndless ? x : kEndless; }
+    template <class V>
+    V to_near(const BoxPlanes<V>& box, Real origin) const {
+      return backwards ? origin - box.hi[axis] : box.lo[axis] - origin;
+    }
+    template <class V>
+    V to_far(const BoxPlanes<V>& box, Real origin) const {
+      return backwards ? origin - box.lo[axis] : box.hi[axis] - origin;
+    }
+    // Before the start is as good as at the start.
+    template <class V>
+    static V entry(V way, Real pace) { return way > 0 ? way * pace : V{}; }
+    // 0 * inf, on a plane and along it, bounds nothing.
+    template <class V>
+    static V exit(V way, Real ahead, Real behind) {
+      const V time = way < 0 ? way * behind : way * ahead;
+      return time < kEndless ? time : all<V>(kEndless);
+    }
   };
 
   /// From the earliest entry to the latest exit of any ray that may hit.
+  template <class V>
   struct Reach {
-    Real near, far;
+    V near, far;
   };
-  Reach widest(const Aabb& box) const {
-    Reach reach{0, tmax_};
+  template <class V>
+  Reach<V> widest(const BoxPlanes<V>& box) const {
+    Reach<V> reach{V{}, all<V>(tmax_)};
     for (int i = 0; i < count_;) {
       const int axis = halves_[i].axis;
-      Real near = kEndless, far = -kEndless;
+      V near = all<V>(kEndless), far = all<V>(-kEndless);
       for (; i < count_ && halves_[i].axis == axis; ++i) {
-        const Real exit = halves_[i].latest_exit(box);
-        if (exit < 0) continue;   // the box is behind all of this half
-        const Real entry = halves_[i].earliest_entry(box);
-        near = entry < near ? entry : near;
-        far = exit > far ? exit : far;
+        const V exit = halves_[i].latest_exit(box), entry = halves_[i].earliest_entry(box);
+        const V nobody = all<V>(kEndless);
+        near = lesser<V>(exit < 0 ? nobody : entry, near);   // the box may be behind all of this half
+        far = greater<V>(exit, far);
       }
-      reach.near = near > reach.near ? near : reach.near;
-      reach.far = far < reach.far ? far : reach.far;
+      reach.near = greater<V>(near, reach.near);
+      reach.far = lesser<V>(far, reach.far);
     }
     return reach;
   }
 
   /// Along each axis, when the last ray has entered and when the first has left.
+  template <class V>
   struct Crossings {
-    Real near[3] = {0, 0, 0}, far[3] = {kEndless, kEndless, kEndless};
+    V near[3], far[3];
 
     /// With entries that may be other than `near`.
-    bool meet(const Real* entry, Real tmax) const {
-      for (int axis = 0; axis < 3; ++axis) {
-        const Real one = entry[(axis + 1) % 3], other = entry[(axis + 2) % 3];
-        if (!(entry[axis] <= tmax) || !((one > other ? one : other) <= far[axis])) return false;
-      }
-      return true;
+    Mask<V> meet(const V* entry, Real tmax) const {
+      Mask<V> met = greater<V>(greater<V>(entry[0], entry[1]), entry[2]) <= tmax;
+      for (int axis = 0; axis < 3; ++axis) met &= greater<V>(entry[(axis + 1) % 3], entry[(axis + 2) % 3]) <= far[axis];
+      return met;
     }
   };
-  Crossings narrowest(const Aabb& box) const {
-    Crossings crossings;
+  template <class V>
+  Crossings<V> narrowest(const BoxPlanes<V>& box) const {
+    Crossings<V> crossings;
+    for (int axis = 0; axis < 3; ++axis) crossings.near[axis] = V{}, crossings.far[axis] = all<V>(kEndless);
     for (int i = 0; i < count_; ++i) {
-      Real& near = crossings.near[halves_[i].axis];
-      Real& far = crossings.far[halves_[i].axis];
-      const Real entry = halves_[i].latest_entry(box), exit = halves_[i].earliest_exit(box);
-      near = entry > near ? entry : near;
-      far = exit < far ? exit : far;
+      V& near = crossings.near[halves_[i].axis];
+      V& far = crossings.far[halves_[i].axis];
+      near = greater<V>(halves_[i].latest_entry(box), near);
+      far = lesser<V>(halves_[i].earliest_exit(box), far);
     }
     return crossings;
   }

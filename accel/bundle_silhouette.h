@@ -11,8 +11,8 @@ namespace carousel::accel {
 /// says, without a division. For bundles of one octant only.
 class BundleSilhouette {
  public:
-  /// Whether there is such a test of this bundle: the directions lie in one octant, and neither they nor the range are so
-  /// large or so small that what the slab test computes of them would overflow or underflow.
+  /// Whether there is such a test of this bundle: the directions lie in one octant, and neither they nor the range are
+  /// so large or so small that what the slab test computes of them would overflow or underflow.
   static bool applies(const BundleRecord& bundle);
 
   BundleSilhouette(const BundleRecord& bundle, BoxLevel level, BundlesConfig::Edges edges);

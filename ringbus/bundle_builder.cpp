@@ -15,7 +15,9 @@ namespace {
 double largest(const DVec3& v) { return std::max({v.x, v.y, v.z}); }
 
 std::uint32_t sign_bits(const Vec3& v) {
-  return std::uint32_t{std::signbit(v.x)} | std::uint32_t{std::signbit(v.y)} << 1 | std::uint32_t{std::signbit(v.z)} << 2;
+  std::uint32_t bits = 0;
+  for (int axis = 0; axis < 3; ++axis) bits |= std::uint32_t{std::signbit(v[axis])} << axis;
+  return bits;
 }
 
 }  // namespace
@@ -32,7 +34,8 @@ void BundleBuilder::Bounds::extend(const Bounds& other) {
   longest = std::max(longest, other.longest);
 }
 
-BundleBuilder::BundleBuilder(const BundlesConfig& config, float scene_size) : config_(config), scene_size_(scene_size) {}
+BundleBuilder::BundleBuilder(const BundlesConfig& config, float scene_size)
+    : config_(config), scene_size_(scene_size) {}
 
 bool BundleBuilder::may_share(const RayRequest& request) const {
   using Sources = BundlesConfig::Sources;
@@ -47,8 +50,8 @@ bool BundleBuilder::may_join(const RayRequest& request, const Open& open) const 
   return !config_.builder.same_origin || request.ray.origin == open.bounds.origin_min;
 }
 
-// Distances between origins are measured by the scene, directions by the longest of them: the bundle test sees ranges of
-// components, and so directions of other lengths are as unlike as others.
+// Distances between origins are measured by the scene, directions by the longest of them: the bundle test sees ranges
+// of components, and so directions of other lengths are as unlike as others.
 double BundleBuilder::size_of(const Bounds& b) const {
   using Similarity = BundlesConfig::Builder::Similarity;
   const double origins = scene_size_ > 0 ? largest(DVec3(b.origin_max) - DVec3(b.origin_min)) / scene_size_ : 0;
@@ -74,7 +77,7 @@ double BundleBuilder::unlikeness(double before, double after) const {
 void BundleBuilder::send(std::size_t place, Groups& out) {
   const std::uint32_t which = oldest_first_[place];
   const Open& bundle = open_[which];
-  out.order.insert(out.order.end(), bundle.rays.begin(), bundle.rays.begin() + static_cast<std::ptrdiff_t>(bundle.count));
+  out.order.insert(out.order.end(), bundle.rays.data(), bundle.rays.data() + bundle.count);
   if (bundle.count >= static_cast<std::size_t>(config_.min_rays))
     out.sizes.push_back(static_cast<std::uint8_t>(bundle.count));
   else

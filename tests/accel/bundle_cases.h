@@ -85,7 +85,8 @@ BundleCase bundle_case(Random& random, int reach, int pace) {
   Aabb box;
   box.extend(random.below(8) ? centre + random.in_box(Vec3{-size}, Vec3{size}) : centre);
   box.extend(random.below(8) ? centre + random.in_box(Vec3{-size}, Vec3{size}) : centre);
-  for (int lane = 0; lane < BundleCase::kBoxes; ++lane) set_child(c.node, lane, lane == 0 ? box : neighbour(box, size, random));
+  set_child(c.node, 0, box);
+  for (int lane = 1; lane < BundleCase::kBoxes; ++lane) set_child(c.node, lane, neighbour(box, size, random));
 
   // What the rays have in common.
   constexpr std::size_t kSizes[] = {1, 4, 16, 32};
@@ -97,7 +98,8 @@ BundleCase bundle_case(Random& random, int reach, int pace) {
   for (int axis = 0; axis < 3; ++axis)
     if (random.below(8) == 0) eye[axis] = aim[axis];
   if (random.below(2)) aim += random.in_box(Vec3{-2 * size}, Vec3{2 * size});
-  const std::uint32_t origins = random.below(4), aims = random.below(4), ends = random.below(4), zeros = random.below(8);
+  const std::uint32_t origins = random.below(4), aims = random.below(4), ends = random.below(4);
+  const std::uint32_t zeros = random.below(8);
   const float apart = size * wild_power(random, -10, 2), spread = size * wild_power(random, -12, 2);
   const float speed = wild_power(random, -pace, pace);
   const bool unlike_speeds = random.below(8) == 0, both_ways = random.below(8) == 0;

@@ -58,10 +58,12 @@ Verdict verdict(const std::vector<Ray>& rays, const Aabb& box, bool strict = fal
 }
 
 TEST(BundleInterval, SaysWhatIsPlain) {
+  const Vec3 eye{0, 0, -4};
+  const auto aside = [&](float x) { return ray(eye, {x, 0.1f, 1}); };
   for (const bool strict : {false, true}) {
-    EXPECT_EQ(verdict({ray({0, 0, -4}, {0.1f, 0.1f, 1}), ray({0, 0, -4}, {0.2f, 0.1f, 1})}, kUnit, strict), Verdict::kAll);
-    EXPECT_EQ(verdict({ray({0, 0, -4}, {0.4f, 0.1f, 1}), ray({0, 0, -4}, {0.5f, 0.1f, 1})}, kUnit, strict), Verdict::kMiss);
-    EXPECT_EQ(verdict({ray({0, 0, -4}, {0.2f, 0.1f, 1}), ray({0, 0, -4}, {0.5f, 0.1f, 1})}, kUnit, strict), Verdict::kUndecided);
+    EXPECT_EQ(verdict({aside(0.1f), aside(0.2f)}, kUnit, strict), Verdict::kAll);
+    EXPECT_EQ(verdict({aside(0.4f), aside(0.5f)}, kUnit, strict), Verdict::kMiss);
+    EXPECT_EQ(verdict({aside(0.2f), aside(0.5f)}, kUnit, strict), Verdict::kUndecided);
     EXPECT_EQ(verdict({ray({0, 0, 4}, {0, 0.1f, 1}), ray({0, 0, 5}, {0, 0.1f, 1})}, kUnit, strict), Verdict::kMiss);
   }
 }
@@ -111,7 +113,8 @@ TEST(BundleInterval, GoesByTheLatestEndOfTheRays) {
   EXPECT_EQ(verdict({ray(eye, ahead, 3), ray(eye, ahead, 3)}, kUnit), Verdict::kAll);
   EXPECT_EQ(verdict({ray(eye, ahead, short_of), ray(eye, ahead, 1)}, kUnit), Verdict::kMiss);
   EXPECT_EQ(verdict({ray(eye, ahead, 1), ray(eye, ahead, 3)}, kUnit), Verdict::kAll);   // as far as the record knows
-  EXPECT_EQ(verdict({ray(eye, ahead, short_of), ray(eye + Vec3{0, 0, 0.5f}, ahead, short_of)}, kUnit), Verdict::kUndecided);
+  const Ray nearer = ray(eye + Vec3{0, 0, 0.5f}, ahead, short_of);
+  EXPECT_EQ(verdict({ray(eye, ahead, short_of), nearer}, kUnit), Verdict::kUndecided);
 }
 
 TEST(BundleInterval, StrictIsOfTheBoxThatIsNotWidened) {
@@ -144,7 +147,8 @@ TEST(BundleInterval, StrictIsExactBeyondDoubles) {
     TestCounts counts;
     const Vec3 eye{x, 0, 0}, direction{1, 1, 0.125f};
     EXPECT_EQ(ExactBox(ray(eye, direction), box, kInfinity).hit(), x >= 0);
-    return verdict(test_bundle(accel, node, 1, record_of({ray(eye, direction), ray(eye, direction)}), config, counts), 0);
+    const BundleRecord record = record_of({ray(eye, direction), ray(eye, direction)});
+    return verdict(test_bundle(accel, node, 1, record, config, counts), 0);
   };
   EXPECT_EQ(verdict_from(-0x1p-60f), Verdict::kUndecided);
   EXPECT_EQ(verdict_from(0x1p-30f), Verdict::kAll);
@@ -153,8 +157,9 @@ TEST(BundleInterval, StrictIsExactBeyondDoubles) {
 TEST(BundleInterval, SlowRaysAreNotSaidToMissWhereTheirReciprocalOverflows) {
   const float tiny = std::numeric_limits<float>::denorm_min();
   EXPECT_NE(verdict({ray({0, 0, -4}, {tiny, 0, 1}), ray({0, 0, -4}, {2 * tiny, 0, 1})}, kUnit), Verdict::kMiss);
-  for (const float x : {tiny, -tiny}) {
-    const std::vector<Ray> slow{ray({-2 * std::copysign(1.0f, x), 0, 0}, {x, 0, 0}), ray({-2 * std::copysign(1.0f, x), 0, 0}, {2 * x, 0, 0})};
+  for (const float sign : {1.0f, -1.0f}) {
+    const Vec3 eye{-2 * sign, 0, 0};
+    const std::vector<Ray> slow{ray(eye, {sign * tiny, 0, 0}), ray(eye, {2 * sign * tiny, 0, 0})};
     BundlesConfig config;
     for (const BoxLevel level : {BoxLevel::kPlain, BoxLevel::kConservative}) {
       Accel accel;
@@ -194,9 +199,9 @@ TEST(BundleInterval, OrdersDifferInWhatTheyTestAndInWhatTheyLeaveOpen) {
     std::uint8_t all, undecided;
     std::uint64_t tests;
   };
-  for (const Expected& e : {Expected{Order::kAllHitFirst, 0b001, 0b100, 5}, Expected{Order::kAnyHitFirst, 0b001, 0b100, 5},
-                            Expected{Order::kParallel, 0b001, 0b100, 6}, Expected{Order::kAllHitOnly, 0b001, 0b110, 3},
-                            Expected{Order::kAnyHitOnly, 0b101, 0, 3}}) {
+  for (const Expected& e : {Expected{Order::kAllHitFirst, 0b001, 0b100, 5}, {Order::kAnyHitFirst, 0b001, 0b100, 5},
+                            {Order::kParallel, 0b001, 0b100, 6}, {Order::kAllHitOnly, 0b001, 0b110, 3},
+                            {Order::kAnyHitOnly, 0b101, 0, 3}}) {
     BundlesConfig config;
     config.order = e.order;
     TestCounts counts;
@@ -224,15 +229,15 @@ TEST(BundleInterval, OneRayGetsTheAnswerOfItsOwnTest) {
     const BundleRecord record = record_of({c.ray});
     for (const auto& level : kEnumNames<BoxLevel>) {
       const BoxAnswer single = box_answer(level.value, c.ray, c.box, c.ray.tmax);
-      const auto expect_same = [&](const auto& interval) {
-        ASSERT_EQ(interval.all_hit(c.box), single.hit) << i << " " << level.name;
-        ASSERT_EQ(interval.all_miss(c.box), !single.hit) << i << " " << level.name;
-        if (single.hit) { ASSERT_EQ(interval.entry(c.box), single.entry) << i << " " << level.name; }
+      const auto expect_same = [&](const auto& interval, const auto& box) {
+        ASSERT_EQ(interval.all_hit(box), single.hit) << i << " " << level.name;
+        ASSERT_EQ(interval.all_miss(box), !single.hit) << i << " " << level.name;
+        if (single.hit) { ASSERT_EQ(round_up(interval.entry(box)), single.entry) << i << " " << level.name; }
       };
       if (level.value == BoxLevel::kDouble) {
-        expect_same(BundleInterval<double>(record, kFarWidening));
+        expect_same(BundleInterval<double>(record, kFarWidening), planes_of<double>(c.box));
       } else {
-        expect_same(BundleInterval<float>(record, far_widening(level.value)));
+        expect_same(BundleInterval<float>(record, far_widening(level.value)), planes_of<float>(c.box));
       }
       hits += single.hit;
     }
@@ -280,7 +285,8 @@ TEST(BundleInterval, SettlesMostBoxesOfNarrowBundles) {
     config.strict = strict;
     for (const float spread : {0.01f, 0.03f, 0.1f, 0.2f, 0.5f}) {
       const Share share = share_settled(spread, config);
-      std::cout << "spread " << spread << (strict ? ", strict: " : ": ") << share.settled << " settled of " << share.alike << "\n";
+      std::cout << "spread " << spread << (strict ? ", strict: " : ": ") << share.settled << " settled of "
+                << share.alike << "\n";
       EXPECT_LE(share.settled, share.alike);
       if (spread <= 0.03f) { EXPECT_GT(share.settled, 0.85) << spread; }
     }

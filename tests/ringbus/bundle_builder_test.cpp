@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
 #include <glm/common.hpp>
@@ -41,7 +40,7 @@ Groups groups_of(BundleBuilder& builder, const RayBatch& rays) {
   for (const std::uint8_t size : sizes) {
     EXPECT_GT(size, 0);
     EXPECT_LE(at + size, order.size());
-    groups.emplace_back(order.begin() + static_cast<std::ptrdiff_t>(at), order.begin() + static_cast<std::ptrdiff_t>(at + size));
+    groups.emplace_back(order.data() + at, order.data() + at + size);
     at += size;
   }
   EXPECT_EQ(at, order.size());
@@ -89,18 +88,18 @@ BundlesConfig any_config(Random& random) {
   BundlesConfig config = of_size(std::int64_t{1} << random.below(7));
   config.min_rays = 2 + random.below(4);
   config.sources = static_cast<BundlesConfig::Sources>(random.below(3));
-  config.builder.open = 1 + random.below(20);
-  config.builder.age = 1 + random.below(100);
+  config.builder.open = 1 + random.below(20), config.builder.age = 1 + random.below(100);
   config.builder.similarity = static_cast<Builder::Similarity>(random.below(4));
   config.builder.measure = static_cast<Builder::Measure>(random.below(2));
   config.builder.threshold = random.uniform(0, 0.5f);
-  config.builder.same_origin = random.below(3) == 0;
-  config.builder.same_signs = random.below(2) == 0;
+  config.builder.same_origin = random.below(3) == 0, config.builder.same_signs = random.below(2) == 0;
   return config;
 }
 
-std::uint32_t signs(const Vec3& v) {
-  return std::uint32_t{std::signbit(v.x)} | std::uint32_t{std::signbit(v.y)} << 1 | std::uint32_t{std::signbit(v.z)} << 2;
+double largest(const DVec3& v) { return std::max({v.x, v.y, v.z}); }
+bool same_signs(const Vec3& a, const Vec3& b) {
+  return std::signbit(a.x) == std::signbit(b.x) && std::signbit(a.y) == std::signbit(b.y) &&
+         std::signbit(a.z) == std::signbit(b.z);
 }
 
 TEST(BundleBuilder, PutsEveryRayInExactlyOneGroupThatObeysTheConfiguration) {
@@ -115,10 +114,7 @@ TEST(BundleBuilder, PutsEveryRayInExactlyOneGroupThatObeysTheConfiguration) {
       const RayBatch rays = mixed_batch(random, random.below(300));
       std::vector<int> seen(rays.size());
       for (const auto& group : groups_of(builder, rays)) {
-        for (const std::uint32_t i : group) {
-          ASSERT_LT(i, rays.size());
-          ++seen[i];
-        }
+        for (const std::uint32_t i : group) ++seen.at(i);
         (group.size() == 1 ? alone : bundled) += group.size();
         if (group.size() == 1) continue;
         ASSERT_LE(group.size(), static_cast<std::size_t>(config.size));
@@ -133,7 +129,7 @@ TEST(BundleBuilder, PutsEveryRayInExactlyOneGroupThatObeysTheConfiguration) {
           if (config.sources == BundlesConfig::Sources::kCamera) { ASSERT_EQ(r.tag.kind, RayKind::kCamera); }
           if (config.sources == BundlesConfig::Sources::kShader) { ASSERT_NE(r.tag.kind, RayKind::kCamera); }
           if (config.builder.same_origin) { ASSERT_EQ(r.ray.origin, first.ray.origin); }
-          if (config.builder.same_signs) { ASSERT_EQ(signs(r.ray.direction), signs(first.ray.direction)); }
+          if (config.builder.same_signs) { ASSERT_TRUE(same_signs(r.ray.direction, first.ray.direction)); }
         }
       }
       for (const int times : seen) ASSERT_EQ(times, 1);
@@ -153,8 +149,6 @@ TEST(BundleBuilder, GroupsTheSameRaysTheSameWay) {
     EXPECT_EQ(groups_of(used, rays), groups_of(config, rays));
   }
 }
-
-double largest(const DVec3& v) { return std::max({v.x, v.y, v.z}); }
 
 // Unit directions, so that what the thresholds are of is plain.
 TEST(BundleBuilder, KeepsBundlesBelowTheThreshold) {
@@ -176,20 +170,17 @@ TEST(BundleBuilder, KeepsBundlesBelowTheThreshold) {
         if (group.size() > 1) bundled += group.size();
         DVec3 o_min(1e9), o_max(-1e9), d_min(1e9), d_max(-1e9);
         for (const std::uint32_t i : group) {
-          o_min = glm::min(o_min, DVec3(rays[i].ray.origin)), o_max = glm::max(o_max, DVec3(rays[i].ray.origin));
-          d_min = glm::min(d_min, DVec3(rays[i].ray.direction)), d_max = glm::max(d_max, DVec3(rays[i].ray.direction));
+          const DVec3 o(rays[i].ray.origin), d(rays[i].ray.direction);
+          o_min = glm::min(o_min, o), o_max = glm::max(o_max, o), d_min = glm::min(d_min, d), d_max = glm::max(d_max, d);
         }
         const double origins = largest(o_max - o_min) / kSceneSize, range = largest(d_max - d_min);
         const DVec3 e = d_max - d_min, c = glm::abs(0.5 * (d_min + d_max));
-        const double most = threshold + 1e-6;
-        switch (similarity) {
-          case Builder::Similarity::kGrowth: EXPECT_LE(std::max(origins, range), most); break;
-          case Builder::Similarity::kComponentRange: EXPECT_LE(range, most); break;
-          case Builder::Similarity::kOriginBox: EXPECT_LE(origins, most); break;
-          case Builder::Similarity::kSolidAngle:
-            EXPECT_LE(c.x * e.y * e.z + c.y * e.z * e.x + c.z * e.x * e.y, most);
-            break;
-        }
+        const double angle = c.x * e.y * e.z + c.y * e.z * e.x + c.z * e.x * e.y;
+        const double size = similarity == Builder::Similarity::kGrowth           ? std::max(origins, range)
+                            : similarity == Builder::Similarity::kComponentRange ? range
+                            : similarity == Builder::Similarity::kOriginBox      ? origins
+                                                                                 : angle;
+        EXPECT_LE(size, threshold + 1e-6) << enum_name(similarity);
         far_apart |= origins > threshold;
         spread_out |= range > threshold;
       }
@@ -205,10 +196,11 @@ TEST(BundleBuilder, PercentIsOfWhatTheBundleWasBefore) {
   BundlesConfig config = of_size(8, 0.5);
   config.builder.measure = Builder::Measure::kPercent;
   // Ranges 0.1, 0.1, 0.15 are growth by no more than a half; 0.25 is more.
-  EXPECT_EQ(groups_of(config, {ray_along(0.1f), ray_along(0.2f), ray_along(0.15f), ray_along(0.249f), ray_along(0.35f)}),
-            (Groups{{0, 1, 2, 3}, {4}}));
+  RayBatch rays{ray_along(0.1f), ray_along(0.2f), ray_along(0.15f), ray_along(0.249f), ray_along(0.35f)};
+  EXPECT_EQ(groups_of(config, rays), (Groups{{0, 1, 2, 3}, {4}}));
   // What has no size may grow to the threshold.
-  EXPECT_EQ(groups_of(config, {ray_along(0.1f), ray_along(0.1f), ray_along(0.55f), ray_along(1.2f)}), (Groups{{0, 1, 2}, {3}}));
+  rays = {ray_along(0.1f), ray_along(0.1f), ray_along(0.55f), ray_along(1.2f)};
+  EXPECT_EQ(groups_of(config, rays), (Groups{{0, 1, 2}, {3}}));
 }
 
 TEST(BundleBuilder, FillsBundlesFromCameraRays) {
@@ -232,7 +224,8 @@ TEST(BundleBuilder, ARayJoinsTheBundleThatItFitsBest) {
 TEST(BundleBuilder, MakesRoomByTheFullest) {
   BundlesConfig config = of_size(8, 0.1);
   config.builder.open = 2;
-  const RayBatch rays{ray_along(0.1f), ray_along(1), ray_along(1), ray_along(2), ray_along(0.1f), ray_along(2), ray_along(3)};
+  RayBatch rays;
+  for (const float x : {0.1f, 1.0f, 1.0f, 2.0f, 0.1f, 2.0f, 3.0f}) rays.push_back(ray_along(x));
   // {1, 2} goes for ray 3; ray 4 still finds {0}; of two equally full ones the oldest goes for ray 6.
   EXPECT_EQ(groups_of(config, rays), (Groups{{1, 2}, {0, 4}, {3, 5}, {6}}));
 }
@@ -284,9 +277,7 @@ TEST(BundleBuilder, SameOriginIsToTheBit) {
 TEST(BundleBuilder, RaysThatNoBundleTakesTravelOnTheirOwn) {
   RayBatch rays(6, ray_along(0));
   rays[1].ray.tmin = 1e-20f;
-  rays[2].ray.direction = Vec3{0};
-  rays[3].ray.origin.y = kInfinity;
-  rays[4].ray.tmax = -1;
+  rays[2].ray.direction = Vec3{0}, rays[3].ray.origin.y = kInfinity, rays[4].ray.tmax = -1;
   EXPECT_EQ(groups_of(of_size(4), rays), (Groups{{1}, {2}, {3}, {4}, {0, 5}}));
 }
 
