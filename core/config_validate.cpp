@@ -106,6 +106,8 @@ class Rules {
       issue("bundles.size", fmt::format("a bundle's rays live in one resource; expected at most rays.slots_per_resource = "
                                         "{}, found {}",
                                         c.rays.slots_per_resource, b.size));
+    if (b.strict && b.order == BundlesConfig::Order::kAnyHitOnly)
+      issue("bundles.strict", "any_hit_only takes bundles along where only some of their rays hit; expected false, found true");
     constexpr std::string_view without = ", or bundles.size: 0";
     if (c.collections.traversal == Traversal::kOrdered)
       issue("collections.traversal", fmt::format("rays of a bundle go several ways at once; expected spread or treelet, found ordered{}", without));

@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:17: bundles.size: a bundle's rays live in one resource; expected at most "
                   "rays.slots_per_resource = 8, found 16"},
         BadConfig{"BundlesInOrder", SCENE "bundles: {size: 16}\ncollections: {traversal: ordered}\n",
-                  "test.yaml:3:27: collections.traversal: rays of a bundle go several ways at once; expected spread or "
+                  "test.yaml:3:26: collections.traversal: rays of a bundle go several ways at once; expected spread or "
                   "treelet, found ordered, or bundles.size: 0"},
         BadConfig{"BundlesShapeByShape", SCENE "bundles: {size: 16}\npackets: {shapes: single}\n",
                   "test.yaml:3:19: packets.shapes: a bundle is tested against a whole strip; expected strip, found "
@@ -163,9 +163,12 @@ INSTANTIATE_TEST_SUITE_P(
                   SCENE "bundles: {size: 16}\ntopology: {shape: independent}\nengine: {kind: cycle}\n",
                   "test.yaml:3:19: topology.shape: independent resources trace single rays; expected a ring or another "
                   "network, found independent, or bundles.size: 0"},
-        BadConfig{"BundleSimilarity", SCENE "bundles: {builder: {similarity: origin}}\n",
+        BadConfig{"BundlesStrictlyAnyHit", SCENE "bundles: {size: 16, order: any_hit_only, strict: true}\n",
+                  "test.yaml:2:50: bundles.strict: any_hit_only takes bundles along where only some of their rays hit; "
+                  "expected false, found true"},
+        BadConfig{"BundleSimilarity", SCENE "bundles: {builder: {similarity: originbox}}\n",
                   "test.yaml:2:33: bundles.builder.similarity: expected one of growth, solid_angle, component_range, "
-                  "origin_box, found 'origin'; did you mean 'origin_box'?"},
+                  "origin_box, found 'originbox'; did you mean 'origin_box'?"},
         BadConfig{"Carry", SCENE "packets: {carry: data}\n",
                   "test.yaml:2:18: packets.carry: data is not built yet; expected reference"},
         BadConfig{"Results", SCENE "packets: {results: message}\n",

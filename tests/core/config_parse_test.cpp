@@ -85,7 +85,7 @@ topolgy: {resources: 2}
 packets:
   rays: 4096
   shapes: stripe
-bundles: {size: 4}
+bundles: {size: 1}
 )");
   EXPECT_EQ(texts(issues),
             (std::vector<std::string>{
@@ -97,7 +97,7 @@ bundles: {size: 4}
                 "test.yaml:4:9: packets.rays: expected an integer from 1 to 1024 (rays), found 4096",
                 "test.yaml:5:11: packets.shapes: expected one of strip, single, found 'stripe'; did you mean "
                 "'strip'?",
-                "test.yaml:6:17: bundles.size: 4 is not built yet; expected 0",
+                "test.yaml:6:17: bundles.size: expected 2 rays or more, or 0 for none; found 1",
             }));
 }
 

@@ -59,6 +59,7 @@ inline bool possible(const Config& c) {
     return false;
   if (c.bundles.size > 0 &&
       (c.bundles.size > c.rays.slots_per_resource || c.collections.traversal == Traversal::kOrdered ||
+       (c.bundles.strict && c.bundles.order == BundlesConfig::Order::kAnyHitOnly) ||
        c.packets.shapes == PacketShapes::kSingle || c.topology.shape == TopologyShape::kIndependent ||
        c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed))
     return false;
