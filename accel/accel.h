@@ -30,6 +30,7 @@ struct Accel {
   BlockArray blocks;
   std::vector<CullPlane> planes;         ///< in order of the nodes; empty without cull_planes
   bool shared_normals = false;           ///< of siblings; `planes` repeats them
+  bool planes_first = false;             ///< a child's planes are tested before its box
   std::uint64_t plane_bytes = 0;         ///< of the planes, normals that are shared counted once
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
   NodeKey root;                          ///< as root_key()

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "accel/cull_plane_test.h"
 #include "accel/plane_candidates.h"
 
 namespace carousel::accel {
@@ -30,6 +31,7 @@ class PlaneBuilder {
         for (std::size_t i = begin; i < end; ++i) share_normals(i);
       });
     store();
+    set_depths();
   }
 
  private:
@@ -55,6 +57,7 @@ class PlaneBuilder {
   // The children's own planes, moved out until everything below is behind them.
   void inner_lanes(std::size_t index) {
     const Node& node = accel_.nodes[index];
+    if (node.above_instances) return;
     for (int lane = 0; lane < node.count; ++lane) {
       if (!node.child[lane].is_inner()) continue;
       const BoxedPoints child = below(node, lane);
@@ -80,6 +83,7 @@ class PlaneBuilder {
   // The lanes' own choices are the candidates.
   void share_normals(std::size_t index) {
     const Node& node = accel_.nodes[index];
+    if (node.above_instances) return;
     std::vector<BoxedPoints> siblings;
     std::vector<std::size_t> lanes;
     std::vector<CullPlane> candidates;
@@ -121,10 +125,20 @@ class PlaneBuilder {
     return config_.nodes == Nodes::kAll || child.is_inner() == (config_.nodes == Nodes::kInner);
   }
 
+  /// Children come after their parents.
+  void set_depths() {
+    for (const Node& node : accel_.nodes)
+      for (int lane = 0; lane < node.count; ++lane)
+        if (node.child[lane].is_inner())
+          accel_.nodes[node.child[lane].node()].depth = static_cast<std::uint8_t>(std::min(node.depth + 1, 255));
+  }
+
   void store() {
     for (std::size_t i = 0; i < found_.size(); ++i) {
       Node& node = accel_.nodes[i];
       node.first_plane = static_cast<std::uint32_t>(accel_.planes.size());
+      node.margin_per_reach = kMarginPerReach;
+      node.least_margin = kLeastMargin;
       for (int lane = 0; lane < node.count; ++lane) {
         const std::vector<CullPlane>& planes = found_[i][static_cast<std::size_t>(lane)];
         if (!wanted(node.child[lane])) continue;
@@ -134,6 +148,7 @@ class PlaneBuilder {
     }
     accel_.planes.shrink_to_fit();
     accel_.shared_normals = config_.shared_normals;
+    accel_.planes_first = config_.order == CullPlanesConfig::Order::kPlanesFirst;
     for (const Node& node : accel_.nodes) accel_.plane_bytes += plane_bytes(node, accel_.shared_normals);
   }
 

@@ -6,8 +6,8 @@
 
 namespace carousel::accel {
 
-/// Gives the children of all nodes that `accel` holds so far, none of them of the top level, up to config.count planes
-/// each (US 20250259373): `leaves`, `inner` children or all. Deterministic for any executor. Without planes (count 0)
+/// Gives the children of all nodes below the instances up to config.count planes each (US 20250259373): `leaves`, `inner`
+/// children or all. Once a structure, which was built without. Deterministic for any executor. Without planes (count 0)
 /// nothing changes.
 void add_cull_planes(Accel& accel, const CullPlanesConfig& config, Executor& executor);
 

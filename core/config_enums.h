@@ -71,6 +71,8 @@ CAROUSEL_ENUM(CullPlanesConfig::Nodes, {CullPlanesConfig::Nodes::kLeaves, "leave
               {CullPlanesConfig::Nodes::kInner, "inner"}, {CullPlanesConfig::Nodes::kAll, "all"});
 CAROUSEL_ENUM(CullPlanesConfig::Fit, {CullPlanesConfig::Fit::kVertices, "vertices"},
               {CullPlanesConfig::Fit::kBoxes, "boxes"});
+CAROUSEL_ENUM(CullPlanesConfig::Order, {CullPlanesConfig::Order::kBoxFirst, "box_first"},
+              {CullPlanesConfig::Order::kPlanesFirst, "planes_first"});
 CAROUSEL_ENUM(BundlesConfig::Form, {BundlesConfig::Form::kInterval, "interval"},
               {BundlesConfig::Form::kSilhouette, "silhouette"});
 CAROUSEL_ENUM(BundlesConfig::Order, {BundlesConfig::Order::kAllHitFirst, "all_hit_first"},

@@ -203,6 +203,7 @@ void describe(V& v, CullPlanesConfig& c) {
   v.choice("nodes", c.nodes, "children that get planes");
   v.field("shared_normals", c.shared_normals, "", "siblings share their planes' normals");
   v.choice("fit", c.fit, "what the planes of inner children are moved up to; those of leaves to vertices");
+  v.choice("order", c.order, "a child's planes are tested after its box has been hit, or before, which then may need no test");
 }
 
 template <class V>

@@ -16,6 +16,7 @@ ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) 
   memberships += o.memberships;
   for (std::size_t i = 0; i < stalls.size(); ++i) stalls[i] += o.stalls[i];
   tests += o.tests;
+  culls += o.culls;
   return *this;
 }
 

@@ -16,6 +16,7 @@ struct ResourceStatistics {
   std::uint64_t memberships = 0;             ///< ray IDs that joined collections at retirement
   std::array<std::uint64_t, 6> stalls{};     ///< by StallReason
   TestCounts tests;
+  CullCounts culls;
 
   ResourceStatistics& operator+=(const ResourceStatistics& o);
   friend bool operator==(const ResourceStatistics&, const ResourceStatistics&) = default;
@@ -25,6 +26,7 @@ struct ResourceStatistics {
 class StatisticsSink final : public EventSink {
  public:
   void record(const Event& event) override;
+  CullCounts* cull_counts() override { return &statistics_.culls; }
   const ResourceStatistics& statistics() const { return statistics_; }
 
  private:

@@ -11,21 +11,20 @@
 namespace carousel::ringbus::cycle {
 
 /// A resource's test units. Transforms, boxes and triangles are pipelined: a ray's boxes are tested when it has
-/// been transformed, while the next one is, and its planes when its boxes have been. A matrix that is inverted first takes its passes through the transform
-/// unit ahead of the rays.
+/// been transformed, while the next one is, and its planes when its boxes have been; or its planes first, and then the
+/// boxes that are left. A matrix that is inverted first takes its passes through the transform unit ahead of the rays.
 struct Tester {
-  explicit Tester(const TestersConfig& config)
-      : box(config.box), triangle(config.triangle), plane(config.plane), transform(config.transform) {}
+  using Order = CullPlanesConfig::Order;
+  explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst)
+      : box(config.box), triangle(config.triangle), plane(config.plane), transform(config.transform), order_(order) {}
 
   /// When the answers to the tests of one strip are there; started at `at`.
   Cycle strip(Cycle at, const TestCounts& counts) {
     const UnitBank::Reservation moved = transform.reserve(inverted(at, counts), counts.transforms);
-    UnitBank& bank = counts.box > 0 ? box : triangle;
-    const UnitBank::Reservation tested = bank.reserve(moved.first, counts.box + counts.triangle);
-    // The last ray to be transformed is tested last.
-    const Cycle last = counts.transforms > 0 ? std::max(tested.last, moved.last + bank.latency()) : tested.last;
-    if (counts.plane == 0) return last;
-    return std::max(plane.reserve(tested.first, counts.plane).last, last + plane.latency());
+    if (counts.plane == 0) return tested(counts.box > 0 ? box : triangle, moved, counts.box + counts.triangle).last;
+    if (order_ == Order::kBoxFirst) return tested(plane, tested(box, moved, counts.box), counts.plane).last;
+    const UnitBank::Reservation planes = tested(plane, moved, counts.plane);
+    return counts.box > 0 ? tested(box, planes, counts.box).last : planes.last;
   }
 
   /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
@@ -37,6 +36,8 @@ struct Tester {
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const TestCounts& counts) {
     const Cycle moved = transform.reserve_beside(inverted(at, counts), counts.transforms).last;
+    if (order_ == Order::kPlanesFirst && counts.plane > 0)
+      return box.reserve_beside(plane.reserve_beside(moved, counts.plane).last, counts.box).last;
     UnitBank& bank = counts.box > 0 ? box : triangle;
     const Cycle tested = bank.reserve_beside(moved, counts.box + counts.triangle).last;
     return plane.reserve_beside(tested, counts.plane).last;
@@ -53,12 +54,19 @@ struct Tester {
   UnitBank box, triangle, plane, transform;
 
  private:
+  /// Tests for rays that come one after another from the bank before: the last of them is tested last.
+  static UnitBank::Reservation tested(UnitBank& bank, const UnitBank::Reservation& before, std::uint64_t tests) {
+    const UnitBank::Reservation own = bank.reserve(before.first, tests);
+    return {own.first, before.last > before.first ? std::max(own.last, before.last + bank.latency()) : own.last};
+  }
   static std::uint64_t passes(const TestCounts& counts) {
     return counts.transforms + accel::kInversionPasses * counts.inversions;
   }
   Cycle inverted(Cycle at, const TestCounts& counts) {
     return transform.reserve(at, accel::kInversionPasses * counts.inversions).last;
   }
+
+  Order order_;
 };
 
 /// Those of a resource, at the levels of accuracy: the machine's, unless it has its own.

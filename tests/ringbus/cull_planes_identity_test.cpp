@@ -1,4 +1,5 @@
 // With planes or without: one digest, in the tracer, on the native ring and on the cycle engine.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/ringbus/factors.h"
@@ -9,13 +10,20 @@ namespace {
 
 using Nodes = CullPlanesConfig::Nodes;
 using Fit = CullPlanesConfig::Fit;
+using Order = CullPlanesConfig::Order;
 
 std::vector<CullPlanesConfig> all_planes() {
   std::vector<CullPlanesConfig> all;
   for (const std::int64_t count : {1, 2, 4, 8})
     for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll})
-      for (const Fit fit : {Fit::kVertices, Fit::kBoxes}) all.push_back({count, nodes, all.size() % 3 == 2, fit});
+      for (const Fit fit : {Fit::kVertices, Fit::kBoxes})
+        all.push_back({count, nodes, all.size() % 3 == 2, fit, all.size() % 5 < 2 ? Order::kPlanesFirst : Order::kBoxFirst});
   return all;
+}
+
+std::string text(const CullPlanesConfig& planes) {
+  return fmt::format("{} planes, nodes {}, fit {}, {}{}", planes.count, enum_name(planes.nodes), enum_name(planes.fit),
+                     enum_name(planes.order), planes.shared_normals ? ", shared" : "");
 }
 
 std::vector<TestScene> scenes() {
@@ -41,10 +49,11 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
       cell.config.cull_planes = planes;
       if (cell.config.engine.kind == EngineKind::kCycle) cell.threads = 1;   // threads: tests/ringbus/identity_test.cpp
       const Outcome outcome = run_cell(scene, cell);
-      EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << planes.count << " planes, nodes "
-                                    << enum_name(planes.nodes) << ", fit " << enum_name(planes.fit)
-                                   << (planes.shared_normals ? ", shared: " : ": ") << cell.text();
+      EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << text(planes) << ": " << cell.text();
       culled += outcome.sum.tests.culled;
+      const CullLevel all_depths = outcome.sum.culls.sum();
+      EXPECT_EQ(all_depths.culled(), outcome.sum.tests.culled) << text(planes) << ": " << cell.text();
+      EXPECT_EQ(all_depths.plane_tests, outcome.sum.tests.plane) << text(planes) << ": " << cell.text();
     }
   }
   EXPECT_GT(culled, 1000u);
@@ -56,7 +65,7 @@ TEST(CullPlanesIdentity, TracerGivesOneDigest) {
     for (const CullPlanesConfig& planes : all_planes()) {
       ScatterWorkload workload = scene.workload();
       const accel::ReferenceRun run = accel::run_reference(scene.accel(BvhConfig{}, planes), workload);
-      EXPECT_EQ(workload.digest().hex(), scene.digest().hex()) << planes.count << " " << enum_name(planes.nodes);
+      EXPECT_EQ(workload.digest().hex(), scene.digest().hex()) << text(planes);
       culled += run.tests.culled;
     }
   EXPECT_GT(culled, 1000u);
