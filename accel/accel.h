@@ -58,7 +58,7 @@ struct Accel {
 };
 
 /// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
-/// boxes are padded. Cull planes are for nodes below the instances. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
+/// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
             const AccuracyConfig& accuracy = {}, const CullPlanesConfig& planes = {});
 

@@ -17,6 +17,8 @@
 // t* may be any depth within the triangle's, and so may the kernel's t, whose weights are rounded: seen edge-on, the
 // two have nothing to do with each other. So neither tmin nor the closest hit may bound the line here (3 of the same
 // hits were lost when they did, whatever the margin). They are the box test's, whose entries the planes never move.
+//
+// Above the instances, where the kernel's ray is another than the one that is tested: accel/line_margin.cpp.
 #pragma once
 
 #include <cmath>
@@ -37,7 +39,9 @@ struct CullRay {
   float origin[3], direction[3], inverse[3];
   float margins;   ///< times a node's: 1, or infinity where a margin would not cover what may be lost
 
-  CullRay(const float* o, const Vec3& d) {
+  /// Above the instances the kernel's ray is another, whose direction may be up to 2^30 longer or shorter
+  /// (accel/line_margin.h).
+  CullRay(const float* o, const Vec3& d, bool above_instances) {
     float largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
       origin[axis] = o[axis];
@@ -46,7 +50,8 @@ struct CullRay {
       largest = std::fmax(largest, std::fabs(d[axis]));
     }
     // Outside of this n . d or a quotient by it may underflow or overflow: such rays are not culled.
-    const bool sound = largest >= 0x1p-60f && largest <= 0x1p60f;
+    const float least = above_instances ? 0x1p-30f : 0x1p-60f, most = above_instances ? 0x1p30f : 0x1p60f;
+    const bool sound = largest >= least && largest <= most;
     margins = sound ? 1.0f : kInfinity;
   }
 };

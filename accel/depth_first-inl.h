@@ -87,7 +87,7 @@ HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& 
                               std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
   if constexpr (std::is_same_v<Slab, SlabRay>)   // planes need accuracy.box: conservative
     if (HWY_UNLIKELY(node.plane_counts != 0) && (mask != 0 || accel.planes_first))
-      return cull_lanes(accel, node, CullRay(slab.origin, direction), lanes, mask, counts, culls);
+      return cull_lanes(accel, node, CullRay(slab.origin, direction, node.above_instances), lanes, mask, counts, culls);
   return mask;
 }
 

@@ -73,6 +73,8 @@ CAROUSEL_ENUM(CullPlanesConfig::Fit, {CullPlanesConfig::Fit::kVertices, "vertice
               {CullPlanesConfig::Fit::kBoxes, "boxes"});
 CAROUSEL_ENUM(CullPlanesConfig::Order, {CullPlanesConfig::Order::kBoxFirst, "box_first"},
               {CullPlanesConfig::Order::kPlanesFirst, "planes_first"});
+CAROUSEL_ENUM(CullPlanesConfig::Levels, {CullPlanesConfig::Levels::kBlas, "blas"},
+              {CullPlanesConfig::Levels::kTlas, "tlas"}, {CullPlanesConfig::Levels::kAll, "all"});
 CAROUSEL_ENUM(BundlesConfig::Form, {BundlesConfig::Form::kInterval, "interval"},
               {BundlesConfig::Form::kSilhouette, "silhouette"});
 CAROUSEL_ENUM(BundlesConfig::Order, {BundlesConfig::Order::kAllHitFirst, "all_hit_first"},

@@ -11,19 +11,21 @@ namespace {
 using Nodes = CullPlanesConfig::Nodes;
 using Fit = CullPlanesConfig::Fit;
 using Order = CullPlanesConfig::Order;
+using Levels = CullPlanesConfig::Levels;
 
 std::vector<CullPlanesConfig> all_planes() {
   std::vector<CullPlanesConfig> all;
   for (const std::int64_t count : {1, 2, 4, 8})
     for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll})
       for (const Fit fit : {Fit::kVertices, Fit::kBoxes})
-        all.push_back({count, nodes, all.size() % 3 == 2, fit, all.size() % 5 < 2 ? Order::kPlanesFirst : Order::kBoxFirst});
+        all.push_back({count, nodes, all.size() % 3 == 2, fit, all.size() % 5 < 2 ? Order::kPlanesFirst : Order::kBoxFirst,
+                       std::array{Levels::kAll, Levels::kBlas, Levels::kTlas, Levels::kAll}[all.size() % 4]});
   return all;
 }
 
 std::string text(const CullPlanesConfig& planes) {
-  return fmt::format("{} planes, nodes {}, fit {}, {}{}", planes.count, enum_name(planes.nodes), enum_name(planes.fit),
-                     enum_name(planes.order), planes.shared_normals ? ", shared" : "");
+  return fmt::format("{} planes, nodes {}, fit {}, levels {}, {}{}", planes.count, enum_name(planes.nodes), enum_name(planes.fit),
+                     enum_name(planes.levels), enum_name(planes.order), planes.shared_normals ? ", shared" : "");
 }
 
 std::vector<TestScene> scenes() {
@@ -37,7 +39,7 @@ std::vector<TestScene> scenes() {
 
 /// Each way to have planes on a machine drawn for it; somewhere they must cull.
 void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number) {
-  std::uint64_t culled = 0;
+  std::uint64_t culled = 0, transforms_spared = 0;
   for (TestScene& scene : scenes()) {
     std::mt19937 random(number + 7919 * run_seed());
     for (const CullPlanesConfig& planes : all_planes()) {
@@ -51,12 +53,14 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << text(planes) << ": " << cell.text();
       culled += outcome.sum.tests.culled;
+      for (const CullLevel& level : outcome.sum.culls.above) transforms_spared += level.transforms;
       const CullLevel all_depths = outcome.sum.culls.sum();
       EXPECT_EQ(all_depths.culled(), outcome.sum.tests.culled) << text(planes) << ": " << cell.text();
       EXPECT_EQ(all_depths.plane_tests, outcome.sum.tests.plane) << text(planes) << ": " << cell.text();
     }
   }
   EXPECT_GT(culled, 1000u);
+  EXPECT_GT(transforms_spared, 100u);
 }
 
 TEST(CullPlanesIdentity, TracerGivesOneDigest) {
