@@ -1,16 +1,15 @@
 """Small line plots as SVG, for studies: one panel after another, values over a few named positions."""
 
 COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b")
-PANEL, HEIGHT, LEFT, TOP, BOTTOM = 300, 260, 56, 40, 44
+PANEL, HEIGHT, LEFT, TOP, BOTTOM = 300, 260, 56, 56, 44
 
 
 def nice_step(span):
-    step = 1.0
-    while span / step > 6:
-        step *= 2.5 if str(step).lstrip("0.").startswith("2") else 2
-    while span / step < 3:
-        step /= 2
-    return step
+    """Of 1, 2, 5, 10 and so on the least that makes six steps at most of the span."""
+    for exponent in range(-6, 12):
+        for factor in (1, 2, 5):
+            if span / (factor * 10.0 ** exponent) <= 6:
+                return factor * 10.0 ** exponent
 
 
 def panel(index, title, positions, lines, bounds):
