@@ -54,8 +54,10 @@ class AccelBuilder {
     place_instances();
     build_blases();
     join_blases();
-    add_cull_planes(accel_, planes_, executor_);   // before there are nodes of the top level
+    const std::size_t first_of_top = accel_.nodes.size();
     build_tlas();
+    for (std::size_t i = first_of_top; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
+    add_cull_planes(accel_, scene_, planes_, executor_);
     return std::move(accel_);
   }
 

@@ -30,6 +30,7 @@ struct Accel {
   BlockArray blocks;
   std::vector<CullPlane> planes;         ///< in order of the nodes; empty without cull_planes
   bool shared_normals = false;           ///< of siblings; `planes` repeats them
+  bool planes_first = false;             ///< a child's planes are tested before its box
   std::uint64_t plane_bytes = 0;         ///< of the planes, normals that are shared counted once
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
   NodeKey root;                          ///< as root_key()
@@ -57,7 +58,7 @@ struct Accel {
 };
 
 /// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
-/// boxes are padded. Cull planes are for nodes below the instances. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
+/// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
             const AccuracyConfig& accuracy = {}, const CullPlanesConfig& planes = {});
 

@@ -17,6 +17,8 @@
 // t* may be any depth within the triangle's, and so may the kernel's t, whose weights are rounded: seen edge-on, the
 // two have nothing to do with each other. So neither tmin nor the closest hit may bound the line here (3 of the same
 // hits were lost when they did, whatever the margin). They are the box test's, whose entries the planes never move.
+//
+// Above the instances, where the kernel's ray is another than the one that is tested: accel/line_margin.cpp.
 #pragma once
 
 #include <cmath>
@@ -25,7 +27,6 @@
 #include "accel/cull_plane.h"
 #include "accel/node.h"
 #include "core/ray.h"
-#include "core/test_counts.h"
 
 namespace carousel::accel {
 
@@ -36,9 +37,11 @@ inline constexpr float kLeastMargin = 0x1p-70f;
 /// A ray as the plane test wants it, in the space of the nodes.
 struct CullRay {
   float origin[3], direction[3], inverse[3];
-  float margin_per_reach;
+  float margins;   ///< times a node's: 1, or infinity where a margin would not cover what may be lost
 
-  CullRay(const float* o, const Vec3& d) {
+  /// Above the instances the kernel's ray is another, whose direction may be up to 2^30 longer or shorter
+  /// (accel/line_margin.h).
+  CullRay(const float* o, const Vec3& d, bool above_instances) {
     float largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
       origin[axis] = o[axis];
@@ -47,68 +50,68 @@ struct CullRay {
       largest = std::fmax(largest, std::fabs(d[axis]));
     }
     // Outside of this n . d or a quotient by it may underflow or overflow: such rays are not culled.
-    const bool sound = largest >= 0x1p-60f && largest <= 0x1p60f;
-    margin_per_reach = sound ? kMarginPerReach : kInfinity;
+    const float least = above_instances ? 0x1p-30f : 0x1p-60f, most = above_instances ? 0x1p30f : 0x1p60f;
+    const bool sound = largest >= least && largest <= most;
+    margins = sound ? 1.0f : kInfinity;
   }
 };
 
-/// Whether the planes show that the line misses everything in the lane's box. Adds the planes looked at to `tested`.
-/// Comparisons are false for NaN, which culls nothing.
-inline bool planes_miss(const Node& node, int lane, const CullPlane* planes, int count, const CullRay& ray,
-                        std::uint64_t& tested) {
-  float lo[3], hi[3], from_centre[3], reach = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float l = node.plane[axis][lane], h = node.plane[axis + 3][lane];
-    lo[axis] = l - ray.origin[axis];
-    hi[axis] = h - ray.origin[axis];
-    from_centre[axis] = ray.origin[axis] - plane_centre(l, h);
-    reach = std::fmax(reach, std::fmax(std::fabs(lo[axis]), std::fabs(hi[axis])));
-  }
-  const float margin = ray.margin_per_reach * reach + kLeastMargin;
-  float entry = -kInfinity, exit = kInfinity;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (ray.direction[axis] == 0.0f) continue;   // the box test has seen to it
-    const bool down = ray.direction[axis] < 0.0f;
-    const float near = (down ? hi[axis] + margin : lo[axis] - margin) * ray.inverse[axis];
-    const float far = (down ? lo[axis] - margin : hi[axis] + margin) * ray.inverse[axis];
-    entry = near > entry ? near : entry;
-    exit = far < exit ? far : exit;
-  }
-  for (int i = 0; i < count; ++i) {
-    const float* const n = planes[i].normal;
-    const float height = n[0] * from_centre[0] + n[1] * from_centre[1] + n[2] * from_centre[2] - planes[i].distance;
-    const float outside = height - margin;   // of the origin
-    const float along = n[0] * ray.direction[0] + n[1] * ray.direction[1] + n[2] * ray.direction[2];
-    ++tested;
-    if (along < 0.0f) {   // seen from the front: the line comes in
-      const float in = outside / -along;
-      entry = in > entry ? in : entry;
-    } else if (along > 0.0f) {   // from the back: it goes out, behind the origin or not
-      const float out = -outside / along;
-      exit = out < exit ? out : exit;
-    } else if (outside > 0.0f) {
-      return true;
+/// What planes and box leave of the line of a ray in one child. Each bound counts for those after it; comparisons are
+/// false for NaN, which cuts nothing off.
+class CutLine {
+ public:
+  CutLine(const Node& node, int lane, const CullRay& ray) : ray_(ray) {
+    float reach = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float l = node.plane[axis][lane], h = node.plane[axis + 3][lane];
+      lo_[axis] = l - ray.origin[axis];
+      hi_[axis] = h - ray.origin[axis];
+      from_centre_[axis] = ray.origin[axis] - plane_centre(l, h);
+      reach = std::fmax(reach, std::fmax(std::fabs(lo_[axis]), std::fabs(hi_[axis])));
     }
-    if (entry > exit) return true;
+    margin_ = ray.margins * (node.margin_per_reach * reach + node.least_margin);
   }
-  return false;
-}
 
-/// Of the child lanes in `mask`, whose boxes were hit, those that no plane shows to be missed.
-[[gnu::noinline]] inline std::uint32_t cull_lanes(const Node& node, const CullPlane* planes, const CullRay& ray,
-                                                  std::uint32_t mask, TestCounts& counts) {
-  const CullPlane* first = planes + node.first_plane;
-  std::uint64_t tested = 0;
-  for (int lane = 0; lane < node.count; ++lane) {
-    const int count = plane_count(node, lane);
-    if ((mask >> lane & 1u) != 0 && count > 0 && planes_miss(node, lane, first, count, ray, tested)) {
-      mask &= ~(1u << lane);
-      ++counts.culled;
+  /// By the box, each face moved out.
+  void cut_by_box() {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (ray_.direction[axis] == 0.0f) continue;   // the box test sees to it
+      const bool down = ray_.direction[axis] < 0.0f;
+      const float near = (down ? hi_[axis] + margin_ : lo_[axis] - margin_) * ray_.inverse[axis];
+      const float far = (down ? lo_[axis] - margin_ : hi_[axis] + margin_) * ray_.inverse[axis];
+      entry_ = near > entry_ ? near : entry_;
+      exit_ = far < exit_ ? far : exit_;
     }
-    first += count;
   }
-  counts.plane += tested;
-  return mask;
-}
+
+  /// By one plane after the other, until nothing is left. Adds the planes looked at to `tested`.
+  void cut_by_planes(const CullPlane* planes, int count, std::uint64_t& tested) {
+    for (int i = 0; i < count && !empty(); ++i) {
+      const float* const n = planes[i].normal;
+      const float height = n[0] * from_centre_[0] + n[1] * from_centre_[1] + n[2] * from_centre_[2] - planes[i].distance;
+      const float outside = height - margin_;   // of the origin
+      const float along = n[0] * ray_.direction[0] + n[1] * ray_.direction[1] + n[2] * ray_.direction[2];
+      ++tested;
+      if (along < 0.0f) {   // seen from the front: the line comes in
+        const float in = outside / -along;
+        entry_ = in > entry_ ? in : entry_;
+      } else if (along > 0.0f) {   // from the back: it goes out, behind the origin or not
+        const float out = -outside / along;
+        exit_ = out < exit_ ? out : exit_;
+      } else if (outside > 0.0f) {   // along it
+        entry_ = kInfinity;
+        exit_ = -kInfinity;
+      }
+    }
+  }
+
+  /// The line misses everything that stands in the child.
+  bool empty() const { return entry_ > exit_; }
+
+ private:
+  const CullRay& ray_;
+  float lo_[3], hi_[3], from_centre_[3], margin_;
+  float entry_ = -kInfinity, exit_ = kInfinity;
+};
 
 }  // namespace carousel::accel

@@ -1,54 +1,80 @@
 #include "accel/cull_planes.h"
 
-#include <array>
+#include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "accel/plane_candidates.h"
+#include "accel/top_planes.h"
 
 namespace carousel::accel {
 
 namespace {
 
-using LanePlanes = std::array<std::vector<CullPlane>, kMaxWidth>;
-
 class PlaneBuilder {
  public:
-  PlaneBuilder(Accel& accel, const CullPlanesConfig& config, Executor& executor)
+  PlaneBuilder(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor)
       : accel_(accel),
+        scene_(scene),
         config_(config),
         executor_(executor),
         most_(config.shared_normals ? kMaxCullPlanes : static_cast<int>(config.count)),
         found_(accel.nodes.size()) {}
 
   void run() {
-    executor_.parallel_for(found_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) leaf_lanes(i);
-    });
-    if (config_.nodes != CullPlanesConfig::Nodes::kLeaves)
-      for (std::size_t i = found_.size(); i-- > 0;) inner_lanes(i);   // children come after their parents
-    if (config_.shared_normals)
-      executor_.parallel_for(found_.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) share_normals(i);
-      });
+    using Levels = CullPlanesConfig::Levels;
+    const auto first_of_top = std::find_if(accel_.nodes.begin(), accel_.nodes.end(), [](const Node& n) { return n.above_instances; });
+    const std::size_t below = static_cast<std::size_t>(first_of_top - accel_.nodes.begin());
+    if (config_.levels != Levels::kTlas) find(0, below);
+    if (config_.levels != Levels::kBlas) {
+      top_.emplace(accel_, scene_, config_.fit, found_);
+      find(below, found_.size());
+    }
     store();
+    set_depths();
   }
 
  private:
+  /// Planes of the nodes from `begin` to `end`, children after their parents.
+  void find(std::size_t begin, std::size_t end) {
+    each(begin, end, [&](std::size_t i) { leaf_lanes(i); });
+    if (config_.nodes != CullPlanesConfig::Nodes::kLeaves)
+      for (std::size_t i = end; i-- > begin;) inner_lanes(i);
+    if (config_.shared_normals) each(begin, end, [&](std::size_t i) { share_normals(i); });
+  }
+  template <class Visit>
+  void each(std::size_t begin, std::size_t end, const Visit& visit) {
+    executor_.parallel_for(end - begin, 256, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) visit(begin + i);
+    });
+  }
+
   // The triangles themselves, planes through their edges, and corners.
   void leaf_lanes(std::size_t index) {
     const Node& node = accel_.nodes[index];
     for (int lane = 0; lane < node.count; ++lane) {
-      if (node.child[lane].kind() != NodeRef::Kind::kLeaf) continue;
-      const BoxedPoints child = below(node, lane);
+      const NodeRef ref = node.child[lane];
+      if (ref.is_inner()) continue;
+      const BoxedShape child = below(node, lane);
       PlaneChoice choice(child);
-      for (std::size_t i = 0; i < child.points.size(); i += 3) {
-        const std::array<DVec3, 3> p{DVec3(child.points[i]), DVec3(child.points[i + 1]), DVec3(child.points[i + 2])};
-        choice.offer_both(glm::cross(p[1] - p[0], p[2] - p[0]));
-        for (std::size_t k = 0; k < 3; ++k)
-          for (const DVec3& axis : {DVec3(1, 0, 0), DVec3(0, 1, 0), DVec3(0, 0, 1)})
-            choice.offer_both(glm::cross(p[(k + 1) % 3] - p[k], axis));
+      if (ref.kind() == NodeRef::Kind::kInstance) {
+        top_->offer(ref, choice);
+      } else {
+        std::vector<Vec3> points;
+        append_corners(ref, points);
+        offer_triangles(points, choice);
       }
       choice.offer_octants();
       found_[index][static_cast<std::size_t>(lane)] = choice.best(most_);
+    }
+  }
+  static void offer_triangles(const std::vector<Vec3>& points, PlaneChoice& choice) {
+    for (std::size_t i = 0; i < points.size(); i += 3) {
+      const std::array<DVec3, 3> p{DVec3(points[i]), DVec3(points[i + 1]), DVec3(points[i + 2])};
+      choice.offer_both(glm::cross(p[1] - p[0], p[2] - p[0]));
+      for (std::size_t k = 0; k < 3; ++k)
+        for (const DVec3& axis : {DVec3(1, 0, 0), DVec3(0, 1, 0), DVec3(0, 0, 1)})
+          choice.offer_both(glm::cross(p[(k + 1) % 3] - p[k], axis));
     }
   }
 
@@ -57,7 +83,7 @@ class PlaneBuilder {
     const Node& node = accel_.nodes[index];
     for (int lane = 0; lane < node.count; ++lane) {
       if (!node.child[lane].is_inner()) continue;
-      const BoxedPoints child = below(node, lane);
+      const BoxedShape child = below(node, lane);
       PlaneChoice choice(child);
       for (const std::vector<CullPlane>& planes : found_[node.child[lane].node()])
         for (const CullPlane& plane : planes) choice.offer({plane.normal[0], plane.normal[1], plane.normal[2]});
@@ -67,24 +93,25 @@ class PlaneBuilder {
   }
 
   /// What a lane's planes are fitted to.
-  BoxedPoints below(const Node& node, int lane) const {
-    BoxedPoints child;
-    child.box = child_box(node, lane);
+  BoxedShape below(const Node& node, int lane) const {
+    if (node.above_instances) return top_->shape(node, lane);
+    const Aabb box = child_box(node, lane);
+    std::vector<Vec3> points;
     if (node.child[lane].is_inner() && config_.fit == CullPlanesConfig::Fit::kBoxes)
-      append_box_corners(accel_.nodes[node.child[lane].node()], child.points);
+      append_box_corners(accel_.nodes[node.child[lane].node()], points);
     else
-      append_corners(node.child[lane], child.points);
-    return child;
+      append_corners(node.child[lane], points);
+    return {box, [box, points = std::move(points)](const CullPlane& plane) { return distance_along(plane, box, points); }};
   }
 
   // The lanes' own choices are the candidates.
   void share_normals(std::size_t index) {
     const Node& node = accel_.nodes[index];
-    std::vector<BoxedPoints> siblings;
+    std::vector<BoxedShape> siblings;
     std::vector<std::size_t> lanes;
     std::vector<CullPlane> candidates;
     for (int lane = 0; lane < node.count; ++lane) {
-      if (!wanted(node.child[lane])) continue;
+      if (!wanted(node, lane)) continue;
       siblings.push_back(below(node, lane));
       lanes.push_back(static_cast<std::size_t>(lane));
       const std::vector<CullPlane>& own = found_[index][lanes.back()];
@@ -116,9 +143,19 @@ class PlaneBuilder {
     }
   }
 
-  bool wanted(NodeRef child) const {
+  bool wanted(const Node& node, int lane) const {
     using Nodes = CullPlanesConfig::Nodes;
+    const NodeRef child = node.child[lane];
+    if (node.above_instances && !(top_ && top_->margin(child))) return false;
     return config_.nodes == Nodes::kAll || child.is_inner() == (config_.nodes == Nodes::kInner);
+  }
+
+  void set_margin(Node& node) const {
+    LineMargin most = margin_below();
+    for (int lane = 0; lane < node.count && node.above_instances; ++lane)
+      if (wanted(node, lane)) widen(most, *top_->margin(node.child[lane]));
+    node.margin_per_reach = most.per_reach;
+    node.least_margin = most.least;
   }
 
   void store() {
@@ -127,27 +164,39 @@ class PlaneBuilder {
       node.first_plane = static_cast<std::uint32_t>(accel_.planes.size());
       for (int lane = 0; lane < node.count; ++lane) {
         const std::vector<CullPlane>& planes = found_[i][static_cast<std::size_t>(lane)];
-        if (!wanted(node.child[lane])) continue;
+        if (!wanted(node, lane)) continue;
         accel_.planes.insert(accel_.planes.end(), planes.begin(), planes.end());
         node.plane_counts |= static_cast<std::uint32_t>(planes.size()) << (4 * lane);
       }
+      set_margin(node);
     }
     accel_.planes.shrink_to_fit();
     accel_.shared_normals = config_.shared_normals;
+    accel_.planes_first = config_.order == CullPlanesConfig::Order::kPlanesFirst;
     for (const Node& node : accel_.nodes) accel_.plane_bytes += plane_bytes(node, accel_.shared_normals);
   }
 
+  /// Children come after their parents.
+  void set_depths() {
+    for (const Node& node : accel_.nodes)
+      for (int lane = 0; lane < node.count; ++lane)
+        if (node.child[lane].is_inner())
+          accel_.nodes[node.child[lane].node()].depth = static_cast<std::uint8_t>(std::min(node.depth + 1, 255));
+  }
+
   Accel& accel_;
+  const scene::Scene& scene_;
   const CullPlanesConfig& config_;
   Executor& executor_;
   int most_;   // planes a lane to begin with
   std::vector<LanePlanes> found_;   // by node and lane
+  std::optional<TopPlanes> top_;    // where the top level gets any
 };
 
 }  // namespace
 
-void add_cull_planes(Accel& accel, const CullPlanesConfig& config, Executor& executor) {
-  if (config.count > 0) PlaneBuilder(accel, config, executor).run();
+void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor) {
+  if (config.count > 0) PlaneBuilder(accel, scene, config, executor).run();
 }
 
 }  // namespace carousel::accel

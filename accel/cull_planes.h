@@ -3,12 +3,13 @@
 #include "accel/accel.h"
 #include "core/config.h"
 #include "core/executor.h"
+#include "scene/scene.h"
 
 namespace carousel::accel {
 
-/// Gives the children of all nodes that `accel` holds so far, none of them of the top level, up to config.count planes
-/// each (US 20250259373): `leaves`, `inner` children or all. Deterministic for any executor. Without planes (count 0)
-/// nothing changes.
-void add_cull_planes(Accel& accel, const CullPlanesConfig& config, Executor& executor);
+/// Gives children of nodes up to config.count planes each (US 20250259373): below the instances, above them or both;
+/// leaves, which above are instances, inner children or all. Once a structure, which was built of `scene` without planes.
+/// Deterministic for any executor. Without planes (count 0) nothing changes.
+void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor);
 
 }  // namespace carousel::accel

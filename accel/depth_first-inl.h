@@ -11,7 +11,7 @@
 #include <hwy/highway.h>
 
 #include "accel/accel.h"
-#include "accel/cull_plane_test.h"
+#include "accel/cull_lanes.h"
 #include "accel/double_slab-inl.h"
 #include "accel/frame_ray.h"
 #include "accel/kernels.h"
@@ -74,13 +74,20 @@ HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint
   return NodeRef::from_bits(nearest.ref);
 }
 
-/// Takes the lanes from `mask`, children whose boxes the ray hits, that the node's planes show to be missed.
+/// What a traversal counts.
+struct TraversalCounts : TestCounts {
+  CullCounts* culls;   ///< RayMembers::culls
+  explicit TraversalCounts(CullCounts* by_depth) : culls(by_depth) {}
+};
+
+/// Takes the lanes from `mask`, children among `lanes` whose boxes the ray hits, that the node's planes show to be
+/// missed. With planes first, the boxes of `lanes` that need no test are taken from counts.box.
 template <class Slab>
 HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& slab, const Vec3& direction,
-                              std::uint32_t mask, TestCounts& counts) {
+                              std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
   if constexpr (std::is_same_v<Slab, SlabRay>)   // planes need accuracy.box: conservative
-    if (HWY_UNLIKELY(node.plane_counts != 0) && mask != 0)
-      return cull_lanes(node, accel.planes.data(), CullRay(slab.origin, direction), mask, counts);
+    if (HWY_UNLIKELY(node.plane_counts != 0) && (mask != 0 || accel.planes_first))
+      return cull_lanes(accel, node, CullRay(slab.origin, direction, node.above_instances), lanes, mask, counts, culls);
   return mask;
 }
 
@@ -92,7 +99,7 @@ enum class Then { kPop, kEnter, kStop };
 /// when it was stopped.
 template <class Slab, class VisitOther>
 HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const FrameRay<Slab>& frame, const Hit& hit,
-                            DepthFirstStack& stack, TestCounts& counts, const VisitOther& visit_other) {
+                            DepthFirstStack& stack, TraversalCounts& counts, const VisitOther& visit_other) {
   const auto ray = in_registers(frame.slab);
   const Node* const nodes = accel.nodes.data();
   DepthFirstStack::Entry* top = stack.entries;
@@ -104,7 +111,7 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const FrameRay<Sla
       alignas(64) float entry[kMaxWidth];
       tested += node.count;
       const std::uint32_t hits = slab_node(node, ray, hit.t, entry);
-      const std::uint32_t mask = cull(accel, node, frame.slab, frame.direction, hits, counts);
+      const std::uint32_t mask = cull(accel, node, frame.slab, frame.direction, ~0u, hits, counts, counts.culls);
       if (mask == 0) goto pop;
       ref = nearest_child(accel, node, mask, entry, top);
     }
@@ -143,13 +150,13 @@ HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay<Slab>&
 /// Traces `ray` below an instance with a transform. True when a search for any hit has found one.
 template <class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
-                                 TraceStacks& stacks, TestCounts& counts);
+                                 TraceStacks& stacks, TraversalCounts& counts);
 
 /// The same below `root`, in the frame that was made from `ray`. In the world frame, instances without a transform are
 /// entered in passing; `level` is 0 there and 1 below an instance with one.
 template <class Slab>
 HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, const Ray& ray, FrameRay<Slab>& frame, bool any_hit,
-                              Hit& hit, TraceStacks& stacks, int level, TestCounts& counts) {
+                              Hit& hit, TraceStacks& stacks, int level, TraversalCounts& counts) {
   return depth_first(accel, root, frame, hit, stacks.at[level], counts, [&](NodeRef& ref) HWY_ATTR {
     if (HWY_LIKELY(ref.kind() == NodeRef::Kind::kLeaf)) {
       counts.triangle += ref.triangles();
@@ -162,7 +169,7 @@ HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, const Ray& ray, 
 
 template <class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
-                                 TraceStacks& stacks, TestCounts& counts) {
+                                 TraceStacks& stacks, TraversalCounts& counts) {
   FrameStorage<Slab> below;
   enter_frame(accel, instance.instance_index(), ray, &below.ray, counts);
   const NodeRef root = accel.instances[instance.instance_index()].root;

@@ -32,7 +32,7 @@ struct Walker {
 /// done.
 template <class Slab>
 HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, NodeRef ref, TraceStacks& stacks,
-                        TestCounts& counts) {
+                        TraversalCounts& counts) {
   FrameRay<Slab>& frame = walker.frame.ray;
   Hit& hit = walker.record->hit;
   for (;; any = false) {

@@ -58,7 +58,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
       mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes;
     } else {
       mask = slab_node(node, in_registers(ray), record.hit.t, entry) & lanes;
-      mask = cull(accel, node, ray, model.direction, mask, counts);
+      mask = cull(accel, node, ray, model.direction, lanes, mask, counts, members.culls);
       for (int lane = 0; lane < kMaxWidth; ++lane)
         if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
     }
@@ -97,7 +97,7 @@ void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const Ray
 template <class Slab>
 void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
   TraceStacks stacks;
-  TestCounts counts;
+  TraversalCounts counts(members.culls);
   for (std::size_t i = 0; i < members.count; ++i) {
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
@@ -115,7 +115,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
   constexpr std::size_t kWalkers = 4;   // two gain half as much, six nothing more
   const Node* const nodes = accel.nodes.data();
   TraceStacks stacks;
-  TestCounts counts;
+  TraversalCounts counts(members.culls);
   std::size_t next = 0;
   Walker<Slab> walkers[kWalkers];
   Walker<Slab>* active[kWalkers];
@@ -142,7 +142,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
       counts.box += node.count;
       const FrameRay<Slab>& frame = walker.frame.ray;
       walker.mask = slab_node(node, in_registers(frame.slab), walker.record->hit.t, walker.entry);
-      walker.mask = cull(accel, node, frame.slab, frame.direction, walker.mask, counts);
+      walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
     }
     for (std::size_t k = 0; k < count;) {
       Walker<Slab>& walker = *active[k];

@@ -7,6 +7,7 @@
 
 #include "accel/accel.h"
 #include "core/config.h"
+#include "core/cull_counts.h"
 #include "core/ray.h"
 #include "core/test_counts.h"
 
@@ -17,6 +18,7 @@ struct RayMembers {
   RayRecord* records = nullptr;
   const std::uint32_t* slots = nullptr;
   std::size_t count = 0;
+  CullCounts* culls = nullptr;   ///< where cull planes are counted by depth; null: nowhere
 };
 
 /// Bits of RayTag::flags while a ray is in flight.

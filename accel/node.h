@@ -63,9 +63,14 @@ struct alignas(64) Node {
   NodeRef child[kMaxWidth];
   std::uint8_t strip_size[kMaxWidth];   ///< shapes below each child: its children, or its triangles
   std::uint8_t count = 0;               ///< children, in lanes 0..count-1
+  std::uint8_t depth = 0;               ///< below the root of its structure, 255 at most; set with cull planes
+  bool above_instances = false;         ///< part of the top level
   std::uint32_t triangles = 0;          ///< below this node, instances counted each time; saturates
   std::uint32_t first_plane = 0;        ///< in Accel::planes: lane by lane, where there are any
   std::uint32_t plane_counts = 0;       ///< cull planes of each child, four bits a lane
+  /// How far its planes and boxes are moved out when lines are cut by them: by the first for each distance along an
+  /// axis from the ray's origin to the far side of the box, and by the second in any case.
+  float margin_per_reach = 0, least_margin = 0;
 
   Node() {
     for (int lane = 0; lane < kMaxWidth; ++lane) {

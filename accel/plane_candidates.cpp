@@ -27,6 +27,11 @@ bool in_octant(const CullPlane& plane, std::size_t octant) {
 
 }  // namespace
 
+float rounded_up(double x) {
+  const float nearest = static_cast<float>(x);
+  return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points) {
   const float* const n = plane.normal;
   const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y), plane_centre(box.lo.z, box.hi.z));
@@ -37,10 +42,7 @@ float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<
     error = std::fmax(error, std::fabs(x) + std::fabs(y) + std::fabs(z));
   }
   // Each term is a rounded difference and product, in two sums; denormals of double are below every float.
-  most += 0x1p-50 * error;
-  float distance = static_cast<float>(most);
-  if (distance < most) distance = std::nextafter(distance, std::numeric_limits<float>::infinity());
-  return distance;
+  return rounded_up(most + 0x1p-50 * error);
 }
 
 // A corner is a simplex, less the simplices that stick out beyond the box's other faces (inclusion and exclusion).
@@ -83,7 +85,7 @@ std::vector<CullPlane> OctantBest::best(int most, double least) const {
 void PlaneChoice::offer(const DVec3& direction) {
   CullPlane plane{};
   if (!set_normal(direction, plane)) return;
-  plane.distance = distance_along(plane, child_.box, child_.points);
+  plane.distance = child_.distance(plane);
   if (std::isfinite(plane.distance)) best_.offer(plane, empty_part(plane, child_.box));
 }
 
@@ -101,13 +103,13 @@ void PlaneChoice::offer_octants() {
 
 std::vector<CullPlane> PlaneChoice::best(int most) const { return best_.best(most, kLeastEmptyPart); }
 
-std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedPoints>& siblings,
+std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedShape>& siblings,
                                                   const std::vector<CullPlane>& candidates, int most) {
   OctantBest choice;
   for (CullPlane plane : candidates) {
     double worth = 0;
-    for (const BoxedPoints& child : siblings) {
-      plane.distance = distance_along(plane, child.box, child.points);
+    for (const BoxedShape& child : siblings) {
+      plane.distance = child.distance(plane);
       worth += child.box.half_area() * empty_part(plane, child.box);
     }
     plane.distance = 0;   // equal directions are equal planes
@@ -115,11 +117,11 @@ std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedPoints>
   }
   const std::vector<CullPlane> directions = choice.best(most, 0);
   std::vector<std::vector<CullPlane>> planes;
-  for (const BoxedPoints& child : siblings) {
+  for (const BoxedShape& child : siblings) {
     std::vector<CullPlane>& own = planes.emplace_back(directions);
     double empty = 0;
     for (CullPlane& plane : own) {
-      plane.distance = distance_along(plane, child.box, child.points);
+      plane.distance = child.distance(plane);
       empty = std::fmax(empty, empty_part(plane, child.box));
     }
     if (!(empty > kLeastEmptyPart)) own.clear();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "accel/cull_plane.h"
@@ -9,11 +10,14 @@
 
 namespace carousel::accel {
 
-/// A child: its box, and what stands in it.
-struct BoxedPoints {
+/// A child: its box, and how far along a plane's normal what stands in it reaches, from the box's plane_centre().
+struct BoxedShape {
   Aabb box;
-  std::vector<Vec3> points;
+  std::function<float(const CullPlane&)> distance;   ///< rounded up
 };
+
+/// The least float that is not below `x`.
+float rounded_up(double x);
 
 /// How far `n` points along the farthest of the points, from a box's plane_centre(): rounded up, so that with a plane at
 /// this distance no point is cut off. Infinite when there is no such float.
@@ -41,7 +45,7 @@ class OctantBest {
 /// Planes for one child, the best of those offered.
 class PlaneChoice {
  public:
-  explicit PlaneChoice(const BoxedPoints& child) : child_(child) {}
+  explicit PlaneChoice(const BoxedShape& child) : child_(child) {}
 
   /// Any length of `direction`, which need not be of use.
   void offer(const DVec3& direction);
@@ -55,14 +59,14 @@ class PlaneChoice {
   std::vector<CullPlane> best(int most) const;
 
  private:
-  const BoxedPoints& child_;
+  const BoxedShape& child_;
   OctantBest best_;
 };
 
 /// Planes for siblings that share their normals: of the candidates' directions those that cut most off all boxes
 /// together, a box counting by its area, as rays meet it. As many for each sibling, in the same order; none for one that
 /// has nothing to cut off.
-std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedPoints>& siblings,
+std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedShape>& siblings,
                                                   const std::vector<CullPlane>& candidates, int most);
 
 }  // namespace carousel::accel

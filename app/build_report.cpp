@@ -66,6 +66,21 @@ report::Bundles bundles(const std::vector<ringbus::BundleCounts>& by_depth) {
   return out;
 }
 
+report::CullPlanes cull_planes(const accel::Accel& accel, const CullCounts& culls) {
+  report::CullPlanes out{accel.planes.size(), accel.plane_bytes, ratio(accel.plane_bytes, accel.nodes.size())};
+  const auto add = [&](const char* structure, const auto& levels) {
+    for (std::size_t depth = 0; depth < levels.size(); ++depth) {
+      const CullLevel& level = levels[depth];
+      if (level.children > 0)
+        out.levels.push_back({structure, depth, level.children, level.plane_tests, level.culled(), level.boxes,
+                              level.nodes, level.leaves, level.triangles, level.transforms});
+    }
+  };
+  add("top", culls.above);
+  add("bottom", culls.below);
+  return out;
+}
+
 report::Resource resource(std::size_t number, const ringbus::ResourceStatistics& s,
                           const ringbus::CollectionStore::Statistics& c) {
   using ringbus::StallReason;
@@ -93,7 +108,7 @@ report::Resource resource(std::size_t number, const ringbus::ResourceStatistics&
 }
 
 /// The parts that come from the resources' event counts.
-void add_ring(report::Report& r, const ringbus::RunResult& result, const PacketsConfig& config) {
+void add_ring(report::Report& r, const ringbus::RunResult& result, const PacketsConfig& config, const accel::Accel& accel) {
   const std::uint64_t rays = result.rays_completed;
   ringbus::ResourceStatistics sum;
   report::Collections collections;
@@ -112,6 +127,7 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
   r.tests = tests(sum.tests, rays);
   r.tests->ray_reads = {sum.reads, ratio(sum.reads, rays)};
   if (!sum.bundles.empty()) r.tests->bundles = bundles(sum.bundles);
+  if (!accel.planes.empty()) r.cull_planes = cull_planes(accel, sum.culls);
   r.packets = report::Packets{sum.packets_issued,
                               sum.packets_retired,
                               sum.hops,
@@ -205,6 +221,7 @@ report::Host host(const Prepared& p, const ringbus::RunResult& result) {
   out.rays_per_second = ratio(static_cast<double>(result.rays_completed), result.wall_seconds);
   out.scene_seconds = p.scene_seconds;
   out.build_seconds = p.build_seconds;
+  if (p.config().cull_planes.count > 0) out.plane_seconds = p.plane_seconds;
   out.accel_bytes = p.accel.size_bytes();
   out.peak_memory_bytes = peak_memory_bytes();
   out.simd = accel::simd_targets().front();   // only the chosen one is left after a choice
@@ -249,7 +266,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
             result.rays_emitted - result.rays_completed,
             0,
             {emitted[0], emitted[1], emitted[2]}};
-  if (!result.resources.empty()) add_ring(r, result, config.packets);
+  if (!result.resources.empty()) add_ring(r, result, config.packets, prepared.accel);
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
                std::nullopt, effects_of(prepared.scene, config)};
   if (result.cycle) add_cycles(r, *result.cycle, config);

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <spdlog/spdlog.h>
 
+#include "accel/cull_planes.h"
 #include "accel/kernels.h"
 #include "app/machine_info.h"
 #include "app/memory_need.h"
@@ -54,8 +55,10 @@ void build_accel(Prepared& p) {
   const Stopwatch watch;
   accel::select_simd_target(p.config().engine.simd);
   const auto executor = make_tbb_executor(p.threads);
-  p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy, p.config().cull_planes);
+  p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
   p.build_seconds = watch.seconds();
+  accel::add_cull_planes(p.accel, p.scene, p.config().cull_planes, *executor);
+  p.plane_seconds = watch.seconds() - p.build_seconds;
   if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
     throw ConfigError(std::move(issues));
 }

@@ -24,7 +24,7 @@ struct Prepared {
   scene::Scene scene;
   std::vector<std::string> warnings;  ///< of the import
   accel::Accel accel;
-  double scene_seconds = 0, build_seconds = 0;
+  double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }
   /// Scale of entry distances, for the policy `nearest`.

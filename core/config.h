@@ -164,6 +164,8 @@ struct CullPlanesConfig {
   enum class Nodes { kLeaves, kInner, kAll } nodes = Nodes::kLeaves;
   bool shared_normals = false;
   enum class Fit { kVertices, kBoxes } fit = Fit::kVertices;
+  enum class Order { kBoxFirst, kPlanesFirst } order = Order::kBoxFirst;
+  enum class Levels { kBlas, kTlas, kAll } levels = Levels::kBlas;
 };
 
 struct BundlesConfig {

@@ -71,6 +71,10 @@ CAROUSEL_ENUM(CullPlanesConfig::Nodes, {CullPlanesConfig::Nodes::kLeaves, "leave
               {CullPlanesConfig::Nodes::kInner, "inner"}, {CullPlanesConfig::Nodes::kAll, "all"});
 CAROUSEL_ENUM(CullPlanesConfig::Fit, {CullPlanesConfig::Fit::kVertices, "vertices"},
               {CullPlanesConfig::Fit::kBoxes, "boxes"});
+CAROUSEL_ENUM(CullPlanesConfig::Order, {CullPlanesConfig::Order::kBoxFirst, "box_first"},
+              {CullPlanesConfig::Order::kPlanesFirst, "planes_first"});
+CAROUSEL_ENUM(CullPlanesConfig::Levels, {CullPlanesConfig::Levels::kBlas, "blas"},
+              {CullPlanesConfig::Levels::kTlas, "tlas"}, {CullPlanesConfig::Levels::kAll, "all"});
 CAROUSEL_ENUM(BundlesConfig::Form, {BundlesConfig::Form::kInterval, "interval"},
               {BundlesConfig::Form::kSilhouette, "silhouette"});
 CAROUSEL_ENUM(BundlesConfig::Edges, {BundlesConfig::Edges::kSerial, "serial"},

@@ -204,7 +204,9 @@ void describe(V& v, CullPlanesConfig& c) {
   v.field("count", c.count, IntRange{0, 8}, "planes per child", "cull planes at most; 0 is none");
   v.choice("nodes", c.nodes, "children that get planes");
   v.field("shared_normals", c.shared_normals, "", "siblings share their planes' normals");
-  v.choice("fit", c.fit, "what the planes of inner children are moved up to; those of leaves to vertices");
+  v.choice("fit", c.fit, "what the planes of inner children and instances are moved up to; those of leaves to vertices");
+  v.choice("levels", c.levels, "nodes below the instances, above them, where the leaves are instances, or all");
+  v.choice("order", c.order, "a child's planes are tested after its box has been hit, or before, which then may need no test");
 }
 
 template <class V>

@@ -136,6 +136,10 @@ class Rules {
       issue("accuracy.box", fmt::format("cull planes go with conservative boxes; expected conservative, found {}, or "
                                         "cull_planes.count: 0",
                                         enum_name(c.accuracy.box)));
+    if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas && c.accuracy.transform == TransformLevel::kInverseMatrix)
+      issue("accuracy.transform", fmt::format("cull planes above the instances could lose hits of {}; expected two_step, "
+                                              "two_step_double or transpose_if_rotation, or cull_planes.levels: blas",
+                                              enum_name(c.accuracy.transform)));
   }
 
   void built_packets() {

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/cull_planes.h"
 #include "report/traffic.h"
 
 namespace carousel::report {
@@ -220,6 +221,7 @@ struct Host {
   std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
   std::string simd;
   Machine machine;
+  std::optional<double> plane_seconds{};
 };
 
 struct Report {
@@ -232,6 +234,7 @@ struct Report {
   Rays rays;
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
+  std::optional<CullPlanes> cull_planes;
   std::optional<Packets> packets;
   std::optional<Collections> collections;
   std::optional<std::vector<Resource>> resources;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "report/cull_plane_fields.h"
 #include "report/report.h"
 #include "report/traffic_fields.h"
 
@@ -335,7 +336,8 @@ void describe(V& v, Host& r) {
           "of the simulation, verification included, loading and building not");
   v.field("rays_per_second", r.rays_per_second, "rays/s", "completed rays over wall_seconds");
   v.field("scene_seconds", r.scene_seconds, "s", "to load or generate the scene");
-  v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure");
+  v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure, without cull planes");
+  v.field("plane_seconds", r.plane_seconds, "s", "to find its cull planes");
   v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");
   v.field("simd", r.simd, "", "instruction set of the test kernels");
@@ -353,6 +355,7 @@ void describe(V& v, Report& r) {
   v.section("rays", r.rays, "rays; emitted = completed + lost");
   v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
   v.section("tests", r.tests, "tests done");
+  v.section("cull_planes", r.cull_planes, "what cull planes take and what they spare, when there are any");
   v.section("packets", r.packets, "packets");
   v.section("collections", r.collections, "rays waiting for a node");
   v.section("resources", r.resources, "each resource");

@@ -93,6 +93,26 @@ void test_line(Table& table, const Tests& t) {
   }
 }
 
+/// The depths where most was spared stand in report.json; here is their sum.
+void cull_plane_lines(Table& table, const Report& report) {
+  CullPlaneLevel sum;
+  for (const CullPlaneLevel& level : report.cull_planes->levels) {
+    sum.children_tested += level.children_tested;
+    sum.culled += level.culled;
+    sum.box_tests_spared += level.box_tests_spared;
+    sum.nodes_spared += level.nodes_spared;
+    sum.leaves_spared += level.leaves_spared;
+    sum.triangle_tests_spared += level.triangle_tests_spared;
+    sum.transforms_spared += level.transforms_spared;
+  }
+  table.line("cull planes", "{} planes, {:.1f} bytes a node, found in {}   {} of {} children culled", grouped(report.cull_planes->planes),
+             report.cull_planes->bytes_per_node, seconds_text(report.host.plane_seconds.value_or(0)), grouped(sum.culled),
+             grouped(sum.children_tested));
+  table.line("", "spared: {} nodes   {} leaves of {} triangles   {} transforms   {} boxes", grouped(sum.nodes_spared),
+             grouped(sum.leaves_spared), grouped(sum.triangle_tests_spared), grouped(sum.transforms_spared),
+             grouped(sum.box_tests_spared));
+}
+
 void packet_lines(Table& table, const Report& report) {
   if (const auto& p = report.packets) {
     table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(p->issued),
@@ -188,6 +208,7 @@ std::string report_table(const Report& report) {
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
                report.bound->classes.front().name, percent(report.bound->reached));
   if (report.tests) test_line(table, *report.tests);
+  if (report.cull_planes) cull_plane_lines(table, report);
   packet_lines(table, report);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "accel/node.h"
+#include "core/cull_counts.h"
 #include "core/ids.h"
 #include "core/test_counts.h"
 #include "ringbus/bundle_counts.h"
@@ -52,6 +53,8 @@ class EventSink {
  public:
   virtual ~EventSink() = default;
   virtual void record(const Event& event) = 0;
+  /// Where tests add what cull planes did; null: nowhere.
+  virtual CullCounts* cull_counts() { return nullptr; }
 };
 
 }  // namespace carousel::ringbus

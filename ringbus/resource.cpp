@@ -34,6 +34,7 @@ Resource::Resource(const Config& config, const accel::Accel& accel, float scene_
     : config_(config),
       accel_(accel),
       sink_(sink),
+      culls_(sink != nullptr ? sink->cull_counts() : nullptr),
       ordered_(config.collections.traversal == Traversal::kOrdered),
       single_(config.packets.shapes == PacketShapes::kSingle),
       bounded_(config.collections.when_full == WhenFull::kReserve),

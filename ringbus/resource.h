@@ -128,6 +128,7 @@ class Resource {
   const Config& config_;
   const accel::Accel& accel_;
   EventSink* sink_;
+  CullCounts* culls_;
   SubtreeTracer* subtree_tracer_ = nullptr;
   TransformAccount* transforms_ = nullptr;
   bool ordered_, single_, bounded_;

@@ -96,7 +96,7 @@ void Resource::test(Packet& packet) {
 }
 
 void Resource::test_spread(Packet& packet) {
-  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size()};
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
   if (is_treelet(packet.key) || !packet.key.ref.is_inner()) {
     if (is_treelet(packet.key) && subtree_tracer_ != nullptr)
       subtree_tracer_->trace(packet.key, members, tests_);
@@ -127,7 +127,7 @@ void Resource::test_spread(Packet& packet) {
 }
 
 void Resource::test_ordered(Packet& packet) {
-  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size()};
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
   if (packet.key.ref.is_inner()) {
     masks_.resize(local_slots_.size());
     entries_.resize(accel::kMaxWidth * local_slots_.size());

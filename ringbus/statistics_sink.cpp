@@ -21,6 +21,7 @@ ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) 
   reads += o.reads;
   bundles.resize(std::max(bundles.size(), o.bundles.size()));
   for (std::size_t depth = 0; depth < o.bundles.size(); ++depth) bundles[depth] += o.bundles[depth];
+  culls += o.culls;
   return *this;
 }
 

@@ -19,6 +19,7 @@ struct ResourceStatistics {
   TestCounts tests;
   std::uint64_t reads = 0;                   ///< records of rays and bundles read for tests
   std::vector<BundleCounts> bundles;         ///< by depth in strips; empty without bundles
+  CullCounts culls;
 
   ResourceStatistics& operator+=(const ResourceStatistics& o);
   friend bool operator==(const ResourceStatistics&, const ResourceStatistics&) = default;
@@ -28,6 +29,7 @@ struct ResourceStatistics {
 class StatisticsSink final : public EventSink {
  public:
   void record(const Event& event) override;
+  CullCounts* cull_counts() override { return &statistics_.culls; }
   const ResourceStatistics& statistics() const { return statistics_; }
 
  private:

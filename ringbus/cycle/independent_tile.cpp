@@ -17,7 +17,7 @@ IndependentTile::IndependentTile(ResourceId id, CycleMachine& machine, bool stat
       statistics_(statistics),
       trace_(id.value, window),
       ports_(ports),
-      tester_(testers_of(machine.config, id), machine.config.rays.reads_per_cycle),
+      tester_(testers_of(machine.config, id), machine.config.cull_planes.order, machine.config.rays.reads_per_cycle),
       fetches_(machine.config.memory, ports),
       completed_port_(machine.config, ports),
       help_(machine.config, ports),
@@ -113,7 +113,8 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   }
   Thread& thread = threads_[slot];
   stack_held_ -= thread.walk.stack_bytes().held;
-  const TestCounts counts = thread.walk.test(machine_.accel, thread.strip, {store_.records(), &slot, 1});
+  const TestCounts counts = thread.walk.test(machine_.accel, thread.strip, 
+                                              {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
   const std::uint64_t held = thread.walk.stack_bytes().held;
   stack_held_ += held;
   stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);

@@ -11,7 +11,7 @@ void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, T
   entered_.clear();
   std::fill(seen_.begin(), seen_.end(), 0);
   for (std::size_t i = 0; i < members.count; ++i)
-    account_.chain = std::max(account_.chain, walk_ray(from, {members.records, members.slots + i, 1}, counts));
+    account_.chain = std::max(account_.chain, walk_ray(from, {members.records, members.slots + i, 1, members.culls}, counts));
 }
 
 std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, TestCounts& counts) {
@@ -26,7 +26,9 @@ std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers
     else if (tests.transforms > 0)
       account_.instances.push_back(key->instance);
     if (tests.plane > 0) cycles += step_.plane;
-    cycles += (key->ref.is_inner() ? step_.box : step_.triangle) + (tests.transforms + accel::kInversionPasses * tests.inversions) * step_.transform;
+    if (tests.box > 0) cycles += step_.box;   // none are left where planes, tested first, have culled all children
+    if (tests.triangle > 0) cycles += step_.triangle;
+    cycles += (tests.transforms + accel::kInversionPasses * tests.inversions) * step_.transform;
     counts += tests;
   }
   return cycles;

@@ -11,46 +11,46 @@
 namespace carousel::ringbus::cycle {
 
 /// A resource's test units. Transforms, boxes and triangles are pipelined: a ray's boxes are tested when it has
-/// been transformed, while the next one is, and its planes when its boxes have been. A matrix that is inverted first takes its passes through the transform
-/// unit ahead of the rays. Records of rays and bundles come from the store one after another if its port is narrow, and
-/// rays that leave a bundle are tested after it.
+/// been transformed, while the next one is, and its planes when its boxes have been; or its planes first, and then the
+/// boxes that are left. A matrix that is inverted first takes its passes through the transform unit ahead of the rays.
+/// Records of rays and bundles come from the store one after another if its port is narrow, and rays that leave a bundle
+/// are tested after it.
 struct Tester {
+  using Order = CullPlanesConfig::Order;
   /// `reads_per_cycle`: as rays.reads_per_cycle.
-  explicit Tester(const TestersConfig& config, std::int64_t reads_per_cycle = 0)
+  explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst, std::int64_t reads_per_cycle = 0)
       : box(config.box),
         triangle(config.triangle),
         plane(config.plane),
         bundle(config.bundle),
         transform(config.transform),
         store({std::max<std::int64_t>(1, reads_per_cycle), 1, 0}),
+        order_(order),
         reads_cost_(reads_per_cycle > 0) {}
 
-  /// When the answers to the tests of one strip are there; started at `at`, for `reads` records, with so many passes through
-  /// the bundle units.
+  /// When the answers to the tests of one strip are there; started at `at`, for `reads` records, with so many passes
+  /// through the bundle units.
   Cycle strip(Cycle at, const TestCounts& counts, std::uint64_t reads = 0, std::uint64_t bundle_passes = 0) {
-    const UnitBank::Reservation read = store.reserve(at, reads_cost_ ? reads : 0);
-    const UnitBank::Reservation bundled = bundle.reserve(read.first, bundle_passes);
-    const UnitBank::Reservation moved = transform.reserve(inverted(bundled.first, counts), counts.transforms);
-    UnitBank& bank = counts.box > 0 ? box : triangle;
-    const UnitBank::Reservation tested = bank.reserve(moved.first, counts.box + counts.triangle);
-    // What is last to be read, to be transformed or to leave its bundle is tested last.
-    Cycle last = std::max(tested.last, bundled.last);
-    if (bundle_passes > 0) last = std::max(last, read.last + bundle.latency());
-    if (counts.transforms > 0) last = std::max(last, moved.last + bank.latency());
-    if (counts.box + counts.triangle > 0) last = std::max(last, std::max(read.last, bundled.last) + (reads_cost_ || bundle_passes > 0 ? bank.latency() : 0));
-    if (counts.plane == 0) return last;
-    return std::max(plane.reserve(tested.first, counts.plane).last, last + plane.latency());
+    const UnitBank::Reservation bundled = tested(bundle, store.reserve(at, reads_cost_ ? reads : 0), bundle_passes);
+    const Cycle inverse = inverted(bundled.first, counts);
+    const UnitBank::Reservation moved = tested(transform, {inverse, std::max(inverse, bundled.last)}, counts.transforms);
+    if (counts.plane == 0) return tested(counts.box > 0 ? box : triangle, moved, counts.box + counts.triangle).last;
+    if (order_ == Order::kBoxFirst) return tested(plane, tested(box, moved, counts.box), counts.plane).last;
+    const UnitBank::Reservation planes = tested(plane, moved, counts.plane);
+    return counts.box > 0 ? tested(box, planes, counts.box).last : planes.last;
   }
 
   /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
   Cycle walk(Cycle at, const TestCounts& counts, Cycle chain, std::uint64_t reads = 0) {
-    return std::max({at + chain, store.reserve(at, reads_cost_ ? reads : 0).last, transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last,
-                     plane.reserve(at, counts.plane).last, triangle.reserve(at, counts.triangle).last});
+    return std::max({at + chain, store.reserve(at, reads_cost_ ? reads : 0).last,
+                     transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last, plane.reserve(at, counts.plane).last, triangle.reserve(at, counts.triangle).last});
   }
 
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const TestCounts& counts) {
     const Cycle moved = transform.reserve_beside(inverted(at, counts), counts.transforms).last;
+    if (order_ == Order::kPlanesFirst && counts.plane > 0)
+      return box.reserve_beside(plane.reserve_beside(moved, counts.plane).last, counts.box).last;
     UnitBank& bank = counts.box > 0 ? box : triangle;
     const Cycle tested = bank.reserve_beside(moved, counts.box + counts.triangle).last;
     return plane.reserve_beside(tested, counts.plane).last;
@@ -70,6 +70,12 @@ struct Tester {
   UnitBank store;   ///< the port of the ray store
 
  private:
+  /// Tests for rays that come one after another from the bank before: the last of them is tested last.
+  static UnitBank::Reservation tested(UnitBank& bank, const UnitBank::Reservation& before, std::uint64_t tests) {
+    if (tests == 0) return before;
+    const UnitBank::Reservation own = bank.reserve(before.first, tests);
+    return {own.first, before.last > before.first ? std::max(own.last, before.last + bank.latency()) : own.last};
+  }
   static std::uint64_t passes(const TestCounts& counts) {
     return counts.transforms + accel::kInversionPasses * counts.inversions;
   }
@@ -77,6 +83,7 @@ struct Tester {
     return transform.reserve(at, accel::kInversionPasses * counts.inversions).last;
   }
 
+  Order order_;
   bool reads_cost_;
 };
 

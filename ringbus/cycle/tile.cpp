@@ -23,7 +23,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       walk_(machine.accel, step_cycles(testers_of(machine.config, id)), transforms_),
       resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], statistics ? &sink_ : nullptr),
       ports_(std::move(ports)),
-      tester_(testers_of(machine.config, id), machine.config.rays.reads_per_cycle),
+      tester_(testers_of(machine.config, id), machine.config.cull_planes.order, machine.config.rays.reads_per_cycle),
       shapes_(machine.config.memory, ports_),
       completed_port_(machine.config, ports_),
       help_(machine.config, ports_),

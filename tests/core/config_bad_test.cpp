@@ -139,6 +139,11 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
                   "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
+        BadConfig{"CullPlaneOrder", SCENE "cull_planes: {order: planes}\n",
+                  "test.yaml:2:22: cull_planes.order: expected one of box_first, planes_first, found 'planes'"},
+        BadConfig{"TopPlanesOfInverseMatrices", SCENE "cull_planes: {count: 2, levels: tlas}\naccuracy: {transform: inverse_matrix}\n",
+                  "test.yaml:3:23: accuracy.transform: cull planes above the instances could lose hits of inverse_matrix; "
+                  "expected two_step, two_step_double or transpose_if_rotation, or cull_planes.levels: blas"},
         BadConfig{"CullPlanesOfFastTriangles", SCENE "cull_planes: {count: 2}\naccuracy: {triangle: fast}\n",
                   "test.yaml:3:22: accuracy.triangle: cull planes could lose hits of fast; expected watertight or "
                   "exact, or cull_planes.count: 0"},

@@ -19,6 +19,8 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(json["rays"]["by_kind"]["bounce"], 300);
   EXPECT_EQ(json["tests"]["triangle"]["per_ray"], 2.25);
   EXPECT_EQ(json["links"][1]["occupancy_max"], 11);
+  EXPECT_EQ(json["cull_planes"]["levels"][0]["triangle_tests_spared"], 605);
+  EXPECT_EQ(json["host"]["plane_seconds"], 0.125);
   EXPECT_EQ(json["digest"]["image"], "4567");
   EXPECT_EQ(json["scene"]["bounds"]["lo"], Json({-1.0, -2.0, -3.0}));
 }

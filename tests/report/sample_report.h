@@ -16,6 +16,7 @@ inline Report sample_report() {
   r.rays = {1000, 990, 10, 0, {500, 300, 200}};
   r.throughput = {0.5, 2.5, 17.25};
   r.tests = {{8000, 8.5}, {0, 0}, {2000, 2.25}, {0, 0}, {990, 1}};
+  r.cull_planes = {640, 10240, 42.5, {{"bottom", 3, 700, 1500, 260, 30, 80, 180, 605, 0}, {"top", 0, 90, 100, 40, 0, 5, 0, 0, 35}}};
   r.packets = {500, 499, 1200, 30.5, 0.25, 0.125};
   r.collections = {77, 13, 0.75, 4096, 0};
   Resource a, b;
@@ -32,6 +33,7 @@ inline Report sample_report() {
   r.verify = {990, 1, "pixel 3"};
   r.digest = {"0123", "4567"};
   r.host = {4, 2.0, 495, 0.01, 0.2, 1 << 20, 64 << 20, "avx2", {"cpu", "linux", 4, 1ull << 34}};
+  r.host.plane_seconds = 0.125;
   return r;
 }
 

@@ -6,6 +6,8 @@
 namespace carousel::ringbus::cycle {
 namespace {
 
+constexpr auto kOrder = CullPlanesConfig::Order::kBoxFirst;
+
 TestersConfig testers() {
   TestersConfig c;
   c.box = {8, 1, 4};
@@ -41,7 +43,7 @@ TEST(BundleUnits, RaysThatLeaveABundleAreTestedAfterIt) {
 }
 
 TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
-  Tester wide(testers()), narrow(testers(), 2);
+  Tester wide(testers()), narrow(testers(), kOrder, 2);
   EXPECT_EQ(wide.strip(0, counts(8, 0), 10), 4u);
   EXPECT_EQ(narrow.strip(0, counts(8, 0), 10), 4u + 4u);   // five cycles of reading, the last record in the fifth
   EXPECT_EQ(narrow.store.busy(), 5u);
@@ -50,13 +52,13 @@ TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
 }
 
 TEST(BundleUnits, ABundleReadsOneRecordWhereItsRaysReadAllOfTheirs) {
-  Tester as_bundle(testers(), 1), as_rays(testers(), 1);
+  Tester as_bundle(testers(), kOrder, 1), as_rays(testers(), kOrder, 1);
   EXPECT_EQ(as_bundle.strip(0, counts(0, 8), 1, 8), 7u + 3u);
   EXPECT_EQ(as_rays.strip(0, counts(256, 0), 32), 31u + 4u);
 }
 
 TEST(BundleUnits, AWalkThroughASubtreeReadsItsRaysOnce) {
-  Tester tester(testers(), 1);
+  Tester tester(testers(), kOrder, 1);
   EXPECT_EQ(tester.walk(5, counts(8, 0), 3, 32), 5u + 31u);
   EXPECT_EQ(tester.walk(100, counts(8, 0), 50, 32), 150u);
 }

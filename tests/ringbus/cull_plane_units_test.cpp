@@ -40,6 +40,20 @@ TEST(PlaneUnits, CostNothingWithoutPlanes) {
   EXPECT_EQ(tester.plane.busy(), 0);
 }
 
+TEST(PlaneUnits, ComeBeforeTheBoxesThatAreLeft) {
+  Tester tester(testers(), CullPlanesConfig::Order::kPlanesFirst);
+  // 10 planes in 5 turns of 3 cycles, answered from 105 on; the boxes of the last ray when it has been, at 117.
+  EXPECT_EQ(tester.strip(100, {.box = 16, .plane = 10}), 100 + 4 * 3 + 5 + 4);
+  EXPECT_EQ(tester.box.busy(), 2);
+  // Many boxes begin at the first answer, at 205.
+  EXPECT_EQ(tester.strip(200, {.box = 160, .plane = 2}), 205 + 19 + 4);
+  // Planes have culled all children.
+  EXPECT_EQ(tester.strip(300, {.plane = 2}), 305);
+  EXPECT_EQ(tester.ray(400, {.box = 8, .plane = 2}), 405 + 4);
+  EXPECT_EQ(tester.ray(500, {.plane = 2}), 505);
+  EXPECT_EQ(tester.strip(600, {.triangle = 4}), 600 + TestersConfig{}.triangle.latency_cycles);
+}
+
 TEST(PlaneUnits, ServeSingleRaysAndWalks) {
   Tester tester(testers());
   EXPECT_EQ(tester.ray(0, {.box = 8, .plane = 2}), 4 + 5);

@@ -89,7 +89,8 @@ class TestScene {
     return accel(bvh, none);
   }
   const accel::Accel& accel(const BvhConfig& bvh, const CullPlanesConfig& planes) {
-    auto& built = accels_[{bvh.width, bvh.leaf_triangles, planes.count, planes.nodes, planes.fit, planes.shared_normals}];
+    auto& built = accels_[{bvh.width, bvh.leaf_triangles, planes.count, planes.nodes, planes.fit, planes.shared_normals, planes.order,
+                         planes.levels}];
     if (!built)
       built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor(), accuracy_, planes));
     return *built;
@@ -112,8 +113,9 @@ class TestScene {
   std::uint8_t bounces_;
   float away_;
   AccuracyConfig accuracy_;
-  /// Width, leaf size, and planes: count, nodes, fit, shared.
-  using Built = std::tuple<std::int64_t, std::int64_t, std::int64_t, CullPlanesConfig::Nodes, CullPlanesConfig::Fit, bool>;
+  /// Width, leaf size, and planes: count, nodes, fit, shared, order, levels.
+  using Built = std::tuple<std::int64_t, std::int64_t, std::int64_t, CullPlanesConfig::Nodes, CullPlanesConfig::Fit, bool,
+                           CullPlanesConfig::Order, CullPlanesConfig::Levels>;
   std::map<Built, std::unique_ptr<accel::Accel>> accels_;
   HitsDigest digest_;
   std::uint64_t rays_ = 0;

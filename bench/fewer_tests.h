@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "bench/ray_sets.h"
+#include "bench/results.h"
+#include "bench/stopwatch.h"
+#include "core/config.h"
+#include "core/test_counts.h"
+#include "core/workload.h"
+
+namespace carousel::bench {
+
+// What bench_fewer_tests measures: the same rays on one thread, with a method that promises fewer tests and without.
+
+/// One way to trace rays.
+struct TestVariant {
+  std::string method;    ///< cull_planes; room for others
+  std::string setting;   ///< of the method, as a table names it
+  std::function<void(const RayBatch&, HitBatch&, TestCounts&)> trace;
+};
+
+struct VariantSpeed {
+  std::string method, setting;
+  TestCounts tests;
+  Spread nanoseconds_per_ray;   ///< CPU time
+  Spread ratio;                 ///< of the time of the same round's first variant
+};
+
+/// One set of rays in one scene.
+struct FewerTestsResult {
+  std::string scene, rays;
+  std::uint64_t count = 0;
+  std::vector<VariantSpeed> variants;
+};
+
+/// Traces `rays` with every variant in turn, `repetitions` times, each round begun with another one. Throws
+/// std::runtime_error when a hit is not that of the first variant, to the bit.
+FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays, const std::vector<TestVariant>& variants,
+                                  int repetitions);
+
+struct FewerTestsBench {
+  MachineInfo machine;
+  int repetitions = 0;
+  std::vector<FewerTestsResult> results;
+};
+
+std::string to_json_text(const FewerTestsBench& bench);
+/// One table a method: a line for each scene and set of rays, a column for each setting.
+std::string fewer_tests_table(const FewerTestsBench& bench, const std::string& method);
+
+}  // namespace carousel::bench

@@ -1,0 +1,88 @@
+// bench_fewer_tests: what methods that promise fewer tests cost and save in software, on the same rays.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "accel/cull_planes.h"
+#include "accel/reference_tracer.h"
+#include "bench/fewer_tests.h"
+#include "bench/machine_info.h"
+#include "bench/marked_file.h"
+#include "bench/scenes.h"
+#include "core/atomic_file.h"
+#include "core/executor.h"
+
+namespace carousel::bench {
+
+namespace {
+
+struct FewerTestsOptions {
+  bool quick = false;
+  int repetitions = 7;
+  std::int64_t triangles = 100'000;
+  std::string json, markdown;
+};
+
+/// Planes for leaves, none first.
+std::vector<TestVariant> plane_variants(const scene::Scene& scene) {
+  std::vector<TestVariant> variants;
+  for (const std::int64_t count : {0, 1, 2, 4, 8}) {
+    CullPlanesConfig planes;
+    planes.count = count;
+    const auto accel = std::make_shared<const accel::Accel>(accel::build(scene, {}, *make_tbb_executor(1), {}, planes));
+    variants.push_back({"cull_planes", fmt::format("{} plane{}", count, count == 1 ? "" : "s"),
+                        [accel](const RayBatch& rays, HitBatch& hits, TestCounts& counts) {
+                          accel::trace_depth_first_interleaved(*accel, rays, hits, counts);
+                        }});
+  }
+  return variants;
+}
+
+void run(const FewerTestsOptions& o) {
+  FewerTestsBench bench;
+  bench.machine = machine_info();
+  bench.repetitions = o.quick ? 1 : o.repetitions;
+  for (const char* name : {"terrain", "spheres", "sliver"}) {
+    const SceneChoice choice{name, o.quick ? 5'000 : o.triangles, {}};
+    const scene::Scene scene = make_scene(choice);
+    const std::vector<TestVariant> variants = plane_variants(scene);
+    for (const RaySet& rays : make_ray_sets(scene, accel::build(scene, {}, *make_tbb_executor(1)), o.quick ? 64 : 512, 1)) {
+      if (rays.name.find("shuffled") != std::string::npos) continue;
+      fmt::print(stderr, "{}, {}\n", choice.name(), rays.name);
+      bench.results.push_back(measure_variants(choice.name(), rays, variants, bench.repetitions));
+    }
+  }
+  const std::string table = fewer_tests_table(bench, "cull_planes");
+  fmt::print("{}", table);
+  if (!o.json.empty()) write_file(o.json, to_json_text(bench));
+  if (o.markdown.empty()) return;
+  std::ifstream in(o.markdown, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  write_file(o.markdown, replace_marked(text, "planes in software", table));
+}
+
+}  // namespace
+
+}  // namespace carousel::bench
+
+int main(int argc, char** argv) {
+  carousel::bench::FewerTestsOptions o;
+  CLI::App app("Software speed of methods that promise fewer tests, on the same rays", "bench_fewer_tests");
+  app.add_flag("--quick", o.quick, "a smoke test: few triangles, few rays, one repetition");
+  app.add_option("--repetitions", o.repetitions, "rounds of all variants; tables show the median, least and greatest")->check(CLI::Range(1, 100));
+  app.add_option("--triangles", o.triangles, "of each scene, about");
+  app.add_option("--json", o.json, "write the results here");
+  app.add_option("--markdown", o.markdown, "draw the table into this document");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    carousel::bench::run(o);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_fewer_tests: {}\n", error.what());
+    return 1;
+  }
+}
