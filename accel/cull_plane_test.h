@@ -22,11 +22,8 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
-#include "accel/cull_plane.h"
-#include "accel/node.h"
-#include "core/ray.h"
+#include "core/vec.h"
 
 namespace carousel::accel {
 
@@ -34,84 +31,12 @@ namespace carousel::accel {
 inline constexpr float kMarginPerReach = 0x1p-19f;   // 32 u
 inline constexpr float kLeastMargin = 0x1p-70f;
 
-/// A ray as the plane test wants it, in the space of the nodes.
-struct CullRay {
-  float origin[3], direction[3], inverse[3];
-  float margins;   ///< times a node's: 1, or infinity where a margin would not cover what may be lost
-
-  /// Above the instances the kernel's ray is another, whose direction may be up to 2^30 longer or shorter
-  /// (accel/line_margin.h).
-  CullRay(const float* o, const Vec3& d, bool above_instances) {
-    float largest = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis] = o[axis];
-      direction[axis] = d[axis];
-      inverse[axis] = 1.0f / d[axis];
-      largest = std::fmax(largest, std::fabs(d[axis]));
-    }
-    // Outside of this n . d or a quotient by it may underflow or overflow: such rays are not culled.
-    const float least = above_instances ? 0x1p-30f : 0x1p-60f, most = above_instances ? 0x1p30f : 0x1p60f;
-    const bool sound = largest >= least && largest <= most;
-    margins = sound ? 1.0f : kInfinity;
-  }
-};
-
-/// What planes and box leave of the line of a ray in one child. Each bound counts for those after it; comparisons are
-/// false for NaN, which cuts nothing off.
-class CutLine {
- public:
-  CutLine(const Node& node, int lane, const CullRay& ray) : ray_(ray) {
-    float reach = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float l = node.plane[axis][lane], h = node.plane[axis + 3][lane];
-      lo_[axis] = l - ray.origin[axis];
-      hi_[axis] = h - ray.origin[axis];
-      from_centre_[axis] = ray.origin[axis] - plane_centre(l, h);
-      reach = std::fmax(reach, std::fmax(std::fabs(lo_[axis]), std::fabs(hi_[axis])));
-    }
-    margin_ = ray.margins * (node.margin_per_reach * reach + node.least_margin);
-  }
-
-  /// By the box, each face moved out.
-  void cut_by_box() {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (ray_.direction[axis] == 0.0f) continue;   // the box test sees to it
-      const bool down = ray_.direction[axis] < 0.0f;
-      const float near = (down ? hi_[axis] + margin_ : lo_[axis] - margin_) * ray_.inverse[axis];
-      const float far = (down ? lo_[axis] - margin_ : hi_[axis] + margin_) * ray_.inverse[axis];
-      entry_ = near > entry_ ? near : entry_;
-      exit_ = far < exit_ ? far : exit_;
-    }
-  }
-
-  /// By one plane after the other, until nothing is left. Adds the planes looked at to `tested`.
-  void cut_by_planes(const CullPlane* planes, int count, std::uint64_t& tested) {
-    for (int i = 0; i < count && !empty(); ++i) {
-      const float* const n = planes[i].normal;
-      const float height = n[0] * from_centre_[0] + n[1] * from_centre_[1] + n[2] * from_centre_[2] - planes[i].distance;
-      const float outside = height - margin_;   // of the origin
-      const float along = n[0] * ray_.direction[0] + n[1] * ray_.direction[1] + n[2] * ray_.direction[2];
-      ++tested;
-      if (along < 0.0f) {   // seen from the front: the line comes in
-        const float in = outside / -along;
-        entry_ = in > entry_ ? in : entry_;
-      } else if (along > 0.0f) {   // from the back: it goes out, behind the origin or not
-        const float out = -outside / along;
-        exit_ = out < exit_ ? out : exit_;
-      } else if (outside > 0.0f) {   // along it
-        entry_ = kInfinity;
-        exit_ = -kInfinity;
-      }
-    }
-  }
-
-  /// The line misses everything that stands in the child.
-  bool empty() const { return entry_ > exit_; }
-
- private:
-  const CullRay& ray_;
-  float lo_[3], hi_[3], from_centre_[3], margin_;
-  float entry_ = -kInfinity, exit_ = kInfinity;
-};
+/// Whether margins cover what rays of this direction may lose: outside of it n . d or a quotient by it may underflow or
+/// overflow, and such rays are not culled. Above the instances the kernel's ray is another, whose direction may be up to
+/// 2^30 longer or shorter (accel/line_margin.h).
+inline bool covered_by_margin(const Vec3& direction, bool above_instances) {
+  const float largest = std::fmax(std::fmax(std::fabs(direction.x), std::fabs(direction.y)), std::fabs(direction.z));
+  return above_instances ? largest >= 0x1p-30f && largest <= 0x1p30f : largest >= 0x1p-60f && largest <= 0x1p60f;
+}
 
 }  // namespace carousel::accel

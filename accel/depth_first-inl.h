@@ -11,7 +11,7 @@
 #include <hwy/highway.h>
 
 #include "accel/accel.h"
-#include "accel/cull_lanes.h"
+#include "accel/cull_lanes-inl.h"
 #include "accel/double_slab-inl.h"
 #include "accel/frame_ray.h"
 #include "accel/kernels.h"
@@ -87,7 +87,7 @@ HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& 
                               std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
   if constexpr (std::is_same_v<Slab, SlabRay>)   // planes need accuracy.box: conservative
     if (HWY_UNLIKELY(node.plane_counts != 0) && (mask != 0 || accel.planes_first))
-      return cull_lanes(accel, node, CullRay(slab.origin, direction, node.above_instances), lanes, mask, counts, culls);
+      return cull_lanes(accel, node, slab, direction, lanes, mask, counts, culls);
   return mask;
 }
 

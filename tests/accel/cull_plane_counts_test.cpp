@@ -5,8 +5,10 @@
 
 #include "accel/kernels.h"
 #include "accel/ray_check.h"
+#include "core/config_enums.h"
 #include "core/cull_counts.h"
 #include "tests/accel/plane_rays.h"
+#include "tests/accel/simd_guard.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
 #include "tests/random_runs.h"
@@ -116,6 +118,32 @@ TEST(CullPlaneCounts, OfPlanesFirstDifferInTestsOnly) {
         }
       }
   EXPECT_GT(spared, 1000u);
+}
+
+TEST(CullPlaneCounts, AreTheSameOnEverySimdTarget) {
+  const std::vector<SimdTarget> targets = usable_simd_targets();
+  const SimdGuard guard;
+  std::size_t culled = 0;
+  for (const Order order : {Order::kBoxFirst, Order::kPlanesFirst})
+    for (const bool shared : {false, true})
+      for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kInstances}) {
+        const scene::Scene scene = small_builtin(builtin, 3000, 60);
+        const RayBatch rays = plane_grazing_rays(scene, 5000, run_seed() + 3);
+        const Accel accel = with_planes(scene, {.count = 5, .nodes = Nodes::kAll, .shared_normals = shared, .order = order,
+                                                .levels = CullPlanesConfig::Levels::kAll});
+        select_simd_target(SimdTarget::kScalar);
+        const Traced scalar = traced(accel, rays);
+        culled += scalar.tests.culled;
+        for (const SimdTarget target : targets) {
+          select_simd_target(target);
+          const Traced run = traced(accel, rays);
+          EXPECT_EQ(run.tests, scalar.tests) << enum_name(target);
+          EXPECT_EQ(run.culls, scalar.culls) << enum_name(target);
+          for (std::size_t i = 0; i < rays.size(); ++i)
+            ASSERT_EQ(std::memcmp(&run.records[i].hit, &scalar.records[i].hit, sizeof(Hit)), 0) << enum_name(target) << " ray " << i;
+        }
+      }
+  EXPECT_GT(culled, 10000u);
 }
 
 // In a strip some lanes may be asked for: planes of others are not tested.
