@@ -53,8 +53,9 @@ std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel&
   issue.message = fmt::format(
       "expected at least {} ray IDs with when_full: reserve ({}), found {}; or use when_full: spill", needed,
       ordered ? fmt::format("one block of packets.rays = {}", config.packets.rays)
-              : fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep", config.packets.rays,
-                            accel.width, accel.max_depth),
+              : fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep{}", config.packets.rays,
+                            accel.width, accel.max_depth,
+                            config.bundles.size > 0 ? fmt::format(", bundles of {} rays", config.bundles.size) : ""),
       config.collections.capacity);
   return {issue};
 }
