@@ -28,7 +28,7 @@ TEST(CullPlaneReport, AddsUpByDepthInBothEngines) {
   program.write("planes.yaml", kInstances);
   for (const char* engine : {"engine.kind=native", "engine.kind=cycle"})
     for (const char* order : {"cull_planes.order=box_first", "cull_planes.order=planes_first"}) {
-      const Json report = reported(program, {engine, order, "engine.what_if=false"});
+      const Json report = reported(program, {engine, order, "engine.what_if=false", "verify=reference"});
       EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
       std::uint64_t culled = 0, plane_tests = 0, boxes = 0, transforms = 0;
       for (const Json& level : report["cull_planes"]["levels"]) {
@@ -38,6 +38,7 @@ TEST(CullPlaneReport, AddsUpByDepthInBothEngines) {
         transforms += level["transforms_spared"].get<std::uint64_t>();
         EXPECT_TRUE(level["structure"] == "top" || level["transforms_spared"] == 0);
       }
+      EXPECT_EQ(report["verify"]["mismatches"], 0);
       EXPECT_EQ(culled, report["tests"]["culled"]["count"]);
       EXPECT_EQ(plane_tests, report["tests"]["plane"]["count"]);
       EXPECT_GT(transforms, 0u);
