@@ -199,4 +199,12 @@ void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesCo
   if (config.count > 0) PlaneBuilder(accel, scene, config, executor).run();
 }
 
+Accel without_planes(const Accel& accel) {
+  Accel plain = accel;
+  for (Node& node : plain.nodes) node.plane_counts = 0;
+  plain.planes.clear();
+  plain.plane_bytes = 0;
+  return plain;
+}
+
 }  // namespace carousel::accel

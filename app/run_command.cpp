@@ -6,6 +6,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "accel/cull_planes.h"
 #include "accel/verifying_workload.h"
 #include "app/bottleneck.h"
 #include "app/build_report.h"
@@ -105,7 +106,11 @@ int run_command(const RunArguments& arguments) {
   std::optional<HitRecorder> recorder;
   if (keep_hits) frame.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
   std::optional<accel::VerifyingWorkload> verifying;
-  if (p.config().verify == Verify::kReference) verifying.emplace(frame.workload(), p.accel);
+  std::optional<accel::Accel> plain;   // planes are verified, too
+  if (p.config().verify == Verify::kReference) {
+    if (!p.accel.planes.empty()) plain = accel::without_planes(p.accel);
+    verifying.emplace(frame.workload(), plain ? *plain : p.accel);
+  }
   Workload& workload = verifying ? *verifying : frame.workload();
 
   const ringbus::RunResult result = simulate(p, frame, workload, interrupt, arguments.quiet);

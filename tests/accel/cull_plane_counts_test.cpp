@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "accel/cull_planes.h"
 #include "accel/kernels.h"
 #include "accel/ray_check.h"
 #include "core/config_enums.h"
@@ -144,6 +145,17 @@ TEST(CullPlaneCounts, AreTheSameOnEverySimdTarget) {
         }
       }
   EXPECT_GT(culled, 10000u);
+}
+
+TEST(CullPlaneCounts, AreNoneWithoutPlanes) {
+  const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 3000);
+  const RayBatch rays = plane_grazing_rays(scene, 2000, run_seed() + 4);
+  const Accel accel = with_planes(scene, {.count = 4, .nodes = Nodes::kAll}), plain = without_planes(accel);
+  const Traced built_so = traced(build_sequential(scene), rays), taken_off = traced(plain, rays);
+  EXPECT_EQ(taken_off.tests, built_so.tests);
+  EXPECT_EQ(taken_off.culls, CullCounts{});
+  EXPECT_EQ(plain.size_bytes(), build_sequential(scene).size_bytes());
+  EXPECT_GT(traced(accel, rays).tests.culled, 100u);
 }
 
 // In a strip some lanes may be asked for: planes of others are not tested.

@@ -91,11 +91,12 @@ std::vector<Placed> placed_scenes(std::uint64_t seed) {
 }
 
 Accel built(const scene::Scene& scene, const CullPlanesConfig& planes, TransformLevel transform = TransformLevel::kTwoStep,
-            std::int64_t leaf = 1) {
+            std::int64_t leaf = 1, TriangleLevel triangle = TriangleLevel::kWatertight) {
   BvhConfig bvh;
   bvh.leaf_triangles = leaf;
   AccuracyConfig accuracy;
   accuracy.transform = transform;
+  accuracy.triangle = triangle;
   return build(scene, bvh, *make_sequential_executor(), accuracy, planes);
 }
 
@@ -158,6 +159,20 @@ TEST(TopPlanes, LoseNoHitOfInstancesAnywhere) {
     }
   std::cout << total << " rays, " << sum.hits << " hits, " << sum.culled << " culled, " << sum.lost << " lost\n";
   EXPECT_GT(sum.hits, total / 3);
+}
+
+TEST(TopPlanes, LoseNoHitOfExactTriangles) {
+  Losses losses;
+  for (const Placed& placed : placed_scenes(run_seed() + 703)) {
+    const auto level = TransformLevel::kTwoStep;
+    const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = Levels::kTlas};
+    count_losses(built(placed.scene, {}, level, 1, TriangleLevel::kExact),
+                 built(placed.scene, config, level, 1, TriangleLevel::kExact),
+                 plane_grazing_rays(placed.scene, ray_count() / 200, std::uint64_t{run_seed()} << 32 | 78), losses);
+  }
+  EXPECT_EQ(losses.lost, 0u) << "CAROUSEL_SEED=" << run_seed() << ": " << losses.example;
+  EXPECT_GT(losses.hits, ray_count() / 100);
+  EXPECT_GT(losses.culled, 1000u);
 }
 
 /// The margins of all nodes above the instances, times `factor`.
