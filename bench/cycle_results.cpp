@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/result_json.h"
+
 namespace carousel::bench {
 
 namespace {
@@ -13,21 +15,10 @@ using Json = nlohmann::ordered_json;
 constexpr double kAimFlitHops = 40 * Peers::kBookSimFlitHops, kAimHops = 20e6;
 double aim_rays(std::uint64_t resources) { return resources <= 16 ? 0.12e6 : 0.05e6; }
 
-Json json_of(const Spread& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}}; }
-
 }  // namespace
 
 std::string to_json_text(const CycleBenchResult& r) {
-  const MachineInfo& m = r.machine;
-  Json out{{"machine",
-            {{"cpu", m.cpu},
-             {"threads", m.threads},
-             {"caches", m.caches},
-             {"commit", m.commit},
-             {"compiler", m.compiler},
-             {"build_type", m.build_type},
-             {"simd", m.simd},
-             {"date", m.date}}},
+  Json out{{"machine", json_of(r.machine)},
            {"repetitions", r.repetitions},
            {"peers", {{"booksim2_flit_hops_per_cpu_second", Peers::kBookSimFlitHops}, {"arches_rays_per_second", Peers::kArchesRays}}},
            {"traffic", Json::array()},

@@ -7,15 +7,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "accel/reference_tracer.h"
+#include "bench/result_json.h"
 
 namespace carousel::bench {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Spread& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}}; }
 
 struct Traced {
   HitList hits;
@@ -25,12 +23,10 @@ struct Traced {
 
 Traced traced(const TestVariant& variant, const RaySet& rays) {
   Traced out;
-  HitBatch found;
-  found.reserve(rays.size);
+  out.hits.resize(rays.size);
   const Stopwatch stopwatch;
-  for (const RayBatch& batch : rays.batches) variant.trace(batch, found, out.tests);
+  variant.trace(rays, out.hits, out.tests);
   out.seconds = stopwatch.elapsed().cpu;
-  for (const RayResult& result : found) out.hits.push_back(result.hit);
   return out;
 }
 
@@ -69,16 +65,7 @@ FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays, 
 }
 
 std::string to_json_text(const FewerTestsBench& bench) {
-  const MachineInfo& m = bench.machine;
-  Json out{{"machine",
-            {{"cpu", m.cpu},
-             {"threads", m.threads},
-             {"caches", m.caches},
-             {"commit", m.commit},
-             {"compiler", m.compiler},
-             {"build_type", m.build_type},
-             {"simd", m.simd},
-             {"date", m.date}}},
+  Json out{{"machine", json_of(bench.machine)},
            {"repetitions", bench.repetitions},
            {"results", Json::array()}};
   for (const FewerTestsResult& r : bench.results) {
@@ -100,9 +87,9 @@ std::string to_json_text(const FewerTestsBench& bench) {
 std::string fewer_tests_table(const FewerTestsBench& bench, const std::string& method) {
   std::string out;
   for (const FewerTestsResult& r : bench.results) {
+    if (r.variants.front().method != method) continue;
     std::string line = fmt::format("| {}, {} |", r.scene, r.rays), head = "| scene, rays |", rule = "|---|";
     for (const VariantSpeed& v : r.variants) {
-      if (v.method != method) continue;
       head += fmt::format(" {} |", v.setting);
       rule += "---:|";
       line += &v == &r.variants.front()

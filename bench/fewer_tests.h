@@ -18,9 +18,10 @@ namespace carousel::bench {
 
 /// One way to trace rays.
 struct TestVariant {
-  std::string method;    ///< cull_planes; room for others
+  std::string method;    ///< cull_planes, bundles
   std::string setting;   ///< of the method, as a table names it
-  std::function<void(const RayBatch&, HitBatch&, TestCounts&)> trace;
+  /// Writes as many hits as there are rays.
+  std::function<void(const RaySet&, HitList&, TestCounts&)> trace;
 };
 
 struct VariantSpeed {
@@ -37,7 +38,7 @@ struct FewerTestsResult {
   std::vector<VariantSpeed> variants;
 };
 
-/// Traces `rays` with every variant in turn, `repetitions` times, each round begun with another one. Throws
+/// Traces `rays` with every variant, all of one method, in turn, `repetitions` times, each round begun with another one. Throws
 /// std::runtime_error when a hit is not that of the first variant, to the bit.
 FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays, const std::vector<TestVariant>& variants,
                                   int repetitions);

@@ -13,6 +13,7 @@
 #include "bench/fewer_tests.h"
 #include "bench/machine_info.h"
 #include "bench/marked_file.h"
+#include "bench/ring_runner.h"
 #include "bench/scenes.h"
 #include "core/atomic_file.h"
 #include "core/executor.h"
@@ -36,8 +37,35 @@ std::vector<TestVariant> plane_variants(const scene::Scene& scene) {
     planes.count = count;
     const auto accel = std::make_shared<const accel::Accel>(accel::build(scene, {}, *make_tbb_executor(1), {}, planes));
     variants.push_back({"cull_planes", fmt::format("{} plane{}", count, count == 1 ? "" : "s"),
-                        [accel](const RayBatch& rays, HitBatch& hits, TestCounts& counts) {
-                          accel::trace_depth_first_interleaved(*accel, rays, hits, counts);
+                        [accel](const RaySet& rays, HitList& hits, TestCounts& counts) {
+                          HitBatch found;
+                          for (const RayBatch& batch : rays.batches) {
+                            found.clear();
+                            accel::trace_depth_first_interleaved(*accel, batch, found, counts);
+                            for (const RayResult& result : found) hits[result.tag.path] = result.hit;
+                          }
+                        }});
+  }
+  return variants;
+}
+
+/// The native ring on one resource, which crosses subtrees in one visit: without bundles first, then by their size.
+std::vector<TestVariant> bundle_variants(const scene::Scene& scene) {
+  std::vector<TestVariant> variants;
+  const RingSettings settings;
+  BvhConfig bvh;
+  bvh.treelet_triangles = settings.treelet_triangles;
+  const auto accel = std::make_shared<const accel::Accel>(accel::build(scene, bvh, *make_tbb_executor(1)));
+  const Vec3 extent = scene.bounds().extent();
+  const float scene_size = glm::length(extent);
+  for (const std::int64_t size : {0, 4, 8, 16, 32}) {
+    RingForm form;
+    form.statistics = true;
+    form.bundles.size = size;
+    variants.push_back({"bundles", size == 0 ? "no bundles" : fmt::format("of {}", size),
+                        [=](const RaySet& rays, HitList& hits, TestCounts& counts) {
+                          const RingRun run = run_ring(*accel, scene_size, settings, form, rays, 1, hits);
+                          for (const ringbus::ResourceStatistics& one : run.result.resources) counts += one.tests;
                         }});
   }
   return variants;
@@ -50,20 +78,21 @@ void run(const FewerTestsOptions& o) {
   for (const char* name : {"terrain", "spheres", "sliver"}) {
     const SceneChoice choice{name, o.quick ? 5'000 : o.triangles, {}};
     const scene::Scene scene = make_scene(choice);
-    const std::vector<TestVariant> variants = plane_variants(scene);
+    const std::vector<TestVariant> methods[] = {plane_variants(scene), bundle_variants(scene)};
     for (const RaySet& rays : make_ray_sets(scene, accel::build(scene, {}, *make_tbb_executor(1)), o.quick ? 64 : 512, 1)) {
       if (rays.name.find("shuffled") != std::string::npos) continue;
       fmt::print(stderr, "{}, {}\n", choice.name(), rays.name);
-      bench.results.push_back(measure_variants(choice.name(), rays, variants, bench.repetitions));
+      for (const std::vector<TestVariant>& variants : methods)
+        bench.results.push_back(measure_variants(choice.name(), rays, variants, bench.repetitions));
     }
   }
-  const std::string table = fewer_tests_table(bench, "cull_planes");
-  fmt::print("{}", table);
+  const std::string planes = fewer_tests_table(bench, "cull_planes"), bundles = fewer_tests_table(bench, "bundles");
+  fmt::print("{}\n{}", planes, bundles);
   if (!o.json.empty()) write_file(o.json, to_json_text(bench));
   if (o.markdown.empty()) return;
   std::ifstream in(o.markdown, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  write_file(o.markdown, replace_marked(text, "planes in software", table));
+  write_file(o.markdown, replace_marked(replace_marked(text, "planes in software", planes), "bundles in software", bundles));
 }
 
 }  // namespace

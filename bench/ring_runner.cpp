@@ -83,6 +83,7 @@ Config ring_config(const RingSettings& settings, const RingForm& form, int threa
   config.collections.home = form.home;
   config.collections.policy = settings.policy;
   config.collections.select = settings.select;
+  config.bundles = form.bundles;
   config.bvh.treelet_triangles = settings.treelet_triangles;
   return config;
 }
