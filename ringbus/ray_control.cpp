@@ -68,7 +68,11 @@ std::optional<RayId> RayControl::load(ResourceId resource, const RayRequest& req
 void RayControl::free(ResourceId resource, std::span<const std::uint32_t> slots) {
   SlotList& list = slots_[resource.value];
   const std::lock_guard lock(list.mutex);
-  for (const std::uint32_t slot : slots) (stores_[resource.value]->is_bundle(slot) ? list.free_bundles : list.free).push_back(slot);
+  if (!builder_)
+    list.free.insert(list.free.end(), slots.begin(), slots.end());
+  else
+    for (const std::uint32_t slot : slots)
+      (stores_[resource.value]->is_bundle(slot) ? list.free_bundles : list.free).push_back(slot);
   list.count.store(list.free.size(), std::memory_order_relaxed);
 }
 
