@@ -13,8 +13,8 @@ namespace carousel::ringbus::cycle {
 /// A resource's test units. Transforms, boxes and triangles are pipelined: a ray's boxes are tested when it has
 /// been transformed, while the next one is, and its planes when its boxes have been; or its planes first, and then the
 /// boxes that are left. A matrix that is inverted first takes its passes through the transform unit ahead of the rays.
-/// Records of rays and bundles come from the store one after another if its port is narrow, and rays that leave a bundle
-/// are tested after it.
+/// Records of rays and bundles come from the store one after another if its port is narrow, each a cycle after it is
+/// asked for, and rays that leave a bundle are tested after it.
 struct Tester {
   using Order = CullPlanesConfig::Order;
   /// `reads_per_cycle`: as rays.reads_per_cycle.
@@ -24,7 +24,7 @@ struct Tester {
         plane(config.plane),
         bundle(config.bundle),
         transform(config.transform),
-        store({std::max<std::int64_t>(1, reads_per_cycle), 1, 0}),
+        store({std::max<std::int64_t>(1, reads_per_cycle), 1, 1}),
         order_(order),
         reads_cost_(reads_per_cycle > 0) {}
 
@@ -43,7 +43,8 @@ struct Tester {
   /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
   Cycle walk(Cycle at, const TestCounts& counts, Cycle chain, std::uint64_t reads = 0) {
     return std::max({at + chain, store.reserve(at, reads_cost_ ? reads : 0).last,
-                     transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last, plane.reserve(at, counts.plane).last, triangle.reserve(at, counts.triangle).last});
+                     transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last,
+                     plane.reserve(at, counts.plane).last, triangle.reserve(at, counts.triangle).last});
   }
 
   /// The same for a single ray, beside others.

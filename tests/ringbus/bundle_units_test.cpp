@@ -45,22 +45,32 @@ TEST(BundleUnits, RaysThatLeaveABundleAreTestedAfterIt) {
 TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
   Tester wide(testers()), narrow(testers(), kOrder, 2);
   EXPECT_EQ(wide.strip(0, counts(8, 0), 10), 4u);
-  EXPECT_EQ(narrow.strip(0, counts(8, 0), 10), 4u + 4u);   // five cycles of reading, the last record in the fifth
+  EXPECT_EQ(narrow.strip(0, counts(8, 0), 10), 5u + 4u);   // five cycles of reading, the last record a cycle after the fifth
   EXPECT_EQ(narrow.store.busy(), 5u);
   EXPECT_EQ(wide.store.busy(), 0u);
-  EXPECT_EQ(narrow.strip(8, counts(8, 0), 2), 8u + 4u);    // one cycle of reading hides nothing
+  EXPECT_EQ(narrow.strip(8, counts(8, 0), 2), 8u + 1u + 4u);
 }
 
 TEST(BundleUnits, ABundleReadsOneRecordWhereItsRaysReadAllOfTheirs) {
   Tester as_bundle(testers(), kOrder, 1), as_rays(testers(), kOrder, 1);
-  EXPECT_EQ(as_bundle.strip(0, counts(0, 8), 1, 8), 7u + 3u);
-  EXPECT_EQ(as_rays.strip(0, counts(256, 0), 32), 31u + 4u);
+  EXPECT_EQ(as_bundle.strip(0, counts(0, 8), 1, 8), 1u + 7u + 3u);
+  EXPECT_EQ(as_rays.strip(0, counts(256, 0), 32), 32u + 4u);
 }
 
 TEST(BundleUnits, AWalkThroughASubtreeReadsItsRaysOnce) {
   Tester tester(testers(), kOrder, 1);
-  EXPECT_EQ(tester.walk(5, counts(8, 0), 3, 32), 5u + 31u);
+  EXPECT_EQ(tester.walk(5, counts(8, 0), 3, 32), 5u + 32u);
   EXPECT_EQ(tester.walk(100, counts(8, 0), 50, 32), 150u);
+}
+
+// Rays that need no test any more are read all the same, and the visit lasts as long as that: busy cycles beyond the
+// resource's time in test would leave its ledger with less than nothing.
+TEST(BundleUnits, AVisitLastsAsLongAsItsReading) {
+  Tester strip(testers(), kOrder, 1), walk(testers(), kOrder, 1);
+  const Cycle strip_done = strip.strip(10, counts(0, 0), 6), walk_done = walk.walk(10, counts(0, 0), 0, 6);
+  EXPECT_EQ(strip.store.busy(), 6u);
+  EXPECT_EQ(strip_done, 10u + strip.store.busy());
+  EXPECT_EQ(walk_done, 10u + walk.store.busy());
 }
 
 }  // namespace
