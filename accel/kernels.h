@@ -21,9 +21,6 @@ struct RayMembers {
   CullCounts* culls = nullptr;   ///< where cull planes are counted by depth; null: nowhere
 };
 
-/// Bits of RayTag::flags while a ray is in flight.
-inline constexpr std::uint8_t kRayDone = 1;   ///< a shadow ray that found its hit: nothing more is tested
-
 /// What a strip of boxes answers. Untouched for strips of triangles, whose answer is in the rays' hits.
 struct StripHits {
   std::uint8_t* masks = nullptr;   ///< one a member: bit l set when child lane l is hit

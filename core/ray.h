@@ -26,6 +26,14 @@ enum class RayKind : std::uint8_t {
 };
 inline constexpr int kRayKinds = 3;
 
+/// Bits of RayTag::flags. Shaders set those that say what the ray wants, before it goes out; the others are the ring's.
+enum RayFlag : std::uint8_t {
+  kRayDone = 1,          ///< a shadow ray that found its hit: nothing more is tested
+  kRayCullBack = 2,      ///< triangles that turn their back are not there: those whose vertices it sees clockwise
+  kRayCullFront = 4,     ///< triangles that show their front are not there
+  kRayForceOpaque = 8,   ///< nothing is asked, whatever lets rays through (core/any_hit.h)
+};
+
 /// Which ray of the frame this is. `path` indexes the path state of the workload that emitted the ray; with
 /// (kind, bounce, index) it is unique among rays in flight.
 struct RayTag {
@@ -33,7 +41,7 @@ struct RayTag {
   RayKind kind = RayKind::kCamera;
   std::uint8_t bounce = 0;   ///< 0 for camera rays; a shadow ray has the bounce of the surface it leaves
   std::uint8_t index = 0;    ///< index within the kind at one (path, bounce)
-  std::uint8_t flags = 0;    ///< RayFlag bits, owned by the ring while the ray is in flight
+  std::uint8_t flags = 0;    ///< RayFlag bits
 };
 
 /// The closest hit, as section 3 of the design defines it: t is t', the largest of the kernel's t and the

@@ -82,7 +82,7 @@ void Resource::settle_expanded() {
     for (const std::uint32_t slot : store_.rays_of(local.slot)) {
       const RayRecord& ray = store_.record(slot);
       if (ray.hit.valid()) bundle.nearest = std::min(bundle.nearest, ray.hit.t);
-      if ((ray.tag.flags & accel::kRayDone) == 0) bundle.tmax = std::max(bundle.tmax, ray.hit.t);
+      if ((ray.tag.flags & kRayDone) == 0) bundle.tmax = std::max(bundle.tmax, ray.hit.t);
     }
     settle_bundle(local.slot, -1);
   }
@@ -133,7 +133,7 @@ void Resource::test_whole(Packet& packet) {
     }
     const std::uint8_t together = reformed_ ? 0 : answer.all;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const bool done = (store_.record(rays[i]).tag.flags & accel::kRayDone) != 0;
+      const bool done = (store_.record(rays[i]).tag.flags & kRayDone) != 0;
       const std::uint32_t apart = masks_[i] | (reformed_ && !done ? answer.all : 0u);
       if (apart != 0) leaving_.push_back({rays[i], static_cast<std::uint8_t>(apart)});
     }

@@ -60,7 +60,7 @@ TestCounts Resource::transforms_of(accel::NodeKey key) {
   TestCounts counts;
   if (!transforms_->moves(key.instance)) return counts;
   for (const std::uint32_t slot : local_slots_)
-    if ((store_.record(slot).tag.flags & accel::kRayDone) == 0) counts.transforms += transforms_->needs(slot, key.instance);
+    if ((store_.record(slot).tag.flags & kRayDone) == 0) counts.transforms += transforms_->needs(slot, key.instance);
   counts.inversions = counts.transforms > 0 && transforms_->inverts(key.instance);   // one for all rays of the visit
   return counts;
 }
@@ -144,7 +144,7 @@ void Resource::test_ordered(Packet& packet) {
       stacks_->push(slot, {accel_.child_key(packet.key, lane), entry[lane], static_cast<std::uint16_t>(packet.depth + 1), true});
     });
     const RayRecord& ray = store_.record(slot);
-    const bool done = (ray.tag.flags & accel::kRayDone) != 0;
+    const bool done = (ray.tag.flags & kRayDone) != 0;
     const NextNode next = done ? NextNode{} : stacks_->pop(slot, ray.hit.t);
     packet.next[local_members_[i]] = next;
     if (!next.any) settle(slot, -1);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,7 +38,8 @@ struct TextureUse {
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
-/// glTF metallic-roughness. Colours are linear.
+/// glTF metallic-roughness with the layers of its extensions, whose defaults are those of a file without them: a layer
+/// of weight 0 is not there. Colours are linear.
 struct Material {
   std::string name;
   Vec4 base_color{1};                                  ///< times the texture (sRGB) and the vertex colour
@@ -52,6 +54,48 @@ struct Material {
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
   bool unlit = false;
+
+  float ior = 1.5f;                                    ///< KHR_materials_ior; 0: infinite, or at least 1
+  struct Transmission {                                ///< KHR_materials_transmission
+    float weight = 0;
+    std::optional<TextureUse> texture;                 ///< R, linear
+  } transmission;
+  struct Volume {                                      ///< KHR_materials_volume
+    float thickness = 0;                               ///< 0: a thin wall, which does not refract
+    std::optional<TextureUse> thickness_texture;       ///< G, linear; rays measure the way themselves
+    Vec3 attenuation_color{1};                         ///< what is left after attenuation_distance
+    float attenuation_distance = std::numeric_limits<float>::infinity();   ///< scene units
+  } volume;
+  struct Specular {                                    ///< KHR_materials_specular
+    float weight = 1;
+    Vec3 color{1};
+    std::optional<TextureUse> texture;                 ///< A, linear
+    std::optional<TextureUse> color_texture;           ///< sRGB
+  } specular;
+  struct Clearcoat {                                   ///< KHR_materials_clearcoat
+    float weight = 0, roughness = 0;
+    std::optional<TextureUse> texture;                 ///< R, linear
+    std::optional<TextureUse> roughness_texture;       ///< G, linear
+    std::optional<TextureUse> normal_texture;          ///< without: the surface's own normal, unbent
+    float normal_scale = 1;
+  } clearcoat;
+  struct Sheen {                                       ///< KHR_materials_sheen
+    Vec3 color{0};
+    float roughness = 0;
+    std::optional<TextureUse> color_texture;           ///< sRGB
+    std::optional<TextureUse> roughness_texture;       ///< A, linear
+  } sheen;
+  struct Iridescence {                                 ///< KHR_materials_iridescence
+    float weight = 0, ior = 1.3f;
+    float thickness_min = 100, thickness_max = 400;    ///< nanometres
+    std::optional<TextureUse> texture;                 ///< R, linear
+    std::optional<TextureUse> thickness_texture;       ///< G, linear
+  } iridescence;
+  struct Anisotropy {                                  ///< KHR_materials_anisotropy
+    float strength = 0;
+    float rotation = 0;                                ///< radians, counter-clockwise from the tangent
+    std::optional<TextureUse> texture;                 ///< RG direction, B strength, linear
+  } anisotropy;
 };
 
 /// Triangles of one glTF mesh, its primitives concatenated in order: `primitive` in a hit indexes them.

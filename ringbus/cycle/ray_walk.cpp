@@ -21,7 +21,7 @@ void RayWalk::start(accel::NodeKey from) {
 }
 
 std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record) {
-  if ((record.tag.flags & accel::kRayDone) != 0) {
+  if ((record.tag.flags & kRayDone) != 0) {
     // What waits is forgotten where it stands.
     stack_.clear();
     bytes_.held = 0;
