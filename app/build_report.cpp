@@ -199,7 +199,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     (*r.links)[i].stalled = use.stalled;
     (*r.links)[i].cycles = report::LinkCycles{use.busy, use.stalled, c.cycles - use.busy - use.stalled};
   }
-  ringbus::cycle::LatencyHistogram trips;
+  LatencyHistogram trips;
   for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
   if (r.packets && trips.count() > 0)
     r.packets->latency = report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};

@@ -24,7 +24,7 @@ enum class TopologyShape {
 enum class CentralForm { kCells, kDistributor };
 enum class Visit { kAll, kOwners };
 enum class Flow { kCredits, kBubble, kNone };
-enum class QueueKind { kSpscRing, kTbbBounded, kMutex };
+enum class QueueKind { kSpscRing, kMpmcRing, kTbbBounded, kMoodycamel, kAtomicQueue, kBoostSpsc, kMutex };
 enum class Placement { kBalanced, kRoundRobin, kFirstTaker, kAddressed };
 enum class PacketShapes { kStrip, kSingle };
 enum class PacketCarry { kReference, kData };

@@ -1,9 +1,10 @@
 #include "ringbus/link.h"
 
+#include <fmt/format.h>
+
+#include "core/config_enums.h"
 #include "core/error.h"
-#include "ringbus/mutex_queue.h"
-#include "ringbus/spsc_ring.h"
-#include "ringbus/tbb_bounded_queue.h"
+#include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus {
 
@@ -27,12 +28,36 @@ class QueueLink final : public Link {
 }  // namespace
 
 std::unique_ptr<Link> make_link(QueueKind kind, std::size_t depth, ResourceId from, ResourceId to) {
-  switch (kind) {
-    case QueueKind::kSpscRing: return std::make_unique<QueueLink<SpscRing<PacketId>>>(depth, from, to);
-    case QueueKind::kTbbBounded: return std::make_unique<QueueLink<TbbBoundedQueue<PacketId>>>(depth, from, to);
-    case QueueKind::kMutex: return std::make_unique<QueueLink<MutexQueue<PacketId>>>(depth, from, to);
-  }
-  throw SimulationError("no such queue kind");
+  return with_queue_type(kind, [&](auto type) -> std::unique_ptr<Link> {
+    return std::make_unique<QueueLink<typename decltype(type)::template Of<PacketId>>>(depth, from, to);
+  });
+}
+
+void require_parties(QueueKind kind, const std::string& key, Parties producers, Parties consumers) {
+  with_queue_type(kind, [&](auto type) {
+    using Queue = typename decltype(type)::template Of<PacketId>;
+    const auto refuse = [&](const char* who) {
+      std::string fitting;
+      for (const auto& entry : kEnumNames<QueueKind>)
+        if (queue_fits(entry.value, producers, consumers))
+          fitting += (fitting.empty() ? "" : ", ") + std::string(entry.name);
+      ConfigIssue issue;
+      issue.key_path = key;
+      issue.message = fmt::format("{} is made for one {} at a time and here are several; expected one of {}",
+                                  enum_name(kind), who, fitting);
+      throw ConfigError({issue});
+    };
+    if (producers == Parties::kMany && Queue::kProducers == Parties::kOne) refuse("producer");
+    if (consumers == Parties::kMany && Queue::kConsumers == Parties::kOne) refuse("consumer");
+  });
+}
+
+bool queue_fits(QueueKind kind, Parties producers, Parties consumers) {
+  return with_queue_type(kind, [&](auto type) {
+    using Queue = typename decltype(type)::template Of<PacketId>;
+    return (producers == Parties::kOne || Queue::kProducers == Parties::kMany) &&
+           (consumers == Parties::kOne || Queue::kConsumers == Parties::kMany);
+  });
 }
 
 }  // namespace carousel::ringbus

@@ -5,10 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "core/config.h"
 #include "core/ids.h"
-#include "ringbus/link_queue.h"
+#include "ringbus/queues/link_queue.h"
 #include "ringbus/packet.h"
 
 namespace carousel::ringbus {
@@ -60,5 +61,10 @@ class Link {
 
 /// A link whose queue is of the kind the configuration names.
 std::unique_ptr<Link> make_link(QueueKind kind, std::size_t depth, ResourceId from, ResourceId to);
+
+/// Whether queues of a kind serve so many producers and consumers at a time.
+bool queue_fits(QueueKind kind, Parties producers, Parties consumers);
+/// Throws a ConfigError at `key` that lists the kinds that do when this one does not.
+void require_parties(QueueKind kind, const std::string& key, Parties producers, Parties consumers);
 
 }  // namespace carousel::ringbus
