@@ -1,5 +1,8 @@
 #include "ringbus/link.h"
 
+#include <string_view>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "core/config_enums.h"
@@ -37,14 +40,13 @@ void require_parties(QueueKind kind, const std::string& key, Parties producers, 
   with_queue_type(kind, [&](auto type) {
     using Queue = typename decltype(type)::template Of<PacketId>;
     const auto refuse = [&](const char* who) {
-      std::string fitting;
+      std::vector<std::string_view> fitting;
       for (const auto& entry : kEnumNames<QueueKind>)
-        if (queue_fits(entry.value, producers, consumers))
-          fitting += (fitting.empty() ? "" : ", ") + std::string(entry.name);
+        if (queue_fits(entry.value, producers, consumers)) fitting.push_back(entry.name);
       ConfigIssue issue;
       issue.key_path = key;
       issue.message = fmt::format("{} is made for one {} at a time and here are several; expected one of {}",
-                                  enum_name(kind), who, fitting);
+                                  enum_name(kind), who, fmt::join(fitting, ", "));
       throw ConfigError({issue});
     };
     if (producers == Parties::kMany && Queue::kProducers == Parties::kOne) refuse("producer");
