@@ -1,6 +1,7 @@
 #include "app/build_report.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include <fmt/format.h>
 
@@ -138,11 +139,28 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
   const std::uint64_t done = sum.tests.box + sum.tests.plane + sum.tests.triangle + sum.tests.bundle;
   r.throughput =
       report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(done, rays)};
+}
+
+void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
   for (const ringbus::LinkResult& link : result.links) {
     const ringbus::LinkStatistics& s = link.statistics;
     r.links->push_back({link.from.value, link.to.value, link.depth, s.packets,
                         ratio(s.occupancy_sum, s.samples), s.occupancy_max, s.refusals});
+    report::Link& out = r.links->back();
+    if (config.faults.links.any()) {
+      const ringbus::LinkFaultCounts& f = link.faults;
+      out.faults = report::LinkFaults{f.dropped, f.duplicated, f.corrupted, f.reordered, f.delayed, f.resent, f.discarded};
+    }
+    if (config.engine.kind == EngineKind::kCycle) continue;
+    out.queue = enum_name(config.topology.link.queue);
+    out.sent_at_once = ratio(s.packets, s.batches);
+    out.received_at_once = ratio(s.packets, s.receives);
+    out.full_stalls = s.full_stalls;
+    out.empty_stalls = s.empty_stalls;
+    out.occupancy.emplace();
+    for (const ringbus::OccupancySeries::Entry& entry : link.series.entries())
+      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(), ratio(entry.sum, entry.samples), entry.most});
   }
 }
 
@@ -266,7 +284,10 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
             result.rays_emitted - result.rays_completed,
             0,
             {emitted[0], emitted[1], emitted[2]}};
-  if (!result.resources.empty()) add_ring(r, result, config.packets, prepared.accel);
+  if (!result.resources.empty()) {
+    add_ring(r, result, config.packets, prepared.accel);
+    add_links(r, result, config);
+  }
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
                std::nullopt, effects_of(prepared.scene, config)};
   if (result.cycle) add_cycles(r, *result.cycle, config);

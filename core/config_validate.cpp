@@ -33,6 +33,7 @@ class Rules {
     ordered_needs_strips();
     hashed_homes_spill();
     overrides_name_resources();
+    faults_have_a_place();
     vary_names_keys();
     return std::move(issues_);
   }
@@ -223,6 +224,23 @@ class Rules {
       only(fmt::format("topology.overrides.{}.testers.any_hit", i), one.testers.any_hit,
            TestersConfig::AnyHit::kInline);
     }
+  }
+
+  void faults_have_a_place() {
+    const FaultsConfig::Resource& r = c.faults.resource;
+    const bool resource = r.kind != FaultsConfig::Resource::Kind::kNone;
+    if (resource && r.number >= c.topology.resources)
+      issue("faults.resource.number", fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
+    if (c.workload.kind == WorkloadConfig::Kind::kTraffic && (resource || c.faults.links.any()))
+      issue("faults", "there are no faults in traffic; expected none, or workload: rays");
+    if (resource && c.topology.shape == TopologyShape::kIndependent)
+      issue("faults.resource.kind", "independent resources have no faults; expected none");
+    if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
+      issue("faults.resource.after_rays", fmt::format("under virtual time a slow resource is so from the beginning; expected 0, found {}", r.after_rays));
+    // The engine takes a machine that does nothing for ten seconds for one that is stuck.
+    if (!cycle() && r.kind == FaultsConfig::Resource::Kind::kPause && r.cycles / c.engine.clock_mhz > 5'000'000)
+      issue("faults.resource.cycles", fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
+                                                  5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
   }
 
   void vary_names_keys() {

@@ -7,6 +7,7 @@
 
 #include "core/config_enums.h"
 #include "core/error.h"
+#include "ringbus/faults/reliable_link.h"
 #include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus {
@@ -19,12 +20,12 @@ class QueueLink final : public Link {
 
  public:
   QueueLink(std::size_t depth, ResourceId from, ResourceId to) : Link(from, to), queue_(depth) {}
-  std::size_t try_receive(std::span<PacketId> packets) override { return queue_.try_pop_n(packets); }
   std::size_t free_places() override { return queue_.free_places(); }
   std::size_t capacity() const override { return queue_.capacity(); }
 
  private:
   std::size_t push(std::span<const PacketId> packets) override { return queue_.try_push_n(packets); }
+  std::size_t pull(std::span<PacketId> packets) override { return queue_.try_pop_n(packets); }
   Queue queue_;
 };
 
@@ -33,6 +34,14 @@ class QueueLink final : public Link {
 std::unique_ptr<Link> make_link(QueueKind kind, std::size_t depth, ResourceId from, ResourceId to) {
   return with_queue_type(kind, [&](auto type) -> std::unique_ptr<Link> {
     return std::make_unique<QueueLink<typename decltype(type)::template Of<PacketId>>>(depth, from, to);
+  });
+}
+
+std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, ResourceId from, ResourceId to) {
+  const LinkConfig& link = config.topology.link;
+  if (!config.faults.links.any()) return make_link(link.queue, static_cast<std::size_t>(link.depth), from, to);
+  return with_queue_type(link.queue, [&](auto type) -> std::unique_ptr<Link> {
+    return std::make_unique<ReliableLink<decltype(type)::template Of>>(config, number, from, to);
   });
 }
 

@@ -30,6 +30,7 @@ class NativeRun {
       sinks_.push_back(options.statistics ? std::make_unique<StatisticsSink>() : nullptr);
       ports_.push_back(std::make_unique<NativePort>(ResourceId(r), machine_, scene_size, sinks_.back().get()));
     }
+    for (const auto& link : machine_.links) link->count(options.statistics);
     for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(config.shading.workers); ++w)
       workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), machine_, workload, count_));
     threads_ = std::clamp<std::size_t>(options.threads, 1, std::max(ports_.size(), workers_.size()));
@@ -37,7 +38,7 @@ class NativeRun {
   }
 
   RunResult run() {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = start_ = std::chrono::steady_clock::now();
     {
       std::vector<std::jthread> threads;
       for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
@@ -144,7 +145,8 @@ class NativeRun {
       out.collections.push_back(ports_[r]->resource().collections().statistics());
     }
     for (const auto& link : machine_.links)
-      out.links.push_back({link->from(), link->to(), link->capacity(), link->statistics()});
+      out.links.push_back({link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
+    out.start = start_;
     return out;
   }
 
@@ -155,6 +157,7 @@ class NativeRun {
   std::vector<std::unique_ptr<NativePort>> ports_;
   std::vector<std::unique_ptr<ShaderWorker>> workers_;
   std::size_t threads_;
+  std::chrono::steady_clock::time_point start_{};
   std::unique_ptr<Progress[]> progress_;
   std::atomic<bool> end_{false};
   bool stuck_ = false;

@@ -18,6 +18,8 @@ constexpr std::size_t kCompletedPause = 4096;  // completed rays after which iss
 
 NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventSink* sink)
     : machine_(machine),
+      links_fail_(machine.config.faults.links.any()),
+      fault_(ResourceFault::of(machine.config, id)),
       sink_(sink),
       resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], sink),
       exit_of_(machine.topology.resources()),
@@ -36,7 +38,15 @@ NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventS
 }
 
 bool NativePort::step() {
-  bool moved = send_in_hand();
+  if (!fault_) return step_now();
+  return fault_->step(rays_completed_, [this] { return step_now(); });
+}
+
+bool NativePort::step_now() {
+  bool moved = false;
+  if (links_fail_)
+    for (const Exit& exit : exits_) moved |= exit.link->tick();
+  moved |= send_in_hand();
   moved |= receive();
   moved |= admit();
   moved |= issue(false);
@@ -75,9 +85,12 @@ bool NativePort::receive() {
     // On a ring, what cannot leave must not come in, or the hand would be a queue without a bound. Point to
     // point, every packet there is would fit into the hand, so all may come in.
     if (!machine_.topology.direct() && !exits_[entry.direction].in_hand.empty()) continue;
-    // No more than a link holds, though the sender may refill it meanwhile: a hand that needs more places than the
-    // next resource can free at once breaks the bubble rule (the ring can fill up, every hand with something left).
-    const std::size_t most = std::min(batch.size(), entry.link->capacity());
+    // No more than a link holds, though the sender may refill it meanwhile.
+    std::size_t most = std::min(batch.size(), entry.link->capacity());
+    // A hand with something left takes a place that the bubble is counted on for; three such hands can fill the ring in
+    // spite of it (tests/models/flow.pml, -DGREEDY_HAND). So what comes in can go on at once, but for a single packet.
+    if (!machine_.topology.direct() && machine_.config.topology.flow == Flow::kBubble)
+      most = std::min(most, std::max<std::size_t>(1, exits_[entry.direction].link->free_places()));
     const std::size_t count = entry.link->try_receive(std::span(batch).first(most));
     for (std::size_t k = 0; k < count; ++k) arrive(batch[k]);
     moved |= count > 0;
@@ -312,6 +325,7 @@ void NativePort::flush_completed(bool all) {
   if (done.empty() || (!all && done.size() < enough)) return;
   if (sink_ != nullptr)
     sink_->record({.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
+  rays_completed_ += done.size();
   machine_.control.free(resource_.id(), resource_.freed_slots());
   resource_.freed_slots().clear();
   HitBatch fresh = machine_.completed.fresh();

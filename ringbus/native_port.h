@@ -3,9 +3,11 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "ringbus/faults/resource_fault.h"
 #include "ringbus/machine.h"
 #include "ringbus/resource.h"
 
@@ -37,6 +39,7 @@ class NativePort {
     std::deque<PacketId> in_hand;
   };
 
+  bool step_now();
   bool send_in_hand();
   bool receive();
   void arrive(PacketId id);
@@ -65,6 +68,9 @@ class NativePort {
   }
 
   Machine& machine_;
+  bool links_fail_;
+  std::optional<ResourceFault> fault_;
+  std::uint64_t rays_completed_ = 0;
   EventSink* sink_;
   Resource resource_;
   struct Entry {

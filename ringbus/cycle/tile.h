@@ -144,6 +144,8 @@ class Tile final : public ResourceAgent {
   std::vector<Context> contexts_;
   std::deque<NewRays> waiting_;
   bool storage_full_ = false;
+  bool pauses_ = false;            // once, when so many rays are complete
+  std::uint64_t pause_after_ = 0;
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;   // packets without rays here, and their members
   StateClock<TileState, kTileStates> clock_;

@@ -1,0 +1,154 @@
+// Links that fail, and what makes them good again.
+#include "ringbus/faults/reliable_link.h"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "ringbus/cycle/ports.h"
+#include "ringbus/queues/mutex_queue.h"
+#include "ringbus/queues/queue_types.h"
+#include "tests/random_runs.h"
+#include "tests/ringbus/queue_kinds.h"
+#include "tests/ringbus/test_machine.h"
+
+namespace carousel::ringbus {
+namespace {
+
+Config faulty(double drop, double duplicate, double corrupt, double reorder, double delay) {
+  Config config;
+  config.faults.links = {drop, duplicate, corrupt, reorder, delay, 20'000};
+  config.topology.link.depth = 8;
+  return config;
+}
+
+/// Sends 0, 1, 2 ... between two threads; how many came, and whether in order.
+struct Delivered {
+  std::uint32_t count = 0;
+  bool in_order = true;
+  LinkFaultCounts faults;
+};
+Delivered deliver(const Config& config, std::uint32_t packets) {
+  const std::unique_ptr<Link> link = make_link(config, 3, ResourceId(0), ResourceId(1));
+  Delivered out;
+  std::atomic<bool> done{false};
+  {
+    std::jthread receiver([&] {
+      std::array<PacketId, 4> got;
+      while (out.count < packets) {
+        const std::size_t n = link->try_receive(got);
+        for (std::size_t i = 0; i < n; ++i) out.in_order &= got[i].value == out.count++;
+        if (n == 0) std::this_thread::yield();
+      }
+      done = true;
+    });
+    for (std::uint32_t sent = 0; !done;) {
+      std::array<PacketId, 5> batch;
+      const std::size_t want = std::min<std::size_t>(batch.size(), packets - sent);
+      for (std::size_t i = 0; i < want; ++i) batch[i] = PacketId(sent + static_cast<std::uint32_t>(i));
+      const std::size_t took = link->try_send({batch.data(), want});
+      EXPECT_LE(link->capacity() - link->free_places(), link->capacity());
+      sent += static_cast<std::uint32_t>(took);
+      (void)link->tick();
+      if (took == 0) std::this_thread::yield();
+    }
+  }
+  out.faults = link->faults();
+  return out;
+}
+
+TEST(ReliableLink, EveryFaultIsMadeGood) {
+  for (const QueueKind kind : queue_kinds())
+    for (const Config& base : {faulty(0.2, 0, 0, 0, 0), faulty(0, 0.3, 0, 0, 0), faulty(0, 0, 0.2, 0, 0), faulty(0, 0, 0, 0.3, 0),
+                               faulty(0, 0, 0, 0, 0.2), faulty(0.1, 0.1, 0.1, 0.1, 0.1)}) {
+      Config config = base;
+      config.topology.link.queue = kind;
+      const Delivered got = deliver(config, 600);
+      EXPECT_EQ(got.count, 600u);
+      EXPECT_TRUE(got.in_order);
+      const FaultsConfig::Links& f = config.faults.links;
+      EXPECT_EQ(got.faults.dropped > 0 && f.drop > 0, f.drop > 0);
+      EXPECT_EQ(got.faults.duplicated > 0, f.duplicate > 0);
+      EXPECT_EQ(got.faults.corrupted > 0, f.corrupt > 0);
+      EXPECT_EQ(got.faults.reordered > 0, f.reorder > 0);
+      EXPECT_EQ(got.faults.delayed > 0, f.delay > 0);
+      if (f.drop > 0) { EXPECT_GT(got.faults.resent, 0u); }
+      EXPECT_GT(got.faults.resent + got.faults.discarded, 0u);
+    }
+}
+
+TEST(ReliableLink, HoldsNoMoreThanItsDepth) {
+  const Config config = faulty(0, 0.5, 0, 0, 0);
+  const std::unique_ptr<Link> link = make_link(config, 0, ResourceId(0), ResourceId(1));
+  std::array<PacketId, 20> many;
+  for (std::uint32_t i = 0; i < many.size(); ++i) many[i] = PacketId(i);
+  EXPECT_EQ(link->capacity(), 8u);
+  EXPECT_EQ(link->try_send(many), 8u);
+  EXPECT_EQ(link->try_send(many), 0u);
+  EXPECT_EQ(link->free_places(), 0u);
+}
+
+TEST(FaultDice, TheSameSeedGivesTheSameFates) {
+  Config config = faulty(0.25, 0, 0.5, 0, 0);
+  LinkFaultCounts a, b, other;
+  FaultDice first(config.faults, 5), again(config.faults, 5), stream(config.faults, 6);
+  std::uint64_t drops = 0, same = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const FrameFate fate = first.next(a), twin = again.next(b), else_where = stream.next(other);
+    EXPECT_EQ(fate.drop, twin.drop);
+    EXPECT_EQ(fate.bits, twin.bits);
+    drops += fate.drop;
+    same += fate.bits == else_where.bits;
+  }
+  EXPECT_EQ(a, b);
+  EXPECT_EQ(same, 0u);
+  EXPECT_NEAR(static_cast<double>(drops), 1000, 150);
+  EXPECT_NEAR(static_cast<double>(a.corrupted), 1500, 150);   // of those not dropped
+}
+
+TEST(LinkFaultTimer, LosesTimeAndNothingElse) {
+  Config config;
+  config.faults.links.drop = 0.5;
+  cycle::LinkFaultTimer timer(config.faults, 0);
+  cycle::Cycle now = 0, last = 0;
+  std::uint64_t waited = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto delivery = timer.send(now, 2, 10);
+    // A try takes two cycles and 22 of patience; tries until one gets through.
+    ASSERT_GE(delivery.arrival, now + 10);
+    ASSERT_EQ((delivery.arrival - now - 10) % 24, 0u);
+    ASSERT_EQ(delivery.link_free, delivery.arrival - 10 + 2);
+    ASSERT_GE(delivery.arrival, last);
+    waited += (delivery.arrival - now - 10) / 24;
+    last = delivery.arrival;
+    now = delivery.link_free;
+  }
+  EXPECT_EQ(timer.counts().resent, waited);
+  EXPECT_EQ(timer.counts().dropped, waited);
+  EXPECT_NEAR(static_cast<double>(waited), 2000, 250);   // a geometric distribution of mean 1
+}
+
+// Hits and picture do not notice, on either engine, whatever fails.
+TEST(FaultIdentity, FaultsCostTimeAndChangeNoHit) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 300, 2);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
+    for (int fault = 0; fault < 4; ++fault) {
+      SCOPED_TRACE(testing::Message() << "engine " << static_cast<int>(engine) << " fault " << fault);
+      Cell cell;
+      Config& c = cell.config;
+      c.engine.kind = engine;
+      cell.threads = 2;
+      c.topology.resources = 3;
+      c.topology.link.depth = 4;
+      c.rays.slots_per_resource = 64;
+      if (fault == 0) c.faults.links = {0.05, 0.05, 0.05, 0.05, 0.05, 30};
+      if (fault == 1) c.faults.links.drop = 0.3;
+      if (fault == 2) c.faults.resource = {FaultsConfig::Resource::Kind::kPause, 1, 20, 50'000, 4};
+      if (fault == 3) c.faults.resource = {FaultsConfig::Resource::Kind::kSlow, 2, 0, 1, 20};
+      const auto outcome = run_cell(scene, cell);
+      EXPECT_EQ(outcome.fault, "");
+    }
+}
+
+}  // namespace
+}  // namespace carousel::ringbus
