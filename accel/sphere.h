@@ -1,5 +1,6 @@
 #pragma once
 
+#include "accel/node.h"
 #include "core/aabb.h"
 #include "core/vec.h"
 
@@ -17,6 +18,15 @@ struct SphereCrossing {
 /// rounding is far below that of the float t it ends in. The same at all levels of accuracy. False for a radius or
 /// direction of zero, and for anything with a NaN.
 bool cross_sphere(const Vec3& origin, const Vec3& direction, const Vec3& centre, float radius, SphereCrossing& out);
+
+/// A sphere where it stands in a block of a procedural leaf.
+struct BlockSphere {
+  Vec3 centre;
+  float radius;
+};
+inline BlockSphere sphere_in(const TriangleBlock& block, std::size_t lane) {
+  return {{block.vertex[0][0][lane], block.vertex[0][1][lane], block.vertex[0][2][lane]}, block.vertex[1][0][lane]};
+}
 
 /// The smallest box of floats that holds the sphere.
 Aabb sphere_box(const Vec3& centre, float radius);

@@ -15,10 +15,9 @@ namespace carousel::accel {
 /// with the sphere's own box, and for u and v where on the sphere (core/octahedral.h). The way in is its front, the way
 /// out its back.
 template <class Slab>
-[[gnu::noinline]] bool lower_by_sphere(const Accel& accel, const TriangleBlock& block, int lane,
+[[gnu::noinline]] bool lower_by_sphere(const Accel& accel, const TriangleBlock& block, std::size_t lane,
                                        const FrameRay<Slab>& ray, Hit& hit) {
-  const Vec3 centre(block.vertex[0][0][lane], block.vertex[0][1][lane], block.vertex[0][2][lane]);
-  const float radius = block.vertex[1][0][lane];
+  const auto [centre, radius] = sphere_in(block, lane);
   SphereCrossing crossing;
   if (!cross_sphere(ray.origin, ray.direction, centre, radius, crossing)) return false;
   float entry;

@@ -134,7 +134,7 @@ HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lan
   for (std::uint32_t i = 0; i < leaf.triangles(); ++i)
     if (lanes >> i & 1)
       changed |= lower_by_sphere(accel, accel.blocks[leaf.first_block() + i / kBlockTriangles],
-                                 static_cast<int>(i % kBlockTriangles), ray, hit);
+                                 i % kBlockTriangles, ray, hit);
   return changed;
 }
 
