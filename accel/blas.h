@@ -7,6 +7,7 @@
 #include "core/aabb.h"
 #include "core/config.h"
 #include "core/executor.h"
+#include "scene/opacity.h"
 #include "scene/scene.h"
 
 namespace carousel::accel {
@@ -15,10 +16,11 @@ namespace carousel::accel {
 struct Blas {
   NodeArray nodes;
   BlockArray blocks;
-  WideTree tree;    ///< meaningless when the mesh has no triangles
+  WideTree tree;    ///< meaningless when the mesh is empty
   Aabb box;
 };
 
-Blas build_blas(const scene::Mesh& mesh, const BvhConfig& config, Executor& executor);
+/// Primitives that may let rays through get kAskBit.
+Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor);
 
 }  // namespace carousel::accel

@@ -48,6 +48,7 @@ struct SkyConfig {
 struct SceneConfig {
   std::string file;                        ///< glTF file; relative to the config's folder, then to the working one
   std::optional<BuiltinScene> builtin;     ///< exactly one of file and builtin
+  bool procedural = false;                 ///< built-in spheres: as such, not as triangles
   std::int64_t triangles = 20000;          ///< built-in spheres, terrain, sliver: about this many in all
   std::int64_t instances = 1000;           ///< built-in instances
   std::int64_t seed = 1;                   ///< built-in scenes
@@ -90,6 +91,7 @@ struct TesterUnits {
 
 struct TestersConfig {
   TesterUnits box{8, 1, 4}, triangle{4, 1, 4}, plane{8, 1, 4}, bundle{1, 1, 4}, transform{1, 1, 4};
+  TesterUnits procedural{1, 1, 8}, any_hit_unit{1, 1, 8};
   struct Simd {
     std::int64_t lanes = 8;
     enum class Map { kRays, kShapes } map = Map::kRays;
@@ -198,6 +200,12 @@ struct MemoryConfig {
   std::int64_t fetch_ahead = 2, shape_buffer_kib = 4;
 };
 
+/// What the shaders' rays of one kind want (core/ray.h).
+struct RayWishes {
+  enum class Cull { kNone, kBack, kFront } cull = Cull::kNone;
+  bool force_opaque = false;
+};
+
 struct ShadingConfig {
   std::int64_t workers = 2;
   struct Effects {
@@ -205,7 +213,8 @@ struct ShadingConfig {
     std::vector<std::string> names;   ///< for kList
   } effects;
   bool idle_resources_shade = false;
-  std::int64_t cycles_per_shade = 20;
+  std::int64_t cycles_per_shade = 20, cycles_per_any_hit = 10;
+  RayWishes camera_rays, bounce_rays, shadow_rays;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
 };
 

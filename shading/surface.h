@@ -10,7 +10,8 @@
 
 namespace carousel::shading {
 
-/// A hit triangle's entry in its mesh, and where on it.
+/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours, normals or
+/// texture coordinates: textures are read at (0, 0).
 struct TrianglePoint {
   const scene::Mesh* mesh;
   const scene::Material* material;
@@ -25,6 +26,12 @@ TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, 
 /// What the base colour texture, its factor and the vertex colour multiply to. For unlit materials all there
 /// is.
 Vec3 base_color(const scene::Scene& scene, const TrianglePoint& point);
+
+/// Base colour's alpha, of factor, texture and vertices; 0 to 1.
+float alpha(const scene::Scene& scene, const TrianglePoint& point);
+
+/// The share of rays that stop here: alpha for veils, 0 or 1 for cut-outs, else 1.
+float opacity(const scene::Scene& scene, const TrianglePoint& point);
 
 /// Base colour, metallic and roughness.
 MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& point);
