@@ -277,6 +277,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.config = config_json(config);
   r.scene = summary(prepared);
   r.host = host(prepared, result);
+  if (result.rays_restarted > 0) r.host.recovery_seconds = result.recovery_seconds;
   const bool alone = r.host.threads == 1;
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.deterministic = alone || result.cycle.has_value();
@@ -289,7 +290,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.rays = {result.rays_emitted,
             result.rays_completed,
             result.rays_emitted - result.rays_completed,
-            0,
+            result.rays_restarted,
             {emitted[0], emitted[1], emitted[2]}};
   if (!result.resources.empty()) {
     add_ring(r, result, config.packets, prepared.accel);

@@ -245,11 +245,12 @@ struct FaultsConfig {
     bool any() const { return drop > 0 || duplicate > 0 || corrupt > 0 || reorder > 0 || delay > 0; }
   } links;
   struct Resource {
-    enum class Kind { kNone, kPause, kSlow } kind = Kind::kNone;
+    enum class Kind { kNone, kPause, kSlow, kStop } kind = Kind::kNone;
     std::int64_t number = 0;
     std::int64_t after_rays = 0;       ///< completed there
     std::int64_t cycles = 100'000;     ///< of a pause
     std::int64_t factor = 4;           ///< kSlow
+    bool recover = true;               ///< kStop
   } resource;
 };
 

@@ -115,7 +115,8 @@ CAROUSEL_ENUM(TrafficConfig::Pattern, {TrafficConfig::Pattern::kUniform, "unifor
               {TrafficConfig::Pattern::kNeighbour, "neighbour"},
               {TrafficConfig::Pattern::kHotspot, "hotspot"}, {TrafficConfig::Pattern::kBursty, "bursty"});
 CAROUSEL_ENUM(FaultsConfig::Resource::Kind, {FaultsConfig::Resource::Kind::kNone, "none"},
-              {FaultsConfig::Resource::Kind::kPause, "pause"}, {FaultsConfig::Resource::Kind::kSlow, "slow"});
+              {FaultsConfig::Resource::Kind::kPause, "pause"}, {FaultsConfig::Resource::Kind::kSlow, "slow"},
+              {FaultsConfig::Resource::Kind::kStop, "stop"});
 CAROUSEL_ENUM(Verify, {Verify::kNone, "none"}, {Verify::kReference, "reference"});
 
 #undef CAROUSEL_ENUM

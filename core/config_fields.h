@@ -316,11 +316,12 @@ void describe(V& v, FaultsConfig::Links& c) {
 
 template <class V>
 void describe(V& v, FaultsConfig::Resource& c) {
-  v.choice("kind", c.kind, "what befalls a resource: pause (once), slow (to the end), or none");
+  v.choice("kind", c.kind, "what befalls a resource: pause (once), slow (to the end), stop (for good), or none");
   v.field("number", c.number, IntRange{0, kMaxResources - 1}, "", "which resource");
   v.field("after_rays", c.after_rays, IntRange{0, 1'000'000'000}, "rays", "completed there before it begins");
   v.field("cycles", c.cycles, IntRange{1, 1'000'000'000}, "cycles", "length of a pause; native: at engine.clock_mhz");
   v.field("factor", c.factor, IntRange{2, 1000}, "times", "slow: a step takes so many times as long");
+  v.field("recover", c.recover, "", "stop: start its unfinished rays again elsewhere; or else end the run and say what is missing");
 }
 
 template <class V>

@@ -239,6 +239,7 @@ struct Host {
   std::string simd;
   Machine machine;
   std::optional<double> plane_seconds{};
+  std::optional<double> recovery_seconds{};
 };
 
 struct Report {

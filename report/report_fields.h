@@ -71,7 +71,7 @@ void describe(V& v, Rays& r) {
   v.field("emitted", r.emitted, "rays", "that shading produced");
   v.field("completed", r.completed, "rays", "that shading got back");
   v.field("lost", r.lost, "rays", "emitted and never completed; 0 in a complete run");
-  v.field("restarted", r.restarted, "rays", "traced again from the root");
+  v.field("restarted", r.restarted, "rays", "under way when a resource stopped, and traced again from the root");
   v.section("by_kind", r.by_kind, "emitted rays by kind");
 }
 
@@ -367,6 +367,7 @@ void describe(V& v, Host& r) {
   v.field("scene_seconds", r.scene_seconds, "s", "to load or generate the scene");
   v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure, without cull planes");
   v.field("plane_seconds", r.plane_seconds, "s", "to find its cull planes");
+  v.field("recovery_seconds", r.recovery_seconds, "s", "from the last sign of life of a resource that stopped until its rays began again");
   v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");
   v.field("simd", r.simd, "", "instruction set of the test kernels");

@@ -67,6 +67,8 @@ class Link {
   virtual std::size_t capacity() const = 0;
   /// Sender only: what a link has to do besides (see ReliableLink); whether anything moved.
   virtual bool tick() { return false; }
+  /// Receiver only: likewise, also when it wants nothing at present.
+  virtual void tick_receiver() {}
 
   ResourceId from() const { return from_; }
   ResourceId to() const { return to_; }

@@ -20,6 +20,9 @@ NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventS
     : machine_(machine),
       links_fail_(machine.config.faults.links.any()),
       fault_(ResourceFault::of(machine.config, id)),
+      stops_after_(static_cast<std::uint64_t>(machine.config.faults.resource.after_rays)),
+      stops_(machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop &&
+             machine.config.faults.resource.number == id.value),
       sink_(sink),
       resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], sink),
       exit_of_(machine.topology.resources()),
@@ -38,14 +41,28 @@ NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventS
 }
 
 bool NativePort::step() {
+  if (stops_ && rays_completed_ >= stops_after_) stopped_ = true;
+  if (stopped_) {
+    bool moved = tick_links();
+    moved |= send_in_hand();
+    return receive() || moved;
+  }
+  // Relaxed, and no read-modify-write: it has one writer.
+  beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   if (!fault_) return step_now();
   return fault_->step(rays_completed_, [this] { return step_now(); });
 }
 
-bool NativePort::step_now() {
+bool NativePort::tick_links() {
+  if (!links_fail_) return false;
   bool moved = false;
-  if (links_fail_)
-    for (const Exit& exit : exits_) moved |= exit.link->tick();
+  for (const Exit& exit : exits_) moved |= exit.link->tick();
+  for (const Entry& entry : entries_) entry.link->tick_receiver();
+  return moved;
+}
+
+bool NativePort::step_now() {
+  bool moved = tick_links();
   moved |= send_in_hand();
   moved |= receive();
   moved |= admit();
@@ -100,7 +117,8 @@ bool NativePort::receive() {
 
 void NativePort::arrive(PacketId id) {
   Packet& packet = machine_.packet(id);
-  if (packet.owner == resource_.id()) return come_home(id);
+  if (packet.owner == resource_.id()) return stopped_ ? discard(id) : come_home(id);
+  if (stopped_) return forward(id);
   if (machine_.topology.handles(packet, resource_.id())) {
     switch (packet.kind) {
       case PacketKind::kTest: resource_.test(packet); break;
@@ -136,6 +154,12 @@ void NativePort::come_home(PacketId id) {
   }
   free_[packet.direction].push_back(id);
   // Release: pairs with the acquire in packets_out().
+  out_.store(out_.load(std::memory_order_relaxed) - 1, std::memory_order_release);
+}
+
+void NativePort::discard(PacketId id) {
+  free_[machine_.packet(id).direction].push_back(id);
+  // Release: as in come_home().
   out_.store(out_.load(std::memory_order_relaxed) - 1, std::memory_order_release);
 }
 

@@ -35,6 +35,8 @@ struct LinkResult {
 struct RunResult {
   bool complete = true;                       ///< false: stopped early
   std::uint64_t rays_emitted = 0, rays_completed = 0;
+  std::uint64_t rays_restarted = 0;           ///< started again because a resource stopped
+  double recovery_seconds = 0;                ///< from its last sign of life until then
   double wall_seconds = 0;
   std::size_t threads = 1;                    ///< that were used
   std::chrono::steady_clock::time_point start{};   ///< native: what the links' series count from

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -111,9 +112,9 @@ int stress_command(const StressArguments& arguments) {
     if (std::none_of(queues.begin(), queues.end(), [&](const auto& queue) { return stress::pattern_fits(queue, pattern); }) &&
         !arguments.patterns.empty())
       ringbus::require_parties(kinds[0], "--queue", ringbus::Parties::kMany, ringbus::Parties::kMany);
-  std::optional<Prepared> prepared;
+  std::unique_ptr<const Prepared> prepared;
   if (!arguments.config.empty()) {
-    prepared = prepare(arguments, {}, false);
+    prepared.reset(new Prepared(prepare(arguments, {}, false)));
     if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic)
       throw ConfigError({{prepared->located.positions.find("workload"), "workload", "stress tries queues with rays; expected rays"}});
   }

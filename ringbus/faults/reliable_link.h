@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "ringbus/faults/faulty_wire.h"
@@ -43,6 +45,13 @@ class ReliableLink final : public Link {
     }
     transmit();
     return moved;
+  }
+  void tick_receiver() override {
+    take_frames([&](PacketId packet) {
+      if (held_) return false;
+      held_ = packet;
+      return true;
+    });
   }
   LinkFaultCounts faults() const override {
     LinkFaultCounts sum = out_.counts();
@@ -110,21 +119,31 @@ class ReliableLink final : public Link {
 
   std::size_t pull(std::span<PacketId> packets) override {
     std::size_t count = 0;
+    if (!packets.empty() && held_) packets[count++] = *std::exchange(held_, std::nullopt);
+    take_frames([&](PacketId packet) {
+      if (count == packets.size()) return false;
+      packets[count++] = packet;
+      return true;
+    });
+    return count;
+  }
+  /// Reads the wire dry. What comes in its turn is offered to `take`, which may refuse it; what is not taken will come
+  /// again. Whatever came, how far the receiver is goes back: the acknowledgement of something's first coming may have
+  /// been lost, and its place at the sender is free only when it knows.
+  template <class Take>
+  void take_frames(const Take& take) {
     bool heard = false;
     Frame frame;
-    while (count < packets.size() && frames_.try_pop(frame)) {
+    while (frames_.try_pop(frame)) {
       heard = true;
-      if (frame.check != check(frame.sequence, frame.packet) || frame.sequence != expected_) {
+      if (frame.check == check(frame.sequence, frame.packet) && frame.sequence == expected_ &&
+          take(PacketId(static_cast<std::uint32_t>(frame.packet))))
+        ++expected_;
+      else
         ++discarded_;
-        continue;
-      }
-      packets[count++] = PacketId(static_cast<std::uint32_t>(frame.packet));
-      ++expected_;
     }
-    // Also for what was discarded: the acknowledgement of its first coming may have been lost.
     if (heard) back_.put({expected_, check(expected_, 0)});
     back_.release();
-    return count;
   }
 
   std::size_t depth_;
@@ -137,6 +156,7 @@ class ReliableLink final : public Link {
   // The receiver's.
   alignas(128) std::uint64_t expected_ = 0;
   std::uint64_t discarded_ = 0;
+  std::optional<PacketId> held_;   // taken in while nobody wanted it
   // Between them.
   alignas(128) Queue<Frame> frames_;
   SpscRing<Ack> acks_;

@@ -16,7 +16,8 @@ class ResourceFault {
   /// That of a resource, if it has one.
   static std::optional<ResourceFault> of(const Config& config, ResourceId id) {
     const FaultsConfig::Resource& fault = config.faults.resource;
-    if (fault.kind == FaultsConfig::Resource::Kind::kNone || fault.number != id.value) return std::nullopt;
+    using Kind = FaultsConfig::Resource::Kind;
+    if ((fault.kind != Kind::kPause && fault.kind != Kind::kSlow) || fault.number != id.value) return std::nullopt;
     return ResourceFault(config);
   }
 
