@@ -175,7 +175,9 @@ void PathTracer::shade_closest(const RayResult& result, Worker& worker, RayBatch
   if (!(max_component(throughput) > 0.0f)) return;
   path.throughput = throughput;
   path.bounce_pdf = value.pdf;
-  path.scattered = path.scattered || bsdf.is_wide(draw.lobe);
+  const bool wide = bsdf.is_wide(draw.lobe);
+  path.scattered = path.scattered || wide;
+  tag.flags = wide ? kRayAlone : 0;
   tag.kind = RayKind::kBounce;
   ++tag.bounce;
   emit({origin, 0.0f, wi, kInfinity}, tag, worker, out);
@@ -224,7 +226,7 @@ void PathTracer::finish_ray(std::uint32_t index, std::uint32_t children, Worker&
 void PathTracer::emit(const Ray& ray, const RayTag& tag, Worker& worker, RayBatch& out) {
   ++worker.counts.emitted[static_cast<std::size_t>(tag.kind)];
   RayTag wishing = tag;
-  wishing.flags = wishes_[static_cast<std::size_t>(tag.kind)];
+  wishing.flags |= wishes_[static_cast<std::size_t>(tag.kind)];
   out.push_back({ray, wishing});
 }
 
