@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include <glm/geometric.hpp>
+
 namespace carousel::scene {
 
 std::size_t Scene::unique_triangle_count() const {
@@ -18,7 +20,16 @@ Aabb Scene::bounds() const {
   Aabb all;
   for (const Instance& instance : instances) {
     const Affine& m = instance.world_from_model;
-    for (const Vec3& p : meshes[instance.mesh.value].positions) all.extend(m.linear * p + m.translation);
+    const Mesh& mesh = meshes[instance.mesh.value];
+    for (const Vec3& p : mesh.positions) all.extend(m.linear * p + m.translation);
+    for (const Sphere& sphere : mesh.spheres) {
+      const Vec3 center = m.linear * sphere.center + m.translation;
+      // An ellipsoid reaches as far along an axis as that row of the map is long.
+      const Mat3 rows = glm::transpose(m.linear);
+      const Vec3 reach = sphere.radius * Vec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
+      all.extend(center - reach);
+      all.extend(center + reach);
+    }
   }
   return all;
 }

@@ -98,7 +98,15 @@ struct Material {
   } anisotropy;
 };
 
-/// Triangles of one glTF mesh, its primitives concatenated in order: `primitive` in a hit indexes them.
+/// A sphere as such, not triangulated, in model space; an instance may stretch it to an ellipsoid.
+struct Sphere {
+  Vec3 center{0};
+  float radius = 1;                         ///< > 0, finite
+  MaterialId material;
+};
+
+/// Triangles of one glTF mesh, its primitives concatenated in order, then spheres: `primitive` in a hit counts
+/// through the triangles first, so sphere i is primitive triangle_count() + i.
 struct Mesh {
   std::string name;
   std::vector<Vec3> positions;              ///< finite
@@ -107,6 +115,7 @@ struct Mesh {
   std::vector<Vec4> colors;                 ///< empty, or one a position; linear RGBA
   std::vector<std::uint32_t> indices;       ///< 3 a triangle, each < positions.size()
   std::vector<MaterialId> triangle_materials;   ///< one a triangle
+  std::vector<Sphere> spheres;
 
   std::size_t triangle_count() const { return indices.size() / 3; }
 };
@@ -164,7 +173,7 @@ struct Scene {
 
   std::size_t unique_triangle_count() const;     ///< over meshes
   std::size_t instanced_triangle_count() const;  ///< over instances
-  /// World-space bounds of all instances (of transformed vertices, float arithmetic, not conservative).
+  /// World-space bounds of all instances (of transformed vertices and spheres, float arithmetic, not conservative).
   Aabb bounds() const;
 };
 
