@@ -133,6 +133,7 @@ void InterfaceBsdf<kTransmits>::choose_shares(const Vec3& single, const Vec3& ma
   if (interface_share_ < 0.99f) interface_share_ = std::clamp(interface_share_, 0.1f, 0.9f);
   const float rest = above + below;
   above_share_ = rest > 0.0f ? (1.0f - interface_share_) * (above / rest) : 1.0f - interface_share_;
+  below_share_ = rest > 0.0f ? (1.0f - interface_share_) * (below / rest) : 0.0f;
 }
 
 template <bool kTransmits>
@@ -210,7 +211,7 @@ BsdfValue InterfaceBsdf<kTransmits>::through(const Vec3& wi) const {
   float lost = 1.0f;
   if (!glass && !anisotropic_) lost = 1.0f - GgxAlbedo::table().split(-wi.z, point_.alpha.x).full;
   value.f_cos += multiple_through_ * (lost * -wi.z);
-  value.pdf += std::max(1.0f - interface_share_ - above_share_, 0.0f) * cosine_pdf(-wi.z);
+  value.pdf += below_share_ * cosine_pdf(-wi.z);
   return value;
 }
 
@@ -218,7 +219,7 @@ template <bool kTransmits>
 Vec3 InterfaceBsdf<kTransmits>::sample(float lobe, const Vec2& u) const {
   if (lobe >= interface_share_) {
     const Vec3 w = sample_cosine(u);
-    const bool below = kTransmits && lobe >= interface_share_ + above_share_;
+    const bool below = kTransmits && lobe >= 1.0f - below_share_;
     return below ? Vec3{w.x, w.y, -w.z} : w;
   }
   const Vec3 h = sample_visible_normal(wo_, point_.alpha, u);

@@ -56,7 +56,7 @@ class InterfaceBsdf {
   Vec3 multiple_{0};           // of light reflected several times, likewise
   Vec3 multiple_through_{0};   // of light that goes through after several times
   Vec3 returned_{0};           // share of what single scattering loses that is reflected, without glass
-  float interface_share_ = 1, above_share_ = 0;   // probabilities; the rest is cosine-like below
+  float interface_share_ = 1, above_share_ = 0, below_share_ = 0;   // probabilities; the latter cosine-like
 };
 
 extern template class InterfaceBsdf<false>;
