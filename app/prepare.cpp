@@ -14,6 +14,7 @@
 #include "core/executor.h"
 #include "ringbus/deadlock.h"
 #include "scene/load_scene.h"
+#include "shading/effects_plan.h"
 
 namespace carousel::app {
 
@@ -48,6 +49,9 @@ void load_scene(Prepared& p) {
     spdlog::warn("{}", warning);
     p.warnings.push_back(warning);
   });
+  shading::keep_effects(p.scene, p.config().shading.effects);
+  if (p.config().shading.effects.choice != ShadingConfig::Effects::Choice::kAll)
+    p.unread_image_bytes = shading::drop_unread_images(p.scene);
   p.scene_seconds = watch.seconds();
 }
 
@@ -57,6 +61,10 @@ void build_accel(Prepared& p) {
   const auto executor = make_tbb_executor(p.threads);
   p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
   p.build_seconds = watch.seconds();
+  if (p.accel.may_pass) {
+    p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
+    p.accel.any_hit = p.alpha_test.get();
+  }
   accel::add_cull_planes(p.accel, p.scene, p.config().cull_planes, *executor);
   p.plane_seconds = watch.seconds() - p.build_seconds;
   if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())

@@ -3,6 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/config.h"
 #include "core/effect.h"
@@ -61,8 +64,12 @@ enum class SurfaceClass : std::uint8_t {
   kLayeredTransmissive,
   kAnything,          ///< asks at each hit what there is: `all`
 };
-/// `colors`: some mesh with the material has vertex colours.
-SurfaceClass surface_class(const scene::Material& material, bool colors);
+inline constexpr std::size_t kSurfaceClasses = 9;
+std::string_view class_name(SurfaceClass surface);
+/// Classes of the materials on triangles of instances, as the plan has them shaded, each with how many; none of 0.
+std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::Scene& scene, const EffectsPlan& plan);
+/// By material: how the plan has it shaded.
+std::vector<SurfaceClass> surface_classes(const scene::Scene& scene, const EffectsPlan& plan);
 
 bool has_layers(const scene::Material& material);      ///< clearcoat or sheen
 bool has_interface(const scene::Material& material);   ///< a boundary that glTF's core does not describe

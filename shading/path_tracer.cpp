@@ -24,6 +24,11 @@ CameraConfig lens(CameraConfig camera, const EffectsPlan& plan) {
   return camera;
 }
 
+std::uint8_t flags_of(const RayWishes& wishes) {
+  const int cull = wishes.cull == RayWishes::Cull::kBack ? kRayCullBack : wishes.cull == RayWishes::Cull::kFront ? kRayCullFront : 0;
+  return static_cast<std::uint8_t>(cull | (wishes.force_opaque ? kRayForceOpaque : 0));
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight,
@@ -35,6 +40,7 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
              static_cast<std::uint64_t>(config.image.samples)),
       max_depth_(plan_.on(Effect::kBounceRays) ? u32(config.image.max_depth) : 1),
       spawn_(config.accuracy.spawn),
+      wishes_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays), flags_of(config.shading.shadow_rays)},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
       order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
@@ -151,11 +157,7 @@ PathTracer::ShadeSurface PathTracer::shade_of(SurfaceClass surface, Lights light
 }
 
 void PathTracer::choose_surfaces() {
-  std::vector<bool> colors(scene_.materials.size(), false);
-  for (const scene::Mesh& mesh : scene_.meshes) {
-    if (mesh.colors.empty()) continue;
-    for (const MaterialId id : mesh.triangle_materials) colors[id.value] = true;
-  }
+  const std::vector<SurfaceClass> classes = surface_classes(scene_, plan_);
   const Lights lights = media_                         ? Lights::kLampsAndMedia
                         : plan_.on(Effect::kEmission)  ? Lights::kLamps
                         : !lights_.empty()             ? Lights::kPunctual
@@ -164,7 +166,7 @@ void PathTracer::choose_surfaces() {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const scene::Material& material = scene_.materials[i];
     Surface& surface = surfaces_[i];
-    surface.shade = shade_of(plan_.everything ? SurfaceClass::kAnything : surface_class(material, colors[i]), lights);
+    surface.shade = shade_of(classes[i], lights);
     surface.glass = glass_tables(material);
     surface.absorbs = absorbs(material);
     if (!surface.absorbs) continue;
@@ -217,7 +219,9 @@ void PathTracer::finish_ray(std::uint32_t index, std::uint32_t children, Worker&
 
 void PathTracer::emit(const Ray& ray, const RayTag& tag, Worker& worker, RayBatch& out) {
   ++worker.counts.emitted[static_cast<std::size_t>(tag.kind)];
-  out.push_back({ray, tag});
+  RayTag wishing = tag;
+  wishing.flags = wishes_[static_cast<std::size_t>(tag.kind)];
+  out.push_back({ray, wishing});
 }
 
 PathTracer::Counts PathTracer::counts() const {
