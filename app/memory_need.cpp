@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "report/number_text.h"
 #include "report/ray_csv.h"
+#include "shading/effects_plan.h"
 #include "shading/path_state.h"
 
 namespace carousel::app {
@@ -75,6 +76,7 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
                     const accel::Accel& accel) {
   MemoryNeed need = frame_need(config, keep_hits);
   need.scene = scene_bytes(scene);
+  if (need.paths > 0) need.paths = paths_in_flight(config) * shading::plan_effects(scene, config).path_state_bytes();
   need.accel = accel.size_bytes();
   need.ring = ringbus::estimate_memory(config, accel.max_depth);
   return need;
