@@ -229,4 +229,9 @@ Accel plain_copy(const Accel& accel) {
   return plain;
 }
 
+bool is_plain(const Accel& accel) {
+  return accel.planes.empty() && accel.spheres.empty() &&
+         std::none_of(accel.nodes.begin(), accel.nodes.end(), [](const Node& node) { return node.direct != 0; });
+}
+
 }  // namespace carousel::accel

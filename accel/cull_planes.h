@@ -15,5 +15,7 @@ void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesCo
 /// The same structure with nothing but boxes: what rays are traced through to find out what planes and bounding spheres
 /// would have lost.
 Accel plain_copy(const Accel& accel);
+/// Whether that would be the structure itself.
+bool is_plain(const Accel& accel);
 
 }  // namespace carousel::accel

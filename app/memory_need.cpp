@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "accel/cull_planes.h"
 #include "core/error.h"
 #include "report/number_text.h"
 #include "report/ray_csv.h"
@@ -78,6 +79,7 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
   need.scene = scene_bytes(scene);
   if (need.paths > 0) need.paths = paths_in_flight(config) * shading::plan_effects(scene, config).path_state_bytes();
   need.accel = accel.size_bytes();
+  if (config.verify == Verify::kReference && !accel::is_plain(accel)) need.accel += accel.size_bytes();   // plain_copy()
   need.ring = ringbus::estimate_memory(config, accel.max_depth);
   return need;
 }

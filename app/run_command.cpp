@@ -108,8 +108,7 @@ int run_command(const RunArguments& arguments) {
   std::optional<accel::VerifyingWorkload> verifying;
   std::optional<accel::Accel> plain;   // planes and spheres are verified, too
   if (p.config().verify == Verify::kReference) {
-    if (!p.accel.planes.empty() || p.config().bvh.elements != BvhConfig::Elements::kBoxes || p.config().bvh.mixed_triangles > 0)
-      plain = accel::plain_copy(p.accel);
+    if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
     verifying.emplace(frame.workload(), plain ? *plain : p.accel);
   }
   Workload& workload = verifying ? *verifying : frame.workload();
