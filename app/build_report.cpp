@@ -297,7 +297,8 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
     add_links(r, result, config);
   }
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
-               std::nullopt, effects_of(prepared.scene, config)};
+               std::nullopt, {}, {}, 0, {}, {}};
+  add_effects(r.shading, prepared.scene, config, prepared.unread_image_bytes);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
   if (verifying) r.verify = verify(*verifying);
   r.digest = {frame.hits_digest(), frame.image_digest()};

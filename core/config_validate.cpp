@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/config_enums.h"
 #include "core/config_schema.h"
 #include "core/edit_distance.h"
+#include "core/effect.h"
 
 namespace carousel {
 
@@ -95,6 +98,11 @@ class Rules {
   }
 
   void built_planes_and_bundles() {
+    if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
+      constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
+      if (c.cull_planes.count > 0) issue("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
+      if (c.bundles.size > 0) issue("bvh.elements", fmt::format(what, "bundles", "bundles.size: 0"));
+    }
     if (c.cull_planes.count > 0) planes_need_bounded_errors();
     if (c.bundles.size > 0) bundles_fit();
   }
@@ -158,9 +166,16 @@ class Rules {
   }
 
   void built_shading() {
-    using Choice = ShadingConfig::Effects::Choice;
-    if (c.shading.effects.choice != Choice::kAuto)
-      issue("shading.effects", "choosing effects is not built yet; expected auto");
+    const std::vector<std::string> known(kEffectNames.begin(), kEffectNames.end());
+    for (std::size_t i = 0; i < c.shading.effects.names.size(); ++i) {
+      const std::string& name = c.shading.effects.names[i];
+      if (effect_named(name)) continue;
+      const auto near = nearest_name(name, known);
+      issue(fmt::format("shading.effects.{}", i),
+            fmt::format("expected the name of an effect, found '{}'{}", name,
+                        near ? fmt::format("; did you mean '{}'?", *near)
+                             : fmt::format("; known are {}", fmt::join(known, ", "))));
+    }
     if (!cycle()) only("shading.idle_resources_shade", c.shading.idle_resources_shade, false, "true", "false");
   }
 
