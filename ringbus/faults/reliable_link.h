@@ -14,9 +14,9 @@
 namespace carousel::ringbus {
 
 /// A link over wires that fail: frames carry sequence numbers and checksums, the receiver takes them in order and says
-/// how far it is, and after silence the sender goes back to the first that was not acknowledged (go-back-N; Tanenbaum,
-/// Computer Networks, "a protocol using go-back-n"). Above it nothing is lost, doubled or out of order; a packet holds
-/// its place until it is acknowledged.
+/// how far it is, and after silence, or when it hears that the first one out is still missing, the sender goes back to it
+/// (go-back-N; Tanenbaum, Computer Networks, "a protocol using go-back-n"). Above it nothing is lost, doubled or out of
+/// order; a packet holds its place until it is acknowledged.
 ///
 /// What fails is the frame: the packet's index with number and checksum. The packet's contents stand in memory that
 /// both ends share and are not copied.
@@ -107,8 +107,15 @@ class ReliableLink final : public Link {
     bool moved = false;
     Ack ack;
     while (acks_.try_pop(ack)) {
+      if (ack.check != check(ack.expected, 0)) continue;
+      // The receiver still waits for the first that is out, though something came: that one was lost. Once for each.
+      if (ack.expected == base_ && base_ < sent_ && asked_for_ != base_) {
+        asked_for_ = base_;
+        resent_ += sent_ - base_;
+        sent_ = base_;
+      }
       // One behind is old; one beyond what was sent would be damage that the checksum missed.
-      if (ack.check != check(ack.expected, 0) || ack.expected <= base_ || ack.expected > next_) continue;
+      if (ack.expected <= base_ || ack.expected > next_) continue;
       base_ = ack.expected;
       sent_ = std::max(sent_, base_);
       moved = true;
@@ -152,6 +159,7 @@ class ReliableLink final : public Link {
   std::vector<PacketId> window_;                      // what is not acknowledged, by sequence number modulo depth
   std::uint64_t base_ = 0, sent_ = 0, next_ = 0;      // acknowledged up to; on the wire up to; accepted up to
   Clock::time_point heard_{};                         // when something was last acknowledged, or began to be awaited
+  std::uint64_t asked_for_ = ~std::uint64_t{0};       // the frame that an acknowledgement last asked for again
   std::uint64_t resent_ = 0;
   // The receiver's.
   alignas(128) std::uint64_t expected_ = 0;
