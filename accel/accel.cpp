@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "accel/blas.h"
 #include "accel/cull_planes.h"
 #include "accel/sah_build.h"
 #include "core/error.h"
+#include "scene/alpha.h"
 
 namespace carousel::accel {
 
@@ -27,8 +29,9 @@ struct PlacedBlas {
   std::uint32_t first_node = 0, first_block = 0;
 
   NodeRef place(NodeRef ref) const {
-    return ref.is_inner() ? NodeRef::inner(ref.node() + first_node)
-                          : NodeRef::leaf(ref.first_block() + first_block, ref.triangles());
+    if (ref.is_inner()) return NodeRef::inner(ref.node() + first_node);
+    const std::uint32_t block = ref.first_block() + first_block;
+    return ref.is_procedural() ? NodeRef::procedural(block, ref.triangles()) : NodeRef::leaf(block, ref.triangles());
   }
 };
 
@@ -36,6 +39,7 @@ struct PlacedBlas {
 scene::Mesh bake(const scene::Mesh& mesh, const scene::Affine& m) {
   scene::Mesh out;
   out.indices = mesh.indices;
+  out.triangle_materials = mesh.triangle_materials;
   out.positions.reserve(mesh.positions.size());
   for (const Vec3& p : mesh.positions) out.positions.push_back(m.linear * p + m.translation);
   return out;
@@ -57,6 +61,11 @@ class AccelBuilder {
     const std::size_t first_of_top = accel_.nodes.size();
     build_tlas();
     for (std::size_t i = first_of_top; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
+    for (const TriangleBlock& block : accel_.blocks)
+      for (const std::uint32_t primitive : block.primitive)
+        accel_.may_pass |= primitive != kNoPrimitive && (primitive & kAskBit) != 0;
+    for (const scene::Instance& instance : scene_.instances)
+      accel_.procedural_primitives |= !scene_.meshes[instance.mesh.value].spheres.empty();
     add_cull_planes(accel_, scene_, planes_, executor_);
     return std::move(accel_);
   }
@@ -78,6 +87,8 @@ class AccelBuilder {
         }
         blas_of_[i] = *shared;
       } else {
+        if (!mesh.spheres.empty())
+          throw SceneError(scene_.name, "", "instance " + std::to_string(i) + " flattens a sphere: its transform has no inverse");
         accel_.instances[i].transform = InstanceTransform{};
         baked_.push_back(std::make_unique<scene::Mesh>(bake(mesh, instance.world_from_model)));
         blas_of_[i] = static_cast<std::uint32_t>(sources_.size());
@@ -88,9 +99,11 @@ class AccelBuilder {
   }
 
   void build_blases() {
+    std::vector<bool> material_asks;
+    for (const scene::Material& material : scene_.materials) material_asks.push_back(scene::may_pass(material));
     blases_.resize(sources_.size());
     executor_.parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) blases_[i].blas = build_blas(*sources_[i], config_, executor_);
+      for (std::size_t i = begin; i < end; ++i) blases_[i].blas = build_blas(*sources_[i], material_asks, config_, executor_);
     });
   }
 

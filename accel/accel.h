@@ -7,6 +7,7 @@
 #include "accel/node.h"
 #include "accel/transform.h"
 #include "core/aabb.h"
+#include "core/any_hit.h"
 #include "core/config.h"
 #include "core/executor.h"
 #include "scene/scene.h"
@@ -34,11 +35,15 @@ struct Accel {
   std::uint64_t plane_bytes = 0;         ///< of the planes, normals that are shared counted once
   std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
   NodeKey root;                          ///< as root_key()
+  const AnyHit* any_hit = nullptr;       ///< who knows what lets rays through, set before tracing; null: nothing does
   AccuracyConfig accuracy;               ///< arithmetic of the tests on it
+  bool procedural_primitives = false;    ///< there are some
+  bool may_pass = false;                 ///< some primitives have kAskBit
   int width = kMaxWidth;                 ///< children a node at most
   int max_depth = 0;                     ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
   std::size_t baked_instances = 0;       ///< singular transforms, stored as world-space triangles
 
+  bool asks() const { return may_pass && any_hit != nullptr; }
   std::size_t size_bytes() const {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) +
            plane_bytes + instances.size() * sizeof(InstanceNode);
@@ -48,7 +53,7 @@ struct Accel {
   /// The node a child lane leads to; an instance child leads to the root of its BLAS.
   NodeKey child_key(NodeKey parent, int lane) const {
     const NodeRef ref = nodes[parent.ref.node()].child[lane];
-    if (ref.kind() == NodeRef::Kind::kInstance) return {ref.instance_index(), instances[ref.instance_index()].root};
+    if (ref.is_instance()) return {ref.instance_index(), instances[ref.instance_index()].root};
     return {parent.instance, ref};
   }
   /// Shapes in the strip of `key`: children of an inner node, triangles of a leaf.

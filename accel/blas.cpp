@@ -1,17 +1,24 @@
 #include "accel/blas.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "accel/sah_build.h"
+#include "accel/sphere.h"
 
 namespace carousel::accel {
 
 namespace {
 
-std::vector<BuildPrimitive> triangle_boxes(const scene::Mesh& mesh, Executor& executor) {
-  std::vector<BuildPrimitive> out(mesh.triangle_count());
+/// Triangles, then spheres, with their boxes.
+std::vector<BuildPrimitive> boxes(const scene::Mesh& mesh, Executor& executor) {
+  const std::size_t triangles = mesh.triangle_count();
+  std::vector<BuildPrimitive> out(triangles + mesh.spheres.size());
   executor.parallel_for(out.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Aabb box;
-      for (int k = 0; k < 3; ++k) box.extend(mesh.positions[mesh.indices[3 * i + k]]);
+      for (std::size_t k = 0; k < 3 && i < triangles; ++k) box.extend(mesh.positions[mesh.indices[3 * i + k]]);
+      if (i >= triangles) box = sphere_box(mesh.spheres[i - triangles].center, mesh.spheres[i - triangles].radius);
       out[i].lo = box.lo;
       out[i].hi = box.hi;
       out[i].index = static_cast<std::uint32_t>(i);
@@ -20,28 +27,69 @@ std::vector<BuildPrimitive> triangle_boxes(const scene::Mesh& mesh, Executor& ex
   return out;
 }
 
-void fill_block(const scene::Mesh& mesh, const BuildPrimitive* primitives, std::uint32_t count,
-                TriangleBlock& block) {
+void fill_block(const scene::Mesh& mesh, const std::vector<bool>& material_asks, const BuildPrimitive* primitives,
+                std::uint32_t count, TriangleBlock& block) {
   for (std::uint32_t lane = 0; lane < count; ++lane) {
-    const std::uint32_t triangle = primitives[lane].index;
-    block.primitive[lane] = triangle;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3& p = mesh.positions[mesh.indices[3 * std::size_t{triangle} + k]];
-      for (int axis = 0; axis < 3; ++axis) block.vertex[k][axis][lane] = p[axis];
+    const std::uint32_t index = primitives[lane].index;
+    const auto set = [&](std::size_t vertex, const Vec3& p) {
+      for (int axis = 0; axis < 3; ++axis) block.vertex[vertex][axis][lane] = p[axis];
+    };
+    MaterialId material;
+    if (index >= mesh.triangle_count()) {
+      const scene::Sphere& sphere = mesh.spheres[index - mesh.triangle_count()];
+      set(0, sphere.center);
+      block.vertex[1][0][lane] = sphere.radius;
+      material = sphere.material;
+    } else {
+      for (std::size_t k = 0; k < 3; ++k) set(k, mesh.positions[mesh.indices[3 * std::size_t{index} + k]]);
+      // Meshes without materials are tests', and those that have been baked keep theirs.
+      if (!mesh.triangle_materials.empty()) material = mesh.triangle_materials[index];
     }
+    const bool asks = material.value < material_asks.size() && material_asks[material.value];
+    block.primitive[lane] = index | (asks ? kAskBit : 0);
   }
+}
+
+/// A tree over ranges of `primitives` from `first` on.
+std::vector<BinaryNode> build_range(std::vector<BuildPrimitive>& primitives, std::size_t first, std::size_t last,
+                                    const SahSettings& settings, Executor& executor) {
+  std::vector<BuildPrimitive> range(primitives.begin() + static_cast<std::ptrdiff_t>(first),
+                                    primitives.begin() + static_cast<std::ptrdiff_t>(last));
+  std::vector<BinaryNode> tree = build_sah(range, settings, executor);
+  std::copy(range.begin(), range.end(), primitives.begin() + static_cast<std::ptrdiff_t>(first));
+  for (BinaryNode& node : tree)
+    if (node.count > 0) node.first += static_cast<std::uint32_t>(first);
+  return tree;
+}
+
+/// One tree over triangles and spheres, whose leaves hold either the ones or the others.
+std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std::size_t triangles,
+                                   const SahSettings& settings, Executor& executor) {
+  if (triangles == 0 || triangles == primitives.size()) return build_sah(primitives, settings, executor);
+  std::vector<BinaryNode> joint(1);
+  for (const auto& [first, last] : {std::pair{std::size_t{0}, triangles}, std::pair{triangles, primitives.size()}}) {
+    const std::uint32_t at = static_cast<std::uint32_t>(joint.size());
+    (first == 0 ? joint[0].first : joint[0].right) = at;
+    for (BinaryNode node : build_range(primitives, first, last, settings, executor)) {
+      if (node.count == 0) node.first += at, node.right += at;
+      joint.push_back(node);
+    }
+    joint[0].box.extend(joint[at].box);
+  }
+  return joint;
 }
 
 }  // namespace
 
-Blas build_blas(const scene::Mesh& mesh, const BvhConfig& config, Executor& executor) {
+Blas build_blas(const scene::Mesh& mesh, const std::vector<bool>& material_asks, const BvhConfig& config,
+                Executor& executor) {
   Blas blas;
-  std::vector<BuildPrimitive> primitives = triangle_boxes(mesh, executor);
+  std::vector<BuildPrimitive> primitives = boxes(mesh, executor);
   if (primitives.empty()) return blas;
   SahSettings settings;
   settings.leaf_primitives = static_cast<std::uint32_t>(config.leaf_triangles);
   settings.block_primitives = std::min<std::uint32_t>(kBlockTriangles, settings.leaf_primitives);
-  const std::vector<BinaryNode> binary = build_sah(primitives, settings, executor);
+  const std::vector<BinaryNode> binary = build_both(primitives, mesh.triangle_count(), settings, executor);
   blas.box = binary[0].box;
 
   struct Fill {
@@ -53,7 +101,9 @@ Blas build_blas(const scene::Mesh& mesh, const BvhConfig& config, Executor& exec
     const std::uint32_t first_block = static_cast<std::uint32_t>(fills.size());
     for (std::uint32_t i = 0; i < leaf.count; i += kBlockTriangles)
       fills.push_back({leaf.first + i, std::min<std::uint32_t>(kBlockTriangles, leaf.count - i)});
-    return WideLeaf{NodeRef::leaf(first_block, leaf.count), static_cast<std::uint8_t>(leaf.count), leaf.count};
+    const bool procedural = primitives[leaf.first].index >= mesh.triangle_count();
+    return WideLeaf{procedural ? NodeRef::procedural(first_block, leaf.count) : NodeRef::leaf(first_block, leaf.count),
+                    static_cast<std::uint8_t>(leaf.count), leaf.count};
   };
   blas.nodes.reserve(primitives.size() / 8 + 1);
   blas.tree = collapse(binary, static_cast<int>(config.width), make_leaf, blas.nodes);
@@ -61,7 +111,7 @@ Blas build_blas(const scene::Mesh& mesh, const BvhConfig& config, Executor& exec
   blas.blocks.resize(fills.size());
   executor.parallel_for(fills.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      fill_block(mesh, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
+      fill_block(mesh, material_asks, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
   });
   return blas;
 }

@@ -15,10 +15,12 @@ namespace carousel::accel {
 struct Blas {
   NodeArray nodes;
   BlockArray blocks;
-  WideTree tree;    ///< meaningless when the mesh has no triangles
+  WideTree tree;    ///< meaningless when the mesh is empty
   Aabb box;
 };
 
-Blas build_blas(const scene::Mesh& mesh, const BvhConfig& config, Executor& executor);
+/// Primitives whose material asks, by MaterialId, get kAskBit.
+Blas build_blas(const scene::Mesh& mesh, const std::vector<bool>& material_asks, const BvhConfig& config,
+                Executor& executor);
 
 }  // namespace carousel::accel

@@ -10,7 +10,10 @@
 #include "accel/exact_triangle.h"
 #include "accel/ray_check.h"
 #include "accel/slab.h"
+#include "accel/sphere.h"
 #include "accel/transform.h"
+#include "core/octahedral.h"
+#include "scene/alpha.h"
 
 namespace carousel::accel {
 
@@ -80,6 +83,18 @@ bool crosses(TriangleLevel level, const Ray& ray, const Corners& p, Crossing& ou
   return true;
 }
 
+/// Whether the triangle shows its front, in arithmetic of its own.
+bool shows_front(const Ray& ray, const Corners& p) {
+  using Wide = long double;
+  const auto edge = [&](std::size_t k, int axis) { return Wide{p[k][axis]} - Wide{p[0][axis]}; };
+  Wide sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    sum += Wide{ray.direction[i]} * (edge(1, j) * edge(2, k) - edge(1, k) * edge(2, j));
+  }
+  return sum < 0;
+}
+
 Aabb box_of(const Corners& p) {
   Aabb box;
   for (const Vec3& v : p) box.extend(v);
@@ -88,7 +103,8 @@ Aabb box_of(const Corners& p) {
 
 // Slab is SlabRay or DoubleSlabRay.
 template <class Slab>
-Hit every_triangle(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy) {
+Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
+                    const AnyHit* any_hit) {
   Hit best;
   if (!valid(request.ray)) return best;
   best.t = request.ray.tmax;
@@ -100,6 +116,19 @@ Hit every_triangle(const scene::Scene& scene, const RayRequest& request, const A
     InstanceTransform transform;
     const bool baked = !make_transform(m, transform, accuracy.transform);
     if (baked) transform = InstanceTransform{};
+    const auto stops = [&](std::uint32_t primitive, bool front, float u, float v) {
+      const MaterialId material = primitive < mesh.triangle_count()
+                                      ? (mesh.triangle_materials.empty() ? MaterialId() : mesh.triangle_materials[primitive])
+                                      : mesh.spheres[primitive - mesh.triangle_count()].material;
+      if ((request.tag.flags & (front ? kRayCullFront : kRayCullBack)) != 0) return false;
+      const bool asks = material.value < scene.materials.size() && scene::may_pass(scene.materials[material.value]);
+      return !asks || any_hit == nullptr || (request.tag.flags & kRayForceOpaque) != 0 ||
+             any_hit->stops(request.ray, i, primitive, u, v);
+    };
+    const auto lower = [&](float t, float u, float v, std::uint32_t primitive) {
+      // Instances and primitives are visited in rising order, so an equal t never replaces an earlier hit.
+      if (t < best.t || (t == best.t && !best.valid())) best = {t, u, v, i, primitive};
+    };
     const auto triangle = [&](std::uint32_t primitive) {
       Corners p;
       for (std::uint32_t k = 0; k < 3; ++k) {
@@ -111,6 +140,7 @@ Hit every_triangle(const scene::Scene& scene, const RayRequest& request, const A
     Aabb model_box;
     for (std::uint32_t primitive = 0; primitive < mesh.triangle_count(); ++primitive)
       model_box.extend(box_of(triangle(primitive)));
+    for (const scene::Sphere& sphere : mesh.spheres) model_box.extend(sphere_box(sphere.center, sphere.radius));
     const Aabb world = baked ? model_box : world_box(m, model_box, accuracy.transform);
     float instance_entry;
     if (world.empty() || !slab(world_slab, world, request.ray.tmax, instance_entry)) continue;
@@ -123,9 +153,22 @@ Hit every_triangle(const scene::Scene& scene, const RayRequest& request, const A
       if (!crosses(accuracy.triangle, ray, p, crossing)) continue;
       if (!(crossing.t >= ray.tmin && crossing.t <= std::numeric_limits<float>::max())) continue;
       if (!slab(model_slab, box_of(p), request.ray.tmax, entry)) continue;
-      const float t = std::max(std::max(crossing.t, entry), instance_entry);
-      // Instances and primitives are visited in rising order, so an equal t never replaces an earlier hit.
-      if (t < best.t || (t == best.t && !best.valid())) best = {t, crossing.u, crossing.v, i, primitive};
+      if (!stops(primitive, shows_front(ray, p), crossing.u, crossing.v)) continue;
+      lower(std::max({crossing.t, entry, instance_entry}), crossing.u, crossing.v, primitive);
+    }
+    for (std::uint32_t s = 0; s < mesh.spheres.size(); ++s) {
+      const scene::Sphere& sphere = mesh.spheres[s];
+      const std::uint32_t primitive = static_cast<std::uint32_t>(mesh.triangle_count()) + s;
+      SphereCrossing crossing;
+      float entry;
+      if (!cross_sphere(ray.origin, ray.direction, sphere.center, sphere.radius, crossing)) continue;
+      if (!slab(model_slab, sphere_box(sphere.center, sphere.radius), request.ray.tmax, entry)) continue;
+      for (int k = 0; k < 2; ++k) {
+        const float t = static_cast<float>(crossing.t[k]);
+        const Vec2 uv = octahedral(crossing.normal[k]);
+        if (!(t >= ray.tmin && t <= std::numeric_limits<float>::max())) continue;
+        if (stops(primitive, k == 0, uv.x, uv.y)) lower(std::max({t, entry, instance_entry}), uv.x, uv.y, primitive);
+      }
     }
   }
   if (!best.valid()) best = Hit{};
@@ -134,9 +177,10 @@ Hit every_triangle(const scene::Scene& scene, const RayRequest& request, const A
 
 }  // namespace
 
-Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy) {
-  return accuracy.box == BoxLevel::kDouble ? every_triangle<DoubleSlabRay>(scene, request, accuracy)
-                                           : every_triangle<SlabRay>(scene, request, accuracy);
+Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
+                const AnyHit* any_hit) {
+  return accuracy.box == BoxLevel::kDouble ? every_primitive<DoubleSlabRay>(scene, request, accuracy, any_hit)
+                                           : every_primitive<SlabRay>(scene, request, accuracy, any_hit);
 }
 
 }  // namespace carousel::accel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/any_hit.h"
 #include "core/config.h"
 #include "core/ray.h"
 #include "core/workload.h"
@@ -7,9 +8,11 @@
 
 namespace carousel::accel {
 
-/// The closest hit by testing every triangle of every instance, in plain scalar code that shares nothing with
-/// the SIMD kernels but the definition of a hit (DESIGN.md section 3), the instance transform and the exact triangle
-/// test, which is scalar anyway. Slow; for tests on small scenes.
-Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy = {});
+/// The closest hit by testing every primitive of every instance, in plain scalar code that shares nothing with
+/// the SIMD kernels but the definition of a hit (DESIGN.md section 3), the instance transform, and the exact triangle and
+/// the sphere test, which are scalar anyway. Whatever material may let rays through asks `any_hit`, unless it is null.
+/// Slow; for tests on small scenes.
+Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy = {},
+                const AnyHit* any_hit = nullptr);
 
 }  // namespace carousel::accel

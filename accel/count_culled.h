@@ -13,6 +13,10 @@ inline void count_culled(const Accel& accel, NodeRef child, CullLevel& level) {
       ++level.leaves;
       level.triangles += child.triangles();
       break;
+    case NodeRef::Kind::kProcedural:
+      ++level.leaves;
+      level.procedural += child.triangles();
+      break;
     case NodeRef::Kind::kInstance:
       ++level.instances;
       level.transforms += !accel.instances[child.instance_index()].transform.identity;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "accel/plane_candidates.h"
+#include "accel/sphere.h"
 #include "accel/top_planes.h"
 
 namespace carousel::accel {
@@ -49,6 +50,18 @@ class PlaneBuilder {
     });
   }
 
+  /// What planes are fitted to.
+  struct Corners {
+    std::vector<Vec3> points;   // of triangles, three by three, or of boxes
+    std::vector<BlockSphere> spheres;
+
+    float distance_along(const CullPlane& plane, const Aabb& box) const {
+      float most = accel::distance_along(plane, box, points);
+      for (const BlockSphere& sphere : spheres) most = std::max(most, accel::distance_along(plane, box, sphere.centre, sphere.radius));
+      return most;
+    }
+  };
+
   // The triangles themselves, planes through their edges, and corners.
   void leaf_lanes(std::size_t index) {
     const Node& node = accel_.nodes[index];
@@ -60,9 +73,9 @@ class PlaneBuilder {
       if (ref.kind() == NodeRef::Kind::kInstance) {
         top_->offer(ref, choice);
       } else {
-        std::vector<Vec3> points;
-        append_corners(ref, points);
-        offer_triangles(points, choice);
+        Corners corners;
+        append_corners(ref, corners);
+        offer_triangles(corners.points, choice);
       }
       choice.offer_octants();
       found_[index][static_cast<std::size_t>(lane)] = choice.best(most_);
@@ -96,12 +109,12 @@ class PlaneBuilder {
   BoxedShape below(const Node& node, int lane) const {
     if (node.above_instances) return top_->shape(node, lane);
     const Aabb box = child_box(node, lane);
-    std::vector<Vec3> points;
+    Corners corners;
     if (node.child[lane].is_inner() && config_.fit == CullPlanesConfig::Fit::kBoxes)
-      append_box_corners(accel_.nodes[node.child[lane].node()], points);
+      append_box_corners(accel_.nodes[node.child[lane].node()], corners.points);
     else
-      append_corners(node.child[lane], points);
-    return {box, [box, points = std::move(points)](const CullPlane& plane) { return distance_along(plane, box, points); }};
+      append_corners(node.child[lane], corners);
+    return {box, [box, all = std::move(corners)](const CullPlane& plane) { return all.distance_along(plane, box); }};
   }
 
   // The lanes' own choices are the candidates.
@@ -121,8 +134,8 @@ class PlaneBuilder {
     for (std::size_t i = 0; i < lanes.size(); ++i) found_[index][lanes[i]] = std::move(planes[i]);
   }
 
-  /// Of all triangles below, three by three.
-  void append_corners(NodeRef ref, std::vector<Vec3>& out) const {
+  /// Of all primitives below.
+  void append_corners(NodeRef ref, Corners& out) const {
     if (ref.is_inner()) {
       const Node& node = accel_.nodes[ref.node()];
       for (int lane = 0; lane < node.count; ++lane) append_corners(node.child[lane], out);
@@ -130,8 +143,12 @@ class PlaneBuilder {
     }
     for (std::uint32_t i = 0; i < ref.triangles(); ++i) {
       const TriangleBlock& block = accel_.blocks[ref.first_block() + i / kBlockTriangles];
+      if (ref.is_procedural()) {
+        out.spheres.push_back(sphere_in(block, i % kBlockTriangles));
+        continue;
+      }
       for (const auto& vertex : block.vertex)
-        out.push_back({vertex[0][i % kBlockTriangles], vertex[1][i % kBlockTriangles], vertex[2][i % kBlockTriangles]});
+        out.points.push_back({vertex[0][i % kBlockTriangles], vertex[1][i % kBlockTriangles], vertex[2][i % kBlockTriangles]});
     }
   }
   static void append_box_corners(const Node& node, std::vector<Vec3>& out) {

@@ -91,6 +91,10 @@ HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& 
   return mask;
 }
 
+HWY_INLINE void count_leaf(NodeRef leaf, TestCounts& counts) {
+  (HWY_UNLIKELY(leaf.is_procedural()) ? counts.procedural : counts.triangle) += leaf.triangles();
+}
+
 /// What is to be done after visiting something that is not an inner node.
 enum class Then { kPop, kEnter, kStop };
 
@@ -147,33 +151,35 @@ HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay<Slab>&
   return true;
 }
 
-/// Traces `ray` below an instance with a transform. True when a search for any hit has found one.
+/// Traces `record`'s ray below an instance with a transform. True when a search for any hit has found one.
 template <class Slab>
-HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
-                                 TraceStacks& stacks, TraversalCounts& counts);
+HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord& record, TraceStacks& stacks,
+                                 TraversalCounts& counts);
 
-/// The same below `root`, in the frame that was made from `ray`. In the world frame, instances without a transform are
+/// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform are
 /// entered in passing; `level` is 0 there and 1 below an instance with one.
 template <class Slab>
-HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, const Ray& ray, FrameRay<Slab>& frame, bool any_hit,
-                              Hit& hit, TraceStacks& stacks, int level, TraversalCounts& counts) {
+HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, FrameRay<Slab>& frame,
+                              TraceStacks& stacks, int level, TraversalCounts& counts) {
+  const bool any_hit = record.tag.kind == RayKind::kShadow;
+  Hit& hit = record.hit;
   return depth_first(accel, root, frame, hit, stacks.at[level], counts, [&](NodeRef& ref) HWY_ATTR {
-    if (HWY_LIKELY(ref.kind() == NodeRef::Kind::kLeaf)) {
-      counts.triangle += ref.triangles();
+    if (HWY_LIKELY(!ref.is_instance())) {
+      count_leaf(ref, counts);
       return test_leaf(accel, ref, ~0u, frame, hit) && any_hit ? Then::kStop : Then::kPop;
     }
     if (enter_instance(accel, ref, frame)) return Then::kEnter;
-    return trace_instance<Slab>(accel, ref, ray, any_hit, hit, stacks, counts) ? Then::kStop : Then::kPop;
+    return trace_instance<Slab>(accel, ref, record, stacks, counts) ? Then::kStop : Then::kPop;
   });
 }
 
 template <class Slab>
-HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, const Ray& ray, bool any_hit, Hit& hit,
-                                 TraceStacks& stacks, TraversalCounts& counts) {
+HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord& record, TraceStacks& stacks,
+                                 TraversalCounts& counts) {
   FrameStorage<Slab> below;
-  enter_frame(accel, instance.instance_index(), ray, &below.ray, counts);
+  enter_frame(accel, instance.instance_index(), record, &below.ray, counts);
   const NodeRef root = accel.instances[instance.instance_index()].root;
-  return trace_frame(accel, root, ray, below.ray, any_hit, hit, stacks, 1, counts);
+  return trace_frame(accel, root, record, below.ray, stacks, 1, counts);
 }
 
 }  // namespace carousel::accel::HWY_NAMESPACE

@@ -110,7 +110,7 @@ class ExactReference::Search {
       if (top.entry > best_.t_hi) continue;
       if (top.key.ref.is_inner())
         open(top.key, stack);
-      else
+      else if (!top.key.ref.is_procedural())
         test(top.key);
     }
     return answer();
@@ -149,7 +149,7 @@ class ExactReference::Search {
     const std::size_t first = stack.size();
     for (int lane = 0; lane < node.count; ++lane) {
       WideBox box = placed_.place(node, lane);
-      if (const NodeRef child = node.child[lane]; child.kind() == NodeRef::Kind::kInstance)
+      if (const NodeRef child = node.child[lane]; child.is_instance())
         for (int a = 0; a < 3; ++a) {
           box.lo[a] -= baked_off_[child.instance_index()];
           box.hi[a] += baked_off_[child.instance_index()];
@@ -164,7 +164,7 @@ class ExactReference::Search {
   void test(NodeKey leaf) {
     for (std::uint32_t b = 0; b < leaf.ref.blocks(); ++b)
       for (const std::uint32_t primitive : accel_.blocks[leaf.ref.first_block() + b].primitive)
-        if (primitive != kNoPrimitive) test(leaf.instance, primitive);
+        if (primitive != kNoPrimitive) test(leaf.instance, primitive & kPrimitiveMask);
   }
 
   void test(std::uint32_t instance, std::uint32_t primitive) {

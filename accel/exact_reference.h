@@ -18,7 +18,7 @@ struct ExactHit {
 
 /// The exact closest hit of world-space rays, to hold every level of accuracy against. A hit is geometry and no
 /// kernel's verdict: edges and vertices belong to their triangles, both sides are hit, a ray in a triangle's plane
-/// passes it, and no box has a say. Instances are taken as R x + T with their exact vertices, singular ones too.
+/// passes it, nothing else lets rays through, procedural primitives are not there, and no box has a say. Instances are taken as R x + T with their exact vertices, singular ones too.
 ///
 /// Candidates come from the nodes of a built structure, whose boxes are widened by more than double arithmetic can be
 /// off. Each is decided in double with an error bound where that suffices (accel/crossing_filter.h) and by exact

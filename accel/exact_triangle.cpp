@@ -150,4 +150,14 @@ bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, NearestCrossin
   return true;
 }
 
+int exact_facing(const Vec3& direction, const std::array<Vec3, 3>& p) {
+  if (!finite(direction) || !finite(p[0]) || !finite(p[1]) || !finite(p[2])) return 0;
+  const double d[3] = {direction.x, direction.y, direction.z};
+  const Offset b(p[1], p[0]), c(p[2], p[0]);
+  if (const Bounded along = volume(d, b.nearest, c.nearest); along.sign_is_certain()) return -sign(along.value);
+  Expansion exact;
+  add_volume(d, nullptr, b, c, exact);
+  return -exact.sign();
+}
+
 }  // namespace carousel::accel

@@ -21,4 +21,8 @@ struct NearestCrossing {
 /// Ten to a hundred times slower where the ray meets an edge exactly than where it does not.
 bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, NearestCrossing& out);
 
+/// Whether the triangle shows a ray of that direction its front, where its corners run counter-clockwise (1), or its
+/// back (-1), whatever it crosses; 0 for a triangle seen edge-on or without area, and for anything not finite. Exact.
+int exact_facing(const Vec3& direction, const std::array<Vec3, 3>& p);
+
 }  // namespace carousel::accel

@@ -4,6 +4,10 @@
 #include <array>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
+#include "accel/sphere.h"
+
 namespace carousel::accel {
 
 namespace {
@@ -11,6 +15,11 @@ namespace {
 void raise_by_leaf(const Accel& accel, NodeRef leaf, const DVec3& direction, double& most) {
   for (std::uint32_t i = 0; i < leaf.triangles(); ++i) {
     const TriangleBlock& block = accel.blocks[leaf.first_block() + i / kBlockTriangles];
+    if (leaf.is_procedural()) {
+      const BlockSphere sphere = sphere_in(block, i % kBlockTriangles);
+      most = std::max(most, glm::dot(direction, DVec3(sphere.centre)) + sphere.radius * glm::length(direction));
+      continue;
+    }
     for (const auto& vertex : block.vertex) {
       const DVec3 p(vertex[0][i % kBlockTriangles], vertex[1][i % kBlockTriangles], vertex[2][i % kBlockTriangles]);
       most = std::max(most, direction.x * p.x + direction.y * p.y + direction.z * p.z);
@@ -61,9 +70,16 @@ Aabb model_box(const Accel& accel, NodeRef root) {
     }
     return box;
   }
-  for (std::uint32_t i = 0; i < root.triangles(); ++i)
-    for (const auto& vertex : accel.blocks[root.first_block() + i / kBlockTriangles].vertex)
+  for (std::uint32_t i = 0; i < root.triangles(); ++i) {
+    const TriangleBlock& block = accel.blocks[root.first_block() + i / kBlockTriangles];
+    if (root.is_procedural()) {
+      const BlockSphere sphere = sphere_in(block, i % kBlockTriangles);
+      box.extend(sphere_box(sphere.centre, sphere.radius));
+      continue;
+    }
+    for (const auto& vertex : block.vertex)
       box.extend(Vec3{vertex[0][i % kBlockTriangles], vertex[1][i % kBlockTriangles], vertex[2][i % kBlockTriangles]});
+  }
   return box;
 }
 

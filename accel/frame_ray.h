@@ -38,14 +38,21 @@ struct FrameRay {
   TriangleRay triangle;
   std::uint32_t instance;
   float instance_entry;   ///< of the ray into the instance's world box
-  Vec3 direction;         ///< for the plane test, which few configurations have
+  // For tests that few configurations have: planes, procedural primitives, what lets rays through.
+  Vec3 origin, direction;
+  const RayRecord* record;   ///< the ray in world space, and what it wants
+  TestCounts* counts;
 
-  [[gnu::always_inline]] FrameRay(const AccuracyConfig& accuracy, const Ray& ray, std::uint32_t i, float entry)
+  [[gnu::always_inline]] FrameRay(const AccuracyConfig& accuracy, const Ray& ray, std::uint32_t i, float entry,
+                                  const RayRecord& of, TestCounts& total)
       : slab(ray, far_widening(accuracy.box)),
         triangle(ray, accuracy.triangle),
         instance(i),
         instance_entry(entry),
-        direction(ray.direction) {}
+        origin(ray.origin),
+        direction(ray.direction),
+        record(&of),
+        counts(&total) {}
 };
 
 /// Storage for a FrameRay to be built in.
@@ -55,21 +62,22 @@ union FrameStorage {
   FrameStorage() {}
 };
 
-/// A frame of `ray`, given in world space, to test shapes of `instance`; kNoInstance for the world itself. An
+/// A frame of `record`'s ray, given in world space, to test shapes of `instance`; kNoInstance for the world itself. An
 /// instance without a transform is tested in world space, and its world box is the union of the boxes below it:
 /// entered no later than any of them, it decides nothing.
 template <class Slab>
-[[gnu::always_inline]] inline void enter_frame(const Accel& accel, std::uint32_t instance, const Ray& ray,
+[[gnu::always_inline]] inline void enter_frame(const Accel& accel, std::uint32_t instance, const RayRecord& record,
                                                FrameRay<Slab>* frame, TestCounts& counts) {
+  const Ray& ray = record.ray;
   if (instance == kNoInstance || accel.instances[instance].transform.identity) {
-    new (frame) FrameRay<Slab>(accel.accuracy, ray, instance, ray.tmin);
+    new (frame) FrameRay<Slab>(accel.accuracy, ray, instance, ray.tmin, record, counts);
     return;
   }
   const InstanceNode& node = accel.instances[instance];
   float entry;
   slab(Slab(ray, far_widening(accel.accuracy.box)), node.world, kInfinity, entry);
   ++counts.transforms;
-  new (frame) FrameRay<Slab>(accel.accuracy, node.transform.to_model(ray), instance, entry);
+  new (frame) FrameRay<Slab>(accel.accuracy, node.transform.to_model(ray), instance, entry, record, counts);
 }
 
 }  // namespace carousel::accel

@@ -43,8 +43,8 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
       } while (walker.top->entry > hit.t);
       ref = NodeRef::from_bits(walker.top->ref);
     }
-    if (HWY_UNLIKELY(ref.kind() == NodeRef::Kind::kInstance) && !enter_instance(accel, ref, frame)) {
-      if (trace_instance<Slab>(accel, ref, walker.record->ray, walker.any_hit, hit, stacks, counts)) return false;
+    if (HWY_UNLIKELY(ref.is_instance()) && !enter_instance(accel, ref, frame)) {
+      if (trace_instance<Slab>(accel, ref, *walker.record, stacks, counts)) return false;
       continue;
     }
     if (ref.is_inner()) {
@@ -52,7 +52,7 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
       prefetch_lines(accel.nodes.data() + ref.node());
       return true;
     }
-    counts.triangle += ref.triangles();
+    count_leaf(ref, counts);
     if (test_leaf(accel, ref, ~0u, frame, hit) && walker.any_hit) return false;
   }
 }

@@ -74,13 +74,16 @@ void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const 
                    TestCounts& counts) {
   lanes &= (1u << key.ref.triangles()) - 1;
   const std::uint64_t tested = static_cast<std::uint64_t>(std::popcount(lanes));
+  std::uint64_t& tests = key.ref.is_procedural() ? counts.procedural : counts.triangle;
   for (std::size_t i = 0; i < members.count; ++i) {
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
-    counts.triangle += tested;
+    tests += tested;
+    const std::uint64_t asked = counts.asked;
     FrameStorage<Slab> frame;
-    enter_frame(accel, key.instance, record.ray, &frame.ray, counts);
+    enter_frame(accel, key.instance, record, &frame.ray, counts);
     test_leaf(accel, key.ref, lanes, frame.ray, record.hit);
+    if (members.asked != nullptr) members.asked[i] = static_cast<std::uint8_t>(counts.asked - asked);   // 32 at most
     settle(record);
   }
 }
@@ -102,9 +105,8 @@ void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
     FrameStorage<Slab> frame;
-    enter_frame(accel, key.instance, record.ray, &frame.ray, counts);
-    const bool any_hit = record.tag.kind == RayKind::kShadow;
-    trace_frame(accel, key.ref, record.ray, frame.ray, any_hit, record.hit, stacks, 0, counts);
+    enter_frame(accel, key.instance, record, &frame.ray, counts);
+    trace_frame(accel, key.ref, record, frame.ray, stacks, 0, counts);
     settle(record);
   }
   total += counts;
@@ -124,7 +126,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
     while (next < members.count) {
       RayRecord& record = member<8>(members, next++);
       if (record.tag.flags & kRayDone) continue;
-      enter_frame(accel, key.instance, record.ray, &walker.frame.ray, counts);
+      enter_frame(accel, key.instance, record, &walker.frame.ray, counts);
       walker.record = &record;
       walker.any_hit = record.tag.kind == RayKind::kShadow;
       walker.top = walker.stack.entries;

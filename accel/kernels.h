@@ -19,6 +19,7 @@ struct RayMembers {
   const std::uint32_t* slots = nullptr;
   std::size_t count = 0;
   CullCounts* culls = nullptr;   ///< where cull planes are counted by depth; null: nowhere
+  std::uint8_t* asked = nullptr; ///< null, or one a member: how often test_strip() on a leaf asked whether it passes
 };
 
 /// What a strip of boxes answers. Untouched for strips of triangles, whose answer is in the rays' hits.

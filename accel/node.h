@@ -14,16 +14,23 @@ inline constexpr int kMaxWidth = 8;
 inline constexpr int kBlockTriangles = 4;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
-/// Names a shape of the structure in 32 bits: an inner node, a leaf (1 to 16 triangles in consecutive blocks), or,
-/// below the top level only, an instance.
+/// In a block's primitive: it may let rays through and has to be asked (core/any_hit.h).
+inline constexpr std::uint32_t kAskBit = 1u << 31;
+inline constexpr std::uint32_t kPrimitiveMask = kAskBit - 1;
+
+/// Names a shape of the structure in 32 bits: an inner node, a leaf (1 to 16 triangles, or procedural primitives, in
+/// consecutive blocks), or, below the top level only, an instance.
 class NodeRef {
  public:
-  enum class Kind : std::uint8_t { kInner = 0, kLeaf = 1, kInstance = 2 };
+  enum class Kind : std::uint8_t { kInner = 0, kLeaf = 1, kInstance = 2, kProcedural = 3 };
 
   constexpr NodeRef() = default;
   static constexpr NodeRef inner(std::uint32_t node) { return NodeRef(node); }
   static constexpr NodeRef leaf(std::uint32_t first_block, std::uint32_t triangles) {
     return NodeRef(1u << 30 | (triangles - 1) << 26 | first_block);
+  }
+  static constexpr NodeRef procedural(std::uint32_t first_block, std::uint32_t primitives) {
+    return NodeRef(3u << 30 | (primitives - 1) << 26 | first_block);
   }
   static constexpr NodeRef instance(std::uint32_t index) { return NodeRef(2u << 30 | index); }
   static constexpr NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
@@ -31,6 +38,9 @@ class NodeRef {
   constexpr Kind kind() const { return static_cast<Kind>(bits_ >> 30); }
   constexpr bool is_inner() const { return bits_ < (1u << 30); }
   constexpr std::uint32_t node() const { return bits_; }
+  constexpr bool is_instance() const { return kind() == Kind::kInstance; }
+  constexpr bool is_procedural() const { return kind() == Kind::kProcedural; }
+  // Of either kind of leaf.
   constexpr std::uint32_t first_block() const { return bits_ & 0x03ffffffu; }
   constexpr std::uint32_t triangles() const { return ((bits_ >> 26) & 15u) + 1; }
   constexpr std::uint32_t blocks() const { return (triangles() + 3) / 4; }
@@ -85,9 +95,11 @@ struct alignas(64) Node {
 static_assert(sizeof(Node) == 256);
 
 /// Four triangles, vertex by vertex, axis by axis. Unused lanes hold NaN positions, which no ray can hit.
+/// A block of spheres, the procedural primitives there are, has their centres for first vertices and their radii where a
+/// second vertex has its x; the rest stays unused.
 struct alignas(16) TriangleBlock {
   float vertex[3][3][kBlockTriangles];   ///< [vertex][axis][lane]
-  std::uint32_t primitive[kBlockTriangles];
+  std::uint32_t primitive[kBlockTriangles];   ///< with kAskBit
 
   TriangleBlock() {
     for (auto& v : vertex)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 namespace carousel::accel {
 
 namespace {
@@ -43,6 +45,15 @@ float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<
   }
   // Each term is a rounded difference and product, in two sums; denormals of double are below every float.
   return rounded_up(most + 0x1p-50 * error);
+}
+
+float distance_along(const CullPlane& plane, const Aabb& box, const Vec3& sphere, float radius) {
+  const DVec3 n(plane.normal[0], plane.normal[1], plane.normal[2]);
+  const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y), plane_centre(box.lo.z, box.hi.z));
+  const DVec3 terms = n * (DVec3(sphere) - centre);
+  const double reach = radius * glm::length(n);
+  const double error = std::fabs(terms.x) + std::fabs(terms.y) + std::fabs(terms.z) + reach;
+  return rounded_up(terms.x + terms.y + terms.z + reach + 0x1p-49 * error);
 }
 
 // A corner is a simplex, less the simplices that stick out beyond the box's other faces (inclusion and exclusion).

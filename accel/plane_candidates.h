@@ -23,6 +23,9 @@ float rounded_up(double x);
 /// this distance no point is cut off. Infinite when there is no such float.
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points);
 
+/// The same for a sphere.
+float distance_along(const CullPlane& plane, const Aabb& box, const Vec3& centre, float radius);
+
 /// The part of the box's volume that the plane cuts off, between 0 and 1. An estimate: it decides what is worth having.
 double empty_part(const CullPlane& plane, const Aabb& box);
 

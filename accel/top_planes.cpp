@@ -105,7 +105,7 @@ void TopPlanes::offer(NodeRef child, PlaneChoice& choice) const {
         choice.offer(normals * DVec3(plane.normal[0], plane.normal[1], plane.normal[2]));
     return;
   }
-  for (std::uint32_t i = 0; i < root.triangles(); ++i) {
+  for (std::uint32_t i = 0; i < root.triangles() && !root.is_procedural(); ++i) {
     const auto& v = accel_.blocks[root.first_block() + i / kBlockTriangles].vertex;
     const auto corner = [&](int k) {
       return DVec3(v[k][0][i % kBlockTriangles], v[k][1][i % kBlockTriangles], v[k][2][i % kBlockTriangles]);

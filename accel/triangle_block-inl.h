@@ -17,6 +17,8 @@
 #include "accel/frame_ray.h"
 #include "accel/moller_trumbore-inl.h"
 #include "accel/node.h"
+#include "accel/ray_stop.h"
+#include "accel/sphere_hit.h"
 #include "accel/watertight-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -45,8 +47,8 @@ HWY_INLINE Aabb box_of(const std::array<Vec3, 3>& p) {
 /// Lowers `hit` to the smallest (t', instance, primitive) of the triangles of `block` that are crossed, where t' also
 /// counts the entries of the triangle's own box and of the instance's world box. True when the hit changed.
 template <class T, class Slab>
-HWY_INLINE bool lower_hit(const TriangleBlock& block, const Crossings<T>& crossings, const FrameRay<Slab>& ray,
-                          Hit& hit) {
+HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const Crossings<T>& crossings,
+                          const FrameRay<Slab>& ray, Hit& hit) {
   bool changed = false;
   for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
     const int l = std::countr_zero(inside);
@@ -57,13 +59,18 @@ HWY_INLINE bool lower_hit(const TriangleBlock& block, const Crossings<T>& crossi
     if (!slab(ray.slab, box_of(corners(block, l)), hit.t, entry)) continue;
     float distance = entry > t ? entry : t;
     distance = ray.instance_entry > distance ? ray.instance_entry : distance;
-    const std::uint32_t primitive = block.primitive[l];
+    const std::uint32_t primitive = block.primitive[l] & kPrimitiveMask;
     const bool nearer = distance < hit.t ||
                         (distance == hit.t && (ray.instance < hit.instance ||
                                                (ray.instance == hit.instance && primitive < hit.primitive)));
     if (!nearer) continue;
-    hit = {distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]), ray.instance,
-           primitive};
+    const Hit found{distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]), ray.instance,
+                    primitive};
+    const std::uint32_t asks = block.primitive[l] & kAskBit;
+    if (HWY_UNLIKELY((asks | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
+        !stopped_by_triangle(accel, asks != 0, corners(block, l), ray, found))
+      continue;
+    hit = found;
     changed = true;
   }
   return changed;
@@ -72,30 +79,31 @@ HWY_INLINE bool lower_hit(const TriangleBlock& block, const Crossings<T>& crossi
 // Each tests the triangles of `block` that `lanes` selects: lower_hit() of what its kernel says.
 
 template <class T, class Slab>
-HWY_INLINE bool watertight_block(const TriangleBlock& block, const WatertightRay<T>& watertight, std::uint32_t lanes,
+HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, const WatertightRay<T>& watertight, std::uint32_t lanes,
                                  const FrameRay<Slab>& ray, Hit& hit) {
   const hn::CappedTag<T, kBlockTriangles> d;
   Crossings<T> c;
   for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
     c.inside |= watertight_lanes(d, block, i, watertight, c.t + i, c.second + i, c.third + i) << i;
   c.inside &= lanes & ((1u << kBlockTriangles) - 1);
-  return lower_hit(block, c, ray, hit);
+  return lower_hit(accel, block, c, ray, hit);
 }
 
 template <class Slab>
-HWY_INLINE bool moller_trumbore_block(const TriangleBlock& block, std::uint32_t lanes, const FrameRay<Slab>& ray,
-                                      Hit& hit) {
+HWY_INLINE bool moller_trumbore_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
+                                      const FrameRay<Slab>& ray, Hit& hit) {
   const hn::CappedTag<float, kBlockTriangles> d;
   Crossings<float> c;
   for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
     c.inside |= moller_trumbore_lanes(d, block, i, ray.triangle.line, c.t + i, c.second + i, c.third + i) << i;
   c.inside &= lanes & ((1u << kBlockTriangles) - 1);
-  return lower_hit(block, c, ray, hit);
+  return lower_hit(accel, block, c, ray, hit);
 }
 
 /// The triangle's own box, which a hit has to pass anyway, spares most of them the exact test.
 template <class Slab>
-HWY_INLINE bool exact_block(const TriangleBlock& block, std::uint32_t lanes, const FrameRay<Slab>& ray, Hit& hit) {
+HWY_INLINE bool exact_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
+                            const FrameRay<Slab>& ray, Hit& hit) {
   Crossings<float> c;
   for (int l = 0; l < kBlockTriangles; ++l) {
     if (!(lanes >> l & 1)) continue;
@@ -107,7 +115,7 @@ HWY_INLINE bool exact_block(const TriangleBlock& block, std::uint32_t lanes, con
     c.t[l] = crossing.t, c.second[l] = crossing.u, c.third[l] = crossing.v;
     c.inside |= 1u << l;
   }
-  return lower_hit(block, c, ray, hit);
+  return lower_hit(accel, block, c, ray, hit);
 }
 
 /// The blocks of a leaf, of whose triangles `lanes` selects some; `test` is one of the above.
@@ -119,38 +127,50 @@ HWY_INLINE bool each_block(const Accel& accel, NodeRef leaf, std::uint32_t lanes
   return changed;
 }
 
+/// The spheres of a leaf likewise.
+template <class Slab>
+HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray, Hit& hit) {
+  bool changed = false;
+  for (std::uint32_t i = 0; i < leaf.triangles(); ++i)
+    if (lanes >> i & 1)
+      changed |= lower_by_sphere(accel, accel.blocks[leaf.first_block() + i / kBlockTriangles],
+                                 i % kBlockTriangles, ray, hit);
+  return changed;
+}
+
 /// Kept apart from test_leaf(), whose registers and code are the watertight kernel's.
 template <class Slab>
 HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
                                       Hit& hit) {
+  if (leaf.is_procedural()) return test_spheres(accel, leaf, lanes, ray, hit);
   const auto each = [&](const auto& test) HWY_ATTR { return each_block(accel, leaf, lanes, test); };
   switch (accel.accuracy.triangle) {
     case TriangleLevel::kFast:
       return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-        return moller_trumbore_block(block, some, ray, hit);
+        return moller_trumbore_block(accel, block, some, ray, hit);
       });
     case TriangleLevel::kDouble:
       return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-        return watertight_block(block, ray.triangle.watertight_double, some, ray, hit);
+        return watertight_block(accel, block, ray.triangle.watertight_double, some, ray, hit);
       });
     case TriangleLevel::kExact:
       return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-        return exact_block(block, some, ray, hit);
+        return exact_block(accel, block, some, ray, hit);
       });
     case TriangleLevel::kWatertight: break;
   }
   return false;
 }
 
-/// Tests the triangles of `leaf` that `lanes` selects and lowers `hit`; true when it changed.
+/// Tests the triangles, or procedural primitives, of `leaf` that `lanes` selects and lowers `hit`; true when it changed.
 /// Not inlined: its registers would push the traversal's own into memory.
 template <class Slab>
 HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
                             Hit& hit) {
-  if (HWY_UNLIKELY(accel.accuracy.triangle != TriangleLevel::kWatertight))
+  if (HWY_UNLIKELY(accel.accuracy.triangle != TriangleLevel::kWatertight || leaf.is_procedural()))
     return test_leaf_otherwise(accel, leaf, lanes, ray, hit);
   return each_block(accel, leaf, lanes, [&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-    return watertight_block(block, ray.triangle.watertight, some, ray, hit);
+    return watertight_block(accel, block, ray.triangle.watertight, some, ray, hit);
   });
 }
 

@@ -84,7 +84,7 @@ class Collapse {
   WideTree emit(std::uint32_t at) {
     if (binary_[at].count > 0) {
       const WideLeaf leaf = make_leaf_(binary_[at]);
-      return {leaf.ref, leaf.strip_size, leaf.triangles, leaf.ref.kind() == NodeRef::Kind::kLeaf ? 1 : 0};
+      return {leaf.ref, leaf.strip_size, leaf.triangles, leaf.ref.is_instance() ? 0 : 1};
     }
     Children children;
     open(at, width_, shares_[at][0], children);

@@ -74,7 +74,7 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     if (busy <= 0 || parts <= 0) return;
     out.classes.push_back({name, 1000 * rays * parts / busy});
   };
-  double box = 0, triangle = 0, plane = 0, bundle = 0, reads = 0, transform = 0, handler = 0, link = 0;
+  double box = 0, triangle = 0, plane = 0, bundle = 0, reads = 0, transform = 0, procedural = 0, any_hit = 0, handler = 0, link = 0;
   for (const ringbus::cycle::TileResult& tile : c.tiles) {
     box += static_cast<double>(tile.box.busy);
     triangle += static_cast<double>(tile.triangle.busy);
@@ -82,6 +82,8 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     bundle += static_cast<double>(tile.bundle.busy);
     reads += static_cast<double>(tile.ray_reads.busy);
     transform += static_cast<double>(tile.transform.busy);
+    procedural += static_cast<double>(tile.procedural.busy);
+    any_hit += static_cast<double>(tile.any_hit.busy);
     handler += static_cast<double>(tile.handler.busy);
   }
   for (const ringbus::cycle::LinkLedger& one : c.links) link += static_cast<double>(one.use.busy);
@@ -92,6 +94,8 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
   add("bundle_tests", tiles, bundle);
   add("ray_reads", tiles, reads);
   add("transforms", tiles, transform);
+  add("procedural_tests", tiles, procedural);
+  add("any_hit_lookups", tiles, any_hit);
   add("handling", tiles, handler);
   add("link_bandwidth", static_cast<double>(c.links.size()), link);
   add("memory_bandwidth", 1, static_cast<double>(c.memory_busy));

@@ -125,6 +125,9 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
   collections.fullness_mean =
       ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.rays));
   r.tests = tests(sum.tests, rays);
+  const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
+  if (accel.procedural_primitives) r.tests->procedural = kind(sum.tests.procedural);
+  if (accel.asks()) r.tests->any_hit = kind(sum.tests.asked);
   r.tests->ray_reads = {sum.reads, ratio(sum.reads, rays)};
   if (!sum.bundles.empty()) r.tests->bundles = bundles(sum.bundles);
   if (!accel.planes.empty()) r.cull_planes = cull_planes(accel, sum.culls);
@@ -135,7 +138,7 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
                               ratio(sum.local_rays, sum.seen_rays),
                               ratio(sum.bubbles, sum.visits)};
   r.collections = collections;
-  const std::uint64_t done = sum.tests.box + sum.tests.plane + sum.tests.triangle + sum.tests.bundle;
+  const std::uint64_t done = sum.tests.box + sum.tests.plane + sum.tests.triangle + sum.tests.procedural + sum.tests.bundle;
   r.throughput =
       report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(done, rays)};
   r.links.emplace();
@@ -151,7 +154,8 @@ report::Rate rate(std::uint64_t rays, std::uint64_t cycles, std::int64_t clock_m
   return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
 }
 
-report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, const Config& config) {
+report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, const Config& config,
+                    const accel::Accel& accel) {
   using ringbus::cycle::TileState;
   const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
   const auto bank = [&](const ringbus::cycle::UnitLedger& ledger) {
@@ -164,6 +168,8 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
                     cycles - tile.handler.busy};
   if (config.cull_planes.count > 0) out.plane = bank(tile.plane);
   if (config.bundles.size > 0) out.bundle = bank(tile.bundle);
+  if (accel.procedural_primitives) out.procedural = bank(tile.procedural);
+  if (accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kInline) out.any_hit = bank(tile.any_hit);
   if (config.rays.reads_per_cycle > 0) out.ray_reads = bank(tile.ray_reads);
   return out;
 }
@@ -173,7 +179,8 @@ report::Stack stack(const ringbus::cycle::StackLedger& ledger) {
 }
 
 /// The parts that need a simulated clock.
-void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config) {
+void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config,
+                const accel::Accel& accel) {
   r.engine.cycles = c.cycles;
   report::Epochs& epochs = r.engine.epochs.emplace();
   epochs.cycles_each = c.epochs.cycles_each;
@@ -183,7 +190,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);
   }
   for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i) {
-    (*r.resources)[i].units = units(c.tiles[i], c.cycles, config);
+    (*r.resources)[i].units = units(c.tiles[i], c.cycles, config, accel);
     if (config.topology.shape == TopologyShape::kIndependent) (*r.resources)[i].stack = stack(c.tiles[i].stack);
     if (config.accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore) {
       const ringbus::TransformedRayBytes& bytes = c.tiles[i].transformed_rays;

@@ -90,6 +90,7 @@ struct TesterUnits {
 
 struct TestersConfig {
   TesterUnits box{8, 1, 4}, triangle{4, 1, 4}, plane{8, 1, 4}, bundle{1, 1, 4}, transform{1, 1, 4};
+  TesterUnits procedural{1, 1, 8}, any_hit_unit{1, 1, 8};
   struct Simd {
     std::int64_t lanes = 8;
     enum class Map { kRays, kShapes } map = Map::kRays;
@@ -205,7 +206,7 @@ struct ShadingConfig {
     std::vector<std::string> names;   ///< for kList
   } effects;
   bool idle_resources_shade = false;
-  std::int64_t cycles_per_shade = 20;
+  std::int64_t cycles_per_shade = 20, cycles_per_any_hit = 10;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
 };
 

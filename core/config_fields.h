@@ -113,9 +113,11 @@ void describe(V& v, TestersConfig& c) {
   v.section_or_number("plane", c.plane, "ray against cull plane");
   v.section_or_number("bundle", c.bundle, "bundle of rays against box");
   v.section_or_number("transform", c.transform, "ray from world to model space");
+  v.section_or_number("procedural", c.procedural, "ray against procedural primitive");
+  v.section_or_number("any_hit_unit", c.any_hit_unit, "whether a primitive lets a ray through, with any_hit: inline");
   v.section("simd", c.simd, "lanes of the testers");
   v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "packets a resource has in test at once");
-  v.choice("any_hit", c.any_hit, "where opacity is looked up: at the tester, or by a shader worker");
+  v.choice("any_hit", c.any_hit, "cycle: where opacity is looked up: at the tester, or by a shader worker");
 }
 
 template <class V>
@@ -266,6 +268,8 @@ void describe(V& v, ShadingConfig& c) {
   v.effects("effects", c.effects, "effects of light: what the scene calls for, all, or those named");
   v.field("idle_resources_shade", c.idle_resources_shade, "", "idle resources help the shader workers");
   v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles", "time to shade one ray");
+  v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
+          "time to tell whether a primitive lets a ray through, with testers.any_hit: shader");
   v.choice("distribute", c.distribute, "which worker gets a completed ray");
 }
 

@@ -16,6 +16,7 @@ struct CullLevel {
   std::uint64_t nodes = 0;          ///< inner children whose box the ray hits, and which it does not visit
   std::uint64_t leaves = 0;         ///< the same of leaves
   std::uint64_t triangles = 0;      ///< in those leaves: what they hold, each of which would have been tested
+  std::uint64_t procedural = 0;     ///< likewise procedural primitives
   std::uint64_t instances = 0;      ///< the same of instances
   std::uint64_t transforms = 0;     ///< instances among them with a transform: entering costs one at least
 
@@ -27,6 +28,7 @@ struct CullLevel {
     nodes += o.nodes;
     leaves += o.leaves;
     triangles += o.triangles;
+    procedural += o.procedural;
     instances += o.instances;
     transforms += o.transforms;
     return *this;

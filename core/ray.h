@@ -33,6 +33,7 @@ enum RayFlag : std::uint8_t {
   kRayCullFront = 4,     ///< triangles that show their front are not there
   kRayForceOpaque = 8,   ///< nothing is asked, whatever lets rays through (core/any_hit.h)
 };
+inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayForceOpaque;
 
 /// Which ray of the frame this is. `path` indexes the path state of the workload that emitted the ray; with
 /// (kind, bounce, index) it is unique among rays in flight.

@@ -90,6 +90,7 @@ struct Bundles {
 
 struct Tests {
   TestKind box, plane, triangle, bundle, transforms, inversions{}, culled{}, ray_reads{};
+  std::optional<TestKind> procedural{}, any_hit{};
   std::optional<Bundles> bundles{};
 };
 
@@ -117,7 +118,7 @@ struct UnitCycles {
 struct Units {
   UnitCycles box, triangle, transform;
   std::uint64_t handler_busy = 0, handler_idle = 0;
-  std::optional<UnitCycles> plane{}, bundle{}, ray_reads{};
+  std::optional<UnitCycles> plane{}, bundle{}, ray_reads{}, procedural{}, any_hit{};
 };
 
 /// What moved onto the stacks of a resource's rays and from them.

@@ -86,7 +86,7 @@ void describe(V& v, Throughput& r) {
   v.field("packets_per_ray", r.packets_per_ray, "packets/ray", "packets issued for each completed ray");
   v.field("hops_per_ray", r.hops_per_ray, "hops/ray", "links crossed by packets for each completed ray");
   v.field("tests_per_ray", r.tests_per_ray, "tests/ray",
-          "box, plane, triangle and bundle tests for each ray");
+          "box, plane, triangle, procedural and bundle tests for each ray");
   v.section("whole", r.whole, "simulated speed from the first cycle to the last");
   v.section("steady", r.steady, "without fill and drain: between a quarter and three quarters of the rays");
 }
@@ -125,6 +125,8 @@ void describe(V& v, Tests& r) {
   v.section("transforms", r.transforms, "rays brought from world to model space");
   v.section("inversions", r.inversions, "instances' matrices inverted at a visit, with accuracy.invert: visit");
   v.section("culled", r.culled, "children whose box was hit, which a cull plane showed to be missed");
+  v.section("procedural", r.procedural, "ray against procedural primitive, where the scene has any");
+  v.section("any_hit", r.any_hit, "whether a primitive lets a ray through, where some may");
   v.section("ray_reads", r.ray_reads, "records of rays or bundles read by testers");
   v.section("bundles", r.bundles, "what they were good for, with bundles.size");
 }
@@ -178,6 +180,8 @@ void describe(V& v, Units& r) {
   v.section("plane", r.plane, "testers of cull planes");
   v.section("bundle", r.bundle, "testers of bundles");
   v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
+  v.section("procedural", r.procedural, "testers of procedural primitives");
+  v.section("any_hit", r.any_hit, "where it is looked up what lets rays through, with testers.any_hit: inline");
   v.section("transform", r.transform, "transform units");
   v.field("handler_busy", r.handler_busy, "cycles", "looking through packets' IDs");
   v.field("handler_idle", r.handler_idle, "cycles", "the rest");

@@ -84,6 +84,8 @@ void test_line(Table& table, const Tests& t) {
   std::string rare;
   for (const auto& [name, test] : {std::pair{"plane", t.plane}, std::pair{"culled", t.culled}, std::pair{"bundle", t.bundle}})
     if (test.count > 0) rare += fmt::format("   {} {:.2f}", name, test.per_ray);
+  if (t.procedural) rare += fmt::format("   procedural {:.2f}", t.procedural->per_ray);
+  if (t.any_hit) rare += fmt::format("   any-hit {:.2f}", t.any_hit->per_ray);
   table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray,
              t.triangle.per_ray, t.transforms.per_ray, rare);
   if (const auto& b = t.bundles) {

@@ -42,6 +42,10 @@ class CycleRun {
         side.jobs = jobs_.emplace_back(std::make_unique<Channel<ShadeJob>>()).get();
         side.help = help_.emplace_back(std::make_unique<Channel<HelpNote>>()).get();
       }
+      if (machine_.asks_shader()) {
+        side.questions = questions_.emplace_back(std::make_unique<Channel<AnyHitQuestion>>()).get();
+        side.answers = opacities_.emplace_back(std::make_unique<Channel<AnyHitAnswer>>()).get();
+      }
       cache_clients.push_back({side.fetch, side.fetched});
       tiles_.push_back(make_tile(ResourceId(r), side, scene_size));
     }
@@ -209,6 +213,10 @@ class CycleRun {
       board.connect(*completed_[r], *tiles_[r], *shading_);
       board.connect(*fetches_[r], *tiles_[r], cache);
       board.connect(*answers_[r], cache, *tiles_[r]);
+      if (!questions_.empty()) {
+        board.connect(*questions_[r], *tiles_[r], *shading_);
+        board.connect(*opacities_[r], *shading_, *tiles_[r]);
+      }
       if (jobs_.empty()) continue;
       board.connect(*jobs_[r], *shading_, *tiles_[r]);
       board.connect(*help_[r], *tiles_[r], *shading_);
@@ -307,6 +315,8 @@ class CycleRun {
   std::vector<std::unique_ptr<Channel<FetchAnswer>>> answers_;
   std::vector<std::unique_ptr<Channel<ShadeJob>>> jobs_;
   std::vector<std::unique_ptr<Channel<HelpNote>>> help_;
+  std::vector<std::unique_ptr<Channel<AnyHitQuestion>>> questions_;
+  std::vector<std::unique_ptr<Channel<AnyHitAnswer>>> opacities_;
   std::vector<std::unique_ptr<Channel<std::uint64_t>>> lines_;
   std::vector<std::unique_ptr<ResourceAgent>> tiles_;
   std::vector<std::unique_ptr<ShapeCache>> caches_;

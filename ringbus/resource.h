@@ -49,6 +49,9 @@ class Resource {
   void set_subtree_tracer(SubtreeTracer* tracer) { subtree_tracer_ = tracer; }
   /// Before the first test: whose transforms are counted instead of the kernels'. Not owned.
   void set_transform_account(TransformAccount* account) { transforms_ = account; }
+  /// Before the first test: rays about which it had to be asked whether something lets them through wait for release()
+  /// in each packet's turn, whatever else becomes of them.
+  void hold_askers(bool hold) { hold_askers_ = hold; }
   /// Whether `key` is a subtree that is crossed in one visit.
   bool is_treelet(accel::NodeKey key) const { return is_treelet(config_, accel_, key); }
 
@@ -71,6 +74,13 @@ class Resource {
   std::uint32_t last_reads() const { return reads_; }
   /// Passes of its bundles through a bundle unit: one a test, or one an edge of a silhouette.
   std::uint32_t last_bundle_passes() const { return bundle_passes_; }
+  /// A ray that the last test() held, and how often was asked for it.
+  struct Asker {
+    std::uint32_t slot, times;
+  };
+  std::span<const Asker> last_askers() const { return askers_; }
+  /// The answers are there: the ray may complete.
+  void release(std::uint32_t slot) { settle(slot, -1); }
   /// Takes back a packet of its own: hits join the children's collections.
   void retire(Packet& packet);
   /// Takes the members of a membership packet that has reached its home.
@@ -118,6 +128,8 @@ class Resource {
   void send_alone(Packet& packet, std::uint32_t slot, std::uint8_t mask);
   void settle_bundle(std::uint32_t slot, std::int32_t pending_change);
   void settle(std::uint32_t slot, std::int32_t pending_change);
+  std::uint8_t* answers_wanted();
+  void hold_back();
   void complete(std::uint32_t slot);
   void retire_spread(Packet& packet);
   void retire_ordered(Packet& packet);
@@ -132,6 +144,7 @@ class Resource {
   SubtreeTracer* subtree_tracer_ = nullptr;
   TransformAccount* transforms_ = nullptr;
   bool ordered_, single_, bounded_;
+  bool hold_askers_ = false;
   std::uint32_t floor_blocks_;
   RayStore& store_;
   CollectionStore collections_;
@@ -164,7 +177,8 @@ class Resource {
 
   // Scratch of the calls, kept so that nothing is allocated per packet.
   std::vector<std::uint32_t> local_slots_, local_members_;
-  std::vector<std::uint8_t> masks_;
+  std::vector<std::uint8_t> masks_, asked_;
+  std::vector<Asker> askers_;
   std::vector<float> entries_;
   std::vector<RayId> ids_;
   TestCounts tests_;

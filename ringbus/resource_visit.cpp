@@ -65,7 +65,25 @@ TestCounts Resource::transforms_of(accel::NodeKey key) {
   return counts;
 }
 
+/// Where the kernels are to note how often they asked, a member each; null when nobody wants to know.
+std::uint8_t* Resource::answers_wanted() {
+  if (!hold_askers_) return nullptr;
+  asked_.assign(local_slots_.size(), 0);
+  return asked_.data();
+}
+
+/// Gives the rays that asked a count to wait for, before those of the test are taken from them.
+void Resource::hold_back() {
+  if (!hold_askers_) return;
+  for (std::size_t i = 0; i < local_slots_.size(); ++i) {
+    if (asked_[i] == 0) continue;
+    ++store_.record(local_slots_[i]).pending;
+    askers_.push_back({local_slots_[i], asked_[i]});
+  }
+}
+
 void Resource::test(Packet& packet) {
+  askers_.clear();
   gather_local(packet);
   tests_ = TestCounts{};
   bundles_ = BundleCounts{};
@@ -96,14 +114,16 @@ void Resource::test(Packet& packet) {
 }
 
 void Resource::test_spread(Packet& packet) {
-  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
+  accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
   if (is_treelet(packet.key) || !packet.key.ref.is_inner()) {
+    members.asked = answers_wanted();
     if (is_treelet(packet.key) && subtree_tracer_ != nullptr)
       subtree_tracer_->trace(packet.key, members, tests_);
     else if (is_treelet(packet.key))
       accel::trace_interleaved(accel_, packet.key, members, tests_);
     else
       accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
+    hold_back();
     for (const std::uint32_t slot : local_slots_) settle(slot, -1);
     return;
   }
@@ -127,7 +147,7 @@ void Resource::test_spread(Packet& packet) {
 }
 
 void Resource::test_ordered(Packet& packet) {
-  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
+  accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
   if (packet.key.ref.is_inner()) {
     masks_.resize(local_slots_.size());
     entries_.resize(accel::kMaxWidth * local_slots_.size());
@@ -135,7 +155,9 @@ void Resource::test_ordered(Packet& packet) {
                       tests_);
   } else {
     masks_.assign(local_slots_.size(), 0);
+    members.asked = answers_wanted();
     accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
+    hold_back();
   }
   for (std::size_t i = 0; i < local_slots_.size(); ++i) {
     const std::uint32_t slot = local_slots_[i];

@@ -41,10 +41,13 @@ Lift units_lift(std::string name, std::string key, TesterUnits TestersConfig::*b
 
 }  // namespace
 
-std::vector<Lift> lifts(const Config& config) {
+std::vector<Lift> lifts(const Config& config, const accel::Accel& accel) {
   std::vector<Lift> all;
   all.push_back(units_lift("box_tests", "box", &TestersConfig::box));
   all.push_back(units_lift("triangle_tests", "triangle", &TestersConfig::triangle));
+  if (accel.procedural_primitives) all.push_back(units_lift("procedural_tests", "procedural", &TestersConfig::procedural));
+  if (accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
+    all.push_back(units_lift("any_hit_lookups", "any_hit_unit", &TestersConfig::any_hit_unit));
   if (config.cull_planes.count > 0) all.push_back(units_lift("plane_tests", "plane", &TestersConfig::plane));
   if (config.bundles.size > 0) all.push_back(units_lift("bundle_tests", "bundle", &TestersConfig::bundle));
   if (config.rays.reads_per_cycle > 0)
@@ -95,7 +98,7 @@ Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, floa
   const RunResult base = simulate(config);
   out.rays_per_kilocycle = steady_rate(*base.cycle, base.rays_completed);
   out.noise = base.cycle->steady_spread;
-  for (const Lift& lift : lifts(config)) {
+  for (const Lift& lift : lifts(config, accel)) {
     if (options.stop.stop_requested()) break;
     Config lifted = config;
     lift.apply(lifted);

@@ -19,8 +19,8 @@ struct Lift {
   std::string action;   ///< what was doubled or halved, with the key
   std::function<void(Config&)> apply;
 };
-/// Those that can make a difference to the configured machine.
-std::vector<Lift> lifts(const Config& config);
+/// Those that can make a difference to the configured machine with such a scene.
+std::vector<Lift> lifts(const Config& config, const accel::Accel& accel);
 
 /// What lifting one class does to the throughput.
 struct Gain {

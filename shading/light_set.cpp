@@ -80,6 +80,8 @@ LightSample LightSet::sample_triangle(const EmissiveTriangle& light, float proba
   if (!(cos_light > 0.0f)) return {};
   s.pdf = probability * distance2 / (light.area * cos_light);
   s.radiance = emitted(scene_, point) * (1.0f / s.pdf);
+  // The shadow ray ends before the lamp, which would have let some rays pass.
+  if (point.material->alpha_mode != scene::AlphaMode::kOpaque) s.radiance *= opacity(scene_, point);
   return s;
 }
 

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "scene/opacity.h"
 #include "shading/luminance.h"
 #include "shading/texture_lookup.h"
 
@@ -22,11 +23,14 @@ const std::vector<Vec2>& uv_set(const scene::Mesh& mesh, const scene::TextureUse
   return use.uv_set == 0 ? mesh.uv0 : mesh.uv1;
 }
 
+Vec2 texture_coordinates(const TrianglePoint& p, const scene::TextureUse& use) {
+  const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
+  return transform_uv(use, uvs.empty() ? Vec2{0, 0} : interpolate(uvs, p));
+}
+
 Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use,
             Encoding encoding) {
-  const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
-  const Vec2 uv = uvs.empty() ? Vec2{0, 0} : interpolate(uvs, p);
-  return lookup(scene, use.texture, transform_uv(use, uv), encoding);
+  return lookup(scene, use.texture, texture_coordinates(p, use), encoding);
 }
 
 /// The cofactors of R, with its determinant's sign: R^-T up to a positive factor.
@@ -82,6 +86,26 @@ Vec3 base_color(const scene::Scene& scene, const TrianglePoint& p) {
   }
   if (!p.mesh->colors.empty()) color *= Vec3(interpolate(p.mesh->colors, p));
   return color;
+}
+
+float alpha(const scene::Scene& scene, const TrianglePoint& p) {
+  float alpha = p.material->base_color.a;
+  if (const auto& use = p.material->base_color_texture)
+    alpha *= lookup_alpha(scene, use->texture, texture_coordinates(p, *use));
+  if (!p.mesh->colors.empty()) alpha *= interpolate(p.mesh->colors, p).a;
+  return glm::clamp(alpha, 0.0f, 1.0f);
+}
+
+float opacity(const scene::Scene& scene, const TrianglePoint& p) {
+  switch (p.material->alpha_mode) {
+    case scene::AlphaMode::kMask:
+      return alpha(scene, p) >= p.material->alpha_cutoff - scene::kAlphaTolerance ? 1.0f : 0.0f;
+    case scene::AlphaMode::kBlend:
+      return alpha(scene, p);
+    case scene::AlphaMode::kOpaque:
+      break;
+  }
+  return 1.0f;
 }
 
 MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& p) {

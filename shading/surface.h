@@ -26,6 +26,12 @@ TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, 
 /// is.
 Vec3 base_color(const scene::Scene& scene, const TrianglePoint& point);
 
+/// Base colour's alpha, of factor, texture and vertices; 0 to 1.
+float alpha(const scene::Scene& scene, const TrianglePoint& point);
+
+/// The share of rays that stop here: alpha for veils, 0 or 1 for cut-outs, else 1.
+float opacity(const scene::Scene& scene, const TrianglePoint& point);
+
 /// Base colour, metallic and roughness.
 MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& point);
 

@@ -36,10 +36,35 @@ Vec3 texel(const scene::Image& image, std::uint32_t x, std::uint32_t y, Encoding
   return Vec3{float(p[0]), float(p[1]), float(p[2])} * (1.0f / 255.0f);
 }
 
+float alpha_texel(const scene::Image& image, std::uint32_t x, std::uint32_t y) {
+  return float(image.rgba[4 * (std::size_t{y} * image.width + x) + 3]) * (1.0f / 255.0f);
+}
+
 /// Coordinates beyond this have no fraction left in float, and would overflow the integers below.
 constexpr float kFarthest = 0x1p24f;
 bool usable(float x) {
   return x > -kFarthest && x < kFarthest;
+}
+
+/// What `texel(image, x, y)` gives, filtered by the texture's sampler.
+template <class Texel>
+auto filtered(const scene::Texture& texture, const scene::Image& image, const Vec2& uv, const Texel& texel) {
+  const std::int64_t w = image.width, h = image.height;
+  const float x = uv.x * static_cast<float>(w), y = uv.y * static_cast<float>(h);
+  if (!usable(x) || !usable(y)) return texel(0u, 0u);
+
+  if (!texture.linear_filter) {
+    return texel(wrapped(static_cast<std::int64_t>(std::floor(x)), w, texture.wrap_u),
+                 wrapped(static_cast<std::int64_t>(std::floor(y)), h, texture.wrap_v));
+  }
+  const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
+  const float fx = (x - 0.5f) - left, fy = (y - 0.5f) - top;
+  const auto ix = static_cast<std::int64_t>(left), iy = static_cast<std::int64_t>(top);
+  const std::uint32_t x0 = wrapped(ix, w, texture.wrap_u), x1 = wrapped(ix + 1, w, texture.wrap_u);
+  const std::uint32_t y0 = wrapped(iy, h, texture.wrap_v), y1 = wrapped(iy + 1, h, texture.wrap_v);
+  const auto upper = texel(x0, y0) * (1.0f - fx) + texel(x1, y0) * fx;
+  const auto lower = texel(x0, y1) * (1.0f - fx) + texel(x1, y1) * fx;
+  return upper * (1.0f - fy) + lower * fy;
 }
 
 }  // namespace
@@ -56,22 +81,15 @@ Vec3 lookup(const scene::Scene& scene, TextureId id, const Vec2& uv, Encoding en
   const scene::Texture& texture = scene.textures[id.value];
   const scene::Image& image = scene.images[texture.image.value];
   if (image.width == 0 || image.height == 0) return Vec3{1};
-  const std::int64_t w = image.width, h = image.height;
-  const float x = uv.x * static_cast<float>(w), y = uv.y * static_cast<float>(h);
-  if (!usable(x) || !usable(y)) return texel(image, 0, 0, encoding);
+  return filtered(texture, image, uv,
+                  [&](std::uint32_t x, std::uint32_t y) { return texel(image, x, y, encoding); });
+}
 
-  if (!texture.linear_filter) {
-    return texel(image, wrapped(static_cast<std::int64_t>(std::floor(x)), w, texture.wrap_u),
-                 wrapped(static_cast<std::int64_t>(std::floor(y)), h, texture.wrap_v), encoding);
-  }
-  const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
-  const float fx = (x - 0.5f) - left, fy = (y - 0.5f) - top;
-  const auto ix = static_cast<std::int64_t>(left), iy = static_cast<std::int64_t>(top);
-  const std::uint32_t x0 = wrapped(ix, w, texture.wrap_u), x1 = wrapped(ix + 1, w, texture.wrap_u);
-  const std::uint32_t y0 = wrapped(iy, h, texture.wrap_v), y1 = wrapped(iy + 1, h, texture.wrap_v);
-  const Vec3 upper = texel(image, x0, y0, encoding) * (1.0f - fx) + texel(image, x1, y0, encoding) * fx;
-  const Vec3 lower = texel(image, x0, y1, encoding) * (1.0f - fx) + texel(image, x1, y1, encoding) * fx;
-  return upper * (1.0f - fy) + lower * fy;
+float lookup_alpha(const scene::Scene& scene, TextureId id, const Vec2& uv) {
+  const scene::Texture& texture = scene.textures[id.value];
+  const scene::Image& image = scene.images[texture.image.value];
+  if (image.width == 0 || image.height == 0) return 1.0f;
+  return filtered(texture, image, uv, [&](std::uint32_t x, std::uint32_t y) { return alpha_texel(image, x, y); });
 }
 
 }  // namespace carousel::shading

@@ -24,6 +24,9 @@ struct CycleMachine {
   /// Whether packets are tested where they are issued and never travel.
   bool stays() const { return topology.resources() == 1 || config.collections.home == Home::kLocal; }
 
+  /// Whether resources ask shader workers what lets rays through.
+  bool asks_shader() const { return accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kShader; }
+
   const Config& config;
   const accel::Accel& accel;
   Topology topology;

@@ -40,7 +40,7 @@ struct StackLedger {
 
 struct TileResult {
   std::array<Cycle, kTileStates> states{};   ///< by TileState
-  UnitLedger box, triangle, plane, bundle, transform, ray_reads;   ///< busy within TileState::kTesting
+  UnitLedger box, triangle, plane, bundle, transform, ray_reads, procedural, any_hit;   ///< busy within TileState::kTesting
   UnitLedger handler;
   StackLedger stack;
   TransformedRayBytes transformed_rays;      ///< kept beside the records

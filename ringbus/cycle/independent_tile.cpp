@@ -22,11 +22,12 @@ IndependentTile::IndependentTile(ResourceId id, CycleMachine& machine, bool stat
       completed_port_(machine.config, ports),
       help_(machine.config, ports),
       transforms_(machine.config.accuracy, machine.accel, store_.slots()),
-      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false}) {}
+      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false, 0}) {}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
-  return std::min({tested, ports_.new_rays->next(), fetches_.next(), help_.next()});
+  const Cycle answered = ports_.answers == nullptr ? kNever : ports_.answers->next();
+  return std::min({tested, answered, ports_.new_rays->next(), fetches_.next(), help_.next()});
 }
 
 void IndependentTile::run(Cycle end) {
@@ -35,6 +36,8 @@ void IndependentTile::run(Cycle end) {
 
 void IndependentTile::step(Cycle now) {
   take_new_rays(now);
+  while (ports_.answers != nullptr && ports_.answers->next() <= now)
+    for (const std::uint32_t slot : ports_.answers->take().slots) go_on(slot, now);
   while (fetches_.next() <= now)
     for (const std::uint32_t slot : fetches_.take()) fetched(slot, now);
   do {
@@ -42,7 +45,10 @@ void IndependentTile::step(Cycle now) {
       const std::uint32_t slot = tests_.top().slot;
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
-      go_on(slot, now);
+      if (const std::uint64_t times = std::exchange(threads_[slot].asks, 0); times > 0)
+        ports_.questions->send(now + control_latency(machine_.config), {{slot}, times});
+      else
+        go_on(slot, now);
     }
   } while (help_.step(now, tests_.empty()));
   if (!help_.holds()) test_held_back(now);
@@ -115,6 +121,7 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   stack_held_ -= thread.walk.stack_bytes().held;
   const TestCounts counts = thread.walk.test(machine_.accel, thread.strip, 
                                               {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
+  if (ports_.questions != nullptr) thread.asks = counts.asked;
   const std::uint64_t held = thread.walk.stack_bytes().held;
   stack_held_ += held;
   stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);

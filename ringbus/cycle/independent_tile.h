@@ -46,6 +46,7 @@ class IndependentTile final : public ResourceAgent {
     RayWalk walk;
     accel::NodeKey strip;   // fetched or in test
     bool fetches_transform; // first
+    std::uint64_t asks;     // of a shader worker, when it has been tested
   };
   /// A ray in test. Of those that end at one time the one that began first goes on first.
   struct Test {

@@ -13,6 +13,7 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       clients_(std::move(clients)),
       trace_(static_cast<std::uint32_t>(machine.topology.resources()), window),
       shade_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_shade)),
+      any_hit_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_any_hit)),
       load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
       latency_(control_latency(machine.config)),
       slots_(static_cast<std::size_t>(machine.config.topology.resources * machine.config.rays.slots_per_resource)),
@@ -31,7 +32,10 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
 Cycle ShadingAgent::next() const {
   if (!started_) return 0;
   Cycle first = jobs_.empty() ? kNever : jobs_.top().done;
-  for (const SidePorts& client : clients_) first = std::min(first, client.completed->next());
+  for (const SidePorts& client : clients_) {
+    first = std::min(first, client.completed->next());
+    if (client.questions != nullptr) first = std::min(first, client.questions->next());
+  }
   return std::min(first, helpers_.next());
 }
 
@@ -42,6 +46,7 @@ void ShadingAgent::run(Cycle end) {
 void ShadingAgent::step(Cycle now) {
   started_ = true;
   take_completed(now);
+  take_questions(now);
   // Shading that takes no time ends in the cycle in which it starts.
   while (finish_jobs(now) || start_jobs(now)) {
   }
@@ -58,6 +63,11 @@ void ShadingAgent::take_completed(Cycle now) {
   }
 }
 
+void ShadingAgent::take_questions(Cycle now) {
+  for (std::uint32_t r = 0; r < clients_.size() && clients_[r].questions != nullptr; ++r)
+    while (clients_[r].questions->next() <= now) questions_.push_back({r, clients_[r].questions->take()});
+}
+
 bool ShadingAgent::finish_jobs(Cycle now) {
   shaded_.clear();
   helpers_.take_notes(now, shaded_);
@@ -67,6 +77,10 @@ bool ShadingAgent::finish_jobs(Cycle now) {
     any = true;
     idle_.push_back(job.worker);
     queues_.hold(job.worker, 0);
+    if (job.question) {
+      clients_[job.question->from].answers->send(now + latency_, {job.question->rays.slots});
+      continue;
+    }
     if (job.made == 0) {
       shaded_.push_back(job.ray);
       continue;
@@ -117,7 +131,11 @@ bool ShadingAgent::start_jobs(Cycle now) {
 bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
   Job job;
   job.worker = worker;
-  if (const std::optional<RayResult> ray = queues_.take(worker)) {
+  if (!questions_.empty()) {
+    job.question = std::move(questions_.front());
+    questions_.pop_front();
+    job.done = now + any_hit_cycles_ * job.question->rays.times;
+  } else if (const std::optional<RayResult> ray = queues_.take(worker)) {
     job.ray = *ray;
     job.done = now + shade_cycles_;
   } else if (!source_finished_ && !source_dry_ && room() > 0) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <queue>
 #include <string>
 #include <vector>
@@ -16,7 +18,8 @@
 namespace carousel::ringbus::cycle {
 
 /// Ray control and the pool of shader workers. A worker takes the ray that has waited longest in its queue, and needs
-/// shading.cycles_per_shade for it, as for making a camera ray. What the workers have no hand free for goes to
+/// shading.cycles_per_shade for it, as for making a camera ray; what resources ask about opacity comes first, and takes
+/// shading.cycles_per_any_hit each. What the workers have no hand free for goes to
 /// resources that have nothing to test, with `idle_resources_shade`. New rays gather until they fill a packet, or until
 /// no worker has anything to do, and are then given slots; with bundles they gather until they would fill those that
 /// the builder holds open, and go through it `builder.rays_per_cycle` a cycle. A record of 64 bytes needs its owner's load port for as
@@ -46,17 +49,24 @@ class ShadingAgent final : public Agent {
   const Trace& trace() const { return trace_; }
 
  private:
+  /// Of a resource.
+  struct Question {
+    std::uint32_t from;
+    AnyHitQuestion rays;
+  };
   /// What a worker is at.
   struct Job {
     Cycle done = 0;
     std::uint32_t worker = 0;
-    std::size_t made = 0;   // camera rays; 0: it shades `ray`
+    std::size_t made = 0;   // camera rays; 0: it shades `ray`, or finds out what lets rays through
     RayResult ray;
+    std::optional<Question> question{};
     bool operator>(const Job& o) const { return done != o.done ? done > o.done : worker > o.worker; }
   };
 
   void step(Cycle now);
   void take_completed(Cycle now);
+  void take_questions(Cycle now);
   bool finish_jobs(Cycle now);
   bool start_jobs(Cycle now);
   bool start_job(std::uint32_t worker, Cycle now);
@@ -68,10 +78,11 @@ class ShadingAgent final : public Agent {
   Workload& workload_;
   std::vector<SidePorts> clients_;
   Trace trace_;
-  Cycle shade_cycles_, load_cycles_, latency_;
+  Cycle shade_cycles_, any_hit_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
   std::size_t gather_;                       // new rays that are worth giving slots
   Cycle builder_rate_, builder_free_ = 0;
+  std::deque<Question> questions_;           // before any ray: they keep slots that could be free
   ShadeQueues queues_;
   ShadeHelpers helpers_;
   std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;

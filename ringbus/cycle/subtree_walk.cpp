@@ -11,10 +11,12 @@ void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, T
   entered_.clear();
   std::fill(seen_.begin(), seen_.end(), 0);
   for (std::size_t i = 0; i < members.count; ++i)
-    account_.chain = std::max(account_.chain, walk_ray(from, {members.records, members.slots + i, 1, members.culls}, counts));
+    account_.chain = std::max(account_.chain, walk_ray(from, {members.records, members.slots + i, 1, members.culls},
+                                                       members.asked == nullptr ? nullptr : members.asked + i, counts));
 }
 
-std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, TestCounts& counts) {
+std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* asked,
+                                    TestCounts& counts) {
   const RayRecord& record = ray.records[*ray.slots];
   std::uint64_t cycles = 0;
   walk_.start(from);
@@ -28,6 +30,9 @@ std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers
     if (tests.plane > 0) cycles += step_.plane;
     if (tests.box > 0) cycles += step_.box;   // none are left where planes, tested first, have culled all children
     if (tests.triangle > 0) cycles += step_.triangle;
+    if (tests.procedural > 0) cycles += step_.procedural;
+    if (tests.asked > 0) cycles += step_.any_hit;
+    if (asked != nullptr) *asked = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, *asked + tests.asked));
     cycles += (tests.transforms + accel::kInversionPasses * tests.inversions) * step_.transform;
     counts += tests;
   }

@@ -15,9 +15,10 @@ namespace carousel::ringbus::cycle {
 /// that does so has to do: the kernels' own walk is faster on the host but keeps no account.
 class SubtreeWalk final : public SubtreeTracer {
  public:
-  /// Cycles that one ray needs for a strip of boxes, of triangles, for planes, and to be transformed.
+  /// Cycles that one ray needs for a strip of boxes, of triangles, of procedural primitives, for planes, to be
+  /// transformed, and until it knows whether it is let through.
   struct StepCycles {
-    std::uint64_t box = 1, triangle = 1, plane = 1, transform = 1;
+    std::uint64_t box = 1, triangle = 1, procedural = 1, plane = 1, transform = 1, any_hit = 0;
   };
   struct Account {
     std::uint64_t chain = 0;                 ///< cycles of the slowest ray
@@ -33,7 +34,7 @@ class SubtreeWalk final : public SubtreeTracer {
   const Account& account() const { return account_; }
 
  private:
-  std::uint64_t walk_ray(accel::NodeKey from, const accel::RayMembers& ray, TestCounts& counts);
+  std::uint64_t walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* asked, TestCounts& counts);
   void note(accel::NodeKey key);
 
   const accel::Accel& accel_;

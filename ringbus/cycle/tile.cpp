@@ -10,7 +10,10 @@ namespace {
 
 SubtreeWalk::StepCycles step_cycles(const TestersConfig& testers) {
   const auto latency = [](const TesterUnits& units) { return static_cast<std::uint64_t>(units.latency_cycles); };
-  return {latency(testers.box), latency(testers.triangle), latency(testers.plane), latency(testers.transform)};
+  // Where a shader worker is asked, a ray goes on meanwhile as if it had been stopped, or not, and waits at the end.
+  const std::uint64_t any_hit = testers.any_hit == TestersConfig::AnyHit::kInline ? latency(testers.any_hit_unit) : 0;
+  return {latency(testers.box), latency(testers.triangle), latency(testers.procedural), latency(testers.plane),
+          latency(testers.transform), any_hit};
 }
 
 }  // namespace
@@ -42,6 +45,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
              machine.topology.directions() * machine.packets_per_direction()) {
   resource_.set_subtree_tracer(&walk_);
   resource_.set_transform_account(&transforms_);
+  resource_.hold_askers(ports_.questions != nullptr);
   for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
     if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
 }
@@ -66,6 +70,7 @@ Cycle Tile::next_beside_ring() const {
   consider(ports_.new_rays->next());
   consider(shapes_.next());
   consider(help_.next());
+  if (ports_.answers != nullptr) consider(ports_.answers->next());
   if (may_send_)
     for (const OutPort& out : ports_.out) consider(out.next(wants_credit()));
   return first;
@@ -106,6 +111,7 @@ void Tile::step(Cycle now) {
   now_ = now;
   for (OutPort& out : ports_.out) out.take_credits(now);
   take_answers(now);
+  take_opacities(now);
   take_new_rays(now);
   bool again = true;
   while (again) {

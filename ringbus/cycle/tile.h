@@ -67,6 +67,7 @@ class Tile final : public ResourceAgent {
     TestCounts counts;                    // of tests that begin when the shapes are there
     std::uint32_t reads = 0;              // records for them
     std::uint32_t bundle_passes = 0;
+    AnyHitQuestion question;              // asked when the tests are done
     bool subtree = false;
     std::uint32_t outstanding = 0;        // fetches under way
     std::vector<ShapeSpan> strips;        // a subtree's, yet to be fetched, last first
@@ -88,6 +89,7 @@ class Tile final : public ResourceAgent {
   void step(Cycle now);
   void take_answers(Cycle now);
   void take_new_rays(Cycle now);
+  void take_opacities(Cycle now);
   bool admit();
   bool finish_tests(Cycle now);
   /// `at_once`: only what finds its link free; the others are taken in hand.
@@ -105,6 +107,7 @@ class Tile final : public ResourceAgent {
   bool lacks(const ShapeSpan& span);
   void begin_fetch(Context& context, const ShapeSpan& strip, Cycle now);
   void end_test(Context& context, Cycle now);
+  void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
   void come_home(PacketId id);
   void hand_over(Cycle now);

@@ -34,6 +34,10 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   context.counts = resource_.last_tests();
   context.reads = resource_.last_reads();
   context.bundle_passes = resource_.last_bundle_passes();
+  for (const Resource::Asker& asker : resource_.last_askers()) {
+    context.question.slots.push_back(asker.slot);
+    context.question.times += asker.times;
+  }
   context.subtree = resource_.is_treelet(packet.key);
   context.phase = Context::Phase::kComputing;
   if (context.subtree) {
@@ -75,12 +79,25 @@ void Tile::end_test(Context& context, Cycle now) {
   trace_.note(now, StepKind::kTested, id.value, packet.members.size());
   context.phase = Context::Phase::kFree;
   context.subtree = false;
+  ask(context, now);
   if (packet.owner == id_ && (stays_ || machine_.topology.hops(packet) == 0)) {
     occupy_handler(now, packet.members.size());
     come_home(id);
   } else {
     depart(id, now, true);
   }
+}
+
+void Tile::ask(Context& context, Cycle now) {
+  if (context.question.slots.empty()) return;
+  ports_.questions->send(now + control_latency(machine_.config), std::move(context.question));
+  context.question = {};
+}
+
+void Tile::take_opacities(Cycle now) {
+  if (ports_.answers == nullptr) return;
+  while (ports_.answers->next() <= now)
+    for (const std::uint32_t slot : ports_.answers->take().slots) resource_.release(slot);
 }
 
 void Tile::fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <random>
 
+#include <glm/geometric.hpp>
+
 #include "accel/reference_tracer.h"
 #include "core/ray.h"
 #include "core/workload.h"
@@ -37,15 +39,20 @@ inline RayRequest ray_to(const Vec3& from, const Vec3& direction, float tmin = 0
   return request;
 }
 
-/// World position of a corner of a random triangle, and of the next one.
+/// World positions of a random triangle's corners, or of three points of a sphere.
 inline std::array<Vec3, 3> random_triangle(const scene::Scene& scene, Random& random) {
   const scene::Instance& instance = scene.instances[random.below(static_cast<std::uint32_t>(scene.instances.size()))];
   const scene::Mesh& mesh = scene.meshes[instance.mesh.value];
-  const std::uint32_t triangle = random.below(static_cast<std::uint32_t>(mesh.triangle_count()));
+  const std::uint32_t primitive = random.below(static_cast<std::uint32_t>(mesh.triangle_count() + mesh.spheres.size()));
+  const scene::Sphere* const sphere = primitive < mesh.triangle_count() ? nullptr : &mesh.spheres[primitive - mesh.triangle_count()];
   std::array<Vec3, 3> p;
-  for (std::uint32_t k = 0; k < 3; ++k)
-    p[k] = instance.world_from_model.linear * mesh.positions[mesh.indices[3 * triangle + k]] +
-           instance.world_from_model.translation;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if (sphere != nullptr)
+      p[k] = sphere->center + sphere->radius * glm::normalize(random.in_box(Vec3{-1}, Vec3{1}) + Vec3{1e-3f});
+    else
+      p[k] = mesh.positions[mesh.indices[3 * primitive + k]];
+    p[k] = instance.world_from_model.linear * p[k] + instance.world_from_model.translation;
+  }
   return p;
 }
 
