@@ -9,7 +9,7 @@
 #include "accel/cull_planes.h"
 #include "accel/sah_build.h"
 #include "core/error.h"
-#include "scene/alpha.h"
+#include "scene/opacity.h"
 
 namespace carousel::accel {
 
@@ -40,6 +40,7 @@ scene::Mesh bake(const scene::Mesh& mesh, const scene::Affine& m) {
   scene::Mesh out;
   out.indices = mesh.indices;
   out.triangle_materials = mesh.triangle_materials;
+  out.colors = mesh.colors;
   out.positions.reserve(mesh.positions.size());
   for (const Vec3& p : mesh.positions) out.positions.push_back(m.linear * p + m.translation);
   return out;
@@ -99,11 +100,10 @@ class AccelBuilder {
   }
 
   void build_blases() {
-    std::vector<bool> material_asks;
-    for (const scene::Material& material : scene_.materials) material_asks.push_back(scene::may_pass(material));
+    const scene::Opacity opacity(scene_);
     blases_.resize(sources_.size());
     executor_.parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) blases_[i].blas = build_blas(*sources_[i], material_asks, config_, executor_);
+      for (std::size_t i = begin; i < end; ++i) blases_[i].blas = build_blas(*sources_[i], opacity, config_, executor_);
     });
   }
 

@@ -27,25 +27,23 @@ std::vector<BuildPrimitive> boxes(const scene::Mesh& mesh, Executor& executor) {
   return out;
 }
 
-void fill_block(const scene::Mesh& mesh, const std::vector<bool>& material_asks, const BuildPrimitive* primitives,
+void fill_block(const scene::Mesh& mesh, const scene::Opacity& opacity, const BuildPrimitive* primitives,
                 std::uint32_t count, TriangleBlock& block) {
   for (std::uint32_t lane = 0; lane < count; ++lane) {
     const std::uint32_t index = primitives[lane].index;
     const auto set = [&](std::size_t vertex, const Vec3& p) {
       for (int axis = 0; axis < 3; ++axis) block.vertex[vertex][axis][lane] = p[axis];
     };
-    MaterialId material;
+    bool asks;
     if (index >= mesh.triangle_count()) {
       const scene::Sphere& sphere = mesh.spheres[index - mesh.triangle_count()];
       set(0, sphere.center);
       block.vertex[1][0][lane] = sphere.radius;
-      material = sphere.material;
+      asks = opacity.may_let_through(sphere);
     } else {
       for (std::size_t k = 0; k < 3; ++k) set(k, mesh.positions[mesh.indices[3 * std::size_t{index} + k]]);
-      // Meshes without materials are tests', and those that have been baked keep theirs.
-      if (!mesh.triangle_materials.empty()) material = mesh.triangle_materials[index];
+      asks = opacity.may_let_through(mesh, index);
     }
-    const bool asks = material.value < material_asks.size() && material_asks[material.value];
     block.primitive[lane] = index | (asks ? kAskBit : 0);
   }
 }
@@ -81,8 +79,7 @@ std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std:
 
 }  // namespace
 
-Blas build_blas(const scene::Mesh& mesh, const std::vector<bool>& material_asks, const BvhConfig& config,
-                Executor& executor) {
+Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor) {
   Blas blas;
   std::vector<BuildPrimitive> primitives = boxes(mesh, executor);
   if (primitives.empty()) return blas;
@@ -111,7 +108,7 @@ Blas build_blas(const scene::Mesh& mesh, const std::vector<bool>& material_asks,
   blas.blocks.resize(fills.size());
   executor.parallel_for(fills.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      fill_block(mesh, material_asks, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
+      fill_block(mesh, opacity, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
   });
   return blas;
 }

@@ -7,6 +7,7 @@
 #include "core/aabb.h"
 #include "core/config.h"
 #include "core/executor.h"
+#include "scene/opacity.h"
 #include "scene/scene.h"
 
 namespace carousel::accel {
@@ -19,8 +20,7 @@ struct Blas {
   Aabb box;
 };
 
-/// Primitives whose material asks, by MaterialId, get kAskBit.
-Blas build_blas(const scene::Mesh& mesh, const std::vector<bool>& material_asks, const BvhConfig& config,
-                Executor& executor);
+/// Primitives that may let rays through get kAskBit.
+Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor);
 
 }  // namespace carousel::accel

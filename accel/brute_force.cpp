@@ -13,7 +13,7 @@
 #include "accel/sphere.h"
 #include "accel/transform.h"
 #include "core/octahedral.h"
-#include "scene/alpha.h"
+#include "scene/opacity.h"
 
 namespace carousel::accel {
 
@@ -109,6 +109,7 @@ Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const 
   if (!valid(request.ray)) return best;
   best.t = request.ray.tmax;
   const float widening = far_widening(accuracy.box);
+  const scene::Opacity opacity(scene);
   const Slab world_slab(request.ray, widening);
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Affine& m = scene.instances[i].world_from_model;
@@ -117,11 +118,9 @@ Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const 
     const bool baked = !make_transform(m, transform, accuracy.transform);
     if (baked) transform = InstanceTransform{};
     const auto stops = [&](std::uint32_t primitive, bool front, float u, float v) {
-      const MaterialId material = primitive < mesh.triangle_count()
-                                      ? (mesh.triangle_materials.empty() ? MaterialId() : mesh.triangle_materials[primitive])
-                                      : mesh.spheres[primitive - mesh.triangle_count()].material;
       if ((request.tag.flags & (front ? kRayCullFront : kRayCullBack)) != 0) return false;
-      const bool asks = material.value < scene.materials.size() && scene::may_pass(scene.materials[material.value]);
+      const bool asks = primitive < mesh.triangle_count() ? opacity.may_let_through(mesh, primitive)
+                                                          : opacity.may_let_through(mesh.spheres[primitive - mesh.triangle_count()]);
       return !asks || any_hit == nullptr || (request.tag.flags & kRayForceOpaque) != 0 ||
              any_hit->stops(request.ray, i, primitive, u, v);
     };

@@ -276,7 +276,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   if (!result.resources.empty()) add_ring(r, result, config.packets, prepared.accel);
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
                std::nullopt, effects_of(prepared.scene, config)};
-  if (result.cycle) add_cycles(r, *result.cycle, config);
+  if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
   if (verifying) r.verify = verify(*verifying);
   r.digest = {frame.hits_digest(), frame.image_digest()};
   return r;

@@ -57,6 +57,10 @@ void build_accel(Prepared& p) {
   const auto executor = make_tbb_executor(p.threads);
   p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
   p.build_seconds = watch.seconds();
+  if (p.accel.may_pass) {
+    p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
+    p.accel.any_hit = p.alpha_test.get();
+  }
   accel::add_cull_planes(p.accel, p.scene, p.config().cull_planes, *executor);
   p.plane_seconds = watch.seconds() - p.build_seconds;
   if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())

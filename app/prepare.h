@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "accel/accel.h"
 #include "core/config_parse.h"
 #include "scene/scene.h"
+#include "shading/alpha_test.h"
 
 namespace carousel::app {
 
@@ -21,9 +23,11 @@ struct Prepared {
   LocatedConfig located;
   std::filesystem::path config_folder;
   std::size_t threads = 1;  ///< engine.threads, or the machine's cores
-  scene::Scene scene;
+  std::unique_ptr<scene::Scene> scene_storage = std::make_unique<scene::Scene>();
+  scene::Scene& scene = *scene_storage;   ///< stays where it is when this is moved: others refer to it
   std::vector<std::string> warnings;  ///< of the import
   accel::Accel accel;
+  std::unique_ptr<shading::AlphaTest> alpha_test;   ///< whom `accel` asks; null where nothing lets rays through
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }

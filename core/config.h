@@ -48,6 +48,7 @@ struct SkyConfig {
 struct SceneConfig {
   std::string file;                        ///< glTF file; relative to the config's folder, then to the working one
   std::optional<BuiltinScene> builtin;     ///< exactly one of file and builtin
+  bool procedural = false;                 ///< built-in spheres: as such, not as triangles
   std::int64_t triangles = 20000;          ///< built-in spheres, terrain, sliver: about this many in all
   std::int64_t instances = 1000;           ///< built-in instances
   std::int64_t seed = 1;                   ///< built-in scenes
@@ -199,6 +200,12 @@ struct MemoryConfig {
   std::int64_t fetch_ahead = 2, shape_buffer_kib = 4;
 };
 
+/// What the shaders' rays of one kind want (core/ray.h).
+struct RayWishes {
+  enum class Cull { kNone, kBack, kFront } cull = Cull::kNone;
+  bool force_opaque = false;
+};
+
 struct ShadingConfig {
   std::int64_t workers = 2;
   struct Effects {
@@ -207,6 +214,7 @@ struct ShadingConfig {
   } effects;
   bool idle_resources_shade = false;
   std::int64_t cycles_per_shade = 20, cycles_per_any_hit = 10;
+  RayWishes camera_rays, bounce_rays, shadow_rays;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
 };
 

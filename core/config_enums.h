@@ -98,6 +98,8 @@ CAROUSEL_ENUM(BundlesConfig::Lifetime, {BundlesConfig::Lifetime::kPersistent, "p
               {BundlesConfig::Lifetime::kReformed, "reformed"});
 CAROUSEL_ENUM(TestersConfig::Simd::Map, {TestersConfig::Simd::Map::kRays, "rays"},
               {TestersConfig::Simd::Map::kShapes, "shapes"});
+CAROUSEL_ENUM(RayWishes::Cull, {RayWishes::Cull::kNone, "none"}, {RayWishes::Cull::kBack, "back"},
+              {RayWishes::Cull::kFront, "front"});
 CAROUSEL_ENUM(TestersConfig::AnyHit, {TestersConfig::AnyHit::kInline, "inline"},
               {TestersConfig::AnyHit::kShader, "shader"});
 CAROUSEL_ENUM(MemoryConfig::Fetch, {MemoryConfig::Fetch::kPacket, "packet"},

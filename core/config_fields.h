@@ -48,6 +48,7 @@ template <class V>
 void describe(V& v, SceneConfig& c) {
   v.field("file", c.file, "", "glTF file, relative to the config's folder, then to the working one");
   v.choice("builtin", c.builtin, "generated scene, instead of a file");
+  v.field("procedural", c.procedural, "", "built-in spheres: procedural primitives, as many as there would be of triangles");
   v.field("triangles", c.triangles, IntRange{1, 100'000'000}, "triangles",
           "built-in spheres, terrain, sliver: about this many in all");
   v.field("instances", c.instances, IntRange{1, 10'000'000}, "instances",
@@ -263,6 +264,12 @@ void describe(V& v, MemoryConfig& c) {
 }
 
 template <class V>
+void describe(V& v, RayWishes& c) {
+  v.choice("cull", c.cull, "triangles that are not there for these rays: those that show their back, or their front");
+  v.field("force_opaque", c.force_opaque, "", "nothing lets these rays through");
+}
+
+template <class V>
 void describe(V& v, ShadingConfig& c) {
   v.field("workers", c.workers, IntRange{1, 256}, "workers", "shader workers");
   v.effects("effects", c.effects, "effects of light: what the scene calls for, all, or those named");
@@ -270,6 +277,9 @@ void describe(V& v, ShadingConfig& c) {
   v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles", "time to shade one ray");
   v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
           "time to tell whether a primitive lets a ray through, with testers.any_hit: shader");
+  v.section("camera_rays", c.camera_rays, "what the shaders want of camera rays");
+  v.section("bounce_rays", c.bounce_rays, "the same of bounce rays");
+  v.section("shadow_rays", c.shadow_rays, "and of shadow rays");
   v.choice("distribute", c.distribute, "which worker gets a completed ray");
 }
 

@@ -22,7 +22,7 @@ Scene make_builtin(const SceneConfig& config) {
     case BuiltinScene::kCornell:
       return make_cornell();
     case BuiltinScene::kSpheres:
-      return make_spheres(triangles(), config.seed);
+      return make_spheres(triangles(), config.seed, config.procedural);
     case BuiltinScene::kTerrain:
       return make_terrain(triangles(), config.seed);
     case BuiltinScene::kInstances:

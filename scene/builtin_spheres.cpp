@@ -43,7 +43,7 @@ int level_for(std::int64_t triangles) {
 
 }  // namespace
 
-Scene make_spheres(std::int64_t triangles, std::int64_t seed) {
+Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural) {
   Scene scene;
   scene.name = "spheres";
   Material ground_material;
@@ -77,7 +77,10 @@ Scene make_spheres(std::int64_t triangles, std::int64_t seed) {
     const float x = static_cast<float>(i % side) + 0.5f + random.uniform(-slack, slack) - half;
     const float z = static_cast<float>(i / side) + 0.5f + random.uniform(-slack, slack) - half;
     const MaterialId material(1 + random.below(static_cast<std::uint32_t>(scene.materials.size() - 1)));
-    add_icosphere(field, {x, radius, z}, radius, level, material);
+    if (procedural)
+      field.spheres.push_back({{x, radius, z}, radius, material});
+    else
+      add_icosphere(field, {x, radius, z}, radius, level, material);
   }
   scene.meshes.push_back(std::move(field));
 

@@ -48,4 +48,9 @@ bool Opacity::may_let_through(const Mesh& mesh, std::uint32_t triangle) const {
   return !(least >= solid_from(material));
 }
 
+bool Opacity::may_let_through(const Sphere& sphere) const {
+  const Material& material = scene_.materials[sphere.material.value];
+  return material.alpha_mode != AlphaMode::kOpaque && !(least_[sphere.material.value] >= solid_from(material));
+}
+
 }  // namespace carousel::scene

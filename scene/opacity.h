@@ -21,6 +21,7 @@ class Opacity {
   bool any() const { return any_; }
   /// Precondition: triangle < mesh.triangle_count(). Any thread.
   bool may_let_through(const Mesh& mesh, std::uint32_t triangle) const;
+  bool may_let_through(const Sphere& sphere) const;
 
  private:
   const Scene& scene_;

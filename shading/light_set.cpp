@@ -88,6 +88,7 @@ LightSample LightSet::sample_triangle(const EmissiveTriangle& light, float proba
 float LightSet::triangle_pdf(std::uint32_t instance, std::uint32_t primitive, float t,
                              float cos_light) const {
   if (choice_.empty() || !(cos_light > 0.0f)) return 0.0f;
+  if (primitive >= scene_.meshes[scene_.instances[instance].mesh.value].triangle_count()) return 0.0f;   // a sphere
   const std::uint32_t index = triangles_.index_of(scene_, instance, primitive);
   const float area = triangles_.all()[index].area;
   if (!(area > 0.0f)) return 0.0f;

@@ -33,7 +33,7 @@ class LightSet {
   LightSample sample(const LightDraw& draw, const Vec3& origin, SpawnOffset offset) const;
 
   /// Density per solid angle with which sample() finds a point of an emissive triangle that a ray of unit
-  /// direction met at distance `t` under |cosine| `cos_light`; 0 if it never does.
+  /// direction met at distance `t` under |cosine| `cos_light`; 0 if it never does: spheres are not sampled.
   float triangle_pdf(std::uint32_t instance, std::uint32_t primitive, float t, float cos_light) const;
 
  private:

@@ -23,6 +23,11 @@ std::uint32_t u32(std::int64_t v) {
   return static_cast<std::uint32_t>(v);
 }
 
+std::uint8_t flags_of(const RayWishes& wishes) {
+  const int cull = wishes.cull == RayWishes::Cull::kBack ? kRayCullBack : wishes.cull == RayWishes::Cull::kFront ? kRayCullFront : 0;
+  return static_cast<std::uint8_t>(cull | (wishes.force_opaque ? kRayForceOpaque : 0));
+}
+
 float balance(float own, float other) {
   return own / (own + other);
 }
@@ -44,6 +49,7 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
              static_cast<std::uint64_t>(config.image.samples)),
       max_depth_(u32(config.image.max_depth)),
       spawn_(config.accuracy.spawn),
+      wishes_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays), flags_of(config.shading.shadow_rays)},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
       order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), config.camera,
@@ -217,7 +223,9 @@ void PathTracer::finish_ray(std::uint32_t index, std::uint32_t children, Worker&
 
 void PathTracer::emit(const Ray& ray, const RayTag& tag, Worker& worker, RayBatch& out) {
   ++worker.counts.emitted[static_cast<std::size_t>(tag.kind)];
-  out.push_back({ray, tag});
+  RayTag wishing = tag;
+  wishing.flags = wishes_[static_cast<std::size_t>(tag.kind)];
+  out.push_back({ray, wishing});
 }
 
 PathTracer::Counts PathTracer::counts() const {

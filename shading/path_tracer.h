@@ -76,6 +76,7 @@ class PathTracer : public Workload {
   const std::uint64_t paths_;
   const std::uint32_t max_depth_;
   const SpawnOffset spawn_;
+  const std::array<std::uint8_t, kRayKinds> wishes_;
   const Sampler sampler_;
   const PixelOrder order_;
   const CameraRays camera_;

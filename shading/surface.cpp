@@ -72,6 +72,10 @@ Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeome
 TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
                              float u, float v) {
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh.value];
+  if (primitive >= mesh.triangle_count()) {
+    static const scene::Mesh kNoVertices;
+    return {&kNoVertices, &scene.materials[mesh.spheres[primitive - mesh.triangle_count()].material.value], {}, {1, 0, 0}};
+  }
   const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t{primitive};
   return {&mesh,
           &scene.materials[mesh.triangle_materials[primitive].value],

@@ -10,7 +10,8 @@
 
 namespace carousel::shading {
 
-/// A hit triangle's entry in its mesh, and where on it.
+/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours, normals or
+/// texture coordinates: textures are read at (0, 0).
 struct TrianglePoint {
   const scene::Mesh* mesh;
   const scene::Material* material;

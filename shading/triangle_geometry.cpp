@@ -3,13 +3,35 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/octahedral.h"
+
 namespace carousel::shading {
+
+namespace {
+
+/// A point of a sphere: all corners fall together there, so that rounding is bounded as for a triangle's point.
+TriangleGeometry sphere_geometry(const scene::Sphere& sphere, const scene::Affine& world, float u, float v) {
+  TriangleGeometry g;
+  g.linear = DMat3(world.linear);
+  g.translation = DVec3(world.translation);
+  g.mirrored = glm::determinant(g.linear) < 0.0;
+  const DVec3 normal = from_octahedral(u, v), point = DVec3(sphere.center) + double{sphere.radius} * normal;
+  g.model = {point, point, point};
+  g.weights = {1.0, 0.0, 0.0};
+  g.position = g.linear * point + g.translation;
+  g.normal = glm::normalize(glm::transpose(glm::inverse(g.linear)) * normal);
+  return g;
+}
+
+}  // namespace
 
 TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
                                    float u, float v) {
   const scene::Instance& placed = scene.instances[instance];
   const scene::Mesh& mesh = scene.meshes[placed.mesh.value];
   const scene::Affine& world = placed.world_from_model;
+  if (primitive >= mesh.triangle_count())
+    return sphere_geometry(mesh.spheres[primitive - mesh.triangle_count()], world, u, v);
 
   TriangleGeometry g;
   g.linear = DMat3(world.linear);

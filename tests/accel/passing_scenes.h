@@ -43,6 +43,7 @@ inline scene::Scene passing_scene(BuiltinScene builtin, std::uint32_t balls, std
   scene::Scene scene = small_builtin(builtin, 250, 6);
   const MaterialId veil(static_cast<std::uint32_t>(scene.materials.size()));
   scene.materials.emplace_back().alpha_mode = scene::AlphaMode::kBlend;
+  scene.materials.back().base_color.a = 0.5f;
   for (scene::Mesh& mesh : scene.meshes)
     for (MaterialId& material : mesh.triangle_materials)
       if (random.below(2) == 0) material = veil;

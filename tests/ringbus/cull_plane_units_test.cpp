@@ -103,7 +103,7 @@ TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
 TEST(PlaneUnits, AreLiftedWhereThereAreAny) {
   Config config;
   const auto has = [&] {
-    const std::vector<Lift> all = lifts(config);
+    const std::vector<Lift> all = lifts(config, accel::Accel());
     return std::any_of(all.begin(), all.end(), [](const Lift& lift) { return lift.name == "plane_tests"; });
   };
   EXPECT_FALSE(has());

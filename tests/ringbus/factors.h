@@ -93,6 +93,9 @@ inline std::vector<Factor> cycle_factors() {
       factor<bool>("idle shade", {false, true}, [](Cell& c, bool v) { c.config.shading.idle_resources_shade = v; }),
       factor("distribute", all(ShadingConfig::Distribute{}),
              [](Cell& c, ShadingConfig::Distribute v) { c.config.shading.distribute = v; }),
+      factor("any hit", std::vector{TestersConfig::AnyHit::kInline, TestersConfig::AnyHit::kShader},
+             [](Cell& c, TestersConfig::AnyHit v) { c.config.testers.any_hit = v; }),
+      factor<I>("any-hit shade", {0, 10}, [](Cell& c, I v) { c.config.shading.cycles_per_any_hit = v; }),
       factor<I>("shade", {0, 20}, [](Cell& c, I v) { c.config.shading.cycles_per_shade = v; }),
   };
   factors.insert(factors.end(), more.begin(), more.end());

@@ -17,8 +17,9 @@ namespace carousel::ringbus {
 /// Which rays there are depends on the hits, so one wrong hit changes the digest at once and downstream.
 class ScatterWorkload final : public Workload {
  public:
-  ScatterWorkload(const Aabb& bounds, std::uint32_t count, std::uint8_t bounces, std::uint32_t seed, float away = 0.5f)
-      : bounds_(bounds), count_(count), bounces_(bounces), seed_(seed), away_(away), seen_(std::size_t{count} * (2u * bounces + 1u)) {}
+  ScatterWorkload(const Aabb& bounds, std::uint32_t count, std::uint8_t bounces, std::uint32_t seed, float away = 0.5f,
+                  bool wishes = false)
+      : bounds_(bounds), count_(count), bounces_(bounces), seed_(seed), away_(away), wishes_(wishes), seen_(std::size_t{count} * (2u * bounces + 1u)) {}
 
   Generated generate(WorkerId, std::size_t max_rays, RayBatch& out) override {
     const std::uint32_t begin = next_.fetch_add(static_cast<std::uint32_t>(max_rays));
@@ -35,6 +36,7 @@ class ScatterWorkload final : public Workload {
       r.ray.origin = from;
       r.ray.direction = to - from;
       r.tag.path = path;
+      r.tag.flags = wish(path, 0);
       out.push_back(r);
     }
     return {end - begin, end == count_};
@@ -53,12 +55,12 @@ class ScatterWorkload final : public Workload {
       bounce.ray.origin = at;
       for (int a = 0; a < 3; ++a) bounce.ray.direction[a] = number(r.tag.path, r.tag.bounce + 1u, a) - 0.5f;
       bounce.ray.tmin = 1e-4f * std::fabs(bounds_.extent().x);
-      bounce.tag = {r.tag.path, RayKind::kBounce, static_cast<std::uint8_t>(r.tag.bounce + 1), 0, 0};
+      bounce.tag = {r.tag.path, RayKind::kBounce, static_cast<std::uint8_t>(r.tag.bounce + 1), 0, wish(r.tag.path, r.tag.bounce + 1u)};
       out.push_back(bounce);
       RayRequest shadow = bounce;
       shadow.ray.direction = bounds_.hi + Vec3(number(r.tag.path, r.tag.bounce, 7)) - at;
       shadow.ray.tmax = 1.0f;
-      shadow.tag = {r.tag.path, RayKind::kShadow, r.tag.bounce, 0, 0};
+      shadow.tag = {r.tag.path, RayKind::kShadow, r.tag.bounce, 0, wish(r.tag.path, r.tag.bounce + 100u)};
       out.push_back(shadow);
     }
     const std::lock_guard lock(mutex_);
@@ -72,6 +74,11 @@ class ScatterWorkload final : public Workload {
   std::uint64_t doubled() const { return doubled_; }
 
  private:
+  /// Most rays want nothing in particular.
+  std::uint8_t wish(std::uint32_t path, std::uint32_t bounce) const {
+    const float n = number(path, bounce, 9);
+    return wishes_ && n < 0.25f ? static_cast<std::uint8_t>(static_cast<int>(n * 64) & kRayWishes) : std::uint8_t{0};
+  }
   float number(std::uint32_t path, std::uint32_t bounce, int dimension) const {
     std::uint64_t x = (std::uint64_t{seed_} << 32 | path) * 0x9e3779b97f4a7c15ull + bounce * 64u + static_cast<std::uint32_t>(dimension);
     x ^= x >> 30;
@@ -87,6 +94,7 @@ class ScatterWorkload final : public Workload {
   std::uint8_t bounces_;
   std::uint32_t seed_;
   float away_;
+  bool wishes_;
   std::vector<std::atomic<std::uint8_t>> seen_;
   std::atomic<std::uint32_t> next_{0};
   std::atomic<std::uint64_t> doubled_{0};

@@ -71,13 +71,14 @@ inline bool possible(const Config& c) {
 class TestScene {
  public:
   TestScene(scene::Scene scene, std::uint32_t paths, std::uint8_t bounces, float away = 0.5f,
-            const AccuracyConfig& accuracy = {})
+            const AccuracyConfig& accuracy = {}, const AnyHit* any_hit = nullptr)
       : scene_(std::move(scene)),
         bounds_(scene_.bounds()),
         paths_(paths),
         bounces_(bounces),
         away_(away),
-        accuracy_(accuracy) {
+        accuracy_(accuracy),
+        any_hit_(any_hit) {
     ScatterWorkload reference = workload();
     accel::run_reference(accel(BvhConfig{}), reference);
     digest_ = reference.digest();
@@ -91,13 +92,15 @@ class TestScene {
   const accel::Accel& accel(const BvhConfig& bvh, const CullPlanesConfig& planes) {
     auto& built = accels_[{bvh.width, bvh.leaf_triangles, planes.count, planes.nodes, planes.fit, planes.shared_normals, planes.order,
                          planes.levels}];
-    if (!built)
+    if (!built) {
       built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor(), accuracy_, planes));
+      built->any_hit = any_hit_;
+    }
     return *built;
   }
-  ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 6 + run_seed(), away_); }
+  ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 6 + run_seed(), away_, any_hit_ != nullptr); }
   std::unique_ptr<Workload> new_workload() const {
-    return std::make_unique<ScatterWorkload>(bounds_, paths_, bounces_, 6 + run_seed(), away_);
+    return std::make_unique<ScatterWorkload>(bounds_, paths_, bounces_, 6 + run_seed(), away_, any_hit_ != nullptr);
   }
   float size() const {
     const Vec3 e = bounds_.extent();
@@ -113,6 +116,7 @@ class TestScene {
   std::uint8_t bounces_;
   float away_;
   AccuracyConfig accuracy_;
+  const AnyHit* any_hit_;   // with one, rays also have wishes
   /// Width, leaf size, and planes: count, nodes, fit, shared, order, levels.
   using Built = std::tuple<std::int64_t, std::int64_t, std::int64_t, CullPlanesConfig::Nodes, CullPlanesConfig::Fit, bool,
                            CullPlanesConfig::Order, CullPlanesConfig::Levels>;

@@ -73,7 +73,7 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
 
 TEST(WhatIf, LiftsWhatTheMachineHas) {
   const auto has = [](const Config& config, const std::string& name) {
-    const std::vector<Lift> all = lifts(config);
+    const std::vector<Lift> all = lifts(config, accel::Accel());
     return std::any_of(all.begin(), all.end(), [&](const Lift& lift) { return lift.name == name; });
   };
   Config c = generous_machine();
