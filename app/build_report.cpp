@@ -259,6 +259,8 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.config = config_json(config);
   r.scene = summary(prepared);
   r.host = host(prepared, result);
+  r.host.raster_seconds = frame.raster_seconds();
+  r.raster = frame.raster();
   const bool alone = r.host.threads == 1;
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.deterministic = alone || result.cycle.has_value();

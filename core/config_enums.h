@@ -112,6 +112,7 @@ CAROUSEL_ENUM(TrafficConfig::Pattern, {TrafficConfig::Pattern::kUniform, "unifor
               {TrafficConfig::Pattern::kTornado, "tornado"},
               {TrafficConfig::Pattern::kNeighbour, "neighbour"},
               {TrafficConfig::Pattern::kHotspot, "hotspot"}, {TrafficConfig::Pattern::kBursty, "bursty"});
+CAROUSEL_ENUM(Primary, {Primary::kRays, "rays"}, {Primary::kRaster, "raster"});
 CAROUSEL_ENUM(Verify, {Verify::kNone, "none"}, {Verify::kReference, "reference"});
 
 #undef CAROUSEL_ENUM

@@ -39,6 +39,8 @@ struct alignas(128) PathTracer::Worker {
   HitsDigest digest;
   Counts counts;
   std::vector<std::uint32_t> states;  // scratch: admitted, or to be released
+  std::vector<std::uint32_t> begun;   // scratch: admitted, where first hits are known
+  RayBatch held;                      // rays that no generate() has had room for
 };
 
 PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight,
@@ -62,21 +64,28 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
 
 PathTracer::~PathTracer() = default;
 
+PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
+  const PixelSample at = order_.at(ordinal);
+  PathState& path = pool_.state(index);
+  // Relaxed and plain: nobody else knows of this path until the engine has handed its ray over.
+  for (auto& channel : path.radiance) channel.store(0, std::memory_order_relaxed);
+  path.outstanding.store(1, std::memory_order_relaxed);
+  path.pixel = at.y * film_.width() + at.x;
+  path.sample = at.sample;
+  path.throughput = Vec3{1};
+  path.bounce_pdf = 0;
+  path.scattered = false;
+  return at;
+}
+
 Workload::Generated PathTracer::generate(WorkerId worker_id, std::size_t max_rays, RayBatch& out) {
+  if (first_hits_ != nullptr) return generate_from_hits(worker_id, max_rays, out);
   Worker& worker = workers_[worker_id.value];
   worker.states.clear();
   const PathPool::Admission admitted = pool_.admit(max_rays, worker.states);
   for (std::size_t i = 0; i < admitted.count; ++i) {
-    const PixelSample at = order_.at(admitted.first + i);
-    PathState& path = pool_.state(worker.states[i]);
-    // Relaxed and plain: nobody else knows of this path until the engine has handed its ray over.
-    for (auto& channel : path.radiance) channel.store(0, std::memory_order_relaxed);
-    path.outstanding.store(1, std::memory_order_relaxed);
-    path.pixel = at.y * film_.width() + at.x;
-    path.sample = at.sample;
-    path.throughput = Vec3{1};
-    path.bounce_pdf = 0;
-    path.scattered = false;
+    const PixelSample at = begin_path(admitted.first + i, worker.states[i]);
+    const PathState& path = pool_.state(worker.states[i]);
     emit(camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample)),
          {worker.states[i], RayKind::kCamera, 0, 0, 0}, worker, out);
   }
@@ -84,6 +93,51 @@ Workload::Generated PathTracer::generate(WorkerId worker_id, std::size_t max_ray
   // Acquire and release pair with the same operation of the other workers' calls.
   const std::uint64_t before = generated_.fetch_add(admitted.count, std::memory_order_acq_rel);
   return {admitted.count, before + admitted.count == paths_};
+}
+
+Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size_t max_rays, RayBatch& out) {
+  Worker& worker = workers_[worker_id.value];
+  const std::size_t end = out.size() + max_rays;
+  while (!worker.held.empty() && out.size() < end) {
+    out.push_back(worker.held.back());
+    worker.held.pop_back();
+    // Acquire and release, as below: who reads 0 knows that this ray is in its batch.
+    held_.fetch_sub(1, std::memory_order_acq_rel);
+  }
+  std::size_t made = 0;
+  const std::size_t before = out.size();
+  std::uint64_t started = generated_.load(std::memory_order_acquire);
+  do {
+    // A first hit sends two rays at most; an odd one is held back.
+    worker.begun.clear();
+    worker.states.clear();
+    const PathPool::Admission admitted = pool_.admit((end - out.size() + 1) / 2, worker.begun);
+    made = admitted.count;
+    for (std::size_t i = 0; i < made; ++i) {
+      const std::uint32_t index = worker.begun[i];
+      const PixelSample at = begin_path(admitted.first + i, index);
+      const PathState& path = pool_.state(index);
+      const Ray ray = camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample));
+      const RayTag tag{index, RayKind::kCamera, 0, 0, 0};
+      if (const Hit* hit = first_hits_->at(path.pixel, path.sample)) {
+        std::uint32_t children = 0;
+        shade_closest({ray, *hit, tag}, worker, out, children);
+        finish_ray(index, children, worker);
+      } else {
+        emit(ray, tag, worker, out);
+      }
+    }
+    pool_.release(worker.states);
+    while (out.size() > end) {
+      worker.held.push_back(out.back());
+      out.pop_back();
+      held_.fetch_add(1, std::memory_order_acq_rel);
+    }
+    // After rays are held: who reads the full count here reads theirs too.
+    started = generated_.fetch_add(made, std::memory_order_acq_rel) + made;
+    // Paths that end where they begin make no ray; the engine would wait for one to come back.
+  } while (made > 0 && out.size() == before && out.size() < end);
+  return {out.size() - (end - max_rays), started == paths_ && held_.load(std::memory_order_acquire) == 0};
 }
 
 void PathTracer::shade(WorkerId worker_id, const HitBatch& completed, RayBatch& out) {

@@ -17,6 +17,7 @@
 #include "shading/light_set.h"
 #include "shading/path_pool.h"
 #include "shading/pixel_order.h"
+#include "shading/raster/first_hits.h"
 #include "shading/ray_recorder.h"
 #include "shading/sampler.h"
 #include "shading/surface.h"
@@ -42,6 +43,10 @@ class PathTracer : public Workload {
   /// before the first generate().
   void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
 
+  /// Paths start at these hits, without camera rays where they know the hit; they must outlive the tracing. Null: all
+  /// start with a ray. Call before the first generate().
+  void set_first_hits(const FirstHits* hits) { first_hits_ = hits; }
+
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
@@ -64,6 +69,9 @@ class PathTracer : public Workload {
  private:
   struct Worker;
 
+  /// Starts path `ordinal` of the frame in state `index`.
+  PixelSample begin_path(std::uint64_t ordinal, std::uint32_t index);
+  Generated generate_from_hits(WorkerId worker, std::size_t max_rays, RayBatch& out);
   void shade_closest(const RayResult& result, Worker& worker, RayBatch& out, std::uint32_t& children);
   void shade_shadow(const RayResult& result, Worker& worker);
   void add_emission(PathState& path, const RayResult& result, const TriangleGeometry& geometry,
@@ -86,7 +94,9 @@ class PathTracer : public Workload {
   std::unique_ptr<Worker[]> workers_;
   std::size_t worker_count_;
   std::atomic<std::uint64_t> generated_{0};  // camera rays that generate() calls have appended
+  std::atomic<std::uint64_t> held_{0};       // rays that workers hold back for their next generate()
   RayRecorder* recorder_ = nullptr;
+  const FirstHits* first_hits_ = nullptr;
 };
 
 }  // namespace carousel::shading

@@ -264,9 +264,9 @@ TEST(GltfCompressed, BrokenStreamsLoadOrAreRefused) {
   }
   std::vector<std::pair<std::size_t, unsigned>> changes;
   for (const Range& range : ranges) {
-    for (std::size_t i = 0; i < range.size; ++i) {
+    for (std::size_t i = 0; i < range.size; i += 2) {
       constexpr unsigned kChanges[] = {0x01, 0x80, 0xff};
-      changes.emplace_back(range.first + i, kChanges[i % 3]);
+      changes.emplace_back(range.first + i, kChanges[i / 2 % 3]);
     }
   }
   const auto outcomes = load_guarded(changes.size(), [&](std::size_t i) {

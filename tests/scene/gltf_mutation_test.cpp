@@ -21,7 +21,7 @@ struct Model {
 
 std::vector<Model> models() {
   return {{"every feature", every_feature(), 4000},
-          {"every extension", every_extension(), 1500},
+          {"every extension", every_extension(), 1000},
           {"rich model", rich_model().packed(), 500},
           {"sample", sample_model().packed(), 1000}};
 }
