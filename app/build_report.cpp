@@ -277,7 +277,8 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
             {emitted[0], emitted[1], emitted[2]}};
   if (!result.resources.empty()) add_ring(r, result, config.packets, prepared.accel);
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
-               std::nullopt, effects_of(prepared.scene, config)};
+               std::nullopt, {}, {}, 0, {}, {}};
+  add_effects(r.shading, prepared.scene, config, prepared.unread_image_bytes);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
   if (verifying) r.verify = verify(*verifying);
   r.digest = {frame.hits_digest(), frame.image_digest()};

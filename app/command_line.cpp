@@ -16,6 +16,7 @@
 #include "app/check_command.h"
 #include "app/compare_command.h"
 #include "app/exit_status.h"
+#include "app/inspect_command.h"
 #include "app/output.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
@@ -27,7 +28,7 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "check", "accuracy", "compare", "schema"};
+const std::vector<std::string> kCommands{"run", "check", "accuracy", "inspect", "compare", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.
@@ -67,6 +68,7 @@ struct Arguments {
   AccuracyArguments accuracy;
   RunArguments run;
   CheckArguments check;
+  InspectArguments inspect;
   CompareArguments compare;
   SchemaArguments schema;
 };
@@ -124,6 +126,13 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       ->excludes(certify)
       ->type_name("CASE");
 
+  CLI::App* inspect = program.add_subcommand("inspect", "what a scene holds and which effects it calls for");
+  inspect->add_option("scene", arguments.inspect.scene, "glTF file, or builtin:<name>")->required();
+  inspect->add_option("--set", arguments.inspect.sets, "key.path=value: as for run, e.g. shading.effects=all")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  inspect->add_flag("--json", arguments.inspect.json, "print JSON instead of the table");
+
   CLI::App* compare = program.add_subcommand("compare", "two reports side by side");
   compare->add_option("a", arguments.compare.a, "report.json, or its folder")->required();
   compare->add_option("b", arguments.compare.b, "the other")->required();
@@ -163,6 +172,7 @@ int run_command_line(int argc, const char* const* argv) {
     if (accuracy.certify) return certify_command(accuracy);
     return accuracy.reproduce.empty() ? accuracy_command(accuracy) : reproduce_command(accuracy);
   }
+  if (program.got_subcommand("inspect")) return inspect_command(arguments.inspect);
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
   return schema_command(arguments.schema);
 }

@@ -1,47 +1,42 @@
 #include "app/effects.h"
 
-#include <algorithm>
+#include <string>
 
 #include <fmt/format.h>
-
-#include "shading/surface.h"
 
 namespace carousel::app {
 
 namespace {
 
-template <class Predicate>
-std::size_t count(const scene::Scene& scene, const Predicate& predicate) {
-  return static_cast<std::size_t>(std::count_if(scene.materials.begin(), scene.materials.end(), predicate));
-}
-
-report::Effect by_count(const char* name, std::size_t count, const char* what) {
-  return {name, count > 0, fmt::format("{} {}", count, what)};
+std::string choice_text(const ShadingConfig::Effects& effects) {
+  using Choice = ShadingConfig::Effects::Choice;
+  if (effects.choice == Choice::kList) return fmt::format("[{}]", fmt::join(effects.names, ", "));
+  return effects.choice == Choice::kAll ? "all" : "auto";
 }
 
 }  // namespace
 
-std::vector<report::Effect> effects_of(const scene::Scene& scene, const Config& config) {
-  const std::size_t glowing = count(scene, shading::is_emissive);
-  const Vec3& sky = scene.sky.radiance;
-  const bool lights = !scene.lights.empty() || glowing > 0, bright_sky = sky.x > 0 || sky.y > 0 || sky.z > 0;
-  const bool bounces = config.image.max_depth > 1;
-  std::vector<report::Effect> effects;
-  effects.push_back(
-      {"shadow", lights, fmt::format("{} lights, {} glowing materials", scene.lights.size(), glowing)});
-  effects.push_back({"bounce", bounces, fmt::format("image.max_depth {}", config.image.max_depth)});
-  effects.push_back({"sky", bright_sky, bright_sky ? "the sky has radiance" : "the sky is black"});
-  effects.push_back(by_count("emission", glowing, "glowing materials"));
-  effects.push_back(
-      by_count("metallic", count(scene, [](const auto& m) { return m.metallic > 0; }), "metallic materials"));
-  effects.push_back(by_count("texture", scene.textures.size(), "textures"));
-  effects.push_back(by_count("normal_map",
-                             count(scene, [](const auto& m) { return m.normal_texture.has_value(); }),
-                             "materials with a normal map"));
-  const std::size_t holes =
-      count(scene, [](const auto& m) { return m.alpha_mode != scene::AlphaMode::kOpaque; });
-  effects.push_back({"alpha", false, fmt::format("not computed; {} materials are taken for opaque", holes)});
-  return effects;
+std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan) {
+  std::vector<report::Effect> out;
+  for (std::size_t i = 0; i < kEffects; ++i) {
+    const shading::PlannedEffect& e = plan.effects[i];
+    out.push_back({std::string(kEffectNames[i]), e.on, e.called_for, e.callers, e.why,
+                   {e.cost.rays_per_path, e.cost.texture_reads, e.cost.path_state_bytes}});
+  }
+  return out;
+}
+
+void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config, std::uint64_t unread_image_bytes) {
+  const shading::EffectsPlan plan = shading::plan_effects(scene, config);
+  Config everything = config;
+  everything.shading.effects = {ShadingConfig::Effects::Choice::kAll, {}};
+  const std::uint32_t most = shading::plan_effects(scene, everything).path_state_bytes();
+  out.effects = effects_of(plan);
+  out.effects_choice = choice_text(config.shading.effects);
+  out.path_state_bytes = plan.path_state_bytes();
+  out.saved = {most - plan.path_state_bytes(), unread_image_bytes};
+  for (const auto& [surface, count] : shading::count_classes(scene, plan))
+    out.classes.push_back({std::string(shading::class_name(surface)), count});
 }
 
 }  // namespace carousel::app

@@ -14,6 +14,7 @@
 #include "core/executor.h"
 #include "ringbus/deadlock.h"
 #include "scene/load_scene.h"
+#include "shading/effects_plan.h"
 
 namespace carousel::app {
 
@@ -48,6 +49,9 @@ void load_scene(Prepared& p) {
     spdlog::warn("{}", warning);
     p.warnings.push_back(warning);
   });
+  shading::keep_effects(p.scene, p.config().shading.effects);
+  if (p.config().shading.effects.choice != ShadingConfig::Effects::Choice::kAll)
+    p.unread_image_bytes = shading::drop_unread_images(p.scene);
   p.scene_seconds = watch.seconds();
 }
 

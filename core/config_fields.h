@@ -272,7 +272,7 @@ void describe(V& v, RayWishes& c) {
 template <class V>
 void describe(V& v, ShadingConfig& c) {
   v.field("workers", c.workers, IntRange{1, 256}, "workers", "shader workers");
-  v.effects("effects", c.effects, "effects of light: what the scene calls for, all, or those named");
+  v.effects("effects", c.effects, "effects of light: what the scene calls for, all (nothing is specialised), or of what it calls for only those named");
   v.field("idle_resources_shade", c.idle_resources_shade, "", "idle resources help the shader workers");
   v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles", "time to shade one ray");
   v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",

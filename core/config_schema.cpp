@@ -7,6 +7,7 @@
 
 #include "core/config_fields.h"
 #include "core/config_write.h"
+#include "core/effect.h"
 
 namespace carousel {
 
@@ -96,7 +97,7 @@ class SchemaWriter {
   void effects(std::string_view key, ShadingConfig::Effects&, const char* meaning) {
     put(key,
         {{"anyOf",
-          {Json{{"enum", {"auto", "all"}}}, Json{{"type", "array"}, {"items", {{"type", "string"}}}}}},
+          {Json{{"enum", {"auto", "all"}}}, Json{{"type", "array"}, {"items", {{"enum", kEffectNames}}}}}},
          {"default", "auto"}},
         "", meaning);
   }

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/config_enums.h"
 #include "core/config_schema.h"
 #include "core/edit_distance.h"
+#include "core/effect.h"
 
 namespace carousel {
 
@@ -167,9 +170,16 @@ class Rules {
   }
 
   void built_shading() {
-    using Choice = ShadingConfig::Effects::Choice;
-    if (c.shading.effects.choice != Choice::kAuto)
-      issue("shading.effects", "choosing effects is not built yet; expected auto");
+    const std::vector<std::string> known(kEffectNames.begin(), kEffectNames.end());
+    for (std::size_t i = 0; i < c.shading.effects.names.size(); ++i) {
+      const std::string& name = c.shading.effects.names[i];
+      if (effect_named(name)) continue;
+      const auto near = nearest_name(name, known);
+      issue(fmt::format("shading.effects.{}", i),
+            fmt::format("expected the name of an effect, found '{}'{}", name,
+                        near ? fmt::format("; did you mean '{}'?", *near)
+                             : fmt::format("; known are {}", fmt::join(known, ", "))));
+    }
     if (!cycle()) only("shading.idle_resources_shade", c.shading.idle_resources_shade, false, "true", "false");
   }
 

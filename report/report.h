@@ -189,16 +189,35 @@ struct Bottleneck {
   std::vector<BottleneckGain> gains;
 };
 
+struct EffectCost {
+  std::uint64_t rays = 0, texture_reads = 0, path_state_bytes = 0;
+};
+
 struct Effect {
   std::string name;
-  bool on = false;
+  bool on = false, called_for = false;
+  std::uint64_t callers = 0;
   std::string why;
+  EffectCost cost;
+};
+
+/// Materials by what they need of the shader, and bytes that no effect needs.
+struct ShaderClass {
+  std::string name;
+  std::uint64_t materials = 0;
+};
+struct EffectsSaved {
+  std::uint64_t path_state_bytes = 0, unread_image_bytes = 0;
 };
 
 struct Shading {
   std::uint64_t workers = 0, shaded = 0, saturated = 0;
   std::optional<double> utilisation;
   std::vector<Effect> effects;
+  std::string effects_choice;
+  std::uint64_t path_state_bytes = 0;
+  EffectsSaved saved;
+  std::vector<ShaderClass> classes;
 };
 
 struct Verify {

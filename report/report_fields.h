@@ -297,10 +297,32 @@ void describe(V& v, Bottleneck& r) {
 }
 
 template <class V>
+void describe(V& v, EffectCost& r) {
+  v.field("rays", r.rays, "rays", "of a path, at most");
+  v.field("texture_reads", r.texture_reads, "lookups", "filtered, at a hit, at most");
+  v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
+}
+
+template <class V>
 void describe(V& v, Effect& r) {
   v.field("name", r.name, "", "name of the effect");
   v.field("on", r.on, "", "whether it was computed");
+  v.field("called_for", r.called_for, "", "whether the scene calls for it");
+  v.field("callers", r.callers, "callers", "materials, meshes or lights that do");
   v.field("why", r.why, "", "what called for it, or that nothing did");
+  v.section("cost", r.cost, "what it costs where it occurs; zero if it is off");
+}
+
+template <class V>
+void describe(V& v, ShaderClass& r) {
+  v.field("name", r.name, "", "unlit, plain, textured, layered, opaque (other boundaries than glTF's core), transmissive, or anything");
+  v.field("materials", r.materials, "materials", "shaded by code for this");
+}
+
+template <class V>
+void describe(V& v, EffectsSaved& r) {
+  v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight, that all effects would take besides");
+  v.field("unread_image_bytes", r.unread_image_bytes, "bytes", "of pixels that no effect reads, not kept");
 }
 
 template <class V>
@@ -310,6 +332,10 @@ void describe(V& v, Shading& r) {
   v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
   v.field("utilisation", r.utilisation, "fraction", "of the workers' cycles, those spent on shading and camera rays");
   v.section("effects", r.effects, "effects of light");
+  v.field("effects_choice", r.effects_choice, "", "shading.effects: auto, all, or the list; a list changes digest.image");
+  v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
+  v.section("saved", r.saved, "what effects that are off did not take");
+  v.section("classes", r.classes, "materials on triangles, by the code that shades them");
 }
 
 template <class V>

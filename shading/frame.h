@@ -20,6 +20,9 @@ struct Frame {
     tangent = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
     bitangent = {b, sign + n.y * n.y * a, -n.y};
   }
+  /// `t` is unit and at right angles to `n`.
+  Frame(const Vec3& n, const Vec3& t) : tangent(t), bitangent(glm::cross(n, t)), normal(n) {}
+
   Vec3 to_local(const Vec3& v) const {
     return {glm::dot(v, tangent), glm::dot(v, bitangent), glm::dot(v, normal)};
   }

@@ -39,6 +39,22 @@ GgxAlbedo::Pair lerp(const GgxAlbedo::Pair& a, const GgxAlbedo::Pair& b, float t
   return {a.metal + t * (b.metal - a.metal), a.dielectric + t * (b.dielectric - a.dielectric)};
 }
 
+GgxAlbedo::Split lerp(const GgxAlbedo::Split& a, const GgxAlbedo::Split& b, float t) {
+  return {a.full + t * (b.full - a.full), a.schlick + t * (b.schlick - a.schlick)};
+}
+
+/// Where `x` of 0 to 1 falls between the entries of a row.
+template <class Row>
+auto between(const Row& row, float x) {
+  const float scaled = std::clamp(x, 0.0f, 1.0f) * float(row.size() - 1);
+  const std::size_t i = std::min(std::size_t(scaled), row.size() - 2);
+  return lerp(row[i], row[i + 1], scaled - float(i));
+}
+template <class Row>
+auto along(const Row& row, float cos_theta) {
+  return between(row, std::sqrt(std::clamp(cos_theta, 0.0f, 1.0f)));
+}
+
 /// Cosine-weighted mean of a function of the cosine.
 template <class F>
 float cosine_mean(const F& f) {
@@ -60,6 +76,7 @@ GgxAlbedo::GgxAlbedo() {
     for (int c = 0; c < kSize; ++c) {
       const float x = std::max(float(c) / (kSize - 1), 0.01f);
       const Integral integral = integrate(x * x, alpha);
+      split_[r][c] = {integral.full, integral.schlick};
       directional_[r][c] = {integral.full,
                             kDielectricF0 * (integral.full - integral.schlick) + integral.schlick};
     }
@@ -70,6 +87,8 @@ GgxAlbedo::GgxAlbedo() {
     for (Pair& pair : directional_[r]) pair.dielectric += returned * (1.0f - pair.metal);
     average_[r] = {metal,
                    cosine_mean([&](float cos_theta) { return at(directional_[r], cos_theta).dielectric; })};
+    average_split_[r] = {cosine_mean([&](float cos_theta) { return along(split_[r], cos_theta).full; }),
+                         cosine_mean([&](float cos_theta) { return along(split_[r], cos_theta).schlick; })};
   }
 }
 
@@ -94,6 +113,16 @@ GgxAlbedo::Pair GgxAlbedo::average(float alpha) const {
   const float y = std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) * (kSize - 1);
   const int r = std::min(int(y), kSize - 2);
   return lerp(average_[r], average_[r + 1], y - float(r));
+}
+
+GgxAlbedo::Split GgxAlbedo::split(float cos_theta, float alpha) const {
+  const float y = std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) * (kSize - 1);
+  const int r = std::min(int(y), kSize - 2);
+  return lerp(along(split_[r], cos_theta), along(split_[r + 1], cos_theta), y - float(r));
+}
+
+GgxAlbedo::Split GgxAlbedo::average_split(float alpha) const {
+  return between(average_split_, std::sqrt(std::clamp(alpha, 0.0f, 1.0f)));
 }
 
 }  // namespace carousel::shading

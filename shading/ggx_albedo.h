@@ -21,6 +21,13 @@ class GgxAlbedo {
   /// The cosine-weighted mean over all directions.
   Pair average(float alpha) const;
 
+  /// The bare lobe's albedo is f0 * (full - schlick) + f90 * schlick for any Fresnel factor of Schlick's form.
+  struct Split {
+    float full = 0, schlick = 0;
+  };
+  Split split(float cos_theta, float alpha) const;
+  Split average_split(float alpha) const;
+
  private:
   GgxAlbedo();
   // Nodes are even in sqrt(cosine) and in sqrt(alpha): both change fastest near 0.
@@ -30,6 +37,8 @@ class GgxAlbedo {
 
   std::array<Row, kSize> directional_;  // [roughness][cosine]
   std::array<Pair, kSize> average_;
+  std::array<std::array<Split, kSize>, kSize> split_;
+  std::array<Split, kSize> average_split_;
 };
 
 }  // namespace carousel::shading

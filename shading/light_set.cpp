@@ -24,7 +24,7 @@ float finite_weight(float flux) {
 
 }  // namespace
 
-LightSet::LightSet(const scene::Scene& scene) : scene_(scene), triangles_(scene) {
+LightSet::LightSet(const scene::Scene& scene, bool punctual, bool triangles) : scene_(scene), triangles_(scene) {
   std::vector<float> weights;
   weights.reserve(scene.lights.size() + triangles_.all().size());
   float radius = 0;
@@ -33,9 +33,9 @@ LightSet::LightSet(const scene::Scene& scene) : scene_(scene), triangles_(scene)
     if (!bounds.empty()) radius = 0.5f * glm::length(bounds.extent());
   }
   for (const scene::PunctualLight& light : scene.lights) {
-    weights.push_back(finite_weight(luminance(punctual_flux(light, radius))));
+    weights.push_back(punctual ? finite_weight(luminance(punctual_flux(light, radius))) : 0.0f);
   }
-  for (const EmissiveTriangle& light : triangles_.all()) weights.push_back(finite_weight(light.flux));
+  for (const EmissiveTriangle& light : triangles_.all()) weights.push_back(triangles ? finite_weight(light.flux) : 0.0f);
   choice_ = LightChoice(weights);
 }
 

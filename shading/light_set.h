@@ -26,7 +26,8 @@ struct LightSample {
 /// to their flux. Immutable; any thread.
 class LightSet {
  public:
-  explicit LightSet(const scene::Scene& scene);
+  /// Only what `punctual` and `triangles` let in is ever chosen.
+  explicit LightSet(const scene::Scene& scene, bool punctual = true, bool triangles = true);
 
   bool empty() const { return choice_.empty(); }
   /// Precondition: !empty().

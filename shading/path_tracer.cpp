@@ -7,20 +7,21 @@
 #include <glm/geometric.hpp>
 
 #include "core/fixed_point.h"
-#include "shading/frame.h"
-#include "shading/luminance.h"
+#include "shading/exponential.h"
+#include "shading/path_tracer-inl.h"
 #include "shading/sky.h"
-#include "shading/spawn_point.h"
 
 namespace carousel::shading {
 
 namespace {
 
-constexpr std::uint32_t kRouletteFrom = 3;  // bounce of the first surface at which a path may be ended early
-constexpr float kMostSurvival = 0.95f, kLeastSurvival = 0.05f;
-
 std::uint32_t u32(std::int64_t v) {
   return static_cast<std::uint32_t>(v);
+}
+
+CameraConfig lens(CameraConfig camera, const EffectsPlan& plan) {
+  if (!plan.on(Effect::kDepthOfField)) camera.aperture = 0;
+  return camera;
 }
 
 std::uint8_t flags_of(const RayWishes& wishes) {
@@ -28,39 +29,30 @@ std::uint8_t flags_of(const RayWishes& wishes) {
   return static_cast<std::uint8_t>(cull | (wishes.force_opaque ? kRayForceOpaque : 0));
 }
 
-float balance(float own, float other) {
-  return own / (own + other);
-}
-
 }  // namespace
-
-/// What one shader worker keeps to itself, on cache lines of its own.
-struct alignas(128) PathTracer::Worker {
-  HitsDigest digest;
-  Counts counts;
-  std::vector<std::uint32_t> states;  // scratch: admitted, or to be released
-  std::vector<std::uint32_t> begun;   // scratch: admitted, where first hits are known
-  RayBatch held;                      // rays that no generate() has had room for
-};
 
 PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight,
                        std::size_t workers)
     : scene_(scene),
+      plan_(plan_effects(scene, config)),
       paths_(static_cast<std::uint64_t>(config.image.width) *
              static_cast<std::uint64_t>(config.image.height) *
              static_cast<std::uint64_t>(config.image.samples)),
-      max_depth_(u32(config.image.max_depth)),
+      max_depth_(plan_.on(Effect::kBounceRays) ? u32(config.image.max_depth) : 1),
       spawn_(config.accuracy.spawn),
       wishes_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays), flags_of(config.shading.shadow_rays)},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
       order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
-      camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), config.camera,
+      camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
               u32(config.image.width), u32(config.image.height)),
-      lights_(scene),
-      pool_(max_paths_in_flight, paths_, max_depth_),
+      lights_(scene, plan_.on(Effect::kShadowRays), plan_.on(Effect::kShadowRays) && plan_.on(Effect::kAreaLights)),
+      media_(plan_.on(Effect::kVolume)),
+      pool_(max_paths_in_flight, paths_, plan_.on(Effect::kShadowRays) ? max_depth_ : 0, media_),
       film_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       workers_(std::make_unique<Worker[]>(workers)),
-      worker_count_(workers) {}
+      worker_count_(workers) {
+  choose_surfaces();
+}
 
 PathTracer::~PathTracer() = default;
 
@@ -75,6 +67,7 @@ PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
   path.throughput = Vec3{1};
   path.bounce_pdf = 0;
   path.scattered = false;
+  if (media_) pool_.medium(index) = 0;
   return at;
 }
 
@@ -95,71 +88,16 @@ Workload::Generated PathTracer::generate(WorkerId worker_id, std::size_t max_ray
   return {admitted.count, before + admitted.count == paths_};
 }
 
-Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size_t max_rays, RayBatch& out) {
-  Worker& worker = workers_[worker_id.value];
-  const std::size_t end = out.size() + max_rays;
-  while (!worker.held.empty() && out.size() < end) {
-    out.push_back(worker.held.back());
-    worker.held.pop_back();
-    // Acquire and release, as below: who reads 0 knows that this ray is in its batch.
-    held_.fetch_sub(1, std::memory_order_acq_rel);
-  }
-  std::size_t made = 0;
-  const std::size_t before = out.size();
-  std::uint64_t started = generated_.load(std::memory_order_acquire);
-  do {
-    // A first hit sends two rays at most; an odd one is held back.
-    worker.begun.clear();
-    worker.states.clear();
-    const PathPool::Admission admitted = pool_.admit((end - out.size() + 1) / 2, worker.begun);
-    made = admitted.count;
-    for (std::size_t i = 0; i < made; ++i) {
-      const std::uint32_t index = worker.begun[i];
-      const PixelSample at = begin_path(admitted.first + i, index);
-      const PathState& path = pool_.state(index);
-      const Ray ray = camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample));
-      const RayTag tag{index, RayKind::kCamera, 0, 0, 0};
-      if (const Hit* hit = first_hits_->at(path.pixel, path.sample)) {
-        std::uint32_t children = 0;
-        shade_closest({ray, *hit, tag}, worker, out, children);
-        finish_ray(index, children, worker);
-      } else {
-        emit(ray, tag, worker, out);
-      }
-    }
-    pool_.release(worker.states);
-    while (out.size() > end) {
-      worker.held.push_back(out.back());
-      out.pop_back();
-      held_.fetch_add(1, std::memory_order_acq_rel);
-    }
-    // After rays are held: who reads the full count here reads theirs too.
-    started = generated_.fetch_add(made, std::memory_order_acq_rel) + made;
-    // Paths that end where they begin make no ray; the engine would wait for one to come back.
-  } while (made > 0 && out.size() == before && out.size() < end);
-  return {out.size() - (end - max_rays), started == paths_ && held_.load(std::memory_order_acquire) == 0};
-}
-
 void PathTracer::shade(WorkerId worker_id, const HitBatch& completed, RayBatch& out) {
-  Worker& worker = workers_[worker_id.value];
-  worker.states.clear();
-  constexpr std::size_t kAhead = 4;  // rays complete in no order: their path states are rarely in the cache
-  for (std::size_t i = 0; i < completed.size(); ++i) {
-    if (i + kAhead < completed.size()) __builtin_prefetch(&pool_.state(completed[i + kAhead].tag.path), 1);
-    const RayResult& result = completed[i];
-    const PathState& path = pool_.state(result.tag.path);
-    ++worker.counts.completed[static_cast<std::size_t>(result.tag.kind)];
-    worker.digest.add(hit_term(path.pixel, path.sample, result.tag, result.hit));
-    if (recorder_ != nullptr) recorder_->record(worker_id, path.pixel, path.sample, result);
-    std::uint32_t children = 0;
-    if (result.tag.kind == RayKind::kShadow) {
-      shade_shadow(result, worker);
-    } else {
-      shade_closest(result, worker, out, children);
-    }
-    finish_ray(result.tag.path, children, worker);
-  }
-  pool_.release(worker.states);
+  const scene::Material* first = scene_.materials.data();
+  const auto surface = [&](const RayResult& result, const TrianglePoint& point, Worker& worker, RayBatch& rays,
+                           std::uint32_t& children) {
+    (this->*surfaces_[static_cast<std::size_t>(point.material - first)].shade)(result, point, worker, rays, children);
+  };
+  if (media_)
+    shade_batch<true>(worker_id, completed, out, surface);
+  else
+    shade_batch<false>(worker_id, completed, out, surface);
 }
 
 void PathTracer::shade_shadow(const RayResult& result, Worker& worker) {
@@ -168,72 +106,83 @@ void PathTracer::shade_shadow(const RayResult& result, Worker& worker) {
                worker);
 }
 
-void PathTracer::shade_closest(const RayResult& result, Worker& worker, RayBatch& out,
-                               std::uint32_t& children) {
+void PathTracer::shade_miss(const RayResult& result, Worker& worker) {
   PathState& path = pool_.state(result.tag.path);
-  const Hit& hit = result.hit;
-  if (!hit.valid()) {
-    add_radiance(path, path.throughput * sky_radiance(scene_.sky, result.ray.direction), worker);
-    return;
-  }
-  const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
-  if (point.material->unlit) {
-    add_radiance(path, path.throughput * base_color(scene_, point), worker);
-    return;
-  }
-  const TriangleGeometry geometry = triangle_geometry(scene_, hit.instance, hit.primitive, hit.u, hit.v);
-  const Vec3 wo = -result.ray.direction;
-  const bool front = glm::dot(geometry.normal, DVec3(wo)) >= 0.0;
-  if (is_emissive(*point.material)) add_emission(path, result, geometry, point, front, worker);
+  add_radiance(path, path.throughput * sky_radiance(scene_.sky, result.ray.direction), worker);
+}
 
-  const std::uint32_t bounce = result.tag.bounce;
-  const bool last = bounce + 1 >= max_depth_;
-  if (last && lights_.empty()) return;
-  const Vec3 facing = Vec3(front ? geometry.normal : -geometry.normal);
-  const Frame frame(shading_normal(scene_, point, geometry, facing, front, wo));
-  MaterialPoint material = material_point(scene_, point);
-  if (path.scattered) material.roughness = widened_roughness(material.roughness);
-  const Bsdf bsdf(material, frame.to_local(wo));
-  const Vec3 origin = spawn_point(geometry, front ? Side::kFront : Side::kBack, spawn_);
-  const LightDraw light_draw = sampler_.light(path.pixel, path.sample, bounce);
-  RayTag tag{result.tag.path, RayKind::kShadow, result.tag.bounce, 0, 0};
+Vec3 PathTracer::passed(std::uint32_t medium, float distance) const {
+  const Vec3& a = surfaces_[medium - 1].absorption;
+  return {exp_float(-a.x * distance), exp_float(-a.y * distance), exp_float(-a.z * distance)};
+}
 
-  if (!lights_.empty()) {
-    const LightSample light = lights_.sample(light_draw, origin, spawn_);
-    if (max_component(light.radiance) > 0.0f && glm::dot(facing, light.wi) > 0.0f) {
-      const BsdfValue value = bsdf.evaluate(frame.to_local(light.wi));
-      // The last surface has no bounce ray to share the light with; punctual lights never do.
-      const float weight = last || light.pdf == 0.0f ? 1.0f : balance(light.pdf, value.pdf);
-      const Vec3 contribution = path.throughput * value.f_cos * light.radiance * weight;
-      // Less than half a step of the film's fixed point adds exactly nothing: no ray. NaN passes, is counted.
-      if (!(max_component(contribution) < 0x1p-29f)) {
-        pool_.shadow_contribution(tag.path, bounce) = contribution;
-        emit({origin, 0.0f, light.direction, light.tmax}, tag, worker, out);
-        ++children;
-      }
+/// Beer-Lambert: what is left of the path's light after the way to the hit. A ray that leaves the scene from within a
+/// volume found a hole in its hull, and keeps its light.
+void PathTracer::absorb(const RayResult& result) {
+  const std::uint32_t medium = pool_.medium(result.tag.path);
+  if (medium != 0) pool_.state(result.tag.path).throughput *= passed(medium, result.hit.t);
+}
+
+template <PathTracer::Lights kLights>
+PathTracer::ShadeSurface PathTracer::shade_of(SurfaceClass surface) {
+  using C = SurfaceClass;
+  switch (surface) {
+    case C::kUnlit:
+      return &PathTracer::shade_surface<C::kUnlit, kLights>;
+    case C::kPlain:
+      return &PathTracer::shade_surface<C::kPlain, kLights>;
+    case C::kTextured:
+      return &PathTracer::shade_surface<C::kTextured, kLights>;
+    case C::kLayered:
+      return &PathTracer::shade_surface<C::kLayered, kLights>;
+    case C::kOpaque:
+      return &PathTracer::shade_surface<C::kOpaque, kLights>;
+    case C::kLayeredOpaque:
+      return &PathTracer::shade_surface<C::kLayeredOpaque, kLights>;
+    case C::kTransmissive:
+      return &PathTracer::shade_surface<C::kTransmissive, kLights>;
+    case C::kLayeredTransmissive:
+      return &PathTracer::shade_surface<C::kLayeredTransmissive, kLights>;
+    case C::kAnything:
+      break;
+  }
+  return &PathTracer::shade_surface<C::kAnything, kLights>;
+}
+
+PathTracer::ShadeSurface PathTracer::shade_of(SurfaceClass surface, Lights lights) {
+  switch (lights) {
+    case Lights::kNone:
+      return shade_of<Lights::kNone>(surface);
+    case Lights::kPunctual:
+      return shade_of<Lights::kPunctual>(surface);
+    case Lights::kLamps:
+      return shade_of<Lights::kLamps>(surface);
+    case Lights::kLampsAndMedia:
+      break;
+  }
+  return shade_of<Lights::kLampsAndMedia>(surface);
+}
+
+void PathTracer::choose_surfaces() {
+  const std::vector<SurfaceClass> classes = surface_classes(scene_, plan_);
+  const Lights lights = media_                         ? Lights::kLampsAndMedia
+                        : plan_.on(Effect::kEmission)  ? Lights::kLamps
+                        : !lights_.empty()             ? Lights::kPunctual
+                                                       : Lights::kNone;
+  surfaces_.resize(scene_.materials.size());
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const scene::Material& material = scene_.materials[i];
+    Surface& surface = surfaces_[i];
+    surface.shade = shade_of(classes[i], lights);
+    surface.glass = glass_tables(material);
+    surface.absorbs = absorbs(material);
+    if (!surface.absorbs) continue;
+    for (int c = 0; c < 3; ++c) {
+      const float left = std::clamp(material.volume.attenuation_color[c], 1e-6f, 1.0f);
+      surface.absorption[c] =
+          static_cast<float>(-log2_double(double{left}) * 0.69314718055994530942) / material.volume.attenuation_distance;
     }
   }
-  if (last) return;
-
-  const DirectionDraw draw = sampler_.direction(path.pixel, path.sample, bounce);
-  const Vec3 wi_local = bsdf.sample(draw.lobe, draw.direction);
-  const BsdfValue value = bsdf.evaluate(wi_local);
-  const Vec3 wi = glm::normalize(frame.to_world(wi_local));
-  if (!(value.pdf > 0.0f) || !(glm::dot(facing, wi) > 0.0f)) return;
-  Vec3 throughput = path.throughput * value.f_cos * (1.0f / value.pdf);
-  if (bounce >= kRouletteFrom) {
-    const float survival = std::clamp(max_component(throughput), kLeastSurvival, kMostSurvival);
-    if (light_draw.roulette >= survival) return;
-    throughput *= 1.0f / survival;
-  }
-  if (!(max_component(throughput) > 0.0f)) return;
-  path.throughput = throughput;
-  path.bounce_pdf = value.pdf;
-  path.scattered = path.scattered || bsdf.is_wide(draw.lobe);
-  tag.kind = RayKind::kBounce;
-  ++tag.bounce;
-  emit({origin, 0.0f, wi, kInfinity}, tag, worker, out);
-  ++children;
 }
 
 void PathTracer::add_emission(PathState& path, const RayResult& result, const TriangleGeometry& geometry,
@@ -242,7 +191,7 @@ void PathTracer::add_emission(PathState& path, const RayResult& result, const Tr
   float weight = 1.0f;
   if (result.tag.kind == RayKind::kBounce) {
     const float cos_light = std::abs(glm::dot(Vec3(geometry.normal), result.ray.direction));
-    weight = balance(path.bounce_pdf, lights_.triangle_pdf(result.hit.instance, result.hit.primitive,
+    weight = detail::balance(path.bounce_pdf, lights_.triangle_pdf(result.hit.instance, result.hit.primitive,
                                                            result.hit.t, cos_light));
   }
   add_radiance(path, path.throughput * emitted(scene_, point) * weight, worker);

@@ -44,27 +44,35 @@ Vec3 normalized_or(const Vec3& v, const Vec3& fallback) {
   return length2 > 1e-30f && length2 < 1e30f ? v * (1.0f / std::sqrt(length2)) : fallback;
 }
 
-/// The normal map's tangent frame comes from the texture coordinates' derivatives. glTF: x points along +u,
-/// y towards the top of the image, that is along -v.
-Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g, const Vec3& n) {
-  const scene::TextureUse& use = *p.material->normal_texture;
+/// The frame in which textures lie comes from the coordinates' derivatives. glTF: x points along +u, y towards the top
+/// of the image, that is along -v. Nothing where the coordinates do not span the triangle.
+struct TextureFrame {
+  Vec3 tangent, bitangent;
+};
+std::optional<TextureFrame> texture_frame(const TrianglePoint& p, const TriangleGeometry& g,
+                                          const scene::TextureUse& use, const Vec3& n) {
   const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
-  if (uvs.empty()) return n;
+  if (uvs.empty()) return std::nullopt;
   const Vec2 uv0 = transform_uv(use, uvs[p.vertices[0]]);
   const Vec2 d1 = transform_uv(use, uvs[p.vertices[1]]) - uv0,
              d2 = transform_uv(use, uvs[p.vertices[2]]) - uv0;
   const float determinant = d1.x * d2.y - d1.y * d2.x;
-  if (determinant == 0.0f) return n;
+  if (determinant == 0.0f) return std::nullopt;
   const Vec3 e1(g.linear * (g.model[1] - g.model[0])), e2(g.linear * (g.model[2] - g.model[0]));
   const float sign = determinant < 0.0f ? -1.0f : 1.0f;
   const Vec3 du = (e1 * d2.y - e2 * d1.y) * sign, dv = (e2 * d1.x - e1 * d2.x) * sign;
   const Vec3 tangent = normalized_or(du - n * glm::dot(n, du), Vec3{0});
   Vec3 bitangent = glm::cross(n, tangent);
   if (glm::dot(bitangent, dv) > 0.0f) bitangent = -bitangent;
+  return TextureFrame{tangent, bitangent};
+}
 
+Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g, const Vec3& n,
+          const scene::TextureUse& use, float scale) {
+  const std::optional<TextureFrame> frame = texture_frame(p, g, use, n);
+  if (!frame) return n;
   const Vec3 map = sample(scene, p, use, Encoding::kLinear) * 2.0f - 1.0f;
-  const float scale = p.material->normal_scale;
-  return normalized_or(tangent * (map.x * scale) + bitangent * (map.y * scale) + n * map.z, n);
+  return normalized_or(frame->tangent * (map.x * scale) + frame->bitangent * (map.y * scale) + n * map.z, n);
 }
 
 }  // namespace
@@ -112,6 +120,11 @@ float opacity(const scene::Scene& scene, const TrianglePoint& p) {
   return 1.0f;
 }
 
+MaterialPoint material_factors(const scene::Material& material) {
+  return {glm::clamp(Vec3(material.base_color), Vec3{0}, Vec3{1}), glm::clamp(material.metallic, 0.0f, 1.0f),
+          glm::clamp(material.roughness, 0.0f, 1.0f)};
+}
+
 MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& p) {
   MaterialPoint m{base_color(scene, p), p.material->metallic, p.material->roughness};
   if (p.material->metallic_roughness_texture) {
@@ -140,11 +153,33 @@ bool is_emissive(const scene::Material& material) {
 
 Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g,
                     const Vec3& facing, bool front, const Vec3& wo) {
+  const auto& map = p.material->normal_texture;
+  return shading_normal(scene, p, g, facing, front, wo, map ? &*map : nullptr, p.material->normal_scale);
+}
+
+std::optional<Vec3> texture_tangent(const TrianglePoint& p, const TriangleGeometry& g, const scene::TextureUse& use,
+                                    const Vec3& n) {
+  const std::optional<TextureFrame> frame = texture_frame(p, g, use, n);
+  if (!frame || frame->tangent == Vec3{0}) return std::nullopt;
+  return frame->tangent;
+}
+
+Vec3 texture_color(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use,
+                   Encoding encoding) {
+  return sample(scene, p, use, encoding);
+}
+
+float texture_alpha(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use) {
+  return lookup_alpha(scene, use.texture, texture_coordinates(p, use));
+}
+
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g,
+                    const Vec3& facing, bool front, const Vec3& wo, const scene::TextureUse* map, float scale) {
   Vec3 n = front ? facing : -facing;
   if (!p.mesh->normals.empty()) {
     n = normalized_or(transform_normal(Mat3(g.linear), g.mirrored, interpolate(p.mesh->normals, p)), n);
   }
-  if (p.material->normal_texture) n = bend(scene, p, g, n);
+  if (map != nullptr) n = bend(scene, p, g, n, *map, scale);
   if (!front) n = -n;
   if (glm::dot(n, facing) < 0.0f) n = -n;  // normals modelled against the winding
 

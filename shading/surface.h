@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/vec.h"
 #include "scene/scene.h"
 #include "shading/bsdf.h"
+#include "shading/texture_lookup.h"
 #include "shading/triangle_geometry.h"
 
 namespace carousel::shading {
@@ -33,6 +35,9 @@ float alpha(const scene::Scene& scene, const TrianglePoint& point);
 /// The share of rays that stop here: alpha for veils, 0 or 1 for cut-outs, else 1.
 float opacity(const scene::Scene& scene, const TrianglePoint& point);
 
+/// Base colour, metallic and roughness without textures and vertex colours.
+MaterialPoint material_factors(const scene::Material& material);
+
 /// Base colour, metallic and roughness.
 MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& point);
 
@@ -51,5 +56,17 @@ inline bool emits(const scene::Material& material, bool front) {
 /// and turned until `wo` is above its horizon. `facing` is the geometric normal on the side of `wo`.
 Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const TriangleGeometry& geometry,
                     const Vec3& facing, bool front, const Vec3& wo);
+/// The same with another normal map, or none if `map` is null.
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const TriangleGeometry& geometry,
+                    const Vec3& facing, bool front, const Vec3& wo, const scene::TextureUse* map, float scale);
+
+/// Unit direction in which a texture's u grows, at right angles to the unit normal `n`; nothing without coordinates.
+std::optional<Vec3> texture_tangent(const TrianglePoint& point, const TriangleGeometry& geometry,
+                                    const scene::TextureUse& use, const Vec3& n);
+
+/// What a texture of the material says at the point.
+Vec3 texture_color(const scene::Scene& scene, const TrianglePoint& point, const scene::TextureUse& use,
+                   Encoding encoding);
+float texture_alpha(const scene::Scene& scene, const TrianglePoint& point, const scene::TextureUse& use);
 
 }  // namespace carousel::shading

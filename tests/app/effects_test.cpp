@@ -5,41 +5,34 @@
 namespace carousel::app {
 namespace {
 
-bool is_on(const scene::Scene& scene, const Config& config, const std::string& name) {
-  for (const report::Effect& effect : effects_of(scene, config)) {
-    EXPECT_FALSE(effect.why.empty());
-    if (effect.name == name) return effect.on;
-  }
-  ADD_FAILURE() << "no effect " << name;
-  return false;
-}
-
-TEST(Effects, AreOnWhereTheSceneCallsForThem) {
+TEST(Effects, TheReportNamesThemAllWithTheirReasons) {
   scene::Scene scene;
   scene.materials.resize(1);
-  scene.materials[0].metallic = 0;
-  Config config;
-  for (const char* name : {"shadow", "sky", "emission", "metallic", "texture", "normal_map", "alpha"})
-    EXPECT_FALSE(is_on(scene, config, name)) << name;
-  EXPECT_TRUE(is_on(scene, config, "bounce"));
-
-  scene.lights.resize(1);
-  scene.textures.resize(1);
-  scene.sky.radiance = {0, 0, 1};
-  scene.materials[0].metallic = 0.5f;
-  scene.materials[0].normal_texture.emplace();
-  config.image.max_depth = 1;
-  for (const char* name : {"shadow", "sky", "metallic", "texture", "normal_map"})
-    EXPECT_TRUE(is_on(scene, config, name)) << name;
-  EXPECT_FALSE(is_on(scene, config, "bounce"));
-}
-
-TEST(Effects, GlowingSurfacesCallForShadowRays) {
-  scene::Scene scene;
-  scene.materials.resize(1);
+  scene.meshes.resize(1);
+  scene.meshes[0].triangle_materials = {MaterialId(0)};
+  scene.instances.resize(1);
   scene.materials[0].emissive = {1, 1, 1};
-  EXPECT_TRUE(is_on(scene, Config{}, "shadow"));
-  EXPECT_TRUE(is_on(scene, Config{}, "emission"));
+  Config config;
+  report::Shading shading;
+  add_effects(shading, scene, config, 7);
+  ASSERT_EQ(shading.effects.size(), kEffects);
+  for (const report::Effect& effect : shading.effects) {
+    EXPECT_FALSE(effect.why.empty()) << effect.name;
+    EXPECT_EQ(effect.on, effect.called_for) << effect.name;
+    const bool expected = effect.name == "emission" || effect.name == "area_lights" || effect.name == "shadow_rays" ||
+                          effect.name == "bounce_rays" || effect.name == "reflection";
+    EXPECT_EQ(effect.on, expected) << effect.name;
+  }
+  EXPECT_EQ(shading.effects_choice, "auto");
+  EXPECT_EQ(shading.saved.unread_image_bytes, 7u);
+  EXPECT_GT(shading.saved.path_state_bytes, 0u);
+  ASSERT_EQ(shading.classes.size(), 1u);
+  EXPECT_EQ(shading.classes[0].name, "plain");
+
+  config.shading.effects = {ShadingConfig::Effects::Choice::kList, {"sky", "emission"}};
+  report::Shading list;
+  add_effects(list, scene, config, 0);
+  EXPECT_EQ(list.effects_choice, "[sky, emission]");
 }
 
 }  // namespace

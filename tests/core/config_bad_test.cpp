@@ -185,8 +185,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:20: packets.results: message is not built yet; expected mask"},
         BadConfig{"AnyHit", SCENE "testers: {any_hit: shader}\n",
                   "test.yaml:2:20: testers.any_hit: shader is not built yet; expected inline"},
-        BadConfig{"EffectsList", SCENE "shading: {effects: [shadow]}\n",
-                  "test.yaml:2:20: shading.effects: choosing effects is not built yet; expected auto"},
+        BadConfig{"EffectsList", SCENE "shading: {effects: [sky, shadow_ray]}\n",
+                  "test.yaml:2:26: shading.effects.1: expected the name of an effect, found 'shadow_ray'; did you mean "
+                  "'shadow_rays'?"},
         BadConfig{"IdleResourcesShade", SCENE "shading: {idle_resources_shade: true}\n",
                   "test.yaml:2:33: shading.idle_resources_shade: true is not built yet; expected false"},
         BadConfig{"TrafficNative", "workload: {traffic: {rate: 0.5}}\nengine: {kind: native}\n",

@@ -88,7 +88,7 @@ class RandomFiller {
     using Choice = ShadingConfig::Effects::Choice;
     value.choice = std::array{Choice::kAuto, Choice::kAll, Choice::kList}[pick(3)];
     value.names.clear();
-    if (value.choice == Choice::kList) value.names = {"shadow", "auto", "7"};
+    if (value.choice == Choice::kList) value.names = {"sky", "clearcoat"};
   }
   void workload(std::string_view, WorkloadConfig& value, const char*) {
     using Kind = WorkloadConfig::Kind;

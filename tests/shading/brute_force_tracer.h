@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/any_hit.h"
 #include "core/workload.h"
 #include "scene/scene.h"
 
@@ -16,7 +17,8 @@ namespace carousel::shading {
 /// result that depends on nothing but the ray. Ties go to the earlier triangle.
 class BruteForceTracer {
  public:
-  explicit BruteForceTracer(const scene::Scene& scene) {
+  /// `any_hit`, if not null, is asked at every triangle whether it stops the ray.
+  explicit BruteForceTracer(const scene::Scene& scene, const AnyHit* any_hit = nullptr) : any_hit_(any_hit) {
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
       const scene::Affine& m = scene.instances[i].world_from_model;
       const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh.value];
@@ -46,6 +48,7 @@ class BruteForceTracer {
       if (!(v >= 0.0f && u + v <= 1.0f)) continue;
       const float t = glm::dot(triangle.e2, q) * inv;
       if (!(t > ray.tmin && t < tmax)) continue;
+      if (any_hit_ != nullptr && !any_hit_->stops(ray, triangle.instance, triangle.primitive, u, v)) continue;
       tmax = t;
       best = {t, u, v, triangle.instance, triangle.primitive};
       if (kind == RayKind::kShadow) return best;
@@ -59,6 +62,7 @@ class BruteForceTracer {
     std::uint32_t instance, primitive;
   };
   std::vector<Triangle> triangles_;
+  const AnyHit* any_hit_;
 };
 
 /// Runs a whole frame on the calling thread, in batches of at most `batch` rays.

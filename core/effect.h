@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace carousel {
+
+/// What light, surfaces and cameras may do; a scene calls for some of it, and `shading.effects` may choose.
+enum class Effect : std::uint8_t {
+  kBaseColorTexture,
+  kMetallicRoughnessTexture,
+  kNormalMap,
+  kVertexColor,
+  kReflection,
+  kMirror,
+  kEmission,
+  kTransmission,
+  kRefraction,
+  kVolume,
+  kIor,
+  kSpecular,
+  kClearcoat,
+  kSheen,
+  kIridescence,
+  kAnisotropy,
+  kAlphaMask,
+  kAlphaBlend,
+  kDoubleSided,
+  kUnlit,
+  kPointLights,
+  kSpotLights,
+  kDirectionalLights,
+  kAreaLights,
+  kSky,
+  kDepthOfField,
+  kShadowRays,
+  kBounceRays,
+};
+
+inline constexpr std::array<std::string_view, 28> kEffectNames{
+    "base_color_texture", "metallic_roughness_texture",
+    "normal_map",         "vertex_color",
+    "reflection",         "mirror",
+    "emission",           "transmission",
+    "refraction",         "volume",
+    "ior",                "specular",
+    "clearcoat",          "sheen",
+    "iridescence",        "anisotropy",
+    "alpha_mask",         "alpha_blend",
+    "double_sided",       "unlit",
+    "point_lights",       "spot_lights",
+    "directional_lights", "area_lights",
+    "sky",                "depth_of_field",
+    "shadow_rays",        "bounce_rays"};
+inline constexpr std::size_t kEffects = kEffectNames.size();
+
+constexpr std::string_view effect_name(Effect effect) {
+  return kEffectNames[static_cast<std::size_t>(effect)];
+}
+
+constexpr std::optional<Effect> effect_named(std::string_view name) {
+  for (std::size_t i = 0; i < kEffects; ++i)
+    if (kEffectNames[i] == name) return static_cast<Effect>(i);
+  return std::nullopt;
+}
+
+}  // namespace carousel

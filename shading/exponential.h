@@ -1,0 +1,48 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace carousel::shading {
+
+// Our own, because glibc's expf and powf use fused multiply-add where the machine has it, and their last bit may then
+// differ. Evaluated in double, about 1e-9 off, and rounded to float once.
+
+/// 2^x; 0 below -126 (no denormals), infinity from 128 on.
+inline float exp2_float(double x) {
+  if (!(x > -126.0)) return 0.0f;
+  if (x >= 128.0) return INFINITY;
+  const double whole = std::floor(x + 0.5);
+  const double y = (x - whole) * 0.69314718055994530942;   // |y| <= ln(2) / 2
+  double series = 1.0;
+  for (int k = 9; k >= 1; --k) series = 1.0 + series * (y / k);
+  const auto scale = std::bit_cast<double>((static_cast<std::uint64_t>(static_cast<std::int64_t>(whole) + 1023)) << 52);
+  return static_cast<float>(series * scale);
+}
+
+/// Base-2 logarithm of a normal number, x > 0.
+inline double log2_double(double x) {
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  auto exponent = static_cast<int>(bits >> 52) - 1023;
+  double m = std::bit_cast<double>((bits & 0x000fffffffffffffull) | 0x3ff0000000000000ull);   // 1 to 2
+  if (m > 1.41421356237309504880) {
+    m *= 0.5;
+    ++exponent;
+  }
+  const double r = (m - 1.0) / (m + 1.0), rr = r * r;   // |r| < 0.172
+  double series = 0.0;
+  for (int k = 13; k >= 1; k -= 2) series = 1.0 / k + rr * series;
+  return exponent + 2.0 * r * series * 1.44269504088896340736;
+}
+
+inline float exp_float(float x) {
+  return exp2_float(double{x} * 1.44269504088896340736);
+}
+
+/// x^y for x >= 0; 0^y is 0.
+inline float pow_float(float x, float y) {
+  return x > 0.0f ? exp2_float(log2_double(double{x}) * double{y}) : 0.0f;
+}
+
+}  // namespace carousel::shading
