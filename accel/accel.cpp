@@ -67,6 +67,8 @@ class AccelBuilder {
         accel_.may_pass |= primitive != kNoPrimitive && (primitive & kAskBit) != 0;
     for (const scene::Instance& instance : scene_.instances)
       accel_.procedural_primitives |= !scene_.meshes[instance.mesh.value].spheres.empty();
+    mix_nodes();
+    if (config_.elements == BvhConfig::Elements::kSpheres) accel_.spheres = bounding_spheres(accel_, executor_);
     add_cull_planes(accel_, scene_, planes_, executor_);
     return std::move(accel_);
   }
@@ -173,6 +175,15 @@ class AccelBuilder {
       tlas_depth = tree.depth;
     }
     accel_.max_depth = tlas_depth + blas_depth;
+  }
+
+  // Small leaves are tested where their boxes would be.
+  void mix_nodes() {
+    const auto most = static_cast<std::uint32_t>(config_.mixed_triangles);
+    for (Node& node : accel_.nodes)
+      for (int lane = 0; lane < node.count; ++lane)
+        if (const NodeRef child = node.child[lane]; !child.is_inner() && !child.is_instance() && child.triangles() <= most)
+          node.direct |= static_cast<std::uint8_t>(1u << lane);
   }
 
   void add_only_child(Node& root, std::uint32_t instance) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "accel/bounding_spheres.h"
 #include "accel/cull_plane.h"
 #include "accel/node.h"
 #include "accel/transform.h"
@@ -30,6 +31,7 @@ struct Accel {
   NodeArray nodes;
   BlockArray blocks;
   std::vector<CullPlane> planes;         ///< in order of the nodes; empty without cull_planes
+  std::vector<NodeSpheres> spheres;      ///< by node, tested instead of its boxes; empty with bvh.elements: boxes
   bool shared_normals = false;           ///< of siblings; `planes` repeats them
   bool planes_first = false;             ///< a child's planes are tested before its box
   std::uint64_t plane_bytes = 0;         ///< of the planes, normals that are shared counted once
@@ -46,7 +48,7 @@ struct Accel {
   bool asks() const { return may_pass && any_hit != nullptr; }
   std::size_t size_bytes() const {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) +
-           plane_bytes + instances.size() * sizeof(InstanceNode);
+           spheres.size() * sizeof(NodeSpheres) + plane_bytes + instances.size() * sizeof(InstanceNode);
   }
   /// Where every ray starts: the top level's root, or the root of the only instance.
   NodeKey root_key() const { return root; }

@@ -9,7 +9,7 @@
 namespace carousel::accel {
 
 /// Similar rays, seen as one (US 11308683, fig. 2): bounds of where they start and where they go, one cache line
-/// beside the ray's own. World space; every ray has tmin = 0 and is valid().
+/// beside the ray's own. World space, or with kInModelSpace that of the instance it stands in; every ray has tmin = 0 and is valid().
 /// Of directions, -0 counts as less than +0: the slab test goes by the sign bit, and so the bounds have the same sign
 /// exactly when all rays have it.
 struct alignas(64) BundleRecord {
@@ -19,8 +19,10 @@ struct alignas(64) BundleRecord {
   float nearest = kInfinity;   ///< the smallest distance at which one of its rays has hit something
   std::int16_t pending = 0;    ///< tests the bundle still waits for; written by the owner only
   std::uint8_t count = 0;      ///< rays
-  std::uint8_t flags = 0;
+  std::uint8_t flags = 0;      ///< kInModelSpace
   std::uint32_t rays = 0;      ///< where the slots of its rays stand in the owner's store
+
+  static constexpr std::uint8_t kInModelSpace = 1;
 
   BundleRecord() {
     std::fill_n(origin_min, 3, kInfinity);

@@ -163,6 +163,7 @@ class PlaneBuilder {
   bool wanted(const Node& node, int lane) const {
     using Nodes = CullPlanesConfig::Nodes;
     const NodeRef child = node.child[lane];
+    if (node.direct >> lane & 1) return false;
     if (node.above_instances && !(top_ && top_->margin(child))) return false;
     return config_.nodes == Nodes::kAll || child.is_inner() == (config_.nodes == Nodes::kInner);
   }
@@ -216,12 +217,21 @@ void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesCo
   if (config.count > 0) PlaneBuilder(accel, scene, config, executor).run();
 }
 
-Accel without_planes(const Accel& accel) {
+Accel plain_copy(const Accel& accel) {
   Accel plain = accel;
-  for (Node& node : plain.nodes) node.plane_counts = 0;
+  for (Node& node : plain.nodes) {
+    node.plane_counts = 0;
+    node.direct = 0;
+  }
   plain.planes.clear();
   plain.plane_bytes = 0;
+  plain.spheres.clear();
   return plain;
+}
+
+bool is_plain(const Accel& accel) {
+  return accel.planes.empty() && accel.spheres.empty() &&
+         std::none_of(accel.nodes.begin(), accel.nodes.end(), [](const Node& node) { return node.direct != 0; });
 }
 
 }  // namespace carousel::accel

@@ -12,7 +12,10 @@ namespace carousel::accel {
 /// Deterministic for any executor. Without planes (count 0) nothing changes.
 void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor);
 
-/// The same structure without its planes: what rays are traced through to find out what planes would have lost.
-Accel without_planes(const Accel& accel);
+/// The same structure with nothing but boxes: what rays are traced through to find out what planes and bounding spheres
+/// would have lost.
+Accel plain_copy(const Accel& accel);
+/// Whether that would be the structure itself.
+bool is_plain(const Accel& accel);
 
 }  // namespace carousel::accel

@@ -95,6 +95,36 @@ HWY_INLINE void count_leaf(NodeRef leaf, TestCounts& counts) {
   (HWY_UNLIKELY(leaf.is_procedural()) ? counts.procedural : counts.triangle) += leaf.triangles();
 }
 
+/// The children whose spheres the ray meets, with entries. To pass an instance's world box is part of what a hit is, so
+/// that is tested where its sphere is met, and counted.
+template <class Registers>
+HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Vec3& origin, const Vec3& direction,
+                                       const Registers& ray, float tmin, float tmax, float* entry, std::uint64_t& tested) {
+  const Node& node = accel.nodes[ref.node()];
+  std::uint32_t met = meet_spheres(accel.spheres[ref.node()], node.count, origin, direction, tmin, tmax, entry);
+  if (!node.above_instances || met == 0) return met;
+  std::uint32_t instances = 0;
+  for (int lane = 0; lane < node.count; ++lane) instances |= std::uint32_t{node.child[lane].is_instance()} << lane;
+  alignas(64) float ignored[kMaxWidth];
+  tested += static_cast<std::uint64_t>(std::popcount(instances & met));
+  met &= ~instances | slab_node(node, ray, tmax, ignored);
+  return met;
+}
+
+/// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node holds
+/// itself are not among them, nor counted.
+template <class Slab, class Registers>
+HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const FrameRay<Slab>& frame,
+                                      const Registers& ray, float tmax, float* entry, std::uint64_t& tested) {
+  const Node& node = accel.nodes[ref.node()];
+  tested += node.count;
+  if (HWY_LIKELY(accel.spheres.empty() && node.direct == 0)) return slab_node(node, ray, tmax, entry);
+  tested -= static_cast<std::uint64_t>(std::popcount(node.direct));
+  if (accel.spheres.empty()) return slab_node(node, ray, tmax, entry) & ~std::uint32_t{node.direct};
+  return met_spheres(accel, ref, frame.origin, frame.direction, ray, frame.slab.tmin, tmax, entry, tested) &
+         ~std::uint32_t{node.direct};
+}
+
 /// What is to be done after visiting something that is not an inner node.
 enum class Then { kPop, kEnter, kStop };
 
@@ -113,8 +143,13 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const FrameRay<Sla
     while (ref.is_inner()) {
       const Node& node = nodes[ref.node()];
       alignas(64) float entry[kMaxWidth];
-      tested += node.count;
-      const std::uint32_t hits = slab_node(node, ray, hit.t, entry);
+      const std::uint32_t hits = met_children(accel, ref, frame, ray, hit.t, entry, tested);
+      for (std::uint32_t left = node.direct; HWY_UNLIKELY(left != 0); left &= left - 1) {
+        NodeRef leaf = node.child[std::countr_zero(left)];
+        if (visit_other(leaf) != Then::kStop) continue;
+        counts.box += tested;
+        return true;
+      }
       const std::uint32_t mask = cull(accel, node, frame.slab, frame.direction, ~0u, hits, counts, counts.culls);
       if (mask == 0) goto pop;
       ref = nearest_child(accel, node, mask, entry, top);

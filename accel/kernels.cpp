@@ -29,6 +29,33 @@ HWY_INLINE void settle(RayRecord& record) {
   if (record.tag.kind == RayKind::kShadow && record.hit.valid()) record.tag.flags |= kRayDone;
 }
 
+/// Tests the primitives of the node's own leaves among `lanes`; true when the hit changed.
+template <class Slab>
+HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, const FrameRay<Slab>& frame, Hit& hit,
+                              TestCounts& counts) {
+  bool changed = false;
+  for (std::uint32_t left = node.direct & lanes; left != 0; left &= left - 1) {
+    const NodeRef leaf = node.child[std::countr_zero(left)];
+    count_leaf(leaf, counts);
+    changed |= test_leaf(accel, leaf, ~0u, frame, hit);
+  }
+  return changed;
+}
+
+/// The same for a ray that is not yet in the node's frame.
+template <class Slab>
+HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key, std::uint32_t lanes, RayRecord& record,
+                              std::uint8_t* asked, TestCounts& counts) {
+  TestCounts own;
+  FrameStorage<Slab> frame;
+  enter_frame(accel, key.instance, record, &frame.ray, own);
+  own.transforms = 0;   // counted with the boxes
+  test_direct(accel, node, lanes, frame.ray, record.hit, own);
+  settle(record);
+  if (asked != nullptr) *asked = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, own.asked));
+  counts += own;
+}
+
 // Slab: SlabRay, or DoubleSlabRay for accuracy.box: double.
 template <class Slab>
 void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
@@ -37,7 +64,8 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
   const InstanceTransform* transform =
       key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
   lanes &= (1u << node.count) - 1;
-  const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes));
+  const std::uint32_t direct = node.direct & lanes, held = ~std::uint32_t{node.direct};
+  const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes & held));
   const float widening = far_widening(accel.accuracy.box);
   alignas(64) float nearest[kMaxWidth];
   std::copy(hits.nearest, hits.nearest + kMaxWidth, nearest);
@@ -54,14 +82,19 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
     counts.box += boxes;
     alignas(64) float entry[kMaxWidth];
     std::uint32_t mask;
-    if (node.plane_counts == 0) {
-      mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes;
+    if (HWY_LIKELY(node.plane_counts == 0 && accel.spheres.empty())) {
+      mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes & held;
     } else {
-      mask = slab_node(node, in_registers(ray), record.hit.t, entry) & lanes;
+      mask = accel.spheres.empty() ? slab_node(node, in_registers(ray), record.hit.t, entry)
+                                   : met_spheres(accel, key.ref, model.origin, model.direction, in_registers(ray), model.tmin,
+                                                 record.hit.t, entry, counts.box);
+      mask &= lanes & held;
       mask = cull(accel, node, ray, model.direction, lanes, mask, counts, members.culls);
       for (int lane = 0; lane < kMaxWidth; ++lane)
         if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
     }
+    if (HWY_UNLIKELY(direct != 0))
+      test_direct<Slab>(accel, node, key, direct, record, members.asked == nullptr ? nullptr : members.asked + i, counts);
     hits.masks[i] = static_cast<std::uint8_t>(mask);
     if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
   }
@@ -141,10 +174,14 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
     for (std::size_t k = 0; k < count; ++k) {
       Walker<Slab>& walker = *active[k];
       const Node& node = nodes[walker.ref.node()];
-      counts.box += node.count;
       const FrameRay<Slab>& frame = walker.frame.ray;
-      walker.mask = slab_node(node, in_registers(frame.slab), walker.record->hit.t, walker.entry);
+      walker.mask = met_children(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t, walker.entry,
+                                 counts.box);
       walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
+      if (HWY_UNLIKELY(node.direct != 0) && test_direct(accel, node, ~0u, frame, walker.record->hit, counts) && walker.any_hit) {
+        walker.mask = 0;
+        walker.top = walker.stack.entries;
+      }
     }
     for (std::size_t k = 0; k < count;) {
       Walker<Slab>& walker = *active[k];

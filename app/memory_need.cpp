@@ -5,9 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "accel/cull_planes.h"
 #include "core/error.h"
 #include "report/number_text.h"
 #include "report/ray_csv.h"
+#include "shading/effects_plan.h"
 #include "shading/path_state.h"
 
 namespace carousel::app {
@@ -76,7 +78,9 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
                     const accel::Accel& accel) {
   MemoryNeed need = frame_need(config, keep_hits);
   need.scene = scene_bytes(scene);
+  if (need.paths > 0) need.paths = paths_in_flight(config) * shading::plan_effects(scene, config).path_state_bytes();
   need.accel = accel.size_bytes();
+  if (config.verify == Verify::kReference && !accel::is_plain(accel)) need.accel += accel.size_bytes();   // plain_copy()
   need.ring = ringbus::estimate_memory(config, accel.max_depth);
   return need;
 }

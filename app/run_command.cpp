@@ -106,9 +106,9 @@ int run_command(const RunArguments& arguments) {
   std::optional<HitRecorder> recorder;
   if (keep_hits) frame.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
   std::optional<accel::VerifyingWorkload> verifying;
-  std::optional<accel::Accel> plain;   // planes are verified, too
+  std::optional<accel::Accel> plain;   // planes and spheres are verified, too
   if (p.config().verify == Verify::kReference) {
-    if (!p.accel.planes.empty()) plain = accel::without_planes(p.accel);
+    if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
     verifying.emplace(frame.workload(), plain ? *plain : p.accel);
   }
   Workload& workload = verifying ? *verifying : frame.workload();

@@ -147,6 +147,8 @@ struct BvhConfig {
   std::int64_t width = 8;
   std::int64_t leaf_triangles = 4;
   std::int64_t treelet_triangles = 2048;
+  enum class Elements { kBoxes, kSpheres } elements = Elements::kBoxes;
+  std::int64_t mixed_triangles = 0;
 };
 
 struct AccuracyConfig {
@@ -192,6 +194,11 @@ struct BundlesConfig {
     std::int64_t depth = 255;
     double box_size = 0;
   } split_below;
+  struct SplitAbove {
+    double spread = 0, silhouette_area = 0;   ///< 0: whatever they are
+  } split_above;
+  enum class AtInstances { kSplit, kRebound } at_instances = AtInstances::kSplit;
+  enum class Hint { kIgnore, kObey } hint = Hint::kIgnore;
 };
 
 struct MemoryConfig {
@@ -214,9 +221,10 @@ struct ShadingConfig {
     std::vector<std::string> names;   ///< for kList
   } effects;
   bool idle_resources_shade = false;
-  std::int64_t cycles_per_shade = 20, cycles_per_any_hit = 10;
-  RayWishes camera_rays, bounce_rays, shadow_rays;
+  std::int64_t cycles_per_shade = 20;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
+  std::int64_t cycles_per_any_hit = 10;
+  RayWishes camera_rays{}, bounce_rays{}, shadow_rays{};
 };
 
 struct TrafficConfig {

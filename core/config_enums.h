@@ -98,6 +98,12 @@ CAROUSEL_ENUM(BundlesConfig::Lifetime, {BundlesConfig::Lifetime::kPersistent, "p
               {BundlesConfig::Lifetime::kReformed, "reformed"});
 CAROUSEL_ENUM(TestersConfig::Simd::Map, {TestersConfig::Simd::Map::kRays, "rays"},
               {TestersConfig::Simd::Map::kShapes, "shapes"});
+CAROUSEL_ENUM(BvhConfig::Elements, {BvhConfig::Elements::kBoxes, "boxes"},
+              {BvhConfig::Elements::kSpheres, "spheres"});
+CAROUSEL_ENUM(BundlesConfig::AtInstances, {BundlesConfig::AtInstances::kSplit, "split"},
+              {BundlesConfig::AtInstances::kRebound, "rebound"});
+CAROUSEL_ENUM(BundlesConfig::Hint, {BundlesConfig::Hint::kIgnore, "ignore"},
+              {BundlesConfig::Hint::kObey, "obey"});
 CAROUSEL_ENUM(RayWishes::Cull, {RayWishes::Cull::kNone, "none"}, {RayWishes::Cull::kBack, "back"},
               {RayWishes::Cull::kFront, "front"});
 CAROUSEL_ENUM(TestersConfig::AnyHit, {TestersConfig::AnyHit::kInline, "inline"},

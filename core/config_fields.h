@@ -178,6 +178,9 @@ void describe(V& v, BvhConfig& c) {
   v.field("leaf_triangles", c.leaf_triangles, IntRange{1, 16}, "triangles", "triangles of a leaf at most");
   v.field("treelet_triangles", c.treelet_triangles, IntRange{1, 1 << 24}, "triangles",
           "size of the subtrees that traversal: treelet crosses in one visit");
+  v.choice("elements", c.elements, "what bounds the children of a node");
+  v.field("mixed_triangles", c.mixed_triangles, IntRange{0, 16}, "triangles",
+          "leaves of so many at most are tested with their parent's other children, without a box of their own; 0 is none");
 }
 
 template <class V>
@@ -232,6 +235,14 @@ void describe(V& v, BundlesConfig::SplitBelow& c) {
 }
 
 template <class V>
+void describe(V& v, BundlesConfig::SplitAbove& c) {
+  v.field("spread", c.spread, RealRange{0, 2}, "of the longest component",
+          "bundles split whose directions differ by more along an axis; 0: none");
+  v.field("silhouette_area", c.silhouette_area, RealRange{0, 1e9}, "of the node's mean face",
+          "bundles split whose cross-section at a node is larger; 0: none");
+}
+
+template <class V>
 void describe(V& v, BundlesConfig& c) {
   v.field("size", c.size, IntRange{0, 64}, "rays", "rays of a bundle at most; 0 is no bundles");
   v.choice("form", c.form, "how a bundle is tested");
@@ -244,6 +255,9 @@ void describe(V& v, BundlesConfig& c) {
   v.choice("split", c.split, "where the rays of a split bundle go: on their own, or to the builder");
   v.field("min_rays", c.min_rays, IntRange{2, 64}, "rays", "fewer than these travel on their own");
   v.section("split_below", c.split_below, "where bundles are split whatever they hit");
+  v.section("split_above", c.split_above, "how wide bundles are split whatever they hit");
+  v.choice("at_instances", c.at_instances, "at an instance with a transform bundles split, or are bounded anew in its space");
+  v.choice("hint", c.hint, "what shaders say of rays that left by a wide lobe: that they be left out of bundles");
 }
 
 template <class V>

@@ -107,6 +107,11 @@ class Rules {
   }
 
   void built_planes_and_bundles() {
+    if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
+      constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
+      if (c.cull_planes.count > 0) issue("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
+      if (c.bundles.size > 0) issue("bvh.elements", fmt::format(what, "bundles", "bundles.size: 0"));
+    }
     if (c.cull_planes.count > 0) planes_need_bounded_errors();
     if (c.bundles.size > 0) bundles_fit();
   }

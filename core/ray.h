@@ -32,8 +32,9 @@ enum RayFlag : std::uint8_t {
   kRayCullBack = 2,      ///< triangles that turn their back are not there: those whose vertices it sees clockwise
   kRayCullFront = 4,     ///< triangles that show their front are not there
   kRayForceOpaque = 8,   ///< nothing is asked, whatever lets rays through (core/any_hit.h)
+  kRayAlone = 16,        ///< unlike its neighbours, and not worth a place in a bundle: no more than a hint
 };
-inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayForceOpaque;
+inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayForceOpaque | kRayAlone;
 
 /// Which ray of the frame this is. `path` indexes the path state of the workload that emitted the ray; with
 /// (kind, bounce, index) it is unique among rays in flight.

@@ -41,6 +41,7 @@ bool BundleBuilder::may_share(const RayRequest& request) const {
   using Sources = BundlesConfig::Sources;
   const bool from_camera = request.tag.kind == RayKind::kCamera;
   if (config_.sources != Sources::kAll && from_camera != (config_.sources == Sources::kCamera)) return false;
+  if (config_.hint == BundlesConfig::Hint::kObey && (request.tag.flags & kRayAlone) != 0) return false;
   return config_.size > 1 && request.ray.tmin == 0 && accel::valid(request.ray);
 }
 

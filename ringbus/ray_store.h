@@ -64,6 +64,18 @@ class RayStore {
     if constexpr (kChecked) id.generation.set(++generations_[slot]);
     return id;
   }
+  /// Gives a bundle the bounds that its rays have in the space of an instance.
+  void rebound(std::uint32_t slot, const accel::BundleRecord& bounds) {
+    accel::BundleRecord& bundle = this->bundle(slot);
+    const accel::BundleRecord before = bundle;
+    bundle = bounds;
+    bundle.flags = accel::BundleRecord::kInModelSpace;
+    bundle.tmax = before.tmax;
+    bundle.nearest = before.nearest;
+    bundle.pending = before.pending;
+    bundle.count = before.count;
+    bundle.rays = before.rays;
+  }
   /// The ID of a slot in use.
   RayId id(std::uint32_t slot) const {
     RayId id = layout_.make(owner_, slot);
@@ -118,7 +130,8 @@ inline BundleRoom bundle_room(const Config& config) {
   if (config.bundles.size == 0) return {};
   const std::uint32_t quarter = static_cast<std::uint32_t>(config.rays.slots_per_resource / 4 + 1);
   const bool rebuilds = config.bundles.split == BundlesConfig::Split::kBuilder ||
-                        config.bundles.lifetime == BundlesConfig::Lifetime::kReformed;
+                        config.bundles.lifetime == BundlesConfig::Lifetime::kReformed ||
+                        config.bundles.at_instances == BundlesConfig::AtInstances::kRebound;
   return {quarter, rebuilds ? 2 * quarter : 0, static_cast<std::uint32_t>(config.bundles.size)};
 }
 

@@ -121,15 +121,21 @@ class Resource {
   void test_ordered(Packet& packet);
   void find_bundles();
   bool bundles_go_on(const Packet& packet) const;
+  bool moved(accel::NodeKey key) const;
+  bool too_wide(const accel::BundleRecord& bundle, const accel::Node& node) const;
+  void bound_anew(std::span<const std::uint32_t> rays, std::uint32_t instance, accel::BundleRecord& bundle);
+  void touch(std::span<const std::uint32_t> rays, accel::NodeKey key);
   void expand_bundles(Packet& packet);
   void settle_expanded();
   void test_whole(Packet& packet);
   void regroup(Packet& packet);
+  void send_inside(Packet& packet, std::span<const std::uint32_t> rays, const accel::BundleRecord& inside,
+                   std::uint8_t mask);
   void send_alone(Packet& packet, std::uint32_t slot, std::uint8_t mask);
   void settle_bundle(std::uint32_t slot, std::int32_t pending_change);
   void settle(std::uint32_t slot, std::int32_t pending_change);
   std::uint8_t* answers_wanted();
-  void hold_back();
+  void hold_back(std::span<const std::uint32_t> slots);
   void complete(std::uint32_t slot);
   void retire_spread(Packet& packet);
   void retire_ordered(Packet& packet);
@@ -170,6 +176,7 @@ class Resource {
   std::vector<LocalBundle> local_bundles_;
   std::vector<OnTheirOwn> leaving_;
   std::vector<std::int32_t> bundle_changes_;    // of the local bundles' pending counts
+  std::uint64_t bundle_transforms_ = 0;         // of their rays, in this visit
   RayBatch regrouped_;
   std::vector<std::uint32_t> order_, bundle_slots_;
   std::vector<std::uint8_t> sizes_;

@@ -73,12 +73,12 @@ std::uint8_t* Resource::answers_wanted() {
 }
 
 /// Gives the rays that asked a count to wait for, before those of the test are taken from them.
-void Resource::hold_back() {
+void Resource::hold_back(std::span<const std::uint32_t> slots) {
   if (!hold_askers_) return;
-  for (std::size_t i = 0; i < local_slots_.size(); ++i) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
     if (asked_[i] == 0) continue;
-    ++store_.record(local_slots_[i]).pending;
-    askers_.push_back({local_slots_[i], asked_[i]});
+    ++store_.record(slots[i]).pending;
+    askers_.push_back({slots[i], asked_[i]});
   }
 }
 
@@ -104,8 +104,10 @@ void Resource::test(Packet& packet) {
       test_spread(packet);
     if (!whole) settle_expanded();
     if (accounted) {
-      tests_.transforms = moved.transforms;
+      const std::uint64_t of_bundles = whole ? bundle_transforms_ : 0;
+      tests_.transforms = moved.transforms + of_bundles;
       tests_.inversions = moved.inversions;
+      if (moved.transforms == 0 && of_bundles > 0) tests_.inversions = transforms_->inverts(packet.key.instance);
     }
   }
   record({.kind = EventKind::kTest, .resource = id(), .key = packet.key,
@@ -114,21 +116,21 @@ void Resource::test(Packet& packet) {
 }
 
 void Resource::test_spread(Packet& packet) {
-  accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_, answers_wanted()};
   if (is_treelet(packet.key) || !packet.key.ref.is_inner()) {
-    members.asked = answers_wanted();
     if (is_treelet(packet.key) && subtree_tracer_ != nullptr)
       subtree_tracer_->trace(packet.key, members, tests_);
     else if (is_treelet(packet.key))
       accel::trace_interleaved(accel_, packet.key, members, tests_);
     else
       accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
-    hold_back();
+    hold_back(local_slots_);
     for (const std::uint32_t slot : local_slots_) settle(slot, -1);
     return;
   }
   masks_.resize(local_slots_.size());
   accel::test_strip(accel_, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr}, tests_);
+  hold_back(local_slots_);
   if (!single_) {
     for (std::size_t i = 0; i < local_slots_.size(); ++i) {
       packet.members[local_members_[i]].mask = masks_[i];
@@ -147,7 +149,7 @@ void Resource::test_spread(Packet& packet) {
 }
 
 void Resource::test_ordered(Packet& packet) {
-  accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_};
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_, answers_wanted()};
   if (packet.key.ref.is_inner()) {
     masks_.resize(local_slots_.size());
     entries_.resize(accel::kMaxWidth * local_slots_.size());
@@ -155,10 +157,9 @@ void Resource::test_ordered(Packet& packet) {
                       tests_);
   } else {
     masks_.assign(local_slots_.size(), 0);
-    members.asked = answers_wanted();
     accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
-    hold_back();
   }
+  hold_back(local_slots_);
   for (std::size_t i = 0; i < local_slots_.size(); ++i) {
     const std::uint32_t slot = local_slots_[i];
     const float* entry = entries_.data() + accel::kMaxWidth * i;

@@ -139,8 +139,9 @@ class Planner {
       const bool left_out = choice.choice == ShadingConfig::Effects::Choice::kList && !named;
       e.on = plan_.everything || (e.called_for && !left_out);
       if (left_out && e.called_for) e.why += "; left out by shading.effects";
-      if (e.on) costs(static_cast<Effect>(i), e.cost);
     }
+    for (std::size_t i = 0; i < kEffects; ++i)
+      if (plan_.effects[i].on) costs(static_cast<Effect>(i), plan_.effects[i].cost);
     return plan_;
   }
 
@@ -205,7 +206,7 @@ class Planner {
   }
 
   void costs(Effect effect, EffectCost& cost) const {
-    const auto depth = static_cast<std::uint32_t>(config_.image.max_depth);
+    const auto depth = plan_.on(Effect::kBounceRays) ? static_cast<std::uint32_t>(config_.image.max_depth) : 1u;
     cost.texture_reads = texture_reads(effect);
     if (effect == Effect::kShadowRays) {
       cost.rays_per_path = depth;

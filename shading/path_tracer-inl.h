@@ -197,7 +197,9 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
   if (!(max_component(throughput) > 0.0f)) return;
   path.throughput = throughput;
   path.bounce_pdf = value.pdf;
-  path.scattered = path.scattered || bsdf.is_wide(draw.lobe);
+  const bool wide = bsdf.is_wide(draw.lobe);
+  path.scattered = path.scattered || wide;
+  if (wide) tag.flags = kRayAlone;
   if constexpr (kMedia) pool_.medium(tag.path) = medium_beyond(through);
   tag.kind = RayKind::kBounce;
   ++tag.bounce;

@@ -227,7 +227,7 @@ void PathTracer::finish_ray(std::uint32_t index, std::uint32_t children, Worker&
 void PathTracer::emit(const Ray& ray, const RayTag& tag, Worker& worker, RayBatch& out) {
   ++worker.counts.emitted[static_cast<std::size_t>(tag.kind)];
   RayTag wishing = tag;
-  wishing.flags = wishes_[static_cast<std::size_t>(tag.kind)];
+  wishing.flags |= wishes_[static_cast<std::size_t>(tag.kind)];
   out.push_back({ray, wishing});
 }
 

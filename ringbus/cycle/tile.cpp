@@ -181,11 +181,10 @@ bool Tile::send(Cycle now) {
 }
 
 void Tile::hand_over(Cycle now) {
-  HitBatch& done = resource_.completed();
-  if (done.empty()) return;
-  sink_.record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(done.size())});
-  trace_.note(now, StepKind::kComplete, 0, done.size());
-  completed_port_.send(done, resource_.freed_slots(), now);
+  if (done_.empty()) return;
+  sink_.record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(done_.size())});
+  trace_.note(now, StepKind::kComplete, 0, done_.size());
+  completed_port_.send(done_, done_slots_, now);
 }
 
 // ---- the end, good or bad

@@ -68,6 +68,8 @@ class Tile final : public ResourceAgent {
     std::uint32_t reads = 0;              // records for them
     std::uint32_t bundle_passes = 0;
     AnyHitQuestion question;              // asked when the tests are done
+    HitBatch completed;                   // handed over then, with the slots they leave
+    std::vector<std::uint32_t> freed_slots;
     bool subtree = false;
     std::uint32_t outstanding = 0;        // fetches under way
     std::vector<ShapeSpan> strips;        // a subtree's, yet to be fetched, last first
@@ -110,6 +112,7 @@ class Tile final : public ResourceAgent {
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
   void come_home(PacketId id);
+  void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
   void occupy_handler(Cycle now, std::size_t ids);
   void fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now);
@@ -147,6 +150,8 @@ class Tile final : public ResourceAgent {
   std::vector<Context> contexts_;
   std::deque<NewRays> waiting_;
   bool storage_full_ = false;
+  HitBatch done_;                              // to be handed over
+  std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;   // packets without rays here, and their members
   StateClock<TileState, kTileStates> clock_;

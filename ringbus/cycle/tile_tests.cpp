@@ -38,6 +38,8 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     context.question.slots.push_back(asker.slot);
     context.question.times += asker.times;
   }
+  context.completed.swap(resource_.completed());
+  context.freed_slots.swap(resource_.freed_slots());
   context.subtree = resource_.is_treelet(packet.key);
   context.phase = Context::Phase::kComputing;
   if (context.subtree) {
@@ -80,6 +82,7 @@ void Tile::end_test(Context& context, Cycle now) {
   context.phase = Context::Phase::kFree;
   context.subtree = false;
   ask(context, now);
+  take_completed(context.completed, context.freed_slots);
   if (packet.owner == id_ && (stays_ || machine_.topology.hops(packet) == 0)) {
     occupy_handler(now, packet.members.size());
     come_home(id);
@@ -98,6 +101,15 @@ void Tile::take_opacities(Cycle now) {
   if (ports_.answers == nullptr) return;
   while (ports_.answers->next() <= now)
     for (const std::uint32_t slot : ports_.answers->take().slots) resource_.release(slot);
+  take_completed(resource_.completed(), resource_.freed_slots());
+}
+
+/// Both are empty afterwards.
+void Tile::take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots) {
+  done_.insert(done_.end(), rays.begin(), rays.end());
+  done_slots_.insert(done_slots_.end(), slots.begin(), slots.end());
+  rays.clear();
+  slots.clear();
 }
 
 void Tile::fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now) {

@@ -150,7 +150,7 @@ TEST(CullPlaneCounts, AreTheSameOnEverySimdTarget) {
 TEST(CullPlaneCounts, AreNoneWithoutPlanes) {
   const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 3000);
   const RayBatch rays = plane_grazing_rays(scene, 2000, run_seed() + 4);
-  const Accel accel = with_planes(scene, {.count = 4, .nodes = Nodes::kAll}), plain = without_planes(accel);
+  const Accel accel = with_planes(scene, {.count = 4, .nodes = Nodes::kAll}), plain = plain_copy(accel);
   const Traced built_so = traced(build_sequential(scene), rays), taken_off = traced(plain, rays);
   EXPECT_EQ(taken_off.tests, built_so.tests);
   EXPECT_EQ(taken_off.culls, CullCounts{});

@@ -55,6 +55,8 @@ inline std::vector<Factor> machine_factors() {
       factor<I>("width", {2, 3, 4, 8}, [](Cell& c, I v) { c.config.bvh.width = v; }),
       factor<I>("leaf", {1, 4, 8, 16}, [](Cell& c, I v) { c.config.bvh.leaf_triangles = v; }),
       factor<I>("treelet", {1, 64, 500, 100000}, [](Cell& c, I v) { c.config.bvh.treelet_triangles = v; }),
+      factor("elements", all(BvhConfig::Elements{}), [](Cell& c, BvhConfig::Elements v) { c.config.bvh.elements = v; }),
+      factor<I>("mixed", {0, 2}, [](Cell& c, I v) { c.config.bvh.mixed_triangles = v; }),
       factor<I>("workers", {1, 2, 3}, [](Cell& c, I v) { c.config.shading.workers = v; }),
       factor("simd", simd_targets(), [](Cell& c, SimdTarget v) { c.config.engine.simd = v; }),
       factor<std::size_t>("threads", {1, 2, 4}, [](Cell& c, std::size_t v) { c.threads = v; }),

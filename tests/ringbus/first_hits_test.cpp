@@ -126,8 +126,11 @@ TEST(FirstHits, TiesGoToTheSmallestInstance) {
   for (std::size_t i = 0; i < instances; ++i) scene.instances.push_back(scene.instances[i]);
   const auto raster = shading::rasterize_first_hits(scene, picture(40, 40, 2), nullptr, *make_sequential_executor());
   EXPECT_GT(raster.counts.hits, 1000u);
-  for (const Hit& hit : raster.hits)
-    if (hit.valid()) EXPECT_LT(hit.instance, instances);
+  for (const Hit& hit : raster.hits) {
+    if (hit.valid()) {
+      EXPECT_LT(hit.instance, instances);
+    }
+  }
   expect_same_first_hits(scene, picture(40, 40, 2), "doubled");
 }
 

@@ -39,14 +39,14 @@ struct Cell {
     const Config& c = config;
     return fmt::format(
         "resources {} {} visit {} flow {} queue {} depth {} slots {} placement {} packet rays {} {} ready {} {} {} {} "
-        "home {} {}{} contexts {} carry {} fetch {} ahead {} width {} leaf {} treelet {} workers {} {}{} simd {} threads {}",
+        "home {} {}{} contexts {} carry {} fetch {} ahead {} width {} leaf {} treelet {} {} mixed {} workers {} {}{} simd {} threads {}",
         c.topology.resources, enum_name(c.topology.shape), enum_name(c.topology.visit), enum_name(c.topology.flow),
         enum_name(c.topology.link.queue), c.topology.link.depth, c.rays.slots_per_resource, enum_name(c.rays.placement),
         c.packets.rays, enum_name(c.packets.shapes), c.collections.ready, enum_name(c.collections.traversal),
         enum_name(c.collections.policy), enum_name(c.collections.select), enum_name(c.collections.home),
         enum_name(c.collections.when_full), tight_storage ? " tight" : "", c.testers.contexts,
         enum_name(c.packets.carry), enum_name(c.memory.fetch), c.memory.fetch_ahead, c.bvh.width, c.bvh.leaf_triangles,
-        c.bvh.treelet_triangles, c.shading.workers, enum_name(c.shading.distribute),
+        c.bvh.treelet_triangles, enum_name(c.bvh.elements), c.bvh.mixed_triangles, c.shading.workers, enum_name(c.shading.distribute),
         c.shading.idle_resources_shade ? " idle resources shade" : "", enum_name(c.engine.simd), threads);
   }
 };
@@ -63,6 +63,7 @@ inline bool possible(const Config& c) {
        c.packets.shapes == PacketShapes::kSingle || c.topology.shape == TopologyShape::kIndependent ||
        c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed))
     return false;
+  if (c.bvh.elements == BvhConfig::Elements::kSpheres && (c.bundles.size > 0 || c.cull_planes.count > 0)) return false;
   if (c.collections.home == Home::kHash && c.collections.when_full != WhenFull::kSpill) return false;
   return c.topology.flow != Flow::kBubble || c.topology.link.depth >= 2;
 }
@@ -90,7 +91,7 @@ class TestScene {
     return accel(bvh, none);
   }
   const accel::Accel& accel(const BvhConfig& bvh, const CullPlanesConfig& planes) {
-    auto& built = accels_[{bvh.width, bvh.leaf_triangles, planes.count, planes.nodes, planes.fit, planes.shared_normals, planes.order,
+    auto& built = accels_[{bvh.width, bvh.leaf_triangles, bvh.elements, bvh.mixed_triangles, planes.count, planes.nodes, planes.fit, planes.shared_normals, planes.order,
                          planes.levels}];
     if (!built) {
       built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor(), accuracy_, planes));
@@ -117,8 +118,8 @@ class TestScene {
   float away_;
   AccuracyConfig accuracy_;
   const AnyHit* any_hit_;   // with one, rays also have wishes
-  /// Width, leaf size, and planes: count, nodes, fit, shared, order, levels.
-  using Built = std::tuple<std::int64_t, std::int64_t, std::int64_t, CullPlanesConfig::Nodes, CullPlanesConfig::Fit, bool,
+  /// Width, leaf size, elements, mixed nodes, and planes: count, nodes, fit, shared, order, levels.
+  using Built = std::tuple<std::int64_t, std::int64_t, BvhConfig::Elements, std::int64_t, std::int64_t, CullPlanesConfig::Nodes, CullPlanesConfig::Fit, bool,
                            CullPlanesConfig::Order, CullPlanesConfig::Levels>;
   std::map<Built, std::unique_ptr<accel::Accel>> accels_;
   HitsDigest digest_;

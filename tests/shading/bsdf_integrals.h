@@ -36,7 +36,7 @@ struct Moments {
   glm::dvec4 density{0}, samples{0};
 };
 template <class SomeBsdf>
-Moments moments(const SomeBsdf& bsdf, float side, std::uint32_t count = 60000) {
+Moments moments(const SomeBsdf& bsdf, float side, std::uint32_t count = 30000) {
   const auto of = [](const Vec3& w) { return glm::dvec4(1, std::abs(w.x), std::abs(w.y), std::abs(w.z)); };
   const Sampler sampler(2, count);
   Moments m;

@@ -1,7 +1,6 @@
 #include "shading/effects_plan.h"
 
 #include <cmath>
-#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include "shading/path_tracer.h"
 #include "tests/shading/brute_force_tracer.h"
 #include "tests/shading/effect_scenes.h"
+#include "tests/shading/threaded_frame.h"
 
 namespace carousel::shading {
 namespace {
@@ -123,7 +123,20 @@ TEST(EffectsPlan, ImagesThatNothingReadsAreDropped) {
   EXPECT_EQ(scene.images[0].rgba.size(), 16u);
 }
 
-/// Looking along -z through a box of glass of `thickness` and index 1.5 into a sky of radiance 1.
+TEST(EffectsPlan, PicturesOfEverythingDoNotDependOnWorkersOrOrder) {
+  const scene::Scene scene = scene_of_everything();
+  const AlphaTest alpha(scene);
+  const BruteForceTracer tracer(scene, &alpha);
+  const Picture expected = picture(scene, small_image());
+  for (const Choice choice : {Choice::kAuto, Choice::kAll}) {
+    PathTracer many(scene, small_image(choice), 70, 3);
+    run_unruly_frame(many, tracer, 3, 20, 5);
+    EXPECT_EQ(many.image_digest(), expected.image);
+    EXPECT_EQ(many.hits_digest().hex(), expected.hits);
+  }
+}
+
+/// Looking straight down through a box of glass of `thickness` and index 1.5 into a sky of radiance 1.
 double through_glass(float thickness, const Vec3& color, float distance, int channel) {
   scene::Scene scene = empty_scene();
   scene::Material glass = matte({1, 1, 1});

@@ -15,7 +15,7 @@
 namespace carousel::shading {
 namespace {
 
-constexpr float kRoughnesses[] = {0.0f, 0.1f, 0.25f, 0.5f, 0.75f, 1.0f};
+constexpr float kRoughnesses[] = {0.0f, 0.25f, 0.5f, 1.0f};
 constexpr float kCosines[] = {0.05f, 0.3f, 0.7f, 1.0f};
 
 InterfacePoint white(float metallic, float roughness, float transmission = 0) {
@@ -52,7 +52,7 @@ void expect_white(InterfacePoint p, float tolerance = 0.01f) {
 }
 
 TEST(InterfaceBsdf, AWhiteSurfaceReflectsEverythingWhateverItsFresnelFactor) {
-  for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+  for (const float metallic : {0.0f, 0.6f}) {
     for (const Vec3& f0 : {Vec3{0.04f}, Vec3{0.0f}, Vec3{0.2f, 0.04f, 0.5f}, Vec3{1.0f}}) {
       for (const float f90 : {1.0f, 0.3f}) {
         InterfacePoint p = white(metallic, 0);

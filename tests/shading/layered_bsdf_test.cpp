@@ -22,7 +22,7 @@ LayerPoint layers(float coat, float coat_roughness, float sheen, float sheen_rou
 
 template <class Base>
 void expect_white(const LayerPoint& l, const Base& base, const Vec3& wo) {
-  const float a = white_albedo(LayeredBsdf<Base>(l, base, wo), 1 << 14).x;
+  const float a = white_albedo(LayeredBsdf<Base>(l, base, wo), 1 << 13).x;
   EXPECT_NEAR(a, 1.0f, 0.01f)
       << a << " coat " << l.coat << " " << l.coat_roughness << " sheen " << l.sheen.x << " " << l.sheen_roughness
       << " cosine " << wo.z;
