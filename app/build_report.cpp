@@ -1,6 +1,7 @@
 #include "app/build_report.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include <fmt/format.h>
 
@@ -141,11 +142,28 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
   const std::uint64_t done = sum.tests.box + sum.tests.plane + sum.tests.triangle + sum.tests.procedural + sum.tests.bundle;
   r.throughput =
       report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(done, rays)};
+}
+
+void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
   for (const ringbus::LinkResult& link : result.links) {
     const ringbus::LinkStatistics& s = link.statistics;
     r.links->push_back({link.from.value, link.to.value, link.depth, s.packets,
                         ratio(s.occupancy_sum, s.samples), s.occupancy_max, s.refusals});
+    report::Link& out = r.links->back();
+    if (config.faults.links.any()) {
+      const ringbus::LinkFaultCounts& f = link.faults;
+      out.faults = report::LinkFaults{f.dropped, f.duplicated, f.corrupted, f.reordered, f.delayed, f.resent, f.discarded};
+    }
+    if (config.engine.kind == EngineKind::kCycle) continue;
+    out.queue = enum_name(config.topology.link.queue);
+    out.sent_at_once = ratio(s.packets, s.batches);
+    out.received_at_once = ratio(s.packets, s.receives);
+    out.full_stalls = s.full_stalls;
+    out.empty_stalls = s.empty_stalls;
+    out.occupancy.emplace();
+    for (const ringbus::OccupancySeries::Entry& entry : link.series.entries())
+      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(), ratio(entry.sum, entry.samples), entry.most});
   }
 }
 
@@ -206,7 +224,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     (*r.links)[i].stalled = use.stalled;
     (*r.links)[i].cycles = report::LinkCycles{use.busy, use.stalled, c.cycles - use.busy - use.stalled};
   }
-  ringbus::cycle::LatencyHistogram trips;
+  LatencyHistogram trips;
   for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
   if (r.packets && trips.count() > 0)
     r.packets->latency = report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
@@ -261,6 +279,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.host = host(prepared, result);
   r.host.raster_seconds = frame.raster_seconds();
   r.raster = frame.raster();
+  if (result.rays_restarted > 0) r.host.recovery_seconds = result.recovery_seconds;
   const bool alone = r.host.threads == 1;
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.deterministic = alone || result.cycle.has_value();
@@ -273,9 +292,12 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.rays = {result.rays_emitted,
             result.rays_completed,
             result.rays_emitted - result.rays_completed,
-            0,
+            result.rays_restarted,
             {emitted[0], emitted[1], emitted[2]}};
-  if (!result.resources.empty()) add_ring(r, result, config.packets, prepared.accel);
+  if (!result.resources.empty()) {
+    add_ring(r, result, config.packets, prepared.accel);
+    add_links(r, result, config);
+  }
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
                std::nullopt, {}, {}, 0, {}, {}};
   add_effects(r.shading, prepared.scene, config, prepared.unread_image_bytes);

@@ -20,6 +20,7 @@
 #include "app/output.h"
 #include "app/run_command.h"
 #include "app/schema_command.h"
+#include "app/stress/stress_command.h"
 #include "app/version_text.h"
 #include "core/edit_distance.h"
 #include "core/error.h"
@@ -28,7 +29,7 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "check", "accuracy", "inspect", "compare", "schema"};
+const std::vector<std::string> kCommands{"run", "check", "stress", "accuracy", "inspect", "compare", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.
@@ -67,6 +68,7 @@ std::string usage_hint(const CLI::App& program, int argc, const char* const* arg
 struct Arguments {
   AccuracyArguments accuracy;
   RunArguments run;
+  StressArguments stress;
   CheckArguments check;
   InspectArguments inspect;
   CompareArguments compare;
@@ -101,6 +103,24 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   CLI::App* check =
       program.add_subcommand("check", "validate, print the resolved config, say whether it can deadlock");
   add_config_options(*check, arguments.check);
+
+  CLI::App* stress = program.add_subcommand("stress", "queue designs under load: loss, order, throughput, latency");
+  StressArguments& s = arguments.stress;
+  add_config_options(*stress, s, false);
+  stress->add_option("--queue", s.queues, "kinds to try, as topology.link.queue (default all)")->delimiter(',')->type_name("KIND");
+  stress->add_option("--pattern", s.patterns, "patterns to try (default all)")->delimiter(',')->type_name("PATTERN");
+  stress->add_option("--bytes", s.bytes, "size of a message: 8, 64, 256 (default what each pattern wants)")->delimiter(',');
+  stress->add_option("--depths", s.depths, "with a configuration: depths of links to try (default 1, its own, four times its own)")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1'000'000));
+  stress->add_option("--seconds", s.seconds, "for the queues by themselves, in all")->check(CLI::PositiveNumber)->capture_default_str();
+  stress->add_option("--messages", s.messages, "of one trial, at most")->check(CLI::Range(1u, 100'000'000u))->capture_default_str();
+  stress->add_option("--repetitions", s.repetitions, "of each trial, in turn")->check(CLI::Range(1, 1000))->capture_default_str();
+  stress->add_option("--capacity", s.capacity, "of a queue by itself")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  stress->add_option("--seed", s.seed, "of pauses")->capture_default_str();
+  stress->add_option("--out", s.out, "folder for stress.json (default out/stress, or out/<config name>)")->type_name("DIR");
+  stress->add_flag("--json", s.json, "print JSON instead of the table");
+  stress->add_flag("--quiet", s.quiet, "print nothing but errors (and the results with --json)");
 
   CLI::App* accuracy = program.add_subcommand("accuracy", "what accuracy costs in time");
   AccuracyArguments& a = arguments.accuracy;
@@ -164,8 +184,9 @@ int run_command_line(int argc, const char* const* argv) {
     spdlog::error("{}\ncarousel --help tells the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
-  log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet);
+  log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet || arguments.stress.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
+  if (program.got_subcommand("stress")) return stress_command(arguments.stress);
   if (program.got_subcommand("check")) return check_command(arguments.check);
   if (program.got_subcommand("accuracy")) {
     const AccuracyArguments& accuracy = arguments.accuracy;

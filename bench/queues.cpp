@@ -8,9 +8,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ringbus/mutex_queue.h"
-#include "ringbus/spsc_ring.h"
-#include "ringbus/tbb_bounded_queue.h"
+#include "ringbus/queues/mutex_queue.h"
+#include "ringbus/queues/spsc_ring.h"
+#include "ringbus/queues/tbb_bounded_queue.h"
 
 namespace carousel::bench {
 

@@ -24,7 +24,7 @@ enum class TopologyShape {
 enum class CentralForm { kCells, kDistributor };
 enum class Visit { kAll, kOwners };
 enum class Flow { kCredits, kBubble, kNone };
-enum class QueueKind { kSpscRing, kTbbBounded, kMutex };
+enum class QueueKind { kSpscRing, kMpmcRing, kTbbBounded, kMoodycamel, kAtomicQueue, kBoostSpsc, kMutex };
 enum class Placement { kBalanced, kRoundRobin, kFirstTaker, kAddressed };
 enum class PacketShapes { kStrip, kSingle };
 enum class PacketCarry { kReference, kData };
@@ -245,6 +245,24 @@ struct WorkloadConfig {
   TrafficConfig traffic;
 };
 
+/// What goes wrong on request, drawn from `seed`.
+struct FaultsConfig {
+  std::int64_t seed = 1;
+  struct Links {
+    double drop = 0, duplicate = 0, corrupt = 0, reorder = 0, delay = 0;   ///< fractions of the frames on a link
+    std::int64_t delay_cycles = 100;
+    bool any() const { return drop > 0 || duplicate > 0 || corrupt > 0 || reorder > 0 || delay > 0; }
+  } links;
+  struct Resource {
+    enum class Kind { kNone, kPause, kSlow, kStop } kind = Kind::kNone;
+    std::int64_t number = 0;
+    std::int64_t after_rays = 0;       ///< completed there
+    std::int64_t cycles = 100'000;     ///< of a pause
+    std::int64_t factor = 4;           ///< kSlow
+    bool recover = true;               ///< kStop
+  } resource;
+};
+
 struct Config {
   std::int64_t schema_version = 1;
   SceneConfig scene;
@@ -262,6 +280,7 @@ struct Config {
   TestersConfig testers;
   MemoryConfig memory;
   ShadingConfig shading;
+  FaultsConfig faults;
   Verify verify = Verify::kNone;
   WorkloadConfig workload;
   std::map<std::string, std::vector<std::string>> vary;   ///< key path to values; for sweep

@@ -37,7 +37,9 @@ CAROUSEL_ENUM(TopologyShape, {TopologyShape::kRing, "ring"}, {TopologyShape::kBi
 CAROUSEL_ENUM(CentralForm, {CentralForm::kCells, "cells"}, {CentralForm::kDistributor, "distributor"});
 CAROUSEL_ENUM(Visit, {Visit::kAll, "all"}, {Visit::kOwners, "owners"});
 CAROUSEL_ENUM(Flow, {Flow::kCredits, "credits"}, {Flow::kBubble, "bubble"}, {Flow::kNone, "none"});
-CAROUSEL_ENUM(QueueKind, {QueueKind::kSpscRing, "spsc_ring"}, {QueueKind::kTbbBounded, "tbb_bounded"},
+CAROUSEL_ENUM(QueueKind, {QueueKind::kSpscRing, "spsc_ring"}, {QueueKind::kMpmcRing, "mpmc_ring"},
+              {QueueKind::kTbbBounded, "tbb_bounded"}, {QueueKind::kMoodycamel, "moodycamel"},
+              {QueueKind::kAtomicQueue, "atomic_queue"}, {QueueKind::kBoostSpsc, "boost_spsc"},
               {QueueKind::kMutex, "mutex"});
 CAROUSEL_ENUM(Placement, {Placement::kBalanced, "balanced"}, {Placement::kRoundRobin, "round_robin"},
               {Placement::kFirstTaker, "first_taker"}, {Placement::kAddressed, "addressed"});
@@ -119,6 +121,9 @@ CAROUSEL_ENUM(TrafficConfig::Pattern, {TrafficConfig::Pattern::kUniform, "unifor
               {TrafficConfig::Pattern::kNeighbour, "neighbour"},
               {TrafficConfig::Pattern::kHotspot, "hotspot"}, {TrafficConfig::Pattern::kBursty, "bursty"});
 CAROUSEL_ENUM(Primary, {Primary::kRays, "rays"}, {Primary::kRaster, "raster"});
+CAROUSEL_ENUM(FaultsConfig::Resource::Kind, {FaultsConfig::Resource::Kind::kNone, "none"},
+              {FaultsConfig::Resource::Kind::kPause, "pause"}, {FaultsConfig::Resource::Kind::kSlow, "slow"},
+              {FaultsConfig::Resource::Kind::kStop, "stop"});
 CAROUSEL_ENUM(Verify, {Verify::kNone, "none"}, {Verify::kReference, "reference"});
 
 #undef CAROUSEL_ENUM

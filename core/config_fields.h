@@ -316,6 +316,35 @@ void describe(V& v, TrafficConfig& c) {
           "for bursty: packets created cycle after cycle, on average");
 }
 
+inline constexpr RealRange kFaultFraction{0, 0.9};   // something must get through
+
+template <class V>
+void describe(V& v, FaultsConfig::Links& c) {
+  v.field("drop", c.drop, kFaultFraction, "fraction", "frames that are lost");
+  v.field("duplicate", c.duplicate, kFaultFraction, "fraction", "frames that come twice");
+  v.field("corrupt", c.corrupt, kFaultFraction, "fraction", "frames with a bit flipped");
+  v.field("reorder", c.reorder, kFaultFraction, "fraction", "frames that come after the next one");
+  v.field("delay", c.delay, kFaultFraction, "fraction", "frames that come later");
+  v.field("delay_cycles", c.delay_cycles, kCycles, "cycles", "by so much; native: at engine.clock_mhz");
+}
+
+template <class V>
+void describe(V& v, FaultsConfig::Resource& c) {
+  v.choice("kind", c.kind, "what befalls a resource: pause (once), slow (to the end), stop (for good), or none");
+  v.field("number", c.number, IntRange{0, kMaxResources - 1}, "", "which resource");
+  v.field("after_rays", c.after_rays, IntRange{0, 1'000'000'000}, "rays", "completed there before it begins");
+  v.field("cycles", c.cycles, IntRange{1, 1'000'000'000}, "cycles", "length of a pause; native: at engine.clock_mhz");
+  v.field("factor", c.factor, IntRange{2, 1000}, "times", "slow: a step takes so many times as long");
+  v.field("recover", c.recover, "", "stop: start its unfinished rays again elsewhere; or else end the run and say what is missing");
+}
+
+template <class V>
+void describe(V& v, FaultsConfig& c) {
+  v.field("seed", c.seed, kSeed, "", "seed of the faults");
+  v.section("links", c.links, "faults of links, which sequence numbers, checksums and go-back-N make good");
+  v.section("resource", c.resource, "fault of a resource");
+}
+
 template <class V>
 void describe(V& v, Config& c) {
   v.field("schema_version", c.schema_version, IntRange{1, 1}, "", "version of these keys");
@@ -337,6 +366,7 @@ void describe(V& v, Config& c) {
   v.choice("primary", c.primary,
            "how what the camera sees first is found: by its rays, or by a rasteriser (pinhole cameras only) that leaves "
            "the other rays to the machine");
+  v.section("faults", c.faults, "what goes wrong on request");
   v.choice("verify", c.verify, "reference: trace every ray again, depth first, and compare");
   v.workload("workload", c.workload, "rays of the picture, rays of a file, or synthetic traffic");
   v.vary("vary", c.vary, "for sweep: values of keys, key.path: [a, b, c]");

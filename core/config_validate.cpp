@@ -37,6 +37,7 @@ class Rules {
     ordered_needs_strips();
     hashed_homes_spill();
     overrides_name_resources();
+    faults_have_a_place();
     vary_names_keys();
     return std::move(issues_);
   }
@@ -248,6 +249,35 @@ class Rules {
       only(fmt::format("topology.overrides.{}.testers.any_hit", i), one.testers.any_hit,
            TestersConfig::AnyHit::kInline);
     }
+  }
+
+  void faults_have_a_place() {
+    const FaultsConfig::Resource& r = c.faults.resource;
+    const bool resource = r.kind != FaultsConfig::Resource::Kind::kNone;
+    if (resource && r.number >= c.topology.resources)
+      issue("faults.resource.number", fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
+    if (c.workload.kind == WorkloadConfig::Kind::kTraffic && (resource || c.faults.links.any()))
+      issue("faults", "there are no faults in traffic; expected none, or workload: rays");
+    if (resource && c.topology.shape == TopologyShape::kIndependent)
+      issue("faults.resource.kind", "independent resources have no faults; expected none");
+    if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
+      issue("faults.resource.after_rays", fmt::format("under virtual time a slow resource is so from the beginning; expected 0, found {}", r.after_rays));
+    if (r.kind == FaultsConfig::Resource::Kind::kStop) a_machine_goes_on_without_one();
+    // The engine takes a machine that does nothing for ten seconds for one that is stuck.
+    if (!cycle() && r.kind == FaultsConfig::Resource::Kind::kPause && r.cycles / c.engine.clock_mhz > 5'000'000)
+      issue("faults.resource.cycles", fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
+                                                  5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
+  }
+
+  void a_machine_goes_on_without_one() {
+    if (cycle()) issue("faults.resource.kind", "stop is not built under virtual time yet; expected none, pause or slow, or engine.kind: native");
+    if (c.topology.resources < 2) issue("topology.resources", "where one stops another has to go on; expected at least 2, found 1");
+    if (c.collections.home == Home::kHash)
+      issue("collections.home", "collections of a resource that stopped would have no home; expected issuer or local, found hash");
+    if (c.rays.placement != Placement::kBalanced && c.rays.placement != Placement::kRoundRobin)
+      issue("rays.placement", fmt::format("rays would go on asking a resource that stopped; expected balanced or round_robin, found {}",
+                                          enum_name(c.rays.placement)));
+    if (c.bundles.size > 0) issue("bundles.size", fmt::format("rays of bundles cannot be started again yet; expected 0, found {}", c.bundles.size));
   }
 
   void vary_names_keys() {

@@ -147,12 +147,28 @@ struct LinkCycles {
   std::uint64_t busy = 0, stalled = 0, idle = 0;
 };
 
+/// How full a link was for a while.
+struct LinkOccupancy {
+  double seconds = 0, mean = 0;
+  std::uint64_t most = 0;
+};
+
+/// What faults did to a link.
+struct LinkFaults {
+  std::uint64_t dropped = 0, duplicated = 0, corrupted = 0, reordered = 0, delayed = 0, resent = 0, discarded = 0;
+};
+
 struct Link {
   std::uint64_t from = 0, to = 0, depth = 0, packets = 0;
   double occupancy_mean = 0;
   std::uint64_t occupancy_max = 0, stalled = 0;
   std::optional<double> utilisation{};
   std::optional<LinkCycles> cycles{};
+  std::optional<std::string> queue{};
+  std::optional<double> sent_at_once{}, received_at_once{};
+  std::optional<std::uint64_t> full_stalls{}, empty_stalls{};
+  std::optional<std::vector<LinkOccupancy>> occupancy{};
+  std::optional<LinkFaults> faults{};
 };
 
 struct Cache {
@@ -241,7 +257,7 @@ struct Host {
   std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
   std::string simd;
   Machine machine;
-  std::optional<double> plane_seconds{}, raster_seconds{};
+  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{};
 };
 
 /// The pass that stands in for camera rays.

@@ -71,7 +71,7 @@ void describe(V& v, Rays& r) {
   v.field("emitted", r.emitted, "rays", "that shading produced");
   v.field("completed", r.completed, "rays", "that shading got back");
   v.field("lost", r.lost, "rays", "emitted and never completed; 0 in a complete run");
-  v.field("restarted", r.restarted, "rays", "traced again from the root");
+  v.field("restarted", r.restarted, "rays", "under way when a resource stopped, and traced again from the root");
   v.section("by_kind", r.by_kind, "emitted rays by kind");
 }
 
@@ -253,6 +253,24 @@ void describe(V& v, Memory& r) {
 }
 
 template <class V>
+void describe(V& v, LinkOccupancy& r) {
+  v.field("seconds", r.seconds, "s", "since the start, at the end of this part");
+  v.field("mean", r.mean, "packets", "waiting, seen at sends");
+  v.field("most", r.most, "packets", "waiting, seen at sends");
+}
+
+template <class V>
+void describe(V& v, LinkFaults& r) {
+  v.field("dropped", r.dropped, "frames", "lost on the way");
+  v.field("duplicated", r.duplicated, "frames", "that came twice");
+  v.field("corrupted", r.corrupted, "frames", "with a bit flipped");
+  v.field("reordered", r.reordered, "frames", "that came after the next one");
+  v.field("delayed", r.delayed, "frames", "that came later");
+  v.field("resent", r.resent, "frames", "sent again");
+  v.field("discarded", r.discarded, "frames", "that the receiver had no use for");
+}
+
+template <class V>
 void describe(V& v, Link& r) {
   v.field("from", r.from, "", "resource that sends");
   v.field("to", r.to, "", "resource that receives");
@@ -263,6 +281,13 @@ void describe(V& v, Link& r) {
   v.field("stalled", r.stalled, "attempts|cycles", "sends that found the queue full (native), cycles in which a packet waited for a credit (cycle)");
   v.field("utilisation", r.utilisation, "fraction", "cycles in which it moved something, over all");
   v.section("cycles", r.cycles, "they add up to engine.cycles");
+  v.field("queue", r.queue, "", "kind of queue (native)");
+  v.field("sent_at_once", r.sent_at_once, "packets", "mean of the sends that took any (native)");
+  v.field("received_at_once", r.received_at_once, "packets", "mean of the receptions that brought any (native)");
+  v.field("full_stalls", r.full_stalls, "sends", "that the queue did not take all of (native)");
+  v.field("empty_stalls", r.empty_stalls, "receptions", "that found nothing (native)");
+  v.section("occupancy", r.occupancy, "over time: equal numbers of sends (native)");
+  v.section("faults", r.faults, "where there are faults: what happened to frames and acknowledgements");
 }
 
 template <class V>
@@ -369,6 +394,7 @@ void describe(V& v, Host& r) {
   v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure, without cull planes");
   v.field("plane_seconds", r.plane_seconds, "s", "to find its cull planes");
   v.field("raster_seconds", r.raster_seconds, "s", "to rasterise what the camera sees first");
+  v.field("recovery_seconds", r.recovery_seconds, "s", "from the last sign of life of a resource that stopped until its rays began again");
   v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");
   v.field("simd", r.simd, "", "instruction set of the test kernels");

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "report/report_fields.h"
+#include "report/stress_fields.h"
 
 namespace carousel::report {
 
@@ -124,6 +125,10 @@ Json report_json(const Report& report) {
   return JsonWriter::value_of(report);
 }
 
+Json stress_json(const Stress& stress) {
+  return JsonWriter::value_of(stress);
+}
+
 Json report_schema() {
   Json schema{
       {"$schema", "https://json-schema.org/draft/2020-12/schema"},
@@ -133,6 +138,8 @@ Json report_schema() {
        "throughput, tests, packets, collections, resources and links count what the threads happened to "
        "do and may differ between runs; rays, shading, verify and digest may not."}};
   schema.update(SchemaWriter::schema_for(Report{}));
+  schema["$defs"]["stress"] = SchemaWriter::schema_for(Stress{});
+  schema["$defs"]["stress"]["description"] = "stress.json of carousel stress";
   return schema;
 }
 

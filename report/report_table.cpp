@@ -197,8 +197,11 @@ std::string report_table(const Report& report) {
              report.host.threads, report.shading.workers);
   table.gap();
   const Rays& rays = report.rays;
-  table.line("rays", "{} emitted   {} completed   {} lost", grouped(rays.emitted), grouped(rays.completed),
-             grouped(rays.lost));
+  table.line("rays", "{} emitted   {} completed   {} lost{}", grouped(rays.emitted), grouped(rays.completed),
+             grouped(rays.lost),
+             rays.restarted == 0 ? ""
+                                 : fmt::format("   {} restarted, {} after a resource stopped", grouped(rays.restarted),
+                                               seconds_text(report.host.recovery_seconds.value_or(0))));
   table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera),
              grouped(rays.by_kind.bounce), grouped(rays.by_kind.shadow));
   if (report.raster) {

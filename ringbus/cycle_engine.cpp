@@ -116,6 +116,7 @@ class CycleRun {
       }
       if (wire.from != node) continue;
       ports.out.emplace_back(*wires_[i], latency, depth, places);
+      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i));
       ports.out_to.push_back(wire.to);
     }
     return ports;
@@ -280,7 +281,7 @@ class CycleRun {
       c.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[c.links.size()]->queue});
       LinkStatistics s;
       s.packets = port.packets();
-      out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s});
+      out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s, {}, port.faults()});
     });
     for (const auto& cache : caches_) {
       const ShapeCache::Statistics& s = cache->statistics();

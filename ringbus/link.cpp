@@ -1,9 +1,14 @@
 #include "ringbus/link.h"
 
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/config_enums.h"
 #include "core/error.h"
-#include "ringbus/mutex_queue.h"
-#include "ringbus/spsc_ring.h"
-#include "ringbus/tbb_bounded_queue.h"
+#include "ringbus/faults/reliable_link.h"
+#include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus {
 
@@ -15,24 +20,55 @@ class QueueLink final : public Link {
 
  public:
   QueueLink(std::size_t depth, ResourceId from, ResourceId to) : Link(from, to), queue_(depth) {}
-  std::size_t try_receive(std::span<PacketId> packets) override { return queue_.try_pop_n(packets); }
   std::size_t free_places() override { return queue_.free_places(); }
   std::size_t capacity() const override { return queue_.capacity(); }
 
  private:
   std::size_t push(std::span<const PacketId> packets) override { return queue_.try_push_n(packets); }
+  std::size_t pull(std::span<PacketId> packets) override { return queue_.try_pop_n(packets); }
   Queue queue_;
 };
 
 }  // namespace
 
 std::unique_ptr<Link> make_link(QueueKind kind, std::size_t depth, ResourceId from, ResourceId to) {
-  switch (kind) {
-    case QueueKind::kSpscRing: return std::make_unique<QueueLink<SpscRing<PacketId>>>(depth, from, to);
-    case QueueKind::kTbbBounded: return std::make_unique<QueueLink<TbbBoundedQueue<PacketId>>>(depth, from, to);
-    case QueueKind::kMutex: return std::make_unique<QueueLink<MutexQueue<PacketId>>>(depth, from, to);
-  }
-  throw SimulationError("no such queue kind");
+  return with_queue_type(kind, [&](auto type) -> std::unique_ptr<Link> {
+    return std::make_unique<QueueLink<typename decltype(type)::template Of<PacketId>>>(depth, from, to);
+  });
+}
+
+std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, ResourceId from, ResourceId to) {
+  const LinkConfig& link = config.topology.link;
+  if (!config.faults.links.any()) return make_link(link.queue, static_cast<std::size_t>(link.depth), from, to);
+  return with_queue_type(link.queue, [&](auto type) -> std::unique_ptr<Link> {
+    return std::make_unique<ReliableLink<decltype(type)::template Of>>(config, number, from, to);
+  });
+}
+
+void require_parties(QueueKind kind, const std::string& key, Parties producers, Parties consumers) {
+  with_queue_type(kind, [&](auto type) {
+    using Queue = typename decltype(type)::template Of<PacketId>;
+    const auto refuse = [&](const char* who) {
+      std::vector<std::string_view> fitting;
+      for (const auto& entry : kEnumNames<QueueKind>)
+        if (queue_fits(entry.value, producers, consumers)) fitting.push_back(entry.name);
+      ConfigIssue issue;
+      issue.key_path = key;
+      issue.message = fmt::format("{} is made for one {} at a time and here are several; expected one of {}",
+                                  enum_name(kind), who, fmt::join(fitting, ", "));
+      throw ConfigError({issue});
+    };
+    if (producers == Parties::kMany && Queue::kProducers == Parties::kOne) refuse("producer");
+    if (consumers == Parties::kMany && Queue::kConsumers == Parties::kOne) refuse("consumer");
+  });
+}
+
+bool queue_fits(QueueKind kind, Parties producers, Parties consumers) {
+  return with_queue_type(kind, [&](auto type) {
+    using Queue = typename decltype(type)::template Of<PacketId>;
+    return (producers == Parties::kOne || Queue::kProducers == Parties::kMany) &&
+           (consumers == Parties::kOne || Queue::kConsumers == Parties::kMany);
+  });
 }
 
 }  // namespace carousel::ringbus

@@ -6,7 +6,9 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,28 +26,26 @@ class NativeRun {
  public:
   NativeRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
             const RunOptions& options)
-      : options_(options), machine_(config, accel, scene_size) {
-    const std::uint32_t resources = static_cast<std::uint32_t>(config.topology.resources);
-    for (std::uint32_t r = 0; r < resources; ++r) {
+      : options_(options), config_(config), accel_(accel), scene_size_(scene_size), workload_(workload) {
+    for (std::int64_t r = 0; r < config.topology.resources; ++r)
       sinks_.push_back(options.statistics ? std::make_unique<StatisticsSink>() : nullptr);
-      ports_.push_back(std::make_unique<NativePort>(ResourceId(r), machine_, scene_size, sinks_.back().get()));
-    }
-    for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(config.shading.workers); ++w)
-      workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), machine_, workload, count_));
+    if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<RetryLedger>();
+    build();
     threads_ = std::clamp<std::size_t>(options.threads, 1, std::max(ports_.size(), workers_.size()));
     progress_ = std::make_unique<Progress[]>(threads_);
   }
 
   RunResult run() {
-    const auto start = std::chrono::steady_clock::now();
-    {
-      std::vector<std::jthread> threads;
-      for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
-      watch();
+    start_ = Clock::now();
+    for (;;) {
+      run_threads();
+      if (error_) std::rethrow_exception(error_);
+      if (stuck_) throw SimulationError(describe_stuck());
+      if (!lost_ || given_up_) break;
+      if (!config_.faults.resource.recover) throw SimulationError(describe_missing());
+      restart();
     }
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    if (error_) std::rethrow_exception(error_);
-    if (stuck_) throw SimulationError(describe_stuck());
+    const std::chrono::duration<double> wall = Clock::now() - start_;
     const bool complete = count_.done();
     if (complete) check_drained();
     return result(complete, wall.count());
@@ -56,12 +56,66 @@ class NativeRun {
     std::atomic<std::uint64_t> steps{0};   // that moved something
   };
 
+  using Clock = std::chrono::steady_clock;
+  // A resource that has taken no step for so long, while its thread has, is given up.
+  static constexpr std::chrono::milliseconds kSilence{100};
+
+  /// The machine and those who step it, with nothing in it.
+  void build() {
+    ports_.clear();
+    workers_.clear();
+    machine_ = std::make_unique<Machine>(config_, accel_, scene_size_);
+    for (std::uint32_t r = 0; r < sinks_.size(); ++r)
+      ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, scene_size_, sinks_[r].get()));
+    for (const auto& link : machine_->links) link->count(options_.statistics);
+    for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(config_.shading.workers); ++w)
+      workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), *machine_, workload_, count_, ledger_.get()));
+  }
+
+  void run_threads() {
+    ended_ = 0;
+    end_ = false;
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
+    watch();
+  }
+
+  /// All that was under way is gone, whoever had it; every ray that has not been shaded begins again at the resources
+  /// that are left. The port of the one that stopped goes on forwarding.
+  void restart() {
+    build();
+    machine_->control.exclude(*lost_);
+    ports_[lost_->value]->stop();
+    given_up_ = true;
+    const RayBatch rays = ledger_->open();
+    rays_restarted_ += rays.size();
+    recovery_seconds_ = std::chrono::duration<double>(Clock::now() - last_beat_).count();
+    if (!rays.empty()) machine_->control.submit(rays);
+  }
+
+  /// Whether the resource that may stop is silent; `last_beat_` is when it last was not.
+  bool silent() {
+    if (!ledger_ || given_up_) return false;
+    const ResourceId id(static_cast<std::uint32_t>(config_.faults.resource.number));
+    const std::uint64_t beats = ports_[id.value]->beats();
+    if (std::exchange(beats_, beats) != beats || last_beat_ == Clock::time_point{}) last_beat_ = Clock::now();
+    // Time in which its thread did not run does not count.
+    const std::uint64_t turns = turns_.load(std::memory_order_relaxed);
+    if (std::exchange(turns_seen_, turns) == turns) last_beat_ = std::max(last_beat_, Clock::now() - kSilence / 2);
+    if (Clock::now() - last_beat_ < kSilence) return false;
+    lost_ = id;
+    return true;
+  }
+
   void work(std::size_t thread) {
     try {
       int idle = 0;
       // Acquire: pairs with the release that asks everyone to end.
       while (!end_.load(std::memory_order_acquire)) {
         bool moved = false;
+        // Relaxed: the watcher only wants to see it change.
+        if (ledger_ && thread == static_cast<std::size_t>(config_.faults.resource.number) % threads_)
+          turns_.store(turns_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
         for (std::size_t r = thread; r < ports_.size(); r += threads_) moved |= ports_[r]->step();
         for (std::size_t w = thread; w < workers_.size(); w += threads_) moved |= workers_[w]->step();
         if (moved) {
@@ -97,11 +151,11 @@ class NativeRun {
 
   /// On the calling thread: progress reports, the request to stop, and the run that no longer moves.
   void watch() {
-    using Clock = std::chrono::steady_clock;
     std::uint64_t last = 0;
     Clock::time_point last_change = Clock::now();
     std::unique_lock lock(mutex_);
-    while (!ended_changed_.wait_for(lock, std::chrono::milliseconds(100), [this] { return ended_ == threads_; })) {
+    const std::chrono::milliseconds interval(ledger_ ? 10 : 100);
+    while (!ended_changed_.wait_for(lock, interval, [this] { return ended_ == threads_; })) {
       if (options_.progress) options_.progress(count_.completed.load(std::memory_order_relaxed));
       std::uint64_t steps = 0;
       for (std::size_t t = 0; t < threads_; ++t) steps += progress_[t].steps.load(std::memory_order_relaxed);
@@ -112,7 +166,7 @@ class NativeRun {
         stuck_ = true;
       }
       // Release: pairs with the acquire in work().
-      if (stuck_ || options_.stop.stop_requested()) end_.store(true, std::memory_order_release);
+      if (stuck_ || silent() || options_.stop.stop_requested()) end_.store(true, std::memory_order_release);
     }
   }
 
@@ -123,11 +177,22 @@ class NativeRun {
     return text;
   }
 
+  std::string describe_missing() const {
+    const RayBatch rays = ledger_->open();
+    std::string text = fmt::format("resource {} stopped and faults.resource.recover is off: {} rays are missing, of paths", lost_->value,
+                                   rays.size());
+    constexpr std::size_t kNamed = 8;
+    for (std::size_t i = 0; i < std::min(kNamed, rays.size()); ++i)
+      text += fmt::format(" {}{}", rays[i].tag.path, i + 1 < std::min(kNamed, rays.size()) ? "," : "");
+    if (rays.size() > kNamed) text += fmt::format(" and others; {} rays had been shaded", count_.completed.load());
+    return text;
+  }
+
   void check_drained() const {
     if (count_.emitted != count_.completed)
       throw SimulationError(fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
     for (const auto& port : ports_)
-      if (!port->drained()) throw SimulationError("not everything came home: " + port->describe());
+      if (!(given_up_ && port->resource().id() == *lost_) && !port->drained()) throw SimulationError("not everything came home: " + port->describe());
   }
 
   RunResult result(bool complete, double wall_seconds) const {
@@ -135,26 +200,42 @@ class NativeRun {
     out.complete = complete;
     out.rays_emitted = count_.emitted;
     out.rays_completed = count_.completed;
+    out.rays_restarted = rays_restarted_;
+    out.recovery_seconds = recovery_seconds_;
     out.wall_seconds = wall_seconds;
     out.threads = threads_;
-    out.slots_used = machine_.control.slots_used();
-    out.slot_waits = machine_.control.slot_waits();
+    out.slots_used = machine_->control.slots_used();
+    out.slot_waits = machine_->control.slot_waits();
     for (std::size_t r = 0; r < ports_.size(); ++r) {
       if (sinks_[r]) out.resources.push_back(sinks_[r]->statistics());
       out.collections.push_back(ports_[r]->resource().collections().statistics());
     }
-    for (const auto& link : machine_.links)
-      out.links.push_back({link->from(), link->to(), link->capacity(), link->statistics()});
+    for (const auto& link : machine_->links)
+      out.links.push_back({link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
+    out.start = start_;
     return out;
   }
 
   const RunOptions& options_;
-  Machine machine_;
+  const Config& config_;
+  const accel::Accel& accel_;
+  float scene_size_;
+  Workload& workload_;
+  std::unique_ptr<Machine> machine_;
   RayCount count_;
+  std::unique_ptr<RetryLedger> ledger_;       // where a resource may stop
+  std::atomic<std::uint64_t> turns_{0};       // of the thread that plays it
+  std::uint64_t turns_seen_ = 0, beats_ = 0;
+  Clock::time_point last_beat_{};
+  std::optional<ResourceId> lost_;            // it has stopped
+  bool given_up_ = false;                     // and the others go on without it
+  std::uint64_t rays_restarted_ = 0;
+  double recovery_seconds_ = 0;
   std::vector<std::unique_ptr<StatisticsSink>> sinks_;
   std::vector<std::unique_ptr<NativePort>> ports_;
   std::vector<std::unique_ptr<ShaderWorker>> workers_;
   std::size_t threads_;
+  Clock::time_point start_{};
   std::unique_ptr<Progress[]> progress_;
   std::atomic<bool> end_{false};
   bool stuck_ = false;

@@ -3,9 +3,11 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "ringbus/faults/resource_fault.h"
 #include "ringbus/machine.h"
 #include "ringbus/resource.h"
 
@@ -27,6 +29,11 @@ class NativePort {
   std::uint32_t packets_out() const { return out_.load(std::memory_order_acquire); }
   /// Nothing here: no packet of its own on the way, none in hand, no collection, no new ray.
   bool drained() const;
+  /// From now on it only forwards, as one that has stopped does.
+  void stop() { stopped_ = true; }
+  /// Counts its steps, but not when it has stopped. Any thread may call.
+  // Relaxed: the watcher only wants to see it change.
+  std::uint64_t beats() const { return beats_.load(std::memory_order_relaxed); }
   /// One line on what it waits for, with packet and ray IDs. Call when nothing steps.
   std::string describe() const;
 
@@ -37,10 +44,13 @@ class NativePort {
     std::deque<PacketId> in_hand;
   };
 
+  bool step_now();
+  bool tick_links();
   bool send_in_hand();
   bool receive();
   void arrive(PacketId id);
   void come_home(PacketId id);
+  void discard(PacketId id);
   void forward(PacketId id);
   void leave(PacketId id);
 
@@ -65,6 +75,11 @@ class NativePort {
   }
 
   Machine& machine_;
+  bool links_fail_;
+  std::optional<ResourceFault> fault_;
+  std::uint64_t stops_after_ = 0, rays_completed_ = 0;
+  bool stops_, stopped_ = false;
+  std::atomic<std::uint64_t> beats_{0};
   EventSink* sink_;
   Resource resource_;
   struct Entry {

@@ -29,6 +29,12 @@ RayControl::RayControl(const Config& config, std::span<const std::unique_ptr<Ray
   enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_ : total) / 4);
 }
 
+void RayControl::exclude(ResourceId resource) {
+  excluded_ = resource;
+  slots_[resource.value].free.clear();
+  slots_[resource.value].count = 0;
+}
+
 std::size_t RayControl::free_slots() const {
   std::size_t total = 0;
   for (std::uint32_t r = 0; r < resources_; ++r) total += free_slots(ResourceId(r));

@@ -36,6 +36,8 @@ class RayControl {
   RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores, std::int32_t initial_tests,
              float scene_size);
 
+  /// From now on `resource` gets no rays. Before the first submit().
+  void exclude(ResourceId resource);
   /// Places a batch, behind those that still wait for slots.
   void submit(const RayBatch& rays);
   /// Places waiting rays as far as slots allow. Returns whether any was placed.
@@ -78,7 +80,10 @@ class RayControl {
   std::size_t load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids);
   void send(ResourceId resource, RayGroup&& group);
-  ResourceId next_resource() { return ResourceId(turn_++ % resources_); }
+  ResourceId next_resource() {
+    if (excluded_ == ResourceId(turn_ % resources_)) ++turn_;
+    return ResourceId(turn_++ % resources_);
+  }
   ResourceId emptiest() const;
 
   Placement placement_;
@@ -100,6 +105,7 @@ class RayControl {
   std::vector<std::uint32_t> order_, members_;   // scratch
   std::vector<std::uint8_t> sizes_;              // scratch
   std::uint32_t turn_ = 0;
+  std::optional<ResourceId> excluded_;
   std::atomic<bool> any_waiting_{false};
 };
 

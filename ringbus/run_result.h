@@ -28,13 +28,18 @@ struct LinkResult {
   ResourceId from, to;
   std::size_t depth = 0;
   LinkStatistics statistics;
+  OccupancySeries series{};     ///< native
+  LinkFaultCounts faults{};
 };
 
 struct RunResult {
   bool complete = true;                       ///< false: stopped early
   std::uint64_t rays_emitted = 0, rays_completed = 0;
+  std::uint64_t rays_restarted = 0;           ///< started again because a resource stopped
+  double recovery_seconds = 0;                ///< from its last sign of life until then
   double wall_seconds = 0;
   std::size_t threads = 1;                    ///< that were used
+  std::chrono::steady_clock::time_point start{};   ///< native: what the links' series count from
   std::uint64_t slots_used = 0;               ///< times a slot was handed out; beyond the slots: reuse
   std::uint64_t slot_waits = 0;               ///< times new rays had to wait for free slots
   std::vector<ResourceStatistics> resources;  ///< empty without statistics

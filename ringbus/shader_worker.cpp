@@ -9,11 +9,13 @@ namespace {
 constexpr std::int64_t kGenerateBatch = 4096;
 }
 
-ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count)
+ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count,
+                           RetryLedger* ledger)
     : id_(id),
       machine_(machine),
       workload_(workload),
       count_(count),
+      ledger_(ledger),
       slots_(machine.config.topology.resources * machine.config.rays.slots_per_resource) {}
 
 bool ShaderWorker::step() {
@@ -33,6 +35,10 @@ bool ShaderWorker::shade() {
   // One addition for both: the count cannot pass through zero while rays are about to be submitted. Release:
   // pairs with the acquire in done(); the shading is finished for whoever sees zero.
   count_.outstanding.fetch_add(made - shaded, std::memory_order_release);
+  if (ledger_ != nullptr) {
+    ledger_->remove(*batch);
+    ledger_->add(rays_);
+  }
   machine_.completed.give_back(std::move(*batch));
   if (made > 0) machine_.control.submit(rays_);
   return true;
@@ -56,6 +62,7 @@ bool ShaderWorker::generate() {
     count_.emitted.fetch_add(made.rays, std::memory_order_relaxed);
     // Release: pairs with the acquire in done().
     if (made.finished) count_.source_finished.store(true, std::memory_order_release);
+    if (ledger_ != nullptr) ledger_->add(rays_);
     if (made.rays > 0) machine_.control.submit(rays_);
     any |= made.rays > 0;
     if (made.finished || static_cast<std::int64_t>(made.rays) < asked) break;

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/workload.h"
+#include "ringbus/faults/retry_ledger.h"
 #include "ringbus/machine.h"
 
 namespace carousel::ringbus {
@@ -26,7 +27,8 @@ struct RayCount {
 /// shade and slots to spare it asks the workload for rays of its own. One thread steps it.
 class ShaderWorker {
  public:
-  ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count);
+  /// `ledger` is told of every ray; null: none is kept.
+  ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, RetryLedger* ledger = nullptr);
 
   /// Returns whether anything was done.
   bool step();
@@ -39,6 +41,7 @@ class ShaderWorker {
   Machine& machine_;
   Workload& workload_;
   RayCount& count_;
+  RetryLedger* ledger_;
   std::int64_t slots_;
   RayBatch rays_;
 };

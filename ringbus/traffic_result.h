@@ -5,7 +5,7 @@
 
 #include "core/config.h"
 #include "ringbus/cycle/cycle_result.h"
-#include "ringbus/cycle/latency_histogram.h"
+#include "core/latency_histogram.h"
 
 namespace carousel::ringbus {
 
@@ -20,7 +20,7 @@ struct TrafficResult {
   std::uint64_t accepted = 0;                ///< packets delivered within the window
   std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
   std::uint64_t hops = 0;                    ///< links crossed by packets
-  cycle::LatencyHistogram latency;           ///< of the packets offered
+  LatencyHistogram latency;           ///< of the packets offered
   std::vector<cycle::LinkLedger> links;
   std::vector<std::uint64_t> link_packets;   ///< by link
   double wall_seconds = 0;

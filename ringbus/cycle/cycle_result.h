@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ringbus/cycle/clock.h"
-#include "ringbus/cycle/latency_histogram.h"
+#include "core/latency_histogram.h"
 #include "ringbus/cycle/trace.h"
 #include "ringbus/transform_account.h"
 

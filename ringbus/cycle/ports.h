@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "ringbus/cycle/channel.h"
 #include "ringbus/cycle/cycle_result.h"
 #include "ringbus/cycle/fifo.h"
 #include "ringbus/cycle/token.h"
+#include "ringbus/faults/link_fault_timer.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -54,6 +56,8 @@ class OutPortOf {
  public:
   OutPortOf(WireOf<T>& wire, Cycle latency, std::uint32_t depth, std::size_t places)
       : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
+  /// From now on the link has faults.
+  void fail(const LinkFaultTimer& faults) { faults_ = faults; }
 
   bool has_place() const { return queue_.size() + reserved_ < places_; }
   void reserve() { ++reserved_; }
@@ -114,6 +118,7 @@ class OutPortOf {
   Cycle busy() const { return busy_; }          ///< cycles in which the link moved something
   Cycle stalled() const { return stalled_; }    ///< cycles in which a packet waited for a credit
   std::uint64_t packets() const { return packets_; }
+  LinkFaultCounts faults() const { return faults_ ? faults_->counts() : LinkFaultCounts{}; }
 
  private:
   struct Entry {
@@ -124,10 +129,19 @@ class OutPortOf {
 
   void start(const Entry& entry, Cycle now) {
     const Cycle cycles = entry.token.link_cycles;
-    wire_->packets.send(now + latency_ + (entry.cut_through ? 0 : cycles - 1), entry.token);
-    --credits_;
+    Cycle arrival = now + latency_, busy = cycles;
     free_at_ = now + cycles;
-    busy_ += cycles;
+    if (faults_) [[unlikely]] {
+      const LinkFaultTimer::Delivery delivery = faults_->send(now, cycles, latency_);
+      arrival = delivery.arrival;
+      busy = delivery.busy;
+      free_at_ = delivery.link_free;
+    }
+    // In order even where a head overtakes the tail before it.
+    last_arrival_ = std::max(last_arrival_, arrival + (entry.cut_through ? 0 : cycles - 1));
+    wire_->packets.send(faults_ ? last_arrival_ : arrival + (entry.cut_through ? 0 : cycles - 1), entry.token);
+    --credits_;
+    busy_ += busy;
     ++packets_;
   }
 
@@ -138,6 +152,8 @@ class OutPortOf {
   Fifo<Entry> queue_;
   Cycle free_at_ = 0, busy_ = 0, stalled_ = 0, blocked_since_ = kNever;
   std::uint64_t packets_ = 0;
+  Cycle last_arrival_ = 0;
+  std::optional<LinkFaultTimer> faults_;
 };
 
 using Wire = WireOf<Token>;

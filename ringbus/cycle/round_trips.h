@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ringbus/cycle/latency_histogram.h"
+#include "core/latency_histogram.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -7,6 +7,7 @@
 #include "ringbus/cycle/cycle_result.h"
 #include "ringbus/cycle/level_cycles.h"
 #include "ringbus/cycle/unit_bank.h"
+#include "ringbus/faults/resource_fault.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -108,9 +109,11 @@ struct Tester {
 
 /// Those of a resource, at the levels of accuracy: the machine's, unless it has its own.
 inline TestersConfig testers_of(const Config& config, ResourceId id) {
+  TestersConfig testers = config.testers;
   for (const ResourceOverride& one : config.topology.overrides)
-    if (one.resource == id.value) return at_levels(one.testers, config.accuracy);
-  return at_levels(config.testers, config.accuracy);
+    if (one.resource == id.value) testers = one.testers;
+  slow_down(testers, config.faults, id);
+  return at_levels(testers, config.accuracy);
 }
 
 }  // namespace carousel::ringbus::cycle

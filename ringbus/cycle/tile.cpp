@@ -43,6 +43,9 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       contexts_(static_cast<std::size_t>(testers_of(machine.config, id).contexts)),
       trips_(static_cast<std::uint32_t>(id.value * machine.topology.directions() * machine.packets_per_direction()),
              machine.topology.directions() * machine.packets_per_direction()) {
+  const FaultsConfig::Resource& fault = machine.config.faults.resource;
+  pauses_ = fault.kind == FaultsConfig::Resource::Kind::kPause && fault.number == id.value;
+  pause_after_ = static_cast<std::uint64_t>(fault.after_rays);
   resource_.set_subtree_tracer(&walk_);
   resource_.set_transform_account(&transforms_);
   resource_.hold_askers(ports_.questions != nullptr);
@@ -124,6 +127,11 @@ void Tile::step(Cycle now) {
     again |= send(now);
   }
   hand_over(now);
+  if (pauses_ && sink_.statistics().rays_completed >= pause_after_) {
+    // The handler takes nothing up; what is in test is finished.
+    handler_free_ = std::max(handler_free_, now) + static_cast<Cycle>(machine_.config.faults.resource.cycles);
+    pauses_ = false;
+  }
   const TileState state = classify(now);
   clock_.enter(state, now);
   help_.tell(now, state != TileState::kTesting && state != TileState::kMemory);

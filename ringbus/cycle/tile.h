@@ -150,6 +150,8 @@ class Tile final : public ResourceAgent {
   std::vector<Context> contexts_;
   std::deque<NewRays> waiting_;
   bool storage_full_ = false;
+  bool pauses_ = false;            // once, when so many rays are complete
+  std::uint64_t pause_after_ = 0;
   HitBatch done_;                              // to be handed over
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;

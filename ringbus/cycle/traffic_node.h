@@ -6,7 +6,7 @@
 
 #include "core/config.h"
 #include "ringbus/cycle/agent.h"
-#include "ringbus/cycle/latency_histogram.h"
+#include "core/latency_histogram.h"
 #include "ringbus/cycle/ports.h"
 #include "ringbus/cycle/traffic_route.h"
 #include "ringbus/cycle/traffic_source.h"

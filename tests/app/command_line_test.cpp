@@ -33,8 +33,8 @@ struct BadUsage {
 TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
   for (const BadUsage& bad : std::vector<BadUsage>{
-           {{}, "error: expected a command: run, check, accuracy, inspect, compare, schema"},
-           {{"rnu", "a.yaml"}, "error: unknown command rnu; did you mean run?; known are run, check, accuracy, inspect, compare, schema"},
+           {{}, "error: expected a command: run, check, stress, accuracy, inspect, compare, schema"},
+           {{"rnu", "a.yaml"}, "error: unknown command rnu; did you mean run?; known are run, check, stress, accuracy, inspect, compare, schema"},
            {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
            {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},
            {{"run"}, "error: config is required"},

@@ -45,13 +45,50 @@ TEST(Link, CountsWhatItsSenderSaw) {
     std::array<PacketId, 3> got;
     EXPECT_EQ(link->try_receive(got), 3u);
     (void)link->try_send(std::span(three).first(1));   // 2 waiting
-    const LinkStatistics& s = link->statistics();
+    EXPECT_EQ(link->try_receive(got), 2u);
+    EXPECT_EQ(link->try_receive(got), 0u);
+    const LinkStatistics s = link->statistics();
+    EXPECT_EQ(s.batches, 3u);
+    EXPECT_EQ(s.full_stalls, 2u);
+    EXPECT_EQ(s.receives, 2u);
+    EXPECT_EQ(s.empty_stalls, 1u);
     EXPECT_EQ(s.packets, 5u);
     EXPECT_EQ(s.refusals, 5u);
     EXPECT_EQ(s.occupancy_max, 4u);
     EXPECT_EQ(s.occupancy_sum, 3u + 4u + 2u);
     EXPECT_EQ(s.samples, 3u);
   }
+}
+
+TEST(Link, OffItCountsNothing) {
+  const auto link = make_link(QueueKind::kSpscRing, 4, ResourceId(0), ResourceId(1));
+  link->count(false);
+  const std::array<PacketId, 1> one{PacketId(1)};
+  EXPECT_EQ(link->try_send(one), 1u);
+  EXPECT_EQ(link->statistics().packets, 0u);
+  EXPECT_EQ(link->statistics().samples, 0u);
+}
+
+TEST(OccupancySeries, JoinsNeighboursAndLosesNoSample) {
+  OccupancySeries series;
+  std::uint64_t sum = 0;
+  constexpr std::uint64_t kSamples = 256 * 1000;
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    series.add(i % 7 + i / 100000);
+    sum += i % 7 + i / 100000;
+  }
+  EXPECT_GE(series.entries().size(), 16u);
+  EXPECT_LT(series.entries().size(), 64u);
+  std::uint64_t seen = 0, added = 0, most = 0;
+  for (const OccupancySeries::Entry& entry : series.entries()) {
+    seen += entry.samples;
+    added += entry.sum;
+    EXPECT_GE(entry.most, most);   // it rises
+    most = entry.most;
+  }
+  EXPECT_LE(kSamples - seen, 256u * 32);   // what is open is less than an entry
+  EXPECT_LE(added, sum);
+  EXPECT_EQ(most, 8u);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // One test for every queue a link can be made of, whatever it is made of.
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <numeric>
@@ -9,9 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "ringbus/mutex_queue.h"
-#include "ringbus/spsc_ring.h"
-#include "ringbus/tbb_bounded_queue.h"
+#include "core/error.h"
+#include "ringbus/link.h"
+#include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus {
 namespace {
@@ -19,11 +21,16 @@ namespace {
 template <class Q>
 class Queue : public testing::Test {};
 
-// ThreadSanitizer sees nothing of what Debian's TBB does inside, and reports it.
+// ThreadSanitizer sees nothing of what Debian's TBB does inside, and does not model moodycamel's atomic fences.
 #ifdef __SANITIZE_THREAD__
-using Kinds = testing::Types<SpscRing<std::uint64_t>, MutexQueue<std::uint64_t>>;
+using Kinds = testing::Types<SpscRing<std::uint64_t>, MutexQueue<std::uint64_t>, MpmcRing<std::uint64_t>,
+                             AtomicQueue<std::uint64_t>, BoostSpscQueue<std::uint64_t>>;
+constexpr std::uint64_t kThreaded = 20000;
 #else
-using Kinds = testing::Types<SpscRing<std::uint64_t>, MutexQueue<std::uint64_t>, TbbBoundedQueue<std::uint64_t>>;
+using Kinds = testing::Types<SpscRing<std::uint64_t>, MutexQueue<std::uint64_t>, MpmcRing<std::uint64_t>,
+                             AtomicQueue<std::uint64_t>, BoostSpscQueue<std::uint64_t>,
+                             TbbBoundedQueue<std::uint64_t>, MoodycamelQueue<std::uint64_t>>;
+constexpr std::uint64_t kThreaded = 50000;
 #endif
 TYPED_TEST_SUITE(Queue, Kinds);
 
@@ -103,11 +110,7 @@ TYPED_TEST(Queue, BehavesAsADequeUnderRandomCalls) {
 
 // Two threads: nothing lost, nothing doubled, order kept, and what the producer wrote before is seen.
 TYPED_TEST(Queue, ConservesBetweenTwoThreads) {
-#ifdef __SANITIZE_THREAD__
-  constexpr std::uint64_t kValues = 20000;
-#else
-  constexpr std::uint64_t kValues = 50000;
-#endif
+  constexpr std::uint64_t kValues = kThreaded;
   for (const std::size_t capacity : {1u, 2u, 3u, 64u}) {
     TypeParam queue(capacity);
     std::vector<std::uint64_t> beside(kValues);   // plain memory that travels with the right to read it
@@ -158,6 +161,80 @@ TYPED_TEST(Queue, FreePlacesIsALowerBoundForTheProducer) {
     ASSERT_EQ(queue.try_push_n(std::span(batch).first(n)), n);
     sent += n;
     if (n == 0) std::this_thread::yield();
+  }
+}
+
+// Two producers and two consumers, where the kind allows it: each value once, each producer's in order, and what a
+// producer wrote before is seen.
+TYPED_TEST(Queue, ConservesAmongFourThreads) {
+  if constexpr (TypeParam::kProducers == Parties::kMany && TypeParam::kConsumers == Parties::kMany) {
+    constexpr std::uint64_t kEach = kThreaded / 4;
+    for (const std::size_t capacity : {1u, 2u, 5u, 64u}) {
+      TypeParam queue(capacity);
+      std::vector<std::uint64_t> beside(2 * kEach);
+      std::atomic<std::uint64_t> received{0};
+      std::array<std::vector<std::uint64_t>, 2> got;
+      {
+        std::vector<std::jthread> threads;
+        for (std::uint64_t p = 0; p < 2; ++p)
+          threads.emplace_back([&, p] {
+            std::minstd_rand random(static_cast<std::uint32_t>(p) + 1);
+            std::array<std::uint64_t, 8> batch{};
+            for (std::uint64_t next = 0; next < kEach;) {
+              const std::size_t n = std::min<std::uint64_t>(1 + random() % 8, kEach - next);
+              for (std::size_t k = 0; k < n; ++k) {
+                batch[k] = p * kEach + next + k;
+                beside[batch[k]] = batch[k] * 3;
+              }
+              const std::size_t pushed = queue.try_push_n(std::span(batch).first(n));
+              if (pushed == 0) std::this_thread::yield();
+              next += pushed;
+            }
+          });
+        for (std::size_t c = 0; c < 2; ++c)
+          threads.emplace_back([&, c] {
+            std::minstd_rand random(static_cast<std::uint32_t>(c) + 9);
+            std::array<std::uint64_t, 8> batch{};
+            while (received.load() < 2 * kEach) {
+              const std::size_t popped = queue.try_pop_n(std::span(batch).first(1 + random() % 8));
+              if (popped == 0) std::this_thread::yield();
+              received.fetch_add(popped);
+              for (std::size_t k = 0; k < popped; ++k)
+                got[c].push_back(beside[batch[k]] == batch[k] * 3 ? batch[k] : ~std::uint64_t{0});
+            }
+          });
+      }
+      std::vector<std::uint64_t> all;
+      for (const std::vector<std::uint64_t>& values : got) {
+        std::array<std::uint64_t, 2> next{0, 0};
+        for (const std::uint64_t value : values) {
+          ASSERT_LT(value, 2 * kEach) << "what the producer wrote before was not seen";
+          ASSERT_GE(value % kEach, next[value / kEach]) << "out of order";
+          next[value / kEach] = value % kEach + 1;
+        }
+        all.insert(all.end(), values.begin(), values.end());
+      }
+      std::sort(all.begin(), all.end());
+      ASSERT_EQ(all.size(), 2 * kEach);
+      for (std::uint64_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i);
+      EXPECT_EQ(queue.free_places(), capacity);
+    }
+  } else {
+    GTEST_SKIP() << "made for one producer and one consumer";
+  }
+}
+
+TEST(QueueKinds, AKindThatDoesNotServeSoManyIsRefusedByName) {
+  EXPECT_NO_THROW(require_parties(QueueKind::kSpscRing, "topology.link.queue", Parties::kOne, Parties::kOne));
+  EXPECT_NO_THROW(require_parties(QueueKind::kMpmcRing, "topology.link.queue", Parties::kMany, Parties::kMany));
+  try {
+    require_parties(QueueKind::kBoostSpsc, "topology.link.queue", Parties::kMany, Parties::kOne);
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.issues().at(0).key_path, "topology.link.queue");
+    EXPECT_EQ(error.issues().at(0).message,
+              "boost_spsc is made for one producer at a time and here are several; expected one of mpmc_ring, "
+              "tbb_bounded, moodycamel, atomic_queue, mutex");
   }
 }
 

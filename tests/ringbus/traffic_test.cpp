@@ -185,7 +185,7 @@ TEST(TrafficSource, BurstsAreAsLongAsAskedFor) {
 }
 
 TEST(LatencyHistogram, KeepsQuantilesWithinAThousandth) {
-  cycle::LatencyHistogram h, half;
+  LatencyHistogram h, half;
   for (cycle::Cycle latency = 1; latency <= 100000; ++latency) (latency % 2 ? h : half).add(latency);
   h.add(half);
   EXPECT_EQ(h.count(), 100000u);

@@ -49,7 +49,7 @@ std::vector<Plant> plants() {
          c.rays.slots_per_resource = 4;
          c.topology.link.latency_cycles = 20;
        }},
-      {"shading", [](Config& c) { c.shading = {1, {}, false, 200, ShadingConfig::Distribute::kFifoFill}; }},
+      {"shading", [](Config& c) { c.shading.workers = 1, c.shading.cycles_per_shade = 200; }},
   };
 }
 

@@ -1,18 +1,20 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstddef>
 #include <memory>
 #include <span>
 
-#include "ringbus/link_queue.h"
+#include "ringbus/queues/link_queue.h"
 
 namespace carousel::ringbus {
 
-/// Lamport's single-producer single-consumer ring (Lamport 1977) with each side caching the other's index
-/// (Lee et al. 2009, "FastForward" lineage; MCRingBuffer) and one index update a batch: publishing 32 values at
-/// once costs the cache line of the index one trip instead of 32.
+/// Lamport's single-producer single-consumer ring (Lamport, "Proving the correctness of multiprocess programs", 1977)
+/// with each side caching the other's index (Lee, Bu, Chandranmenon, "A lock-free, cache-efficient multi-core
+/// synchronization mechanism", MCRingBuffer, 2010) and one index update a batch: publishing 32 values at once costs
+/// the cache line of the index one trip instead of 32. Indices count on and never wrap in practice (2^64).
 template <class T>
 class SpscRing {
  public:
@@ -23,8 +25,33 @@ class SpscRing {
   explicit SpscRing(std::size_t capacity)
       : capacity_(capacity), mask_(std::bit_ceil(capacity) - 1), cells_(std::make_unique<T[]>(mask_ + 1)) {}
 
-  bool try_push(const T& value) { return try_push_n({&value, 1}) == 1; }
-  bool try_pop(T& value) { return try_pop_n({&value, 1}) == 1; }
+  /// Producer only.
+  bool try_push(const T& value) {
+    const std::size_t tail = producer_.index.load(std::memory_order_relaxed);   // own index
+    if (tail - producer_.other == capacity_) {
+      // Acquire: pairs with the release in try_pop and try_pop_n; cells seen as free have been read.
+      producer_.other = consumer_.index.load(std::memory_order_acquire);
+      if (tail - producer_.other == capacity_) return false;
+    }
+    cells_[tail & mask_] = value;
+    // Release: pairs with the acquire in try_pop and try_pop_n; whoever sees the index sees the cell.
+    producer_.index.store(tail + 1, std::memory_order_release);
+    return true;
+  }
+
+  /// Consumer only.
+  bool try_pop(T& value) {
+    const std::size_t head = consumer_.index.load(std::memory_order_relaxed);   // own index
+    if (head == consumer_.other) {
+      // Acquire: pairs with the release in try_push and try_push_n.
+      consumer_.other = producer_.index.load(std::memory_order_acquire);
+      if (head == consumer_.other) return false;
+    }
+    value = cells_[head & mask_];
+    // Release: pairs with the acquire in try_push and try_push_n; the cell may be overwritten now.
+    consumer_.index.store(head + 1, std::memory_order_release);
+    return true;
+  }
 
   /// Producer only.
   std::size_t try_push_n(std::span<const T> values) {
@@ -67,7 +94,7 @@ class SpscRing {
     std::size_t other = 0;               // the other side's index as last seen
   };
   Side producer_, consumer_;
-  alignas(128) std::size_t capacity_;
+  alignas(128) std::size_t capacity_;   // read by both, written by none
   std::size_t mask_;
   std::unique_ptr<T[]> cells_;
 };

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <span>
 
-#include "ringbus/link_queue.h"
+#include "ringbus/queues/link_queue.h"
 
 namespace carousel::ringbus {
 

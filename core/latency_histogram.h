@@ -1,17 +1,17 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "ringbus/cycle/clock.h"
+namespace carousel {
 
-namespace carousel::ringbus::cycle {
-
-/// Counts of latencies: each by itself up to 2048 cycles, from there on 1024 classes to a doubling (within 0.1 %).
+/// Counts of latencies in cycles or nanoseconds, log-linear: each value by itself up to 2048, from there on 1024 classes
+/// to a doubling (within 0.1 %). Grows with the largest value.
 class LatencyHistogram {
  public:
-  void add(Cycle latency) {
+  void add(std::uint64_t latency) {
     const std::size_t i = index(latency);
     if (i >= counts_.size()) counts_.resize(i + 1);
     ++counts_[i];
@@ -28,11 +28,11 @@ class LatencyHistogram {
   }
 
   std::uint64_t count() const { return count_; }
-  Cycle sum() const { return sum_; }
-  Cycle max() const { return max_; }
+  std::uint64_t sum() const { return sum_; }
+  std::uint64_t max() const { return max_; }
   double mean() const { return count_ == 0 ? 0 : static_cast<double>(sum_) / static_cast<double>(count_); }
   /// The least latency that at least the part `q` of all does not exceed, or its class's least; 0 for none.
-  Cycle quantile(double q) const {
+  std::uint64_t quantile(double q) const {
     const double wanted = q * static_cast<double>(count_);
     std::uint64_t seen = 0;
     for (std::size_t i = 0; i < counts_.size(); ++i) {
@@ -47,12 +47,12 @@ class LatencyHistogram {
   static constexpr int kBits = 10;   // of a class above the exact ones
   static constexpr std::size_t kClasses = std::size_t{1} << kBits;
 
-  static std::size_t index(Cycle latency) {
+  static std::size_t index(std::uint64_t latency) {
     if (latency < 2 * kClasses) return latency;
     const int shift = std::bit_width(latency) - 1 - kBits;
     return static_cast<std::size_t>(shift) * kClasses + (latency >> shift);
   }
-  static Cycle least(std::size_t i) {
+  static std::uint64_t least(std::size_t i) {
     if (i < 2 * kClasses) return i;
     const std::size_t shift = i / kClasses - 1;
     return (i - shift * kClasses) << shift;
@@ -60,7 +60,7 @@ class LatencyHistogram {
 
   std::vector<std::uint64_t> counts_;
   std::uint64_t count_ = 0;
-  Cycle sum_ = 0, max_ = 0;
+  std::uint64_t sum_ = 0, max_ = 0;
 };
 
-}  // namespace carousel::ringbus::cycle
+}  // namespace carousel

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "ringbus/faults/fault_dice.h"
+
+namespace carousel::ringbus {
+
+/// The sending end of a queue that loses, doubles, damages, delays and reorders what is put into it. One thread's.
+/// Frame has flip(bit) to be damaged by.
+template <class Queue, class Frame>
+class FaultyWire {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  FaultyWire(Queue& queue, const FaultsConfig& config, std::uint64_t stream, std::chrono::nanoseconds delay)
+      : queue_(queue), dice_(config, stream), delay_(delay) {}
+
+  bool has_room() { return queue_.free_places() > 1; }   // one may come twice
+
+  void put(Frame frame) {
+    const FrameFate fate = dice_.next(counts_);
+    if (!fate.drop) {
+      if (fate.corrupt) frame.flip(fate.bits);
+      if (fate.delay)
+        late_.push_back({Clock::now() + delay_, frame});
+      else if (fate.reorder)
+        after_next_.push_back(frame);
+      else
+        send(frame);
+      if (fate.duplicate) send(frame);
+      if (fate.reorder && !fate.delay) return;   // the next one goes first
+    }
+    for (const Frame& one : after_next_) send(one);
+    after_next_.clear();
+  }
+  /// Lets go of what has been late long enough, and of what waits for a next one that may not come.
+  void release() {
+    if (!after_next_.empty() && ++quiet_ > 8) {
+      for (const Frame& one : after_next_) send(one);
+      after_next_.clear();
+      quiet_ = 0;
+    }
+    if (late_.empty()) return;
+    const Clock::time_point now = Clock::now();
+    std::erase_if(late_, [&](const Late& one) {
+      if (one.due > now) return false;
+      send(one.frame);
+      return true;
+    });
+  }
+  const LinkFaultCounts& counts() const { return counts_; }
+
+ private:
+  struct Late {
+    Clock::time_point due;
+    Frame frame;
+  };
+  // A full queue loses it, as one more fault of the wire.
+  void send(const Frame& frame) { counts_.dropped += !queue_.try_push(frame); }
+
+  Queue& queue_;
+  FaultDice dice_;
+  std::chrono::nanoseconds delay_;
+  std::vector<Frame> after_next_;
+  int quiet_ = 0;   // releases since something waits for a next one
+  std::vector<Late> late_;
+  LinkFaultCounts counts_;
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "core/config.h"
+#include "core/ids.h"
+
+namespace carousel::ringbus {
+
+/// A resource of the native engine that pauses, or is slower than the others: it decides which of its steps are taken.
+/// While it rests, its port rests too; packets wait in its links.
+class ResourceFault {
+ public:
+  /// That of a resource, if it has one.
+  static std::optional<ResourceFault> of(const Config& config, ResourceId id) {
+    const FaultsConfig::Resource& fault = config.faults.resource;
+    using Kind = FaultsConfig::Resource::Kind;
+    if ((fault.kind != Kind::kPause && fault.kind != Kind::kSlow) || fault.number != id.value) return std::nullopt;
+    return ResourceFault(config);
+  }
+
+  /// Takes the step unless the resource rests; returns what the step returns.
+  template <class Step>
+  bool step(std::uint64_t rays_completed, const Step& take) {
+    using Kind = FaultsConfig::Resource::Kind;
+    if (rays_completed < after_ || (kind_ == Kind::kPause && paused_ && Clock::now() >= until_)) return take();
+    if (kind_ == Kind::kPause) {
+      if (!paused_) until_ = Clock::now() + pause_;
+      paused_ = true;
+      return false;
+    }
+    const Clock::time_point begin = Clock::now();
+    if (begin < until_) return false;
+    const bool moved = take();
+    if (moved) until_ = begin + factor_ * (Clock::now() - begin);
+    return moved;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  explicit ResourceFault(const Config& config)
+      : kind_(config.faults.resource.kind), after_(static_cast<std::uint64_t>(config.faults.resource.after_rays)),
+        pause_(config.faults.resource.cycles * 1000 / config.engine.clock_mhz), factor_(config.faults.resource.factor) {}
+
+  FaultsConfig::Resource::Kind kind_;
+  std::uint64_t after_;
+  std::chrono::nanoseconds pause_;
+  std::int64_t factor_;
+  bool paused_ = false;
+  Clock::time_point until_{};   // it rests until then
+};
+
+/// Under virtual time a slow resource has slow testers, from the beginning.
+inline void slow_down(TestersConfig& testers, const FaultsConfig& faults, ResourceId id) {
+  const FaultsConfig::Resource& fault = faults.resource;
+  if (fault.kind != FaultsConfig::Resource::Kind::kSlow || fault.number != id.value) return;
+  for (TesterUnits* units : {&testers.box, &testers.triangle, &testers.plane, &testers.bundle, &testers.transform}) {
+    units->interval_cycles *= fault.factor;
+    units->latency_cycles *= fault.factor;
+  }
+}
+
+}  // namespace carousel::ringbus

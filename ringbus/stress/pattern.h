@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace carousel::ringbus::stress {
+
+enum class Pattern {
+  kStream,          ///< one producer, one consumer, a message a call
+  kBatches,         ///< the same, 32 messages a call
+  kBurst,           ///< 32 at once, then a pause
+  kPingPong,        ///< one message to and fro
+  kCirculation,     ///< a ring of four: each message visits everyone and returns
+  kHotspot,         ///< four producers, one consumer
+  kManyToMany,      ///< two producers, two consumers, one queue
+  kSlowConsumer,    ///< a pause after every message taken
+  kStalledConsumer, ///< the consumer stops now and then for milliseconds
+  kOversubscribed,  ///< more threads than cores
+  kCapacity1,
+  kCapacity2,
+  kRandomPauses,    ///< both sides yield and sleep at random; batches of random length
+};
+
+struct PatternName {
+  Pattern pattern;
+  std::string_view name;
+};
+inline constexpr std::array kPatterns{
+    PatternName{Pattern::kStream, "stream"},
+    PatternName{Pattern::kBatches, "batches"},
+    PatternName{Pattern::kBurst, "burst"},
+    PatternName{Pattern::kPingPong, "ping_pong"},
+    PatternName{Pattern::kCirculation, "circulation"},
+    PatternName{Pattern::kHotspot, "hotspot"},
+    PatternName{Pattern::kManyToMany, "many_to_many"},
+    PatternName{Pattern::kSlowConsumer, "slow_consumer"},
+    PatternName{Pattern::kStalledConsumer, "stalled_consumer"},
+    PatternName{Pattern::kOversubscribed, "oversubscribed"},
+    PatternName{Pattern::kCapacity1, "capacity_1"},
+    PatternName{Pattern::kCapacity2, "capacity_2"},
+    PatternName{Pattern::kRandomPauses, "random_pauses"},
+};
+
+constexpr std::string_view pattern_name(Pattern pattern) {
+  for (const PatternName& entry : kPatterns)
+    if (entry.pattern == pattern) return entry.name;
+  return {};
+}
+constexpr std::optional<Pattern> pattern_of(std::string_view name) {
+  for (const PatternName& entry : kPatterns)
+    if (entry.name == name) return entry.pattern;
+  return std::nullopt;
+}
+
+}  // namespace carousel::ringbus::stress

@@ -1,0 +1,64 @@
+#include "ringbus/stress/trial.h"
+
+#include <malloc.h>
+
+#include <fmt/format.h>
+
+#include "ringbus/stress/alone.h"
+#include "ringbus/stress/trials.h"
+
+namespace carousel::ringbus::stress {
+
+namespace {
+
+std::size_t heap_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+template <std::size_t kBytes>
+TrialResult run_sized(const QueueUnderTest& queue, const TrialOptions& options) {
+  const std::size_t capacity = options.pattern == Pattern::kCapacity1   ? 1
+                               : options.pattern == Pattern::kCapacity2 ? 2
+                                                                        : options.capacity;
+  const std::size_t before = heap_bytes();
+  const auto alone = queue.make<kBytes>()(capacity);
+  Findings found = check_alone(*alone, capacity);
+  const std::size_t after = heap_bytes();
+  TrialResult out;
+  switch (options.pattern) {
+    case Pattern::kPingPong: out = run_ping_pong<kBytes>(queue, options); break;
+    case Pattern::kCirculation: out = run_circulation<kBytes>(queue, options); break;
+    default: out = run_stream<kBytes>(queue, options);
+  }
+  found += out.findings;
+  out.findings = std::move(found);
+  out.memory_bytes = after > before ? after - before : 0;
+  return out;
+}
+
+}  // namespace
+
+void note_ending(Findings& findings, Crew::Ending ending, const TrialOptions& options) {
+  if (ending == Crew::Ending::kDone) return;
+  findings.stuck = true;
+  if (!findings.detail.empty()) findings.detail += "; ";
+  findings.detail += ending == Crew::Ending::kStuck
+                         ? fmt::format("nothing moved for {} ms", options.stuck_after.count())
+                         : fmt::format("a call had not returned after {} ms", 2 * options.stuck_after.count());
+}
+
+bool pattern_fits(const QueueUnderTest& queue, Pattern pattern) {
+  return pattern != Pattern::kManyToMany ||
+         (queue.producers == Parties::kMany && queue.consumers == Parties::kMany);
+}
+
+TrialResult run_trial(const QueueUnderTest& queue, const TrialOptions& options) {
+  switch (options.message_bytes) {
+    case kSmall: return run_sized<kSmall>(queue, options);
+    case kLine: return run_sized<kLine>(queue, options);
+    default: return run_sized<kPacket>(queue, options);
+  }
+}
+
+}  // namespace carousel::ringbus::stress

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "ringbus/stress/crew.h"
+#include "ringbus/stress/trial.h"
+
+namespace carousel::ringbus::stress {
+
+// The kinds of trial behind run_trial(): producers and consumers; two that answer each other; a ring.
+template <std::size_t kBytes>
+TrialResult run_stream(const QueueUnderTest& queue, const TrialOptions& options);
+template <std::size_t kBytes>
+TrialResult run_ping_pong(const QueueUnderTest& queue, const TrialOptions& options);
+template <std::size_t kBytes>
+TrialResult run_circulation(const QueueUnderTest& queue, const TrialOptions& options);
+
+/// Tells why a crew ended otherwise than it should.
+void note_ending(Findings& findings, Crew::Ending ending, const TrialOptions& options);
+
+}  // namespace carousel::ringbus::stress

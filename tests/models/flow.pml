@@ -1,0 +1,73 @@
+/* The rules that keep a ring of bounded links moving (ringbus/deadlock.h, ringbus/native_port.h): R resources, a link of
+ * DEPTH places from each to the next, a hand at each for what it has taken in and not yet sent on. A packet goes round
+ * and is taken off by its owner. Ring traffic is *not* served first here: the schedule may inject whenever the rule
+ * allows.
+ *
+ *   -DRULE=1  credits: at most DEPTH packets of a resource are out
+ *   -DRULE=2  bubble: a packet enters only where two places of the link are free
+ *   -DRULE=0  neither: must deadlock (the planted fault)
+ *   -DGREEDY_HAND with bubble: takes in as much as a link holds, whatever the link onward has room for. Each hand then
+ *   takes places that the bubble has been counted on for, and three resources can fill the ring in spite of it. */
+#ifndef R
+#define R 3
+#endif
+#ifndef DEPTH
+#define DEPTH 2
+#endif
+#ifndef RULE
+#define RULE 1
+#endif
+#ifndef MOST
+#define MOST (DEPTH + 2)   /* packets a resource has at all */
+#endif
+#if RULE == 2 && !defined(GREEDY_HAND)
+/* No more than the link onward takes at once, which only this resource fills: nothing stays in hand but the last. */
+#define TAKES (len(link[r]) < DEPTH -> DEPTH - len(link[r]) : 1)
+#else
+#define TAKES DEPTH
+#endif
+
+#if RULE == 1
+#define MAY_ENTER out[r] < DEPTH
+#elif RULE == 2
+#define MAY_ENTER len(link[r]) + 2 <= DEPTH
+#else
+#define MAY_ENTER true
+#endif
+
+chan link[R] = [DEPTH] of { byte };   /* from resource r to the next; what travels is the owner */
+byte out[R];                          /* packets of r that are under way */
+
+proctype resource(byte r) {
+  chan hand = [DEPTH] of { byte };
+  byte owner, before, k, most;
+  before = (r + R - 1) % R;
+  do
+  /* sends on what is in hand */
+  :: atomic { nempty(hand) && nfull(link[r]) -> hand?owner; link[r]!owner }
+  /* takes in, only with empty hands: a batch of any length up to what the hand may hold */
+  :: empty(hand) && nempty(link[before]) ->
+     k = 0;
+     most = TAKES;
+     do
+     :: k < most && nempty(link[before]) ->
+        atomic {
+          link[before]?owner;
+          if
+          :: owner == r -> out[r]--
+          :: else -> hand!owner
+          fi;
+          k++
+        }
+     :: k > 0 -> break
+     od
+  /* sends a packet of its own; nothing in hand waits behind it */
+  :: atomic { empty(hand) && nfull(link[r]) && out[r] < MOST && MAY_ENTER -> out[r]++; link[r]!r }
+  od
+}
+
+init {
+  byte k;
+  atomic { k = 0; do :: k < R -> run resource(k); k++ :: else -> break od }
+}
+/* Nobody can move: Spin's invalid end state is the deadlock. */
