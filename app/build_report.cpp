@@ -277,6 +277,8 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.config = config_json(config);
   r.scene = summary(prepared);
   r.host = host(prepared, result);
+  r.host.raster_seconds = frame.raster_seconds();
+  r.raster = frame.raster();
   if (result.rays_restarted > 0) r.host.recovery_seconds = result.recovery_seconds;
   const bool alone = r.host.threads == 1;
   r.engine.kind = enum_name(config.engine.kind);

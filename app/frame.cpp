@@ -1,6 +1,9 @@
 #include "app/frame.h"
 
+#include <chrono>
+
 #include "app/memory_need.h"
+#include "core/executor.h"
 #include "report/ray_csv.h"
 #include "shading/image_file.h"
 
@@ -14,6 +17,13 @@ Frame::Frame(const Prepared& prepared, const Config& config) {
     first_rays_ = list_->size();
   } else {
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);
+    if (config.primary == Primary::kRaster) {
+      const auto start = std::chrono::steady_clock::now();
+      first_hits_ = shading::rasterize_first_hits(prepared.scene, config, prepared.alpha_test.get(),
+                                                  *make_tbb_executor(prepared.threads));
+      tracer_->set_first_hits(&first_hits_);
+      raster_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
     first_rays_ = static_cast<std::uint64_t>(config.image.width * config.image.height * config.image.samples);
   }
 }
@@ -45,6 +55,12 @@ std::string Frame::hits_digest() const {
 
 std::optional<std::string> Frame::image_digest() const {
   return tracer_ ? std::optional(tracer_->image_digest()) : std::nullopt;
+}
+
+std::optional<report::Raster> Frame::raster() const {
+  if (!raster_seconds_) return std::nullopt;
+  const shading::FirstHits::Counts& c = first_hits_.counts;
+  return report::Raster{c.triangles, c.binned, c.tested, c.asked, c.hits, c.misses, c.left_to_rays};
 }
 
 void Frame::write_images(const std::filesystem::path& folder) const {

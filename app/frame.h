@@ -9,7 +9,9 @@
 
 #include "app/prepare.h"
 #include "app/ray_list_workload.h"
+#include "report/report.h"
 #include "shading/path_tracer.h"
+#include "shading/raster/first_hits.h"
 
 namespace carousel::app {
 
@@ -33,10 +35,15 @@ class Frame {
   std::string hits_digest() const;
   /// Absent when the rays make no picture.
   std::optional<std::string> image_digest() const;
+  /// What the rasteriser did, and how long it took; absent when rays found the first hits.
+  std::optional<report::Raster> raster() const;
+  std::optional<double> raster_seconds() const { return raster_seconds_; }
   /// image.png and image.exr, if there is a picture.
   void write_images(const std::filesystem::path& folder) const;
 
  private:
+  std::optional<double> raster_seconds_;
+  shading::FirstHits first_hits_;                // of the raster pass; the tracer reads them
   std::unique_ptr<shading::PathTracer> tracer_;  // one of the two
   std::unique_ptr<RayListWorkload> list_;
   std::uint64_t first_rays_;

@@ -38,6 +38,7 @@ MemoryNeed frame_need(const Config& config, bool keep_hits) {
       paths_in_flight(config) * (sizeof(shading::PathState) + depth * sizeof(Vec3) + sizeof(std::uint32_t));
   // Three sums of 8 bytes, the linear picture of 12, the display picture of 3.
   need.film = frame_paths(config) / static_cast<std::uint64_t>(config.image.samples) * (24 + 12 + 3);
+  if (config.primary == Primary::kRaster) need.film += frame_paths(config) * sizeof(Hit);
   if (keep_hits) need.hits = frame_paths(config) * sizeof(report::HitRow);
   return need;
 }

@@ -38,6 +38,7 @@ enum class TriangleLevel { kFast, kWatertight, kDouble, kExact };
 enum class BoxLevel { kPlain, kConservative, kDouble };
 enum class TransformLevel { kInverseMatrix, kTwoStep, kTwoStepDouble, kTransposeIfRotation };
 enum class SpawnOffset { kEpsilon, kUlp, kBound };
+enum class Primary { kRays, kRaster };
 enum class Verify { kNone, kReference };
 
 struct SkyConfig {
@@ -283,6 +284,7 @@ struct Config {
   Verify verify = Verify::kNone;
   WorkloadConfig workload;
   std::map<std::string, std::vector<std::string>> vary;   ///< key path to values; for sweep
+  Primary primary = Primary::kRays;
 };
 
 }  // namespace carousel

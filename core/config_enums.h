@@ -120,6 +120,7 @@ CAROUSEL_ENUM(TrafficConfig::Pattern, {TrafficConfig::Pattern::kUniform, "unifor
               {TrafficConfig::Pattern::kTornado, "tornado"},
               {TrafficConfig::Pattern::kNeighbour, "neighbour"},
               {TrafficConfig::Pattern::kHotspot, "hotspot"}, {TrafficConfig::Pattern::kBursty, "bursty"});
+CAROUSEL_ENUM(Primary, {Primary::kRays, "rays"}, {Primary::kRaster, "raster"});
 CAROUSEL_ENUM(FaultsConfig::Resource::Kind, {FaultsConfig::Resource::Kind::kNone, "none"},
               {FaultsConfig::Resource::Kind::kPause, "pause"}, {FaultsConfig::Resource::Kind::kSlow, "slow"},
               {FaultsConfig::Resource::Kind::kStop, "stop"});

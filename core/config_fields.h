@@ -363,6 +363,9 @@ void describe(V& v, Config& c) {
   v.section("testers", c.testers, "test units of a resource; a bare number is units");
   v.section("memory", c.memory, "caches and memory of the simulated machine");
   v.section("shading", c.shading, "shader workers and effects");
+  v.choice("primary", c.primary,
+           "how what the camera sees first is found: by its rays, or by a rasteriser (pinhole cameras only) that leaves "
+           "the other rays to the machine");
   v.section("faults", c.faults, "what goes wrong on request");
   v.choice("verify", c.verify, "reference: trace every ray again, depth first, and compare");
   v.workload("workload", c.workload, "rays of the picture, rays of a file, or synthetic traffic");

@@ -24,6 +24,7 @@ class Rules {
 
   std::vector<ConfigIssue> check() {
     one_scene();
+    raster_needs_a_pinhole();
     built_shape();
     stored_transform_fits();
     built_planes_and_bundles();
@@ -62,6 +63,15 @@ class Rules {
     }
     if (!c.scene.file.empty() && c.scene.builtin)
       issue("scene.builtin", "expected either file or builtin, found both");
+  }
+
+  void raster_needs_a_pinhole() {
+    if (c.primary != Primary::kRaster) return;
+    if (c.camera.aperture > 0)
+      issue("camera.aperture", fmt::format("primary: raster needs a pinhole; expected 0, or primary: rays, found {}",
+                                           c.camera.aperture));
+    if (c.workload.kind != WorkloadConfig::Kind::kRays)
+      issue("primary", "this workload has no camera; expected rays, found raster");
   }
 
   bool cycle() const { return c.engine.kind == EngineKind::kCycle; }

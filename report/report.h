@@ -257,8 +257,13 @@ struct Host {
   std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
   std::string simd;
   Machine machine;
-  std::optional<double> plane_seconds{};
-  std::optional<double> recovery_seconds{};
+  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{};
+};
+
+/// The pass that stands in for camera rays.
+struct Raster {
+  std::uint64_t triangles = 0, binned = 0, tested = 0, asked = 0;
+  std::uint64_t hits = 0, misses = 0, left_to_rays = 0;
 };
 
 struct Report {
@@ -269,6 +274,7 @@ struct Report {
   SceneSummary scene;
   Engine engine;
   Rays rays;
+  std::optional<Raster> raster;
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
   std::optional<CullPlanes> cull_planes;

@@ -393,11 +393,23 @@ void describe(V& v, Host& r) {
   v.field("scene_seconds", r.scene_seconds, "s", "to load or generate the scene");
   v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure, without cull planes");
   v.field("plane_seconds", r.plane_seconds, "s", "to find its cull planes");
+  v.field("raster_seconds", r.raster_seconds, "s", "to rasterise what the camera sees first");
   v.field("recovery_seconds", r.recovery_seconds, "s", "from the last sign of life of a resource that stopped until its rays began again");
   v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");
   v.field("simd", r.simd, "", "instruction set of the test kernels");
   v.section("machine", r.machine, "what it ran on");
+}
+
+template <class V>
+void describe(V& v, Raster& r) {
+  v.field("triangles", r.triangles, "triangles", "of all instances");
+  v.field("binned", r.binned, "triangles", "sorted into tiles, once for each tile");
+  v.field("tested", r.tested, "tests", "edge functions of a triangle at a sample");
+  v.field("asked", r.asked, "samples", "at which a cut-out or veil was asked");
+  v.field("hits", r.hits, "samples", "that meet a triangle");
+  v.field("misses", r.misses, "samples", "that meet nothing");
+  v.field("left_to_rays", r.left_to_rays, "samples", "for which camera rays were sent: near procedural primitives");
 }
 
 template <class V>
@@ -409,6 +421,7 @@ void describe(V& v, Report& r) {
   v.section("scene", r.scene, "what was rendered");
   v.section("engine", r.engine, "how it was simulated");
   v.section("rays", r.rays, "rays; emitted = completed + lost");
+  v.section("raster", r.raster, "what found the camera's first hits instead of its rays; absent with primary: rays");
   v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
   v.section("tests", r.tests, "tests done");
   v.section("cull_planes", r.cull_planes, "what cull planes take and what they spare, when there are any");

@@ -204,6 +204,12 @@ std::string report_table(const Report& report) {
                                                seconds_text(report.host.recovery_seconds.value_or(0))));
   table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera),
              grouped(rays.by_kind.bounce), grouped(rays.by_kind.shadow));
+  if (report.raster) {
+    const Raster& raster = *report.raster;
+    table.line("raster", "{} triangles seen {} times by tiles   {} hits   {} left to rays   {}", grouped(raster.triangles),
+               grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
+               seconds_text(report.host.raster_seconds.value_or(0)));
+  }
   table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
              scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
              seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));

@@ -82,11 +82,28 @@ std::size_t size_of(Component component) {
   return 4;
 }
 
-AccessorTable::AccessorTable(const GltfDocument& document, const GltfModel& model) : document_(document) {
+namespace {
+
+/// The bytes of a buffer view, which check_links found to lie inside its buffer; none where that has no data.
+std::span<const unsigned char> bytes_of(const Json& view, const GltfModel& model) {
+  const auto buffer = view["buffer"].get<std::size_t>();
+  if (!model.buffer_has_data[buffer]) return {};
+  return std::span<const unsigned char>(model.model.buffers[buffer].data)
+      .subspan(static_cast<std::size_t>(view.value("byteOffset", std::uint64_t{0})),
+               static_cast<std::size_t>(view["byteLength"].get<std::uint64_t>()));
+}
+
+}  // namespace
+
+AccessorTable::AccessorTable(const GltfDocument& document, const GltfModel& model,
+                             const std::map<std::size_t, Bytes>& unpacked)
+    : document_(document) {
   const Json& json = document.json;
-  for (std::size_t i = 0; i < model.model.buffers.size(); ++i) {
-    const std::vector<unsigned char>& data = model.model.buffers[i].data;
-    buffers_.push_back(model.buffer_has_data[i] ? std::span(data) : std::span<const unsigned char>());
+  const std::size_t views = json.contains("bufferViews") ? json["bufferViews"].size() : 0;
+  for (std::size_t i = 0; i < views; ++i) {
+    const auto entry = unpacked.find(i);
+    views_.push_back(entry != unpacked.end() ? std::span<const unsigned char>(entry->second)
+                                             : bytes_of(json["bufferViews"][i], model));
   }
   if (json.contains("extensionsUsed")) {
     const Json& used = json["extensionsUsed"];
@@ -152,12 +169,16 @@ AccessorTable::Strided AccessorTable::locate(std::size_t view, std::uint64_t off
                              " on reach outside buffer view " + std::to_string(view) + ", which has " +
                              std::to_string(length) + " bytes");
   }
-  return {json["buffer"].get<std::size_t>(),
-          static_cast<std::size_t>(json.value("byteOffset", std::uint64_t{0}) + offset), stride};
+  if (views_[view].empty()) return {nullptr, stride};
+  return {views_[view].data() + offset, stride};
 }
 
-const unsigned char* AccessorTable::element(const Strided& where, std::uint64_t index) const {
-  return buffers_[where.buffer].data() + where.offset + where.stride * static_cast<std::size_t>(index);
+void AccessorTable::replace(std::size_t index, Bytes bytes) {
+  Accessor& accessor = accessors_[index];
+  replacements_.push_back(std::move(bytes));
+  accessor.base = {replacements_.back().data(), element_size(accessor.type, accessor.component)};
+  accessor.sparse.reset();
+  accessor.views.clear();
 }
 
 std::vector<std::uint32_t> AccessorTable::sparse_indices(std::size_t index) const {
@@ -166,7 +187,7 @@ std::vector<std::uint32_t> AccessorTable::sparse_indices(std::size_t index) cons
   const std::string path = json_path(json_path("/accessors", index), "sparse") + "/indices";
   std::vector<std::uint32_t> out(static_cast<std::size_t>(sparse.count));
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = to_integer(element(sparse.indices, i), sparse.index_component);
+    out[i] = to_integer(sparse.indices.first + i * sparse.indices.stride, sparse.index_component);
     if (out[i] >= accessor.count) {
       document_.fail(path, "index " + std::to_string(out[i]) + " at position " + std::to_string(i) +
                                " is beyond the accessor's " + std::to_string(accessor.count) + " elements");
@@ -185,7 +206,7 @@ std::vector<T> AccessorTable::read(std::size_t index, const Convert& convert) co
   const std::size_t size = size_of(accessor.component);
   std::vector<T> out(static_cast<std::size_t>(accessor.count) * width);  // zero where there is no base
   const auto put = [&](const Strided& where, std::uint64_t from, std::size_t to) {
-    const unsigned char* at = element(where, from);
+    const unsigned char* at = where.first + where.stride * static_cast<std::size_t>(from);
     for (std::size_t c = 0; c < width; ++c) out[to * width + c] = convert(at + c * size, accessor);
   };
   if (accessor.base) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "scene/gltf_accessor.h"
-#include "scene/gltf_checks.h"
 
 namespace carousel::scene {
 
@@ -25,7 +24,7 @@ const char* name_of(Component component) {
   return "?";
 }
 
-void AccessorTable::check_use(std::size_t index, AccessorUse use, const std::string& path) const {
+void AccessorTable::check_type(std::size_t index, AccessorUse use, const std::string& path) const {
   const Accessor& accessor = accessors_[index];
   struct Allowed {
     std::vector<std::string> types;
@@ -75,6 +74,11 @@ void AccessorTable::check_use(std::size_t index, AccessorUse use, const std::str
     document_.fail(path, quantized ? found + ", which needs the extension KHR_mesh_quantization"
                                    : "the component type is not allowed here: " + found);
   }
+}
+
+void AccessorTable::check_use(std::size_t index, AccessorUse use, const std::string& path) const {
+  check_type(index, use, path);
+  const Accessor& accessor = accessors_[index];
   // Zeros need no bytes in the file, so nothing else bounds how many of them an accessor asks for.
   const std::uint64_t stored = accessor.sparse ? accessor.sparse->count : 0;
   if (!accessor.base && accessor.count > 65536 + 1024 * stored) {
@@ -82,10 +86,9 @@ void AccessorTable::check_use(std::size_t index, AccessorUse use, const std::str
                              " elements and stores " + std::to_string(stored));
   }
   for (const std::size_t view : accessor.views) {
-    const Json& json = document_.json["bufferViews"][view];
-    if (buffers_[json["buffer"].get<std::size_t>()].empty()) {
+    if (views_[view].empty()) {
       document_.fail(path, "the data of accessor " + std::to_string(index) + " is not in the file: buffer " +
-                               json["buffer"].dump() + " holds none" + compression_note(json));
+                               document_.json["bufferViews"][view]["buffer"].dump() + " holds none");
     }
   }
 }

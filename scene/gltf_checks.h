@@ -15,8 +15,4 @@ void check_extensions(const GltfDocument& document, const WarningSink& warn);
 /// channels name a sampler, and the nodes form trees of which scenes name the roots. Throws SceneError.
 void check_links(const GltfDocument& document);
 
-/// " (compressed with ...)" when a compression extension of the buffer view or primitive `owner` explains
-/// why there is no data, or nothing.
-std::string compression_note(const Json& owner);
-
 }  // namespace carousel::scene

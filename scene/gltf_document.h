@@ -40,6 +40,8 @@ class ImportBudget {
       : document_(document), left_((std::uint64_t{1} << 20) + 16 * bytes_read) {}
   /// Throws SceneError at `path` when more than the budget would be spent; call before allocating.
   void spend(std::uint64_t elements, const std::string& path);
+  /// More bytes came out of compressed data than bytes_read counted.
+  void earn(std::uint64_t bytes) { left_ += 16 * bytes; }
 
  private:
   const GltfDocument& document_;

@@ -9,12 +9,25 @@ namespace carousel::scene {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kRead = {
-    "EXT_mesh_gpu_instancing", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
-    "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
-/// Their uncompressed fallback is used where a file has one; without it the importer says so by name.
-constexpr std::array<std::string_view, 2> kFallback = {"EXT_meshopt_compression",
-                                                       "KHR_draco_mesh_compression"};
+constexpr auto kRead = std::to_array<std::string_view>({
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+});
 
 bool has_morph_targets(const Json& json) {
   const auto meshes = json.find("meshes");
@@ -54,9 +67,7 @@ void check_extensions(const GltfDocument& document, const WarningSink& warn) {
     for (const Json& entry : json["extensionsUsed"]) {
       if (!entry.is_string()) continue;
       const auto& name = entry.get_ref<const std::string&>();
-      if (std::ranges::find(kRead, name) != kRead.end() ||
-          std::ranges::find(kFallback, name) != kFallback.end())
-        continue;
+      if (std::ranges::find(kRead, name) != kRead.end()) continue;
       ignored += (ignored.empty() ? "" : ", ") + name;
     }
   }
@@ -67,17 +78,6 @@ void check_extensions(const GltfDocument& document, const WarningSink& warn) {
   }
   if (has_morph_targets(json)) posed += (posed.empty() ? "" : ", ") + std::string("morph targets");
   if (!posed.empty()) warn(document.file + ": ignored, the base pose is shown: " + posed);
-}
-
-std::string compression_note(const Json& owner) {
-  const auto extensions = owner.find("extensions");
-  if (extensions == owner.end()) return "";
-  for (const std::string_view name : kFallback) {
-    if (extensions->contains(std::string(name))) {
-      return " (it is compressed with " + std::string(name) + ", which Carousel does not read)";
-    }
-  }
-  return "";
 }
 
 }  // namespace carousel::scene

@@ -1,6 +1,8 @@
 #include "scene/gltf_import.h"
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <new>
 #include <optional>
 #include <utility>
@@ -12,8 +14,10 @@
 #include "scene/gltf_buffers.h"
 #include "scene/gltf_checks.h"
 #include "scene/gltf_document.h"
+#include "scene/gltf_draco.h"
 #include "scene/gltf_materials.h"
 #include "scene/gltf_meshes.h"
+#include "scene/gltf_meshopt.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_nodes.h"
 #include "scene/gltf_schema.h"
@@ -22,15 +26,21 @@ namespace carousel::scene {
 
 namespace {
 
-/// Reads the meshes that instances name (by the file's indices) and renames them to ours, in the file's
-/// order.
-void read_used_meshes(MeshReader& reader, std::size_t file_meshes, Scene& scene) {
-  std::vector<std::optional<MeshId>> ids(file_meshes);
+/// Reads the meshes that instances name (by the file's indices, then those of `spheres`) and renames them to ours, in
+/// the file's order.
+void read_used_meshes(MeshReader& reader, DracoReader& draco, std::size_t file_meshes, std::vector<Mesh> spheres,
+                      Scene& scene) {
+  std::vector<std::optional<MeshId>> ids(file_meshes + spheres.size());
   for (const Instance& instance : scene.instances) ids[instance.mesh.value] = MeshId(0);
-  for (std::size_t i = 0; i < file_meshes; ++i) {
+  for (std::size_t i = 0; i < ids.size(); ++i) {
     if (!ids[i]) continue;
     ids[i] = MeshId(static_cast<std::uint32_t>(scene.meshes.size()));
-    scene.meshes.push_back(reader.read(i));
+    if (i < file_meshes) {
+      draco.decode(i);
+      scene.meshes.push_back(reader.read(i));
+    } else {
+      scene.meshes.push_back(std::move(spheres[i - file_meshes]));
+    }
   }
   for (Instance& instance : scene.instances) instance.mesh = *ids[instance.mesh.value];
 }
@@ -41,22 +51,27 @@ Scene import(std::span<const std::byte> bytes, const std::string& file,
   check_extensions(document, warn);
   check_schema(document);
   check_links(document);
-  const GltfResources resources(document, std::move(folder));
-  GltfModel model = read_model(document, resources);
-  const AccessorTable accessors(document, model);
-  ImportBudget budget(document, bytes.size() + model.bytes_read);
-
   Scene scene;
-  read_materials(document, model, scene, warn);
-  read_nodes(document, model.model, accessors, budget, scene);
-  const MaterialId fallback(static_cast<std::uint32_t>(scene.materials.size() - 1));
-  MeshReader meshes(document, model.model, accessors, budget, fallback);
-  read_used_meshes(meshes, model.model.meshes.size(), scene);
+  const std::vector<std::size_t> images = read_materials(document, scene, warn);
+  const MaterialId default_material(static_cast<std::uint32_t>(scene.materials.size() - 1));
+  const GltfResources resources(document, std::move(folder));
+  GltfModel model = read_model(document, resources, images);
+  for (const std::size_t image : images) scene.images.push_back(std::move(model.images[image]));
+
+  const std::map<std::size_t, Bytes> unpacked = decode_meshopt_views(document, model);
+  AccessorTable accessors(document, model, unpacked);
+  ImportBudget budget(document, bytes.size() + model.bytes_read);
+  for (const auto& [view, decoded] : unpacked) budget.earn(decoded.size());
+  std::vector<Mesh> spheres = read_nodes(document, model.model, accessors, budget, default_material, scene);
+  MeshReader meshes(document, model.model, accessors, budget, default_material);
+  DracoReader draco(document, accessors, budget);
+  read_used_meshes(meshes, draco, model.model.meshes.size(), std::move(spheres), scene);
   if (meshes.skipped_primitives() > 0 && warn) {
     warn(file + ": " + std::to_string(meshes.skipped_primitives()) +
          " primitives skipped: points, lines or without positions");
   }
-  if (scene.instanced_triangle_count() == 0) document.fail("", "the scene shows no triangles");
+  const bool empty = std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
+  if (empty) document.fail("", "the scene shows no triangles");
   if (scene.cameras.empty()) scene.cameras.push_back(fitted_camera(scene.bounds()));
   if (scene.name.empty()) scene.name = std::filesystem::path(file).stem().string();
   return scene;

@@ -63,28 +63,30 @@ void check_details(const GltfDocument& document) {
   }
 }
 
-/// Indices must be stored somewhere, and so must attributes that a compression extension replaces. (Other
-/// attributes without data are zeros.)
+/// Indices must be stored somewhere. (Attributes without data are zeros.)
 void check_primitives(const GltfDocument& document) {
   const Json& accessors = entries(document.json, "accessors");
-  const auto check = [&](const Json& index, const std::string& path, const std::string& note) {
-    const Json& accessor = accessors[index.get<std::size_t>()];
-    if (accessor.contains("bufferView") || accessor.contains("sparse")) return;
-    document.fail(path, "accessor " + index.dump() + " has no data" + note);
-  };
   const Json& meshes = entries(document.json, "meshes");
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const Json& primitives = meshes[m]["primitives"];
     for (std::size_t p = 0; p < primitives.size(); ++p) {
-      const std::string path = json_path(json_path(json_path("/meshes", m), "primitives"), p);
-      const std::string note = compression_note(primitives[p]);
-      if (primitives[p].contains("indices"))
-        check(primitives[p]["indices"], json_path(path, "indices"), note);
-      if (note.empty()) continue;
-      for (const auto& [name, index] : primitives[p]["attributes"].items()) {
-        check(index, json_path(json_path(path, "attributes"), name), note);
-      }
+      if (!primitives[p].contains("indices")) continue;
+      if (primitives[p].contains(Json::json_pointer("/extensions/KHR_draco_mesh_compression"))) continue;
+      const Json& index = primitives[p]["indices"];
+      const Json& accessor = accessors[index.get<std::size_t>()];
+      if (accessor.contains("bufferView") || accessor.contains("sparse")) continue;
+      document.fail(json_path(json_path(json_path(json_path("/meshes", m), "primitives"), p), "indices"),
+                    "accessor " + index.dump() + " has no data");
     }
+  }
+}
+
+/// A sphere stands in for a mesh.
+void check_spheres(const GltfDocument& document) {
+  const Json& nodes = entries(document.json, "nodes");
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!nodes[i].contains("mesh") || !nodes[i].contains(Json::json_pointer("/extras/carousel_sphere"))) continue;
+    document.fail(json_path("/nodes", i) + "/extras/carousel_sphere", "the node has a mesh already");
   }
 }
 
@@ -159,6 +161,7 @@ void check_links(const GltfDocument& document) {
   check_details(document);
   check_primitives(document);
   check_lights(document);
+  check_spheres(document);
   check_nodes(document);
 }
 

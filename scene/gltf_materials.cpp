@@ -1,147 +1,64 @@
+// Khronos glTF 2.0 specification, 5.19 (material) and 5.22 (metallic-roughness).
 #include "scene/gltf_materials.h"
 
 #include <algorithm>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
+
+#include "scene/gltf_material_layers.h"
+#include "scene/gltf_numbers.h"
+#include "scene/gltf_textures.h"
 
 namespace carousel::scene {
 
 namespace {
 
-float unit_range(double v) {
-  return static_cast<float>(std::clamp(v, 0.0, 1.0));
+Material read_material(const Json& from, const std::string& path, TextureReader& textures) {
+  static const Json nothing = Json::object();
+  const auto child = [](const Json& object, const char* key) -> const Json& {
+    const auto entry = object.find(key);
+    return entry == object.end() ? nothing : *entry;
+  };
+  const Json& pbr = child(from, "pbrMetallicRoughness");
+  const std::string pbr_path = json_path(path, "pbrMetallicRoughness");
+  const Json& extensions = child(from, "extensions");
+
+  Material to;
+  to.name = from.value("name", "");
+  to.base_color = glm::clamp(vector_in(pbr, "baseColorFactor", to.base_color), 0.0f, 1.0f);
+  to.base_color_texture = textures.use(pbr, "baseColorTexture", pbr_path);
+  to.metallic = unit_in(pbr, "metallicFactor", to.metallic);
+  to.roughness = unit_in(pbr, "roughnessFactor", to.roughness);
+  to.metallic_roughness_texture = textures.use(pbr, "metallicRoughnessTexture", pbr_path);
+  const float strength = number_in(child(extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
+  to.emissive = glm::clamp(vector_in(from, "emissiveFactor", to.emissive), 0.0f, 1.0f) * strength;
+  to.emissive = glm::min(to.emissive, Vec3(3e38f));
+  if (to.emissive != Vec3(0)) to.emissive_texture = textures.use(from, "emissiveTexture", path);
+  to.normal_texture = textures.use(from, "normalTexture", path);
+  to.normal_scale = number_in(child(from, "normalTexture"), "scale", 1);
+  const std::string alpha = from.value("alphaMode", "OPAQUE");
+  if (alpha == "MASK") to.alpha_mode = AlphaMode::kMask;
+  if (alpha == "BLEND") to.alpha_mode = AlphaMode::kBlend;
+  to.alpha_cutoff = number_in(from, "alphaCutoff", to.alpha_cutoff);
+  to.double_sided = from.value("doubleSided", false);
+  to.unlit = extensions.contains("KHR_materials_unlit");
+  read_material_layers(extensions, json_path(path, "extensions"), textures, to);
+  return to;
 }
-
-Wrap wrap_of(int mode) {
-  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::kClamp;
-  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::kMirror : Wrap::kRepeat;
-}
-
-/// The member `key` of an extension object as numbers; `fallback` where it is absent.
-float number_in(const tinygltf::Value& object, const char* key, float fallback) {
-  return object.Has(key) ? static_cast<float>(object.Get(key).GetNumberAsDouble()) : fallback;
-}
-Vec2 pair_in(const tinygltf::Value& object, const char* key, Vec2 fallback) {
-  if (!object.Has(key)) return fallback;
-  const tinygltf::Value& pair = object.Get(key);
-  return {static_cast<float>(pair.Get(0).GetNumberAsDouble()),
-          static_cast<float>(pair.Get(1).GetNumberAsDouble())};
-}
-
-class MaterialReader {
- public:
-  MaterialReader(const GltfDocument& document, GltfModel& model, Scene& scene, const WarningSink& warn)
-      : document_(document), model_(model), scene_(scene), warn_(warn) {}
-
-  Material material(const tinygltf::Material& from) {
-    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-    Material to;
-    to.name = from.name;
-    for (int c = 0; c < 4; ++c)
-      to.base_color[c] = unit_range(pbr.baseColorFactor[static_cast<std::size_t>(c)]);
-    to.base_color_texture = use(pbr.baseColorTexture);
-    to.metallic = unit_range(pbr.metallicFactor);
-    to.roughness = unit_range(pbr.roughnessFactor);
-    to.metallic_roughness_texture = use(pbr.metallicRoughnessTexture);
-    const float strength = emissive_strength(from);
-    for (int c = 0; c < 3; ++c) {
-      to.emissive[c] =
-          std::min(unit_range(from.emissiveFactor[static_cast<std::size_t>(c)]) * strength, 3e38f);
-    }
-    to.emissive_texture = use(from.emissiveTexture);
-    to.normal_texture = use(from.normalTexture);
-    to.normal_scale = static_cast<float>(from.normalTexture.scale);
-    if (from.alphaMode == "MASK") to.alpha_mode = AlphaMode::kMask;
-    if (from.alphaMode == "BLEND") to.alpha_mode = AlphaMode::kBlend;
-    to.alpha_cutoff = static_cast<float>(from.alphaCutoff);
-    to.double_sided = from.doubleSided;
-    to.unlit = from.extensions.contains("KHR_materials_unlit");
-    return to;
-  }
-
-  void warn_of_dropped_uses() const {
-    if (!warn_ || dropped_.empty()) return;
-    std::string text;
-    for (const auto& [reason, count] : dropped_)
-      text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + reason;
-    warn_(document_.file + ": texture uses ignored: " + text);
-  }
-
- private:
-  static float emissive_strength(const tinygltf::Material& from) {
-    const auto entry = from.extensions.find("KHR_materials_emissive_strength");
-    return entry == from.extensions.end() ? 1.0f : number_in(entry->second, "emissiveStrength", 1.0f);
-  }
-
-  template <class Info>
-  std::optional<TextureUse> use(const Info& info) {
-    if (info.index < 0) return std::nullopt;
-    TextureUse out;
-    int uv_set = info.texCoord;
-    if (const auto entry = info.extensions.find("KHR_texture_transform"); entry != info.extensions.end()) {
-      const tinygltf::Value& transform = entry->second;
-      out.offset = pair_in(transform, "offset", out.offset);
-      out.scale = pair_in(transform, "scale", out.scale);
-      out.rotation = number_in(transform, "rotation", 0);
-      if (transform.Has("texCoord")) uv_set = transform.Get("texCoord").GetNumberAsInt();
-    }
-    if (uv_set > 1) {
-      ++dropped_["with a texture coordinate set beyond 1"];
-      return std::nullopt;
-    }
-    if (model_.model.textures[static_cast<std::size_t>(info.index)].source < 0) {
-      ++dropped_["without a PNG or JPEG source"];
-      return std::nullopt;
-    }
-    out.uv_set = static_cast<std::uint8_t>(uv_set);
-    out.texture = texture(info.index);
-    return out;
-  }
-
-  TextureId texture(int index) {
-    const auto [entry, fresh] =
-        textures_.try_emplace(index, static_cast<std::uint32_t>(scene_.textures.size()));
-    if (fresh) {
-      const tinygltf::Texture& from = model_.model.textures[static_cast<std::size_t>(index)];
-      Texture to;
-      to.image = image(from.source);
-      if (from.sampler >= 0) {
-        const tinygltf::Sampler& sampler = model_.model.samplers[static_cast<std::size_t>(from.sampler)];
-        to.wrap_u = wrap_of(sampler.wrapS);
-        to.wrap_v = wrap_of(sampler.wrapT);
-        to.linear_filter = sampler.magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST;
-      }
-      scene_.textures.push_back(to);
-    }
-    return TextureId(entry->second);
-  }
-
-  ImageId image(int index) {
-    const auto [entry, fresh] = images_.try_emplace(index, static_cast<std::uint32_t>(scene_.images.size()));
-    if (fresh) scene_.images.push_back(std::move(model_.images[static_cast<std::size_t>(index)]));
-    return ImageId(entry->second);
-  }
-
-  const GltfDocument& document_;
-  GltfModel& model_;
-  Scene& scene_;
-  const WarningSink& warn_;
-  std::map<int, std::uint32_t> textures_, images_;
-  std::map<std::string, int> dropped_;
-};
 
 }  // namespace
 
-void read_materials(const GltfDocument& document, GltfModel& model, Scene& scene, const WarningSink& warn) {
-  MaterialReader reader(document, model, scene, warn);
-  for (const tinygltf::Material& material : model.model.materials)
-    scene.materials.push_back(reader.material(material));
+std::vector<std::size_t> read_materials(const GltfDocument& document, Scene& scene, const WarningSink& warn) {
+  TextureReader textures(document, scene);
+  if (document.json.contains("materials")) {
+    const Json& materials = document.json["materials"];
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      scene.materials.push_back(read_material(materials[i], json_path("/materials", i), textures));
+    }
+  }
   Material fallback;
   fallback.name = "default";
   scene.materials.push_back(fallback);
-  reader.warn_of_dropped_uses();
+  textures.warn_of_dropped_uses(warn);
+  return textures.images();
 }
 
 }  // namespace carousel::scene

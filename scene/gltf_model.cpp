@@ -6,31 +6,11 @@
 #include <utility>
 
 #include "core/error.h"
-#include "scene/gltf_checks.h"
 #include "scene/image_decode.h"
 
 namespace carousel::scene {
 
 namespace {
-
-/// Images that a texture slot of some material leads to; the others are not even read.
-std::vector<bool> needed_images(const Json& json) {
-  std::vector<bool> needed(json.contains("images") ? json["images"].size() : 0);
-  const auto use = [&](const Json& owner, const char* slot) {
-    if (!owner.contains(slot)) return;
-    const Json& texture = json["textures"][owner[slot]["index"].get<std::size_t>()];
-    if (texture.contains("source")) needed[texture["source"].get<std::size_t>()] = true;
-  };
-  if (!json.contains("materials")) return needed;
-  for (const Json& material : json["materials"]) {
-    use(material, "normalTexture");
-    use(material, "emissiveTexture");
-    if (!material.contains("pbrMetallicRoughness")) continue;
-    use(material["pbrMetallicRoughness"], "baseColorTexture");
-    use(material["pbrMetallicRoughness"], "metallicRoughnessTexture");
-  }
-  return needed;
-}
 
 /// What tinygltf's callbacks see. Addresses in the document it parses are "carousel-buffer-3" and
 /// "carousel-image-0", so that it never opens a file itself.
@@ -97,6 +77,12 @@ std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buf
   return json.dump();
 }
 
+/// Only for readers that know no EXT_meshopt_compression.
+bool is_fallback(const Json& buffer) {
+  const Json::json_pointer pointer("/extensions/EXT_meshopt_compression/fallback");
+  return buffer.contains(pointer) && buffer.at(pointer).get<bool>();
+}
+
 /// Every image in a buffer view must find its bytes there, before tinygltf looks.
 void check_embedded_images(const GltfDocument& document, const std::vector<bool>& has_data) {
   if (!document.json.contains("images")) return;
@@ -106,7 +92,7 @@ void check_embedded_images(const GltfDocument& document, const std::vector<bool>
     const Json& view = document.json["bufferViews"][images[i]["bufferView"].get<std::size_t>()];
     const std::string path = json_path(json_path("/images", i), "bufferView");
     if (!has_data[view["buffer"].get<std::size_t>()]) {
-      document.fail(path, "the buffer holds no data" + compression_note(view));
+      document.fail(path, "the buffer holds no data");
     }
     if (view["byteLength"].get<std::uint64_t>() > 0x7fffffff) document.fail(path, "larger than 2 GiB");
   }
@@ -114,13 +100,16 @@ void check_embedded_images(const GltfDocument& document, const std::vector<bool>
 
 }  // namespace
 
-GltfModel read_model(const GltfDocument& document, const GltfResources& resources) {
+GltfModel read_model(const GltfDocument& document, const GltfResources& resources,
+                     const std::vector<std::size_t>& needed_images) {
   GltfModel out;
-  Feed feed{document, resources, {}, needed_images(document.json), out};
-  out.images.resize(feed.needed.size());
+  out.images.resize(document.json.contains("images") ? document.json["images"].size() : 0);
+  Feed feed{document, resources, {}, std::vector<bool>(out.images.size()), out};
+  for (const std::size_t image : needed_images) feed.needed[image] = true;
   const std::size_t buffers = document.json.contains("buffers") ? document.json["buffers"].size() : 0;
   for (std::size_t i = 0; i < buffers; ++i) {
-    std::optional<Bytes> bytes = resources.buffer(i);
+    std::optional<Bytes> bytes;
+    if (!is_fallback(document.json["buffers"][i])) bytes = resources.buffer(i);
     out.buffer_has_data.push_back(bytes.has_value());
     feed.buffers.push_back(bytes ? std::move(*bytes) : Bytes(1));
     out.bytes_read += feed.buffers.back().size();

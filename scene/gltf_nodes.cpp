@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "scene/gltf_transform.h"
 
@@ -18,8 +19,15 @@ Vec3 color_of(const std::vector<double>& color) {
 class NodeReader {
  public:
   NodeReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-             ImportBudget& budget, Scene& scene)
-      : document_(document), model_(model), accessors_(accessors), budget_(budget), scene_(scene) {}
+             ImportBudget& budget, MaterialId default_material, Scene& scene)
+      : document_(document),
+        model_(model),
+        accessors_(accessors),
+        budget_(budget),
+        default_material_(default_material),
+        scene_(scene) {}
+
+  std::vector<Mesh> take_spheres() { return std::move(spheres_); }
 
   void walk(const std::vector<int>& roots) {
     // A stack of our own: a chain of nodes may be as long as the file.
@@ -35,7 +43,7 @@ class NodeReader {
       const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
       const std::string path = json_path("/nodes", static_cast<std::size_t>(visit.node));
       const DMat4 world = visit.parent * node_transform(document_, node, path);
-      if (node.mesh >= 0) add_instances(node, world, path);
+      if (const auto mesh = mesh_of(visit.node, node)) add_instances(node, *mesh, world, path);
       if (node.camera >= 0) add_camera(node, world, path);
       add_light(node, world, path);
       for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
@@ -44,16 +52,34 @@ class NodeReader {
   }
 
  private:
-  void add_instance(const tinygltf::Node& node, const DMat4& world, const std::string& path) {
-    scene_.instances.push_back(
-        {MeshId(static_cast<std::uint32_t>(node.mesh)), rounded(document_, world, path)});
+  std::optional<MeshId> mesh_of(int index, const tinygltf::Node& node) {
+    if (node.mesh >= 0) return MeshId(static_cast<std::uint32_t>(node.mesh));
+    const Json& json = document_.json["nodes"][static_cast<std::size_t>(index)];
+    const Json::json_pointer pointer("/extras/carousel_sphere");
+    if (!json.contains(pointer)) return std::nullopt;
+    const Json& sphere = json.at(pointer);
+    const auto radius = sphere["radius"].get<float>();
+    const std::uint32_t material = sphere.value("material", default_material_.value);
+    const auto [entry, fresh] = sphere_ids_.try_emplace(
+        {radius, material}, static_cast<std::uint32_t>(model_.meshes.size() + spheres_.size()));
+    if (fresh) {
+      Mesh mesh;
+      mesh.name = node.name.empty() ? "sphere" : node.name;
+      mesh.spheres.push_back({Vec3(0), radius, MaterialId(material)});
+      spheres_.push_back(std::move(mesh));
+    }
+    return MeshId(entry->second);
   }
 
-  void add_instances(const tinygltf::Node& node, const DMat4& world, const std::string& path) {
+  void add_instance(MeshId mesh, const DMat4& world, const std::string& path) {
+    scene_.instances.push_back({mesh, rounded(document_, world, path)});
+  }
+
+  void add_instances(const tinygltf::Node& node, MeshId mesh, const DMat4& world, const std::string& path) {
     const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
     if (extension == node.extensions.end()) {
       budget_.spend(1, path);
-      add_instance(node, world, path);
+      add_instance(mesh, world, path);
       return;
     }
     const std::string where = path + "/extensions/EXT_mesh_gpu_instancing/attributes";
@@ -90,7 +116,7 @@ class NodeReader {
       if (!local)
         document_.fail(json_path(where, "ROTATION"),
                        "the quaternion of instance " + std::to_string(i) + " has length zero");
-      add_instance(node, world * *local, path);
+      add_instance(mesh, world * *local, path);
     }
   }
 
@@ -153,7 +179,10 @@ class NodeReader {
   const tinygltf::Model& model_;
   const AccessorTable& accessors_;
   ImportBudget& budget_;
+  const MaterialId default_material_;
   Scene& scene_;
+  std::vector<Mesh> spheres_;
+  std::map<std::pair<float, std::uint32_t>, std::uint32_t> sphere_ids_;  // by radius and material
 };
 
 std::vector<int> all_roots(const tinygltf::Model& model) {
@@ -170,16 +199,17 @@ std::vector<int> all_roots(const tinygltf::Model& model) {
 
 }  // namespace
 
-void read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                ImportBudget& budget, Scene& scene) {
-  NodeReader reader(document, model, accessors, budget, scene);
+std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
+                             ImportBudget& budget, MaterialId default_material, Scene& scene) {
+  NodeReader reader(document, model, accessors, budget, default_material, scene);
   if (model.scenes.empty()) {
     reader.walk(all_roots(model));
-    return;
+  } else {
+    const tinygltf::Scene& chosen = model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
+    scene.name = chosen.name;
+    reader.walk(chosen.nodes);
   }
-  const tinygltf::Scene& chosen = model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
-  scene.name = chosen.name;
-  reader.walk(chosen.nodes);
+  return reader.take_spheres();
 }
 
 }  // namespace carousel::scene

@@ -93,6 +93,14 @@ class Checker {
         for (const auto& [key, v] : value.items()) out[key] = index(v, rule, json_path(path, key));
         return out;
       }
+      case SchemaKind::kIntegerMap: {
+        if (!value.is_object()) fail(value, path, "an object");
+        Json out = Json::object();
+        for (const auto& [key, v] : value.items()) out[key] = integer(v, rule.min, rule.max, json_path(path, key));
+        return out;
+      }
+      case SchemaKind::kExtras:
+        return value.is_object() ? object(value, *rule.child, path) : Json::object();
       case SchemaKind::kObject:
         return object(value, *rule.child, path);
       case SchemaKind::kObjects:

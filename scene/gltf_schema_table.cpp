@@ -65,7 +65,13 @@ const Schema kMeshoptBuffer{flag("fallback")};
 const Schema kBufferExtensions{object("EXT_meshopt_compression", kMeshoptBuffer)};
 const Schema kBuffer{text("name"), text("uri"), integer("byteLength", 1, kMostBytes, true),
                      object("extensions", kBufferExtensions)};
-const Schema kMeshoptView{index("buffer", "/buffers")};
+const Schema kMeshoptView{index("buffer", "/buffers", true),
+                          integer("byteOffset", 0, kMostBytes),
+                          integer("byteLength", 1, kMostBytes, true),
+                          integer("byteStride", 1, 256, true),
+                          integer("count", 1, kMostBytes, true),
+                          name_of("mode", {"ATTRIBUTES", "TRIANGLES", "INDICES"}, true),
+                          name_of("filter", {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})};
 const Schema kViewExtensions{object("EXT_meshopt_compression", kMeshoptView)};
 const Schema kBufferView{index("buffer", "/buffers", true), integer("byteOffset", 0, kMostBytes),
                          integer("byteLength", 1, kMostBytes, true), integer("byteStride", 4, 252),
@@ -88,7 +94,10 @@ const Schema kImage{text("name"), text("uri"), text("mimeType"), index("bufferVi
 const Schema kSampler{choice("magFilter", {9728, 9729}),
                       choice("minFilter", {9728, 9729, 9984, 9985, 9986, 9987}),
                       choice("wrapS", {33071, 33648, 10497}), choice("wrapT", {33071, 33648, 10497})};
-const Schema kTexture{text("name"), index("sampler", "/samplers"), index("source", "/images")};
+const Schema kOtherSource{index("source", "/images")};
+const Schema kTextureExtensions{object("EXT_texture_webp", kOtherSource), object("KHR_texture_basisu", kOtherSource)};
+const Schema kTexture{text("name"), index("sampler", "/samplers"), index("source", "/images"),
+                      object("extensions", kTextureExtensions)};
 const Schema kTextureTransform{numbers("offset", 2), number("rotation"), numbers("scale", 2),
                                integer("texCoord", 0, 255)};
 const Schema kTextureInfoExtensions{object("KHR_texture_transform", kTextureTransform)};
@@ -99,8 +108,35 @@ const Schema kMetallicRoughness{numbers("baseColorFactor", 4), object("baseColor
                                 object("metallicRoughnessTexture", kTextureInfo)};
 const Schema kNothing{};
 const Schema kEmissiveStrength{number("emissiveStrength", 0, kLargest)};
+const Schema kIor{number("ior")};
+const Schema kTransmission{number("transmissionFactor"), object("transmissionTexture", kTextureInfo)};
+const Schema kVolume{number("thicknessFactor"), object("thicknessTexture", kTextureInfo), number("attenuationDistance"),
+                     numbers("attenuationColor", 3)};
+const Schema kSpecular{number("specularFactor"), object("specularTexture", kTextureInfo),
+                       numbers("specularColorFactor", 3), object("specularColorTexture", kTextureInfo)};
+const Schema kClearcoat{number("clearcoatFactor"), object("clearcoatTexture", kTextureInfo),
+                        number("clearcoatRoughnessFactor"), object("clearcoatRoughnessTexture", kTextureInfo),
+                        object("clearcoatNormalTexture", kTextureInfo)};
+const Schema kSheen{numbers("sheenColorFactor", 3), object("sheenColorTexture", kTextureInfo),
+                    number("sheenRoughnessFactor"), object("sheenRoughnessTexture", kTextureInfo)};
+const Schema kIridescence{number("iridescenceFactor"),
+                          object("iridescenceTexture", kTextureInfo),
+                          number("iridescenceIor"),
+                          number("iridescenceThicknessMinimum"),
+                          number("iridescenceThicknessMaximum"),
+                          object("iridescenceThicknessTexture", kTextureInfo)};
+const Schema kAnisotropy{number("anisotropyStrength"), number("anisotropyRotation"),
+                         object("anisotropyTexture", kTextureInfo)};
 const Schema kMaterialExtensions{object("KHR_materials_unlit", kNothing),
-                                 object("KHR_materials_emissive_strength", kEmissiveStrength)};
+                                 object("KHR_materials_emissive_strength", kEmissiveStrength),
+                                 object("KHR_materials_ior", kIor),
+                                 object("KHR_materials_transmission", kTransmission),
+                                 object("KHR_materials_volume", kVolume),
+                                 object("KHR_materials_specular", kSpecular),
+                                 object("KHR_materials_clearcoat", kClearcoat),
+                                 object("KHR_materials_sheen", kSheen),
+                                 object("KHR_materials_iridescence", kIridescence),
+                                 object("KHR_materials_anisotropy", kAnisotropy)};
 const Schema kMaterial{text("name"),
                        object("pbrMetallicRoughness", kMetallicRoughness),
                        object("normalTexture", kTextureInfo),
@@ -113,7 +149,8 @@ const Schema kMaterial{text("name"),
                        object("extensions", kMaterialExtensions)};
 
 // Meshes.
-const Schema kDracoPrimitive{index("bufferView", "/bufferViews", true)};
+const Schema kDracoPrimitive{index("bufferView", "/bufferViews", true),
+                             {.key = "attributes", .kind = K::kIntegerMap, .required = true, .min = 0, .max = kMostSparse}};
 const Schema kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDracoPrimitive)};
 const Schema kPrimitive{index_map("attributes", "/accessors"), index("indices", "/accessors"),
                         index("material", "/materials"), integer("mode", 0, 6),
@@ -142,6 +179,8 @@ const Schema kNodeLight{index("light", "/extensions/KHR_lights_punctual/lights",
 const Schema kNodeInstancing{index_map("attributes", "/accessors")};
 const Schema kNodeExtensions{object("KHR_lights_punctual", kNodeLight),
                              object("EXT_mesh_gpu_instancing", kNodeInstancing)};
+const Schema kSphere{number("radius", 1e-20, 1e18, true), index("material", "/materials")};
+const Schema kNodeExtras{object("carousel_sphere", kSphere)};
 const Schema kNode{text("name"),
                    indices("children", "/nodes"),
                    index("mesh", "/meshes"),
@@ -151,7 +190,8 @@ const Schema kNode{text("name"),
                    numbers("translation", 3),
                    numbers("rotation", 4),
                    numbers("scale", 3),
-                   object("extensions", kNodeExtensions)};
+                   object("extensions", kNodeExtensions),
+                   {.key = "extras", .kind = K::kExtras, .child = &kNodeExtras}};
 const Schema kScene{text("name"), indices("nodes", "/nodes")};
 
 // Read for their indices only.

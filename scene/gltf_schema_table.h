@@ -20,8 +20,10 @@ enum class SchemaKind {
   kIndex,     ///< into the array at JSON path `refers_to`
   kIndices,   ///< array of such
   kIndexMap,  ///< object of such
+  kIntegerMap,  ///< object of integers in [min, max]
   kObject,    ///< with the rules of `child`
   kObjects,   ///< array of such
+  kExtras,    ///< with the rules of `child` where it is an object; anything else is somebody else's
 };
 
 /// What one key of a JSON object must look like.

@@ -11,13 +11,14 @@
 #include <OpenImageIO/imageio.h>
 
 #include "scene/png_check.h"
+#include "scene/webp_decode.h"
 
 namespace carousel::scene {
 
 namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
-/// Deflate packs at most 1032:1, and a PNG byte holds at most 8 pixels; JPEG stays far below.
+/// Deflate packs at most 1032:1, and a PNG byte holds at most 8 pixels; JPEG and pictures worth a WebP stay far below.
 constexpr std::uint64_t kMostPixelsPerByte = 8 * 1032;
 
 const char* format_of(std::span<const unsigned char> bytes) {
@@ -26,14 +27,30 @@ const char* format_of(std::span<const unsigned char> bytes) {
   if (bytes.size() > kPng.size() && std::memcmp(bytes.data(), kPng.data(), kPng.size()) == 0) return "png";
   if (bytes.size() > kJpeg.size() && std::memcmp(bytes.data(), kJpeg.data(), kJpeg.size()) == 0)
     return "jpeg";
+  if (bytes.size() > 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 && std::memcmp(bytes.data() + 8, "WEBP", 4) == 0)
+    return "webp";
   return nullptr;
+}
+
+/// Before anything is allocated.
+void check_size(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
+  const std::string size = std::to_string(width) + " x " + std::to_string(height);
+  if (width * height > kMostPixels) throw std::runtime_error(size + " pixels; at most 67108864 in all are read");
+  if (width * height > kMostPixelsPerByte * bytes) {
+    throw std::runtime_error(size + " pixels announced in only " + std::to_string(bytes) + " bytes");
+  }
 }
 
 }  // namespace
 
 Image decode_image(std::span<const unsigned char> encoded) {
   const char* format = format_of(encoded);
-  if (format == nullptr) throw std::runtime_error("neither PNG nor JPEG");
+  if (format == nullptr) throw std::runtime_error("neither PNG nor JPEG nor WebP");
+  if (std::string_view(format) == "webp") {
+    const WebpHeader header = read_webp_header(encoded);
+    check_size(header.width, header.height, encoded.size());
+    return decode_webp(encoded, header);
+  }
 
   if (std::string_view(format) == "png") {
     if (const char* fault = png_fault(encoded)) throw std::runtime_error(std::string("broken: ") + fault);
@@ -54,11 +71,7 @@ Image decode_image(std::span<const unsigned char> encoded) {
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.nchannels > 4) {
     throw std::runtime_error("of an unusable size or channel count");
   }
-  const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
-  if (pixels > kMostPixels) throw std::runtime_error(size + " pixels; at most 67108864 in all are read");
-  if (pixels > kMostPixelsPerByte * encoded.size()) {
-    throw std::runtime_error(size + " pixels announced in only " + std::to_string(encoded.size()) + " bytes");
-  }
+  check_size(static_cast<std::uint64_t>(spec.width), static_cast<std::uint64_t>(spec.height), encoded.size());
 
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   std::vector<std::uint8_t> raw(static_cast<std::size_t>(pixels) * channels);

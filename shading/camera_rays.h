@@ -17,6 +17,9 @@ class CameraRays {
   CameraRays(const scene::Camera& camera, const CameraConfig& lens, std::uint32_t width,
              std::uint32_t height);
 
+  /// Half the size of the window that the picture shows: at distance 1, or in scene units if orthographic.
+  Vec2 half_window() const { return {half_width_, half_height_}; }
+
   /// Row 0 is the top of the image.
   Ray ray(std::uint32_t x, std::uint32_t y, const CameraDraw& draw) const;
 

@@ -43,6 +43,8 @@ struct alignas(128) PathTracer::Worker {
   HitsDigest digest;
   Counts counts;
   std::vector<std::uint32_t> states;  // scratch: admitted, or to be released
+  std::vector<std::uint32_t> begun;   // scratch: admitted, where first hits are known
+  RayBatch held;                      // rays that no generate() has had room for
 };
 
 template <bool kMedia, class ShadeHit>

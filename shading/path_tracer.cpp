@@ -56,22 +56,29 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
 
 PathTracer::~PathTracer() = default;
 
+PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
+  const PixelSample at = order_.at(ordinal);
+  PathState& path = pool_.state(index);
+  // Relaxed and plain: nobody else knows of this path until the engine has handed its ray over.
+  for (auto& channel : path.radiance) channel.store(0, std::memory_order_relaxed);
+  path.outstanding.store(1, std::memory_order_relaxed);
+  path.pixel = at.y * film_.width() + at.x;
+  path.sample = at.sample;
+  path.throughput = Vec3{1};
+  path.bounce_pdf = 0;
+  path.scattered = false;
+  if (media_) pool_.medium(index) = 0;
+  return at;
+}
+
 Workload::Generated PathTracer::generate(WorkerId worker_id, std::size_t max_rays, RayBatch& out) {
+  if (first_hits_ != nullptr) return generate_from_hits(worker_id, max_rays, out);
   Worker& worker = workers_[worker_id.value];
   worker.states.clear();
   const PathPool::Admission admitted = pool_.admit(max_rays, worker.states);
   for (std::size_t i = 0; i < admitted.count; ++i) {
-    const PixelSample at = order_.at(admitted.first + i);
-    PathState& path = pool_.state(worker.states[i]);
-    // Relaxed and plain: nobody else knows of this path until the engine has handed its ray over.
-    for (auto& channel : path.radiance) channel.store(0, std::memory_order_relaxed);
-    path.outstanding.store(1, std::memory_order_relaxed);
-    path.pixel = at.y * film_.width() + at.x;
-    path.sample = at.sample;
-    path.throughput = Vec3{1};
-    path.bounce_pdf = 0;
-    path.scattered = false;
-    if (media_) pool_.medium(worker.states[i]) = 0;
+    const PixelSample at = begin_path(admitted.first + i, worker.states[i]);
+    const PathState& path = pool_.state(worker.states[i]);
     emit(camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample)),
          {worker.states[i], RayKind::kCamera, 0, 0, 0}, worker, out);
   }

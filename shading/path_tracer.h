@@ -18,6 +18,7 @@
 #include "shading/light_set.h"
 #include "shading/path_pool.h"
 #include "shading/pixel_order.h"
+#include "shading/raster/first_hits.h"
 #include "shading/ray_recorder.h"
 #include "shading/sampler.h"
 #include "shading/surface.h"
@@ -45,6 +46,10 @@ class PathTracer : public Workload {
   /// Every completed ray is reported to `recorder`, which must outlive the tracing; null: none is. Call
   /// before the first generate().
   void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
+
+  /// Paths start at these hits, without camera rays where they know the hit; they must outlive the tracing. Null: all
+  /// start with a ray. Call before the first generate().
+  void set_first_hits(const FirstHits* hits) { first_hits_ = hits; }
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
@@ -101,6 +106,11 @@ class PathTracer : public Workload {
   void absorb(const RayResult& result);
   Vec3 passed(std::uint32_t medium, float distance) const;
   void shade_miss(const RayResult& result, Worker& worker);
+  /// Starts path `ordinal` of the frame in state `index`.
+  PixelSample begin_path(std::uint64_t ordinal, std::uint32_t index);
+  Generated generate_from_hits(WorkerId worker, std::size_t max_rays, RayBatch& out);
+  /// What a camera ray's hit would do, had there been a ray.
+  void shade_first(const RayResult& result, Worker& worker, RayBatch& out);
   void shade_shadow(const RayResult& result, Worker& worker);
   void add_emission(PathState& path, const RayResult& result, const TriangleGeometry& geometry,
                     const TrianglePoint& point, bool front, Worker& worker);
@@ -125,7 +135,9 @@ class PathTracer : public Workload {
   std::unique_ptr<Worker[]> workers_;
   std::size_t worker_count_;
   std::atomic<std::uint64_t> generated_{0};  // camera rays that generate() calls have appended
+  std::atomic<std::uint64_t> held_{0};       // rays that workers hold back for their next generate()
   RayRecorder* recorder_ = nullptr;
+  const FirstHits* first_hits_ = nullptr;
 };
 
 }  // namespace carousel::shading

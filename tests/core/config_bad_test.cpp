@@ -56,6 +56,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"RealOutOfRange", SCENE "camera: {focus_distance: 0}\n",
                   "test.yaml:2:26: camera.focus_distance: expected a number above 0 to 1e+09 (scene units), "
                   "found 0"},
+        BadConfig{"RasterWithALens", SCENE "primary: raster\ncamera: {aperture: 0.5}\n",
+                  "test.yaml:3:20: camera.aperture: primary: raster needs a pinhole; expected 0, or primary: rays, found "
+                  "0.5"},
+        BadConfig{"RasterWithoutACamera", SCENE "primary: raster\nworkload: {rays_from: a.csv}\n",
+                  "test.yaml:2:10: primary: this workload has no camera; expected rays, found raster"},
         BadConfig{
             "NotANumber", SCENE "camera: {aperture: .nan}\n",
             "test.yaml:2:20: camera.aperture: expected a number from 0 to 1e+06 (scene units), found nan"},

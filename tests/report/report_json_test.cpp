@@ -21,6 +21,8 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(json["links"][1]["occupancy_max"], 11);
   EXPECT_EQ(json["cull_planes"]["levels"][0]["triangle_tests_spared"], 605);
   EXPECT_EQ(json["host"]["plane_seconds"], 0.125);
+  EXPECT_EQ(json["host"]["raster_seconds"], 0.25);
+  EXPECT_EQ(json["raster"]["left_to_rays"], 3);
   EXPECT_EQ(json["digest"]["image"], "4567");
   EXPECT_EQ(json["scene"]["bounds"]["lo"], Json({-1.0, -2.0, -3.0}));
 }

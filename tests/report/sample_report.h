@@ -14,6 +14,7 @@ inline Report sample_report() {
   r.engine.kind = "native";
   r.engine.reason = "threads";
   r.rays = {1000, 990, 10, 0, {500, 300, 200}};
+  r.raster = {9, 8, 7, 6, 5, 4, 3};
   r.throughput = {0.5, 2.5, 17.25};
   r.tests = {{8000, 8.5}, {0, 0}, {2000, 2.25}, {0, 0}, {990, 1}};
   r.cull_planes = {640, 10240, 42.5, {{"bottom", 3, 700, 1500, 260, 30, 80, 180, 605, 0}, {"top", 0, 90, 100, 40, 0, 5, 0, 0, 35}}};
@@ -34,6 +35,7 @@ inline Report sample_report() {
   r.digest = {"0123", "4567"};
   r.host = {4, 2.0, 495, 0.01, 0.2, 1 << 20, 64 << 20, "avx2", {"cpu", "linux", 4, 1ull << 34}};
   r.host.plane_seconds = 0.125;
+  r.host.raster_seconds = 0.25;
   return r;
 }
 

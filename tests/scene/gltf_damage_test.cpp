@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "tests/scene/guarded_load.h"
+#include "tests/scene/packed_model.h"
 #include "tests/scene/rich_model.h"
 
 namespace carousel::scene {
@@ -99,8 +100,14 @@ GltfBuilder damaged(GltfBuilder file, const Json::json_pointer& at, std::size_t 
 // A value of the wrong type, an index or number far too large, a key that is missing: for every value there
 // is.
 TEST_F(GltfDamage, EveryValueIsCheckedWhereItStands) {
-  for (const Model& model : models_) {
-    GltfBuilder good = model.files.packed();
+  struct Packed {
+    const char* name;
+    GltfBuilder file;
+  };
+  std::vector<Packed> packed{{"every extension", every_extension()}};
+  for (const Model& model : models_) packed.push_back({model.name, model.files.packed()});
+  for (const Packed& model : packed) {
+    GltfBuilder good = model.file;
     good.json["buffers"] = Json::array({{{"byteLength", good.binary.size()}}});
     std::vector<Json::json_pointer> places;
     collect_pointers(good.json, Json::json_pointer(), places);

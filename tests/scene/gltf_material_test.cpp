@@ -76,8 +76,8 @@ TEST(ImageDecode, WrongChecksumsAndForeignDataAreRefused) {
   std::vector<unsigned char> bytes = encode("png", 1, 1, 1, {7});
   bytes[20] ^= 1;
   EXPECT_EQ(reason_for_refusing(bytes), "broken: a checksum does not match");
-  EXPECT_EQ(reason_for_refusing(std::vector<unsigned char>(100, 'x')), "neither PNG nor JPEG");
-  EXPECT_EQ(reason_for_refusing({}), "neither PNG nor JPEG");
+  EXPECT_EQ(reason_for_refusing(std::vector<unsigned char>(100, 'x')), "neither PNG nor JPEG nor WebP");
+  EXPECT_EQ(reason_for_refusing({}), "neither PNG nor JPEG nor WebP");
 }
 
 TEST(ImageDecode, BrokenJpegIsRefusedOrDecodedInPart) {
@@ -165,13 +165,14 @@ TEST(GltfTexture, UsesThatCannotBeReadAreDroppedWithOneWarning) {
   b.push("textures", Json::object());
   b.json["materials"][0]["normalTexture"] = {{"index", 1}};
   b.json["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 2}};
+  b.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
   std::vector<std::string> warnings;
   const Scene scene = b.load([&](const std::string& w) { warnings.push_back(w); });
   EXPECT_FALSE(scene.materials[0].normal_texture);
   EXPECT_FALSE(scene.materials[0].emissive_texture);
   EXPECT_EQ(warnings, std::vector<std::string>{
                           "test.gltf: texture uses ignored: 1 with a texture coordinate set beyond 1, "
-                          "1 without a PNG or JPEG source"});
+                          "1 without a PNG, JPEG or WebP source"});
 }
 
 TEST(GltfMaterial, FactorsFlagsAndExtensions) {

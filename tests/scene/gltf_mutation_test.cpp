@@ -5,6 +5,7 @@
 #include "scene/hash_random.h"
 #include "tests/random_runs.h"
 #include "tests/scene/guarded_load.h"
+#include "tests/scene/packed_model.h"
 #include "tests/scene/rich_model.h"
 
 namespace carousel::scene {
@@ -20,6 +21,7 @@ struct Model {
 
 std::vector<Model> models() {
   return {{"every feature", every_feature(), 4000},
+          {"every extension", every_extension(), 1000},
           {"rich model", rich_model().packed(), 500},
           {"sample", sample_model().packed(), 1000}};
 }
