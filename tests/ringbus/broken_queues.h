@@ -36,17 +36,15 @@ class BrokenBase {
   std::deque<T> values_;
 };
 
-/// When its index wraps and the ring is full, the newest value goes over the oldest.
+/// When its index has gone round a few times, the newest value goes over the oldest.
 template <class T>
 class LosesAtWrap : public BrokenBase<T> {
  public:
   using BrokenBase<T>::BrokenBase;
   bool try_push(const T& value) {
     const std::lock_guard lock(this->mutex_);
-    if (this->values_.size() == this->capacity_) {
-      if (pushed_ % (4 * this->capacity_) != 0) return false;
-      this->values_.pop_front();
-    }
+    if (this->values_.size() == this->capacity_) return false;
+    if (pushed_ % (4 * this->capacity_) == this->capacity_ && !this->values_.empty()) this->values_.pop_front();
     this->values_.push_back(value);
     ++pushed_;
     return true;
