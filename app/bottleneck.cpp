@@ -18,6 +18,7 @@ constexpr double kWorthIt = 0.05;
 class FrameWorkload final : public Workload {
  public:
   FrameWorkload(const Prepared& prepared, const Config& config) : frame_(prepared, config) {}
+  std::uint32_t extra_effects(const RayResult& result) const override { return frame_.workload().extra_effects(result); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return frame_.workload().generate(worker, max_rays, out);
   }
@@ -26,7 +27,7 @@ class FrameWorkload final : public Workload {
   }
 
  private:
-  Frame frame_;
+  mutable Frame frame_;
 };
 
 std::string percent_text(double fraction) { return fmt::format("{:+.1f} %", 100 * fraction); }

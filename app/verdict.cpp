@@ -10,8 +10,11 @@ ExitStatus verdict(const report::Report& report) {
   if (failed)
     spdlog::error("verification failed: {} of {} rays differ from the reference tracer",
                   report.verify->mismatches, report.verify->compared);
+  const auto& proof = report.shading.proof;
+  const bool changed = proof && !(proof->same_hits && proof->same_image);
+  if (changed) spdlog::error("with all effects the {} differ: something was left out that the scene calls for", proof->same_hits ? "pixels" : "hits");
   if (report.incomplete) return kInterrupted;
-  return failed ? kBroken : kDone;
+  return failed || changed ? kBroken : kDone;
 }
 
 }  // namespace carousel::app

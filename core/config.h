@@ -39,7 +39,7 @@ enum class BoxLevel { kPlain, kConservative, kDouble };
 enum class TransformLevel { kInverseMatrix, kTwoStep, kTwoStepDouble, kTransposeIfRotation };
 enum class SpawnOffset { kEpsilon, kUlp, kBound };
 enum class Primary { kRays, kRaster };
-enum class Verify { kNone, kReference };
+enum class Verify { kNone, kReference, kEffects };
 
 struct SkyConfig {
   Vec3 color{0.6f, 0.7f, 0.9f};   ///< linear RGB
@@ -223,7 +223,7 @@ struct ShadingConfig {
   bool idle_resources_shade = false;
   std::int64_t cycles_per_shade = 20;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
-  std::int64_t cycles_per_any_hit = 10;
+  std::int64_t cycles_per_any_hit = 10, cycles_per_effect = 5;
   RayWishes camera_rays{}, bounce_rays{}, shadow_rays{};
 };
 

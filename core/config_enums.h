@@ -124,7 +124,8 @@ CAROUSEL_ENUM(Primary, {Primary::kRays, "rays"}, {Primary::kRaster, "raster"});
 CAROUSEL_ENUM(FaultsConfig::Resource::Kind, {FaultsConfig::Resource::Kind::kNone, "none"},
               {FaultsConfig::Resource::Kind::kPause, "pause"}, {FaultsConfig::Resource::Kind::kSlow, "slow"},
               {FaultsConfig::Resource::Kind::kStop, "stop"});
-CAROUSEL_ENUM(Verify, {Verify::kNone, "none"}, {Verify::kReference, "reference"});
+CAROUSEL_ENUM(Verify, {Verify::kNone, "none"}, {Verify::kReference, "reference"},
+              {Verify::kEffects, "effects"});
 
 #undef CAROUSEL_ENUM
 

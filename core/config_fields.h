@@ -288,7 +288,10 @@ void describe(V& v, ShadingConfig& c) {
   v.field("workers", c.workers, IntRange{1, 256}, "workers", "shader workers");
   v.effects("effects", c.effects, "effects of light: what the scene calls for, all (nothing is specialised), or of what it calls for only those named");
   v.field("idle_resources_shade", c.idle_resources_shade, "", "idle resources help the shader workers");
-  v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles", "time to shade one ray");
+  v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles",
+          "time to shade one ray, where it hit a plain surface or nothing");
+  v.field("cycles_per_effect", c.cycles_per_effect, IntRange{0, 1'000'000}, "cycles",
+          "time for each texture or layer besides that the surface has, or with effects: all might have");
   v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
           "time to tell whether a primitive lets a ray through, with testers.any_hit: shader");
   v.section("camera_rays", c.camera_rays, "what the shaders want of camera rays");
@@ -367,7 +370,7 @@ void describe(V& v, Config& c) {
            "how what the camera sees first is found: by its rays, or by a rasteriser (pinhole cameras only) that leaves "
            "the other rays to the machine");
   v.section("faults", c.faults, "what goes wrong on request");
-  v.choice("verify", c.verify, "reference: trace every ray again, depth first, and compare");
+  v.choice("verify", c.verify, "reference: trace every ray again, depth first, and compare; effects: run again with all effects and compare the picture");
   v.workload("workload", c.workload, "rays of the picture, rays of a file, or synthetic traffic");
   v.vary("vary", c.vary, "for sweep: values of keys, key.path: [a, b, c]");
 }

@@ -108,6 +108,8 @@ class Rules {
   }
 
   void built_planes_and_bundles() {
+    if (c.verify == Verify::kEffects && c.shading.effects.choice != ShadingConfig::Effects::Choice::kAuto)
+      issue("verify", "effects compares what the scene calls for with all; expected shading.effects: auto");
     if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
       constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
       if (c.cull_planes.count > 0) issue("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));

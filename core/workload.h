@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/ids.h"
@@ -40,6 +41,10 @@ class Workload {
   /// Appends at most `max_rays` rays that no earlier ray caused. May append none without being finished
   /// (e.g. no path state is free); the caller then tries again after shade() calls.
   virtual Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) = 0;
+
+  /// Effects of the surface that a completed ray has hit beyond a plain one's: what a simulated shader worker is charged for
+  /// besides. Call before the ray is given to shade().
+  virtual std::uint32_t extra_effects(const RayResult& /*result*/) const { return 0; }
 
   /// Takes completed rays, in any order and mix, each ray exactly once; appends the rays they give rise to.
   virtual void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) = 0;

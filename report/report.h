@@ -226,6 +226,13 @@ struct EffectsSaved {
   std::uint64_t path_state_bytes = 0, unread_image_bytes = 0;
 };
 
+/// What `verify: effects` found.
+struct EffectsProof {
+  bool same_hits = false, same_image = false;
+  std::int64_t rays_spared = 0, tests_spared = 0;
+  std::optional<std::int64_t> cycles_spared{};
+};
+
 struct Shading {
   std::uint64_t workers = 0, shaded = 0, saturated = 0;
   std::optional<double> utilisation;
@@ -234,6 +241,7 @@ struct Shading {
   std::uint64_t path_state_bytes = 0;
   EffectsSaved saved;
   std::vector<ShaderClass> classes;
+  std::optional<EffectsProof> proof{};
 };
 
 struct Verify {
@@ -257,7 +265,7 @@ struct Host {
   std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
   std::string simd;
   Machine machine;
-  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{};
+  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{}, all_effects_seconds{};
 };
 
 /// The pass that stands in for camera rays.

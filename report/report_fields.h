@@ -351,6 +351,15 @@ void describe(V& v, EffectsSaved& r) {
 }
 
 template <class V>
+void describe(V& v, EffectsProof& r) {
+  v.field("same_hits", r.same_hits, "", "digest.hits is the same");
+  v.field("same_image", r.same_image, "", "digest.image is the same");
+  v.field("rays_spared", r.rays_spared, "rays", "that all effects would have sent besides");
+  v.field("tests_spared", r.tests_spared, "tests", "box, triangle, procedural, plane and bundle tests; on the native engine they vary by timing");
+  v.field("cycles_spared", r.cycles_spared, "cycles", "of the simulated machine");
+}
+
+template <class V>
 void describe(V& v, Shading& r) {
   v.field("workers", r.workers, "workers", "shader workers");
   v.field("shaded", r.shaded, "rays", "completed rays shaded");
@@ -360,6 +369,7 @@ void describe(V& v, Shading& r) {
   v.field("effects_choice", r.effects_choice, "", "shading.effects: auto, all, or the list; a list changes digest.image");
   v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
   v.section("saved", r.saved, "what effects that are off did not take");
+  v.section("proof", r.proof, "the same run with all effects, with verify: effects");
   v.section("classes", r.classes, "materials on triangles, by the code that shades them");
 }
 
@@ -394,6 +404,7 @@ void describe(V& v, Host& r) {
   v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure, without cull planes");
   v.field("plane_seconds", r.plane_seconds, "s", "to find its cull planes");
   v.field("raster_seconds", r.raster_seconds, "s", "to rasterise what the camera sees first");
+  v.field("all_effects_seconds", r.all_effects_seconds, "s", "that the run took with all effects; wall_seconds is without");
   v.field("recovery_seconds", r.recovery_seconds, "s", "from the last sign of life of a resource that stopped until its rays began again");
   v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");

@@ -115,6 +115,13 @@ void cull_plane_lines(Table& table, const Report& report) {
              grouped(sum.box_tests_spared));
 }
 
+void proof_line(Table& table, const EffectsProof& proof) {
+  std::string cycles;
+  if (proof.cycles_spared) cycles = fmt::format("   {} cycles", *proof.cycles_spared);
+  table.line("all effects", "hits {}   image {}   spared: {} rays   {} tests{}", proof.same_hits ? "the same" : "DIFFER",
+             proof.same_image ? "the same" : "DIFFERS", proof.rays_spared, proof.tests_spared, cycles);
+}
+
 void packet_lines(Table& table, const Report& report) {
   if (const auto& p = report.packets) {
     table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(p->issued),
@@ -221,6 +228,7 @@ std::string report_table(const Report& report) {
   if (report.tests) test_line(table, *report.tests);
   if (report.cull_planes) cull_plane_lines(table, report);
   packet_lines(table, report);
+  if (report.shading.proof) proof_line(table, *report.shading.proof);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);
   table.gap();

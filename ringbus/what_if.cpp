@@ -21,6 +21,7 @@ class FirstPaths final : public Workload {
     made.finished |= left_ == 0;
     return made;
   }
+  std::uint32_t extra_effects(const RayResult& result) const override { return whole_->extra_effects(result); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override { whole_->shade(worker, completed, out); }
 
  private:

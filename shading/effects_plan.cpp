@@ -431,4 +431,16 @@ std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::S
   return out;
 }
 
+std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan) {
+  constexpr std::array kExtra{Effect::kBaseColorTexture, Effect::kMetallicRoughnessTexture, Effect::kNormalMap,
+                              Effect::kTransmission, Effect::kRefraction, Effect::kVolume, Effect::kIor, Effect::kSpecular,
+                              Effect::kClearcoat, Effect::kSheen, Effect::kIridescence, Effect::kAnisotropy};
+  std::vector<std::uint32_t> counts;
+  for (const Material& material : scene.materials) {
+    const auto has = [&](Effect effect) { return plan.everything || material_calls(material, effect); };
+    counts.push_back(static_cast<std::uint32_t>(std::count_if(kExtra.begin(), kExtra.end(), has)));
+  }
+  return counts;
+}
+
 }  // namespace carousel::shading

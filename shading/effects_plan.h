@@ -68,6 +68,9 @@ inline constexpr std::size_t kSurfaceClasses = 9;
 std::string_view class_name(SurfaceClass surface);
 /// Classes of the materials on triangles of instances, as the plan has them shaded, each with how many; none of 0.
 std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::Scene& scene, const EffectsPlan& plan);
+/// By material: effects to be computed at a hit beyond those of a plain surface: textures, and what glTF's extensions add;
+/// with `all` as many as there are.
+std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan);
 /// By material: how the plan has it shaded.
 std::vector<SurfaceClass> surface_classes(const scene::Scene& scene, const EffectsPlan& plan);
 

@@ -100,6 +100,13 @@ void PathTracer::shade(WorkerId worker_id, const HitBatch& completed, RayBatch& 
     shade_batch<false>(worker_id, completed, out, surface);
 }
 
+std::uint32_t PathTracer::extra_effects(const RayResult& result) const {
+  const Hit& hit = result.hit;
+  if (result.tag.kind == RayKind::kShadow || !hit.valid()) return 0;
+  const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
+  return surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())].effects;
+}
+
 void PathTracer::shade_shadow(const RayResult& result, Worker& worker) {
   if (result.hit.valid()) return;
   add_radiance(pool_.state(result.tag.path), pool_.shadow_contribution(result.tag.path, result.tag.bounce),
@@ -165,6 +172,7 @@ PathTracer::ShadeSurface PathTracer::shade_of(SurfaceClass surface, Lights light
 
 void PathTracer::choose_surfaces() {
   const std::vector<SurfaceClass> classes = surface_classes(scene_, plan_);
+  const std::vector<std::uint32_t> effects = shading::extra_effects(scene_, plan_);
   const Lights lights = media_                         ? Lights::kLampsAndMedia
                         : plan_.on(Effect::kEmission)  ? Lights::kLamps
                         : !lights_.empty()             ? Lights::kPunctual
@@ -176,6 +184,7 @@ void PathTracer::choose_surfaces() {
     surface.shade = shade_of(classes[i], lights);
     surface.glass = glass_tables(material);
     surface.absorbs = absorbs(material);
+    surface.effects = effects[i];
     if (!surface.absorbs) continue;
     for (int c = 0; c < 3; ++c) {
       const float left = std::clamp(material.volume.attenuation_color[c], 1e-6f, 1.0f);

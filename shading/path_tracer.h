@@ -53,6 +53,7 @@ class PathTracer : public Workload {
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
+  std::uint32_t extra_effects(const RayResult& result) const override;
 
   const EffectsPlan& plan() const { return plan_; }
 
@@ -93,6 +94,7 @@ class PathTracer : public Workload {
     GlassTables glass;
     Vec3 absorption{0};      ///< per scene unit, inside
     bool absorbs = false;
+    std::uint32_t effects = 0;   ///< extra_effects()
   };
 
   static ShadeSurface shade_of(SurfaceClass surface, Lights lights);

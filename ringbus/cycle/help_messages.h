@@ -1,9 +1,13 @@
 #pragma once
 
+#include "ringbus/cycle/clock.h"
+
 namespace carousel::ringbus::cycle {
 
-/// To a resource with nothing to test: shade a ray.
-struct ShadeJob {};
+/// To a resource with nothing to test: shade a ray, in so many cycles.
+struct ShadeJob {
+  Cycle cycles = 0;
+};
 
 /// From a resource whose testers fell idle or are needed again, or which has done its job.
 struct HelpNote {

@@ -17,7 +17,6 @@ class ShadeHelp {
   ShadeHelp(const Config& config, const SidePorts& ports)
       : jobs_(ports.jobs),
         notes_(ports.help),
-        cycles_(static_cast<Cycle>(config.shading.cycles_per_shade)),
         latency_(control_latency(config)) {}
 
   /// Takes a job in, starts it if no test is under way, ends it. Whether any of these happened.
@@ -25,7 +24,7 @@ class ShadeHelp {
     if (jobs_ == nullptr) return false;
     bool moved = false;
     if (jobs_->next() <= now) {
-      jobs_->take();
+      cycles_ = jobs_->take().cycles;
       waiting_ = moved = true;
     }
     if (waiting_ && testers_free) {
@@ -53,7 +52,7 @@ class ShadeHelp {
  private:
   Channel<ShadeJob>* jobs_;   // null: it does not help
   Channel<HelpNote>* notes_;
-  Cycle cycles_, latency_;
+  Cycle latency_, cycles_ = 0;   // cycles: of the job
   Cycle done_ = kNever;
   bool waiting_ = false, shaded_ = false;
   bool told_idle_ = true;   // as everybody is at first

@@ -35,13 +35,13 @@ class ShadeHelpers {
   }
   /// Whether somebody can take a ray.
   bool any() const { return !idle_.empty(); }
-  void give(const RayResult& ray, Cycle now) {
+  void give(const RayResult& ray, Cycle cycles, Cycle now) {
     Helper& helper = helpers_[idle_.front()];
     idle_.pop_front();
     helper.ray = ray;
     helper.has_job = true;
     ++out_;
-    helper.jobs->send(now + latency_, {});
+    helper.jobs->send(now + latency_, {cycles});
   }
   /// Rays sent that have not come back.
   std::size_t out() const { return out_; }

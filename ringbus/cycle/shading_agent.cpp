@@ -13,6 +13,7 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       clients_(std::move(clients)),
       trace_(static_cast<std::uint32_t>(machine.topology.resources()), window),
       shade_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_shade)),
+      effect_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_effect)),
       any_hit_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_any_hit)),
       load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
       latency_(control_latency(machine.config)),
@@ -122,10 +123,14 @@ bool ShadingAgent::start_jobs(Cycle now) {
   while (helpers_.any()) {
     const std::optional<RayResult> ray = queues_.take_any();
     if (!ray) break;
-    helpers_.give(*ray, now);
+    helpers_.give(*ray, cycles_for(*ray), now);
     any = true;
   }
   return any;
+}
+
+Cycle ShadingAgent::cycles_for(const RayResult& ray) const {
+  return effect_cycles_ == 0 ? shade_cycles_ : shade_cycles_ + effect_cycles_ * workload_.extra_effects(ray);
 }
 
 bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
@@ -137,7 +142,7 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
     job.done = now + any_hit_cycles_ * job.question->rays.times;
   } else if (const std::optional<RayResult> ray = queues_.take(worker)) {
     job.ray = *ray;
-    job.done = now + shade_cycles_;
+    job.done = now + cycles_for(*ray);
   } else if (!source_finished_ && !source_dry_ && room() > 0) {
     job.made = room();
     making_ += job.made;

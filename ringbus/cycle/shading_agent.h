@@ -18,7 +18,7 @@
 namespace carousel::ringbus::cycle {
 
 /// Ray control and the pool of shader workers. A worker takes the ray that has waited longest in its queue, and needs
-/// shading.cycles_per_shade for it, as for making a camera ray; what resources ask about opacity comes first, and takes
+/// shading.cycles_per_shade for it, as for making a camera ray, and cycles_per_effect for each effect besides; what resources ask about opacity comes first, and takes
 /// shading.cycles_per_any_hit each. What the workers have no hand free for goes to
 /// resources that have nothing to test, with `idle_resources_shade`. New rays gather until they fill a packet, or until
 /// no worker has anything to do, and are then given slots; with bundles they gather until they would fill those that
@@ -69,6 +69,7 @@ class ShadingAgent final : public Agent {
   void take_questions(Cycle now);
   bool finish_jobs(Cycle now);
   bool start_jobs(Cycle now);
+  Cycle cycles_for(const RayResult& ray) const;
   bool start_job(std::uint32_t worker, Cycle now);
   void place(Cycle now);
   std::size_t room() const;
@@ -78,7 +79,7 @@ class ShadingAgent final : public Agent {
   Workload& workload_;
   std::vector<SidePorts> clients_;
   Trace trace_;
-  Cycle shade_cycles_, any_hit_cycles_, load_cycles_, latency_;
+  Cycle shade_cycles_, effect_cycles_, any_hit_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
   std::size_t gather_;                       // new rays that are worth giving slots
   Cycle builder_rate_, builder_free_ = 0;

@@ -2,12 +2,14 @@
 #include <nlohmann/json.hpp>
 
 #include "core/effect.h"
+#include "report/report_json.h"
 #include "tests/app/program.h"
+#include "tests/json_schema_check.h"
 
 namespace carousel {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 
 constexpr const char* kSmall = R"(schema_version: 1
@@ -36,6 +38,25 @@ TEST(EffectsRun, AllGivesTheSamePictureOnBothEnginesAndTheReportSaysWhatAutoSave
     EXPECT_GT(least["shading"]["saved"]["path_state_bytes"], 0);
     EXPECT_EQ(most["shading"]["saved"]["path_state_bytes"], 0);
   }
+}
+
+TEST(EffectsRun, AProofRunsItAgainWithAllAndSaysWhatWasSpared) {
+  const Program program;
+  program.write("small.yaml", "scene: {builtin: cornell}\nimage: {width: 16, height: 12, samples: 1}\n"
+                              "engine: {kind: cycle, what_if: false}\nverify: effects\n");
+  const Outcome outcome = program.run({"run", "small.yaml"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("all effects  hits the same   image the same"));
+  const Json report = Json::parse(program.read("out/small/report.json"));
+  EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
+  const Json& proof = report["shading"]["proof"];
+  EXPECT_EQ(proof["same_hits"], true);
+  EXPECT_EQ(proof["same_image"], true);
+  EXPECT_EQ(proof["rays_spared"], 0);          // a lamp lights the box: nothing is sent in vain
+  EXPECT_GT(proof["cycles_spared"], 1000);     // plain walls ask for nothing that they have not
+  EXPECT_GT(report["host"]["all_effects_seconds"], 0);
+
+  EXPECT_EQ(program.run({"run", "small.yaml", "--set", "shading.effects=all"}).status, 2);
 }
 
 TEST(EffectsRun, AListIsNamedBesideItsOtherPicture) {

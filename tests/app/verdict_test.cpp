@@ -43,6 +43,15 @@ TEST_F(VerdictTest, OneMismatchIsStatus1) {
   EXPECT_THAT(log_.str(), HasSubstr("[error] verification failed: 1 of 100 rays differ"));
 }
 
+TEST_F(VerdictTest, EffectsThatChangeSomethingAreStatus1) {
+  report::Report report;
+  report.shading.proof = report::EffectsProof{true, true, 0, 0, {}};
+  EXPECT_EQ(verdict(report), kDone);
+  report.shading.proof->same_image = false;
+  EXPECT_EQ(verdict(report), 1);
+  EXPECT_THAT(log_.str(), HasSubstr("with all effects the pixels differ"));
+}
+
 TEST_F(VerdictTest, AnInterruptIsStatus130AndStillNamesMismatches) {
   report::Report report = verified(100, 3);
   report.incomplete = true;

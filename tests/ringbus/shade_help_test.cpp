@@ -49,7 +49,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   help.tell(4, false);
   EXPECT_EQ(wires.notes.next(), kNever);
 
-  wires.jobs.send(10, {});
+  wires.jobs.send(10, {kShade});
   EXPECT_EQ(help.next(), 10u);
   EXPECT_TRUE(help.step(10, false));   // a test is under way
   EXPECT_TRUE(help.holds());
@@ -91,9 +91,10 @@ TEST(ShadeHelpers, SendsOneRayToEachThatIsIdle) {
   wires[0].notes.send(5, {false, false});
   EXPECT_EQ(helpers.next(), 5u);
   helpers.take_notes(5, shaded);
-  helpers.give(ray(10), 5);
+  helpers.give(ray(10), 33, 5);
   EXPECT_EQ(wires[1].jobs.next(), 5 + kLatency);
-  helpers.give(ray(11), 7);
+  EXPECT_EQ(wires[1].jobs.front().cycles, 33u);
+  helpers.give(ray(11), kShade, 7);
   EXPECT_EQ(wires[2].jobs.next(), 7 + kLatency);
   EXPECT_FALSE(helpers.any());
   EXPECT_EQ(helpers.out(), 2u);
@@ -115,9 +116,9 @@ TEST(ShadeHelpers, SendsOneRayToEachThatIsIdle) {
   // 2 fell idle before 0.
   wires[0].notes.send(50, {false, true});
   helpers.take_notes(50, shaded);
-  helpers.give(ray(12), 50);
+  helpers.give(ray(12), kShade, 50);
   EXPECT_EQ(wires[2].jobs.size(), 2u);
-  helpers.give(ray(13), 50);
+  helpers.give(ray(13), kShade, 50);
   EXPECT_EQ(wires[0].jobs.size(), 1u);
   EXPECT_FALSE(helpers.any());
 }
