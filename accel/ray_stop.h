@@ -8,6 +8,11 @@
 
 namespace carousel::accel {
 
+/// Whether a hit there is to stand in the place of `hit`: ties go to the smallest (t, instance, primitive).
+[[gnu::always_inline]] inline bool comes_before(float t, std::uint32_t instance, std::uint32_t primitive, const Hit& hit) {
+  return t < hit.t || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
+}
+
 /// Whether the ray stops at a primitive that is to be asked, found in front of all that has stopped it so far.
 template <class Slab>
 [[gnu::noinline]] bool asked_to_stop(const Accel& accel, const FrameRay<Slab>& ray, const Hit& found) {

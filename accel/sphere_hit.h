@@ -30,10 +30,7 @@ template <class Slab>
     if (!(t >= ray.slab.tmin && t <= std::numeric_limits<float>::max() && t <= hit.t)) continue;
     if ((ray.record->tag.flags & kCulledBy[k]) != 0) continue;
     const float distance = std::max({t, entry, ray.instance_entry});
-    const bool nearer = distance < hit.t ||
-                        (distance == hit.t && (ray.instance < hit.instance ||
-                                               (ray.instance == hit.instance && primitive < hit.primitive)));
-    if (!nearer) return false;
+    if (!comes_before(distance, ray.instance, primitive, hit)) return false;
     const Vec2 where = octahedral(crossing.normal[k]);
     const Hit found{distance, where.x, where.y, ray.instance, primitive};
     if (asks && !asked_to_stop(accel, ray, found)) continue;

@@ -60,10 +60,7 @@ HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const 
     float distance = entry > t ? entry : t;
     distance = ray.instance_entry > distance ? ray.instance_entry : distance;
     const std::uint32_t primitive = block.primitive[l] & kPrimitiveMask;
-    const bool nearer = distance < hit.t ||
-                        (distance == hit.t && (ray.instance < hit.instance ||
-                                               (ray.instance == hit.instance && primitive < hit.primitive)));
-    if (!nearer) continue;
+    if (!comes_before(distance, ray.instance, primitive, hit)) continue;
     const Hit found{distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]), ray.instance,
                     primitive};
     const std::uint32_t asks = block.primitive[l] & kAskBit;

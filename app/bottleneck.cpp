@@ -27,7 +27,7 @@ class FrameWorkload final : public Workload {
   }
 
  private:
-  mutable Frame frame_;
+  Frame frame_;
 };
 
 std::string percent_text(double fraction) { return fmt::format("{:+.1f} %", 100 * fraction); }

@@ -28,7 +28,7 @@ Frame::Frame(const Prepared& prepared, const Config& config) {
   }
 }
 
-Workload& Frame::workload() {
+Workload& Frame::workload() const {
   return tracer_ ? static_cast<Workload&>(*tracer_) : *list_;
 }
 

@@ -23,7 +23,7 @@ class Frame {
   /// With another machine than the prepared one, for what-if runs.
   Frame(const Prepared& prepared, const Config& config);
 
-  Workload& workload();
+  Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);
   /// Rays that no other ray causes: what the progress is measured by.
   std::uint64_t first_rays() const;
