@@ -10,6 +10,7 @@
 
 #include "shading/frame.h"
 #include "shading/luminance.h"
+#include "shading/material_effects.h"
 #include "shading/path_tracer.h"
 #include "shading/spawn_point.h"
 
