@@ -82,9 +82,9 @@ std::string table_of(const scene::Scene& s, const report::Shading& shading) {
       s.name, report::grouped(h.triangles), report::grouped(h.instanced), h.spheres, s.meshes.size(),
       s.instances.size(), s.materials.size(), s.textures.size(), s.images.size(), report::bytes_text(h.image_bytes),
       s.lights.size(), s.cameras.size());
-  out += fmt::format("{:<28}{:<5}{:<46}{}\n", "effect", "", "cost", "why");
+  out += fmt::format("{:<28}{:<5}{:<52}{}\n", "effect", "", "cost", "why");
   for (const report::Effect& e : shading.effects)
-    out += fmt::format("{:<28}{:<5}{:<46}{}\n", e.name, e.on ? "on" : "off", cost_text(e.cost), e.why);
+    out += fmt::format("{:<28}{:<5}{:<52}{}\n", e.name, e.on ? "on" : "off", cost_text(e.cost), e.why);
   out += "\nsurfaces     ";
   for (const report::ShaderClass& c : shading.classes) out += fmt::format("{} {}   ", c.materials, c.name);
   out += fmt::format("\npath state   {} bytes, {} fewer than all effects take\n", shading.path_state_bytes,

@@ -282,7 +282,9 @@ TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
   for (const std::uint64_t rays : {7u, 300u}) {
     const Bottleneck found = find_bottleneck(config, accel, 10, frame, rays, on_threads(1));
     ASSERT_FALSE(found.gains.empty()) << rays;
-    if (rays == 300u) EXPECT_EQ(found.gains.front().name, "shading");
+    if (rays == 300u) {
+      EXPECT_EQ(found.gains.front().name, "shading");
+    }
   }
 }
 
