@@ -17,9 +17,6 @@ namespace carousel::shading {
 
 namespace {
 
-constexpr float kLeast = 1e-6f;
-constexpr float kWideAlpha = 0.3f;   // as in bsdf.cpp
-
 constexpr Vec3 kNowhere{1, 0, 0};   // along the surface: carries nothing
 
 /// Share of light lost between microfacets that comes back by further ones: C. Kulla, A. Conty, 2017.
@@ -70,7 +67,7 @@ void InterfaceBsdf<kTransmits>::opaque_lobes() {
   const GgxAlbedo::Split view = single_split(wo_, point_.alpha), mean = GgxAlbedo::table().average_split(alpha);
 
   returned_ = returned_share(f0, f90, mean.full);
-  const float lost = anisotropic_ ? 1.0f - view.full : (1.0f - view.full) / std::max(1.0f - mean.full, kLeast);
+  const float lost = anisotropic_ ? 1.0f - view.full : (1.0f - view.full) / std::max(1.0f - mean.full, kLeastShare);
   const Vec3 metal_returned = returned_share(point_.metal_f0, 1.0f, mean.full);
   multiple_ = (metal_returned * m.metallic + returned_ * dielectric) * (kInvPi * lost);
 
@@ -78,7 +75,7 @@ void InterfaceBsdf<kTransmits>::opaque_lobes() {
   const Vec3 mean_coat = single_albedo(f0, f90, mean) + returned_ * (1.0f - mean.full);
   const Vec3 albedo = m.base_color * (dielectric * (1.0f - point_.transmission));
   diffuse_ = albedo * glm::max(Vec3{1} - coat, Vec3{0}) * kInvPi;
-  if (!anisotropic_) diffuse_ /= glm::max(Vec3{1} - mean_coat, Vec3{kLeast});
+  if (!anisotropic_) diffuse_ /= glm::max(Vec3{1} - mean_coat, Vec3{kLeastShare});
 
   Vec3 single = single_albedo(point_.metal_f0, 1.0f, view) * m.metallic + single_albedo(f0, f90, view) * dielectric;
   const float view_lost = 1.0f - view.full;
@@ -107,7 +104,7 @@ void InterfaceBsdf<kTransmits>::glass_lobes() {
   const Vec3 up = f0 * (s.reflected - s.reflected_w) + Vec3{f90 * s.reflected_w + s.total};
   const Vec3 down = Vec3{s.through} - f0 * (s.through - s.through_w) - Vec3{f90 * s.through_w};
   const Vec3 lost = glm::max(Vec3{1} - up - down, Vec3{0});
-  const Vec3 lost_up = lost * up / glm::max(up + down, Vec3{kLeast}), below = Vec3{1} - up - lost_up;
+  const Vec3 lost_up = lost * up / glm::max(up + down, Vec3{kLeastShare}), below = Vec3{1} - up - lost_up;
 
   GgxAlbedo::Split view;
   Vec3 metal_lost{0};

@@ -16,7 +16,6 @@ namespace carousel::shading {
 namespace {
 
 constexpr float kRoughnesses[] = {0.0f, 0.25f, 0.5f, 1.0f};
-constexpr float kCosines[] = {0.05f, 0.3f, 0.7f, 1.0f};
 
 InterfacePoint white(float metallic, float roughness, float transmission = 0) {
   InterfacePoint p;
