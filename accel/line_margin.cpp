@@ -21,17 +21,15 @@
 
 #include "accel/cull_plane_test.h"
 #include "accel/plane_candidates.h"
+#include "core/float_error.h"
 
 namespace carousel::accel {
 
 namespace {
 
-constexpr double kUnit = 0x1p-24;
-constexpr double gamma(int n) { return n * kUnit / (1 - n * kUnit); }
-
 /// The plane test's own rounding, and by what a margin is more than what was derived.
-constexpr double kTestRounding = 13 * kUnit, kReserve = 32.0 / 19;
-constexpr double kKernelRounding = 6 * kUnit;
+constexpr double kTestRounding = 13 * kUnitRoundoff, kReserve = 32.0 / 19;
+constexpr double kKernelRounding = 6 * kUnitRoundoff;
 /// What is of a second order in the derivation, relative to the first, where a is at most kMost.
 constexpr double kSecondOrder = 1.01, kMost = 0x1p-8;
 /// Of rows of R and M: within it, ray directions that CullRay takes in the world are such as it takes below.

@@ -5,12 +5,11 @@
 
 #include <glm/matrix.hpp>
 
+#include "core/float_error.h"
+
 namespace carousel::accel {
 
 namespace {
-
-constexpr double kUnit = 0x1p-24;
-constexpr double gamma(int n) { return n * kUnit / (1 - n * kUnit); }
 
 bool finite(const Mat3& m) {
   for (int c = 0; c < 3; ++c)
@@ -33,7 +32,7 @@ DVec3 transform_error(const scene::Affine& m, const DVec3& size, TransformLevel 
   if (level == TransformLevel::kTwoStepDouble) return linear * (gamma(1 + 2 * 1) * back);
   DVec3 error = gamma(5 + 2 * 4) * back;
   if (level == TransformLevel::kTransposeIfRotation)
-    error += 4 * kUnit * DVec3(size.x + size.y + size.z);   // (R^T R - I) x
+    error += 4 * kUnitRoundoff * DVec3(size.x + size.y + size.z);   // (R^T R - I) x
   if (level == TransformLevel::kInverseMatrix)   // R^-1 p and R^-1 T before they cancel: a third sum
     error += gamma(2 * 5) * (inverse * glm::abs(DVec3(m.translation)));
   return linear * error;
@@ -45,7 +44,7 @@ bool is_rotation(const Mat3& linear) {
   const DMat3 m(linear);
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j)
-      if (!(std::fabs(glm::dot(m[i], m[j]) - (i == j ? 1.0 : 0.0)) <= 4 * kUnit)) return false;
+      if (!(std::fabs(glm::dot(m[i], m[j]) - (i == j ? 1.0 : 0.0)) <= 4 * kUnitRoundoff)) return false;
   return true;
 }
 

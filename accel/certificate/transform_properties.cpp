@@ -11,13 +11,11 @@
 #include "accel/certificate/quad_inverse.h"
 #include "accel/dyadic.h"
 #include "accel/transform.h"
+#include "core/float_error.h"
 
 namespace carousel::accel {
 
 namespace {
-
-constexpr double kUnit = 0x1p-24;
-constexpr double gamma(int n) { return n * kUnit / (1 - n * kUnit); }
 
 /// Of a matrix whose inverse is worth judging: beyond, double arithmetic leaves too little of it.
 constexpr double kWorstCondition = 0x1p24;
@@ -36,9 +34,9 @@ double condition(const Mat3& linear) {
 double allowed(TransformLevel level, int roundings, double size, double terms) {
   constexpr double kLeast = 0x1p-140;   // near the denormals nothing is relative
   constexpr double kInversion = 0x1p-30;
-  if (level == TransformLevel::kTwoStepDouble) return kUnit * size + kInversion * terms + kLeast;
+  if (level == TransformLevel::kTwoStepDouble) return kUnitRoundoff * size + kInversion * terms + kLeast;
   const double off = (gamma(roundings) + kInversion) * terms + kLeast;
-  return level == TransformLevel::kTransposeIfRotation ? off + 12 * kUnit * size : off;
+  return level == TransformLevel::kTransposeIfRotation ? off + 12 * kUnitRoundoff * size : off;
 }
 
 CaseValues make_transform_case(CaseRandom& random) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr auto kOrder = CullPlanesConfig::Order::kBoxFirst;
 
-TestersConfig testers() {
+TestersConfig bundle_testers() {
   TestersConfig c;
   c.box = {8, 1, 4};
   c.bundle = {1, 1, 3};
@@ -24,26 +24,26 @@ TestCounts counts(std::uint64_t box, std::uint64_t bundle) {
 }
 
 TEST(BundleUnits, OnePassAfterTheOther) {
-  Tester tester(testers());
+  Tester tester(bundle_testers());
   EXPECT_EQ(tester.strip(0, counts(0, 8), 1, 8), 7u + 3u);
   EXPECT_EQ(tester.bundle.busy(), 8u);
   EXPECT_EQ(tester.box.busy(), 0u);
 }
 
 TEST(BundleUnits, EdgesOfASilhouetteArePasses) {
-  Tester tester(testers());
+  Tester tester(bundle_testers());
   EXPECT_EQ(tester.strip(0, counts(0, 8), 1, 40), 39u + 3u);
 }
 
 TEST(BundleUnits, RaysThatLeaveABundleAreTestedAfterIt) {
-  Tester tester(testers());
+  Tester tester(bundle_testers());
   EXPECT_EQ(tester.strip(10, counts(32, 8), 33, 8), 10u + 7u + 3u + 4u);   // the last to leave, the last to be tested
-  Tester many(testers());
+  Tester many(bundle_testers());
   EXPECT_EQ(many.strip(10, counts(256, 2), 33, 2), 10u + 3u + 31u + 4u);   // 32 cycles of boxes from the first answer on
 }
 
 TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
-  Tester wide(testers()), narrow(testers(), kOrder, 2);
+  Tester wide(bundle_testers()), narrow(bundle_testers(), kOrder, 2);
   EXPECT_EQ(wide.strip(0, counts(8, 0), 10), 4u);
   EXPECT_EQ(narrow.strip(0, counts(8, 0), 10), 5u + 4u);   // five cycles of reading, the last record a cycle after the fifth
   EXPECT_EQ(narrow.store.busy(), 5u);
@@ -52,13 +52,13 @@ TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
 }
 
 TEST(BundleUnits, ABundleReadsOneRecordWhereItsRaysReadAllOfTheirs) {
-  Tester as_bundle(testers(), kOrder, 1), as_rays(testers(), kOrder, 1);
+  Tester as_bundle(bundle_testers(), kOrder, 1), as_rays(bundle_testers(), kOrder, 1);
   EXPECT_EQ(as_bundle.strip(0, counts(0, 8), 1, 8), 1u + 7u + 3u);
   EXPECT_EQ(as_rays.strip(0, counts(256, 0), 32), 32u + 4u);
 }
 
 TEST(BundleUnits, AWalkThroughASubtreeReadsItsRaysOnce) {
-  Tester tester(testers(), kOrder, 1);
+  Tester tester(bundle_testers(), kOrder, 1);
   EXPECT_EQ(tester.walk(5, counts(8, 0), 3, 32), 5u + 32u);
   EXPECT_EQ(tester.walk(100, counts(8, 0), 50, 32), 150u);
 }
@@ -66,7 +66,7 @@ TEST(BundleUnits, AWalkThroughASubtreeReadsItsRaysOnce) {
 // Rays that need no test any more are read all the same, and the visit lasts as long as that: busy cycles beyond the
 // resource's time in test would leave its ledger with less than nothing.
 TEST(BundleUnits, AVisitLastsAsLongAsItsReading) {
-  Tester strip(testers(), kOrder, 1), walk(testers(), kOrder, 1);
+  Tester strip(bundle_testers(), kOrder, 1), walk(bundle_testers(), kOrder, 1);
   const Cycle strip_done = strip.strip(10, counts(0, 0), 6), walk_done = walk.walk(10, counts(0, 0), 0, 6);
   EXPECT_EQ(strip.store.busy(), 6u);
   EXPECT_EQ(strip_done, 10u + strip.store.busy());

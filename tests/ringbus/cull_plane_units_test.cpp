@@ -12,7 +12,7 @@
 namespace carousel::ringbus::cycle {
 namespace {
 
-TestersConfig testers() {
+TestersConfig plane_testers() {
   TestersConfig c;
   c.box = {8, 1, 4};
   c.plane = {2, 3, 5};
@@ -20,7 +20,7 @@ TestersConfig testers() {
 }
 
 TEST(PlaneUnits, StartWhenTheFirstBoxesAreAnswered) {
-  Tester tester(testers());
+  Tester tester(plane_testers());
   // 16 boxes: started at 100 and 101, answered at 104 and 105; 10 planes in 5 turns of 3 cycles from 104 on.
   EXPECT_EQ(tester.strip(100, {.box = 16, .plane = 10}), 104 + 4 * 3 + 5);
   EXPECT_EQ(tester.plane.busy(), 5 * 3);
@@ -28,20 +28,20 @@ TEST(PlaneUnits, StartWhenTheFirstBoxesAreAnswered) {
 }
 
 TEST(PlaneUnits, AnswerNoSoonerThanTheLastBoxIsFollowed) {
-  Tester tester(testers());
+  Tester tester(plane_testers());
   // 80 boxes take 10 cycles; the last ray's plane is tested after its boxes.
   EXPECT_EQ(tester.strip(0, {.box = 80, .plane = 1}), 9 + 4 + 5);
 }
 
 TEST(PlaneUnits, CostNothingWithoutPlanes) {
-  Tester tester(testers());
+  Tester tester(plane_testers());
   EXPECT_EQ(tester.strip(0, {.box = 16}), 5);
   EXPECT_EQ(tester.ray(100, {.box = 8}), 104);
   EXPECT_EQ(tester.plane.busy(), 0);
 }
 
 TEST(PlaneUnits, ComeBeforeTheBoxesThatAreLeft) {
-  Tester tester(testers(), CullPlanesConfig::Order::kPlanesFirst);
+  Tester tester(plane_testers(), CullPlanesConfig::Order::kPlanesFirst);
   // 10 planes in 5 turns of 3 cycles, answered from 105 on; the boxes of the last ray when it has been, at 117.
   EXPECT_EQ(tester.strip(100, {.box = 16, .plane = 10}), 100 + 4 * 3 + 5 + 4);
   EXPECT_EQ(tester.box.busy(), 2);
@@ -55,9 +55,9 @@ TEST(PlaneUnits, ComeBeforeTheBoxesThatAreLeft) {
 }
 
 TEST(PlaneUnits, ServeSingleRaysAndWalks) {
-  Tester tester(testers());
+  Tester tester(plane_testers());
   EXPECT_EQ(tester.ray(0, {.box = 8, .plane = 2}), 4 + 5);
-  Tester walk(testers());
+  Tester walk(plane_testers());
   EXPECT_EQ(walk.walk(0, {.box = 8, .plane = 100}, 20), 49 * 3 + 5);
 }
 
