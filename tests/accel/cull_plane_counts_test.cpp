@@ -18,7 +18,7 @@ namespace carousel::accel {
 namespace {
 
 using Nodes = CullPlanesConfig::Nodes;
-using Order = CullPlanesConfig::Order;
+using PlaneOrder = CullPlanesConfig::Order;
 
 Accel with_planes(const scene::Scene& scene, const CullPlanesConfig& planes) {
   return build(scene, {}, *make_sequential_executor(), {}, planes);
@@ -99,7 +99,7 @@ TEST(CullPlaneCounts, OfPlanesFirstDifferInTestsOnly) {
         const RayBatch rays = plane_grazing_rays(scene, 3000, run_seed());
         CullPlanesConfig planes{.count = count, .nodes = Nodes::kAll, .shared_normals = shared};
         const Traced box_first = traced(with_planes(scene, planes), rays);
-        planes.order = Order::kPlanesFirst;
+        planes.order = PlaneOrder::kPlanesFirst;
         for (decltype(trace_subtree)* trace : {&trace_subtree, &trace_interleaved}) {
           const Traced planes_first = traced(with_planes(scene, planes), rays, *trace);
           for (std::size_t i = 0; i < rays.size(); ++i)
@@ -125,7 +125,7 @@ TEST(CullPlaneCounts, AreTheSameOnEverySimdTarget) {
   const std::vector<SimdTarget> targets = usable_simd_targets();
   const SimdGuard guard;
   std::size_t culled = 0;
-  for (const Order order : {Order::kBoxFirst, Order::kPlanesFirst})
+  for (const PlaneOrder order : {PlaneOrder::kBoxFirst, PlaneOrder::kPlanesFirst})
     for (const bool shared : {false, true})
       for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kInstances}) {
         const scene::Scene scene = small_builtin(builtin, 3000, 60);
@@ -161,7 +161,7 @@ TEST(CullPlaneCounts, AreNoneWithoutPlanes) {
 // In a strip some lanes may be asked for: planes of others are not tested.
 TEST(CullPlaneCounts, OfPlanesFirstAreOfTheLanesAskedFor) {
   const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 3000);
-  const Accel accel = with_planes(scene, {.count = 4, .nodes = Nodes::kAll, .order = Order::kPlanesFirst});
+  const Accel accel = with_planes(scene, {.count = 4, .nodes = Nodes::kAll, .order = PlaneOrder::kPlanesFirst});
   const NodeKey root = accel.root_key();
   const Node& node = accel.nodes[root.ref.node()];
   ASSERT_GT(node.plane_counts, 0u);

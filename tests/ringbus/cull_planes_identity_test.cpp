@@ -10,7 +10,7 @@ namespace {
 
 using Nodes = CullPlanesConfig::Nodes;
 using Fit = CullPlanesConfig::Fit;
-using Order = CullPlanesConfig::Order;
+using PlaneOrder = CullPlanesConfig::Order;
 using Levels = CullPlanesConfig::Levels;
 
 std::vector<CullPlanesConfig> all_planes() {
@@ -18,7 +18,7 @@ std::vector<CullPlanesConfig> all_planes() {
   for (const std::int64_t count : {1, 2, 4, 8})
     for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll})
       for (const Fit fit : {Fit::kVertices, Fit::kBoxes})
-        all.push_back({count, nodes, all.size() % 3 == 2, fit, all.size() % 5 < 2 ? Order::kPlanesFirst : Order::kBoxFirst,
+        all.push_back({count, nodes, all.size() % 3 == 2, fit, all.size() % 5 < 2 ? PlaneOrder::kPlanesFirst : PlaneOrder::kBoxFirst,
                        std::array{Levels::kAll, Levels::kBlas, Levels::kTlas, Levels::kAll}[all.size() % 4]});
   return all;
 }
