@@ -262,6 +262,10 @@ class CycleRun {
     CycleResult& c = out.cycle.emplace();
     c.cycles = end;
     c.shading_busy = shading_->busy();
+    out.rays_restarted = shading_->rays_restarted();
+    out.paths_restarted = shading_->paths_restarted();
+    if (shading_->stop() && shading_->stop()->noticed > 0) c.stop = shading_->stop();
+    for (const auto& tile : tiles_) out.packets_discarded += tile->packets_discarded();
     c.memory_lines = memory_->lines();
     c.memory_busy = memory_->busy();
     steady(c);
