@@ -116,7 +116,7 @@ class CycleRun {
       }
       if (wire.from != node) continue;
       ports.out.emplace_back(*wires_[i], latency, depth, places);
-      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i));
+      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i, latency));
       ports.out_to.push_back(wire.to);
     }
     return ports;

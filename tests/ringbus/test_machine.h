@@ -34,6 +34,7 @@ struct Cell {
   std::size_t threads = 1;
   bool tight_storage = false;   ///< bounded collection storage at its least
   cycle::TraceWindow trace{};   ///< of the cycle engine
+  std::stop_token stop{};       ///< ends the run, which is then incomplete
 
   /// Nothing of those without faults.
   std::string faults_text() const {
@@ -174,6 +175,7 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   RunOptions options;
   options.threads = cell.threads;
   options.trace = cell.trace;
+  options.stop = cell.stop;
   Outcome out;
   try {
     accel::select_simd_target(c.engine.simd);
