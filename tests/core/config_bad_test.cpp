@@ -228,7 +228,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"StopAlone", SCENE "topology: {resources: 1}\nfaults: {resource: {kind: stop}}\n",
                   "test.yaml:2:23: topology.resources: where one stops another has to go on; expected at least 2, found 1"},
         BadConfig{"FaultsComparedOnTheWallClock", SCENE "faults: {compare: true, links: {drop: 0.1}}\n",
-                  "test.yaml:2:10: faults.compare: on the wall clock two runs differ by more than faults cost; expected false, or "
+                  "test.yaml:2:19: faults.compare: on the wall clock two runs differ by more than faults cost; expected false, or "
                   "engine.kind: cycle"},
         BadConfig{"OverrideTwice", SCENE "topology: {overrides: [{resource: 2}, {resource: 2}]}\n",
                   "test.yaml:2:50: topology.overrides.1.resource: resource 2 has an override already"},
