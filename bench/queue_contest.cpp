@@ -16,6 +16,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "bench/queue_benchmarks.h"
 #include "bench/queue_peers.h"
 #include "ringbus/queues/queue_types.h"
 #include "ringbus/stress/backoff.h"
@@ -192,6 +193,7 @@ int main(int argc, char** argv) {
   bench::enter<bench::AtomicQueueMpmc>("peer_atomic_queue");
   bench::enter<bench::ReaderWriterQueue>("peer_reader_writer_queue");
   bench::enter<bench::CircularBuffer>("peer_circular_buffer");
+  bench::enter_ring_queues();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -94,6 +94,7 @@ RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings
   ringbus::RunOptions options;
   options.threads = static_cast<std::size_t>(threads);
   options.statistics = form.statistics;
+  options.link_statistics = form.link_statistics;
   ListWorkload workload(rays, hits);
   const auto start = std::chrono::steady_clock::now();
   std::stop_source stop;

@@ -33,6 +33,7 @@ struct RingForm {
   Home home = Home::kLocal;
   std::int64_t resources = 1;
   bool statistics = false;
+  bool link_statistics = false;
   BundlesConfig bundles{};
 };
 

@@ -256,8 +256,8 @@ void describe(V& v, Memory& r) {
 template <class V>
 void describe(V& v, LinkOccupancy& r) {
   v.field("seconds", r.seconds, "s", "since the start, at the end of this part");
-  v.field("mean", r.mean, "packets", "waiting, seen at sends");
-  v.field("most", r.most, "packets", "waiting, seen at sends");
+  v.field("mean", r.mean, "packets", "waiting, seen at every eighth send");
+  v.field("most", r.most, "packets", "waiting, seen at every eighth send");
 }
 
 template <class V>
@@ -277,8 +277,8 @@ void describe(V& v, Link& r) {
   v.field("to", r.to, "", "resource that receives");
   v.field("depth", r.depth, "packets", "room of the queue");
   v.field("packets", r.packets, "packets", "carried");
-  v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting: seen at sends (native), over time (cycle)");
-  v.field("occupancy_max", r.occupancy_max, "packets", "waiting: seen at sends (native), ever (cycle)");
+  v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting: seen at every eighth send (native), over time (cycle)");
+  v.field("occupancy_max", r.occupancy_max, "packets", "waiting: seen at every eighth send and at refusals (native), ever (cycle)");
   v.field("stalled", r.stalled, "attempts|cycles", "sends that found the queue full (native), cycles in which a packet waited for a credit (cycle)");
   v.field("utilisation", r.utilisation, "fraction", "cycles in which it moved something, over all");
   v.section("cycles", r.cycles, "they add up to engine.cycles");
@@ -287,7 +287,7 @@ void describe(V& v, Link& r) {
   v.field("received_at_once", r.received_at_once, "packets", "mean of the receptions that brought any (native)");
   v.field("full_stalls", r.full_stalls, "sends", "that the queue did not take all of (native)");
   v.field("empty_stalls", r.empty_stalls, "receptions", "that found nothing (native)");
-  v.section("occupancy", r.occupancy, "over time: equal numbers of sends (native)");
+  v.section("occupancy", r.occupancy, "over time: equal numbers of samples (native)");
   v.section("faults", r.faults, "where there are faults: what happened to frames and acknowledgements");
 }
 

@@ -45,7 +45,7 @@ void describe(V& v, StressRingRow& r) {
   v.field("rate_most", r.rate_most, "rays/s", "fastest repetition");
   v.field("relative", r.relative, "fraction", "of the best one's median");
   v.field("refused", r.refused, "fraction", "of the packets offered to links");
-  v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting in a link, seen at sends");
+  v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting in a link, seen at every eighth send");
   v.field("same_digest", r.same_digest, "", "whether hits and image are those of the first");
 }
 

@@ -69,7 +69,7 @@ class NativeRun {
     machine_ = std::make_unique<Machine>(config_, accel_, scene_size_);
     for (std::uint32_t r = 0; r < sinks_.size(); ++r)
       ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, scene_size_, sinks_[r].get()));
-    for (const auto& link : machine_->links) link->count(options_.statistics);
+    for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
     for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(config_.shading.workers); ++w)
       workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), *machine_, workload_, count_, ledger_.get()));
   }

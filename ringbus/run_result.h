@@ -17,6 +17,7 @@ namespace carousel::ringbus {
 struct RunOptions {
   std::size_t threads = 1;
   bool statistics = true;                          ///< false: no sinks at all
+  bool link_statistics = true;                     ///< native, besides `statistics`: what passes the links is counted
   std::stop_token stop;                            ///< ends the run early; it is then incomplete
   std::chrono::milliseconds stuck_after{10000};    ///< native: no progress for so long is a SimulationError
   cycle::TraceWindow trace{};                      ///< cycle: keep every step of these cycles

@@ -1,12 +1,12 @@
-/* The single-producer single-consumer ring of ringbus/queues/spsc_ring.h.
+/* The single-producer single-consumer ring of ringbus/queues/spsc_ring.h: the first cell of what a push publishes holds
+ * the producer's index after it.
  *
  * Spin's processes see every write at once, in program order: sequential consistency. A release that pairs with an
  * acquire gives the same guarantee for what stands before and after it, which is all the ring uses; what a missing
- * release would allow (the index seen before the cell) is the fault PUBLISH_FIRST. Indices count on and are compared
- * by difference; here modulo 2 * CELLS * 8, as they are modulo 2^64 there.
+ * release would allow (a run's end seen before its cells) is the fault PUBLISH_FIRST. Indices count on.
  *
- * Faults to plant: -DPUBLISH_FIRST the index before the cell; -DFREE_FIRST the cell given back before it is read;
- * -DONE_TOO_MANY takes capacity + 1; -DSTALE_COPY the cached index is taken for a fresh one that is ahead. */
+ * Faults to plant: -DPUBLISH_FIRST a run's end before its cells; -DFREE_FIRST the cells given back before they are read;
+ * -DONE_TOO_MANY takes capacity + 1; -DSTALE_END what a cell holds from a lap before is taken for a run. */
 #ifndef CAPACITY
 #define CAPACITY 2
 #endif
@@ -26,8 +26,9 @@
 #define ROOM CAPACITY
 #endif
 
-byte cells[CELLS];
-byte tail, head;           /* the two shared indices */
+byte value_of[CELLS];
+byte run_end[CELLS];       /* of the run that began in the cell when it was last written as a first one */
+byte taken;                /* the consumer's index, for the producer to see */
 byte received;             /* what the consumer has checked */
 
 proctype producer() {
@@ -38,57 +39,62 @@ proctype producer() {
      if :: want > MESSAGES - sent -> want = MESSAGES - sent :: else fi;
      /* the cached index, refreshed when it does not promise enough room */
      if
-     :: ROOM - (sent - other) < want -> other = head
+     :: ROOM - (sent - other) < want -> other = taken
      :: else
      fi;
-#ifdef STALE_COPY
-     other = tail;
-#endif
      count = ROOM - (sent - other);
      if :: count > want -> count = want :: else fi;
+     if
+     :: count > 0 ->
 #ifdef PUBLISH_FIRST
-     tail = sent + count;
+        run_end[sent % CELLS] = sent + count;
 #endif
-     i = 0;
-     do
-     :: i < count -> cells[(sent + i) % CELLS] = sent + i + 1; i++
-     :: else -> break
-     od;
+        i = 0;
+        do
+        :: i < count -> value_of[(sent + i) % CELLS] = sent + i + 1; i++
+        :: else -> break
+        od;
 #ifndef PUBLISH_FIRST
-     tail = sent + count;
+        run_end[sent % CELLS] = sent + count;
 #endif
-     sent = sent + count
+        sent = sent + count
+     :: else
+     fi
   :: else -> break
   od
 }
 
 proctype consumer() {
-  byte other, count, i, want, value;
+  byte head, other, count, want, value, end;
   do
   :: received < MESSAGES ->
      if :: want = 1 :: want = BATCH fi;
-     if
-     :: other - received < want -> other = tail
-     :: else
-     fi;
-     assert(other - received <= CAPACITY);
-     count = other - received;
-     if :: count > want -> count = want :: else fi;
-#ifdef FREE_FIRST
-     head = received + count;
-#endif
-     i = 0;
+     count = 0;
      do
-     :: i < count ->
-        value = cells[(received + i) % CELLS];
-        assert(value == received + i + 1);   /* in order, none lost, none doubled, none half written */
-        i++
+     :: count < want ->
+        if
+        :: head == other ->
+           end = run_end[head % CELLS];
+#ifdef STALE_END
+           if :: end != head && end > 0 -> other = end :: else -> break fi
+#else
+           if :: end > head -> other = end :: else -> break fi
+#endif
+        :: else
+        fi;
+        assert(other - head <= CAPACITY);
+#ifdef FREE_FIRST
+        taken = head + 1;
+#endif
+        value = value_of[head % CELLS];
+        assert(value == head + 1);   /* in order, none lost, none doubled, none half written */
+        head++; count++
      :: else -> break
      od;
 #ifndef FREE_FIRST
-     head = received + count;
+     taken = head;
 #endif
-     received = received + count
+     received = head
   :: else -> break
   od
 }
