@@ -23,8 +23,7 @@ namespace carousel::ringbus {
 ///
 /// A frame is a copy of all that the packet holds, and what comes out of the link is the copy: it is written over the
 /// packet, which nobody else touches between a send and its reception. Any part of a copy may be damaged on the wire.
-/// Time passes in turns, ticks of the sender: a machine with more to do than cores waits longer for an answer, but has
-/// fewer turns in that time.
+/// Time passes in turns, ticks of the sender (ResendPatience).
 template <template <class> class Queue>
 class ReliableLink final : public Link {
  public:
@@ -48,7 +47,7 @@ class ReliableLink final : public Link {
   bool tick() override {
     const bool moved = take_acks();
     out_.release();
-    if (base_ < sent_ && patience_.ends()) go_back();
+    if (base_ < sent_ && patience_.ends(ResendPatience::Clock::now)) go_back();
     transmit();
     return moved;
   }

@@ -1,16 +1,19 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 
 namespace carousel::ringbus {
 
 /// For how many turns a sender waits for an acknowledgement before it sends again: twice what one takes on average
 /// (V. Jacobson, Congestion avoidance and control, SIGCOMM 1988), learnt from frames that were sent once only, and
-/// doubled each time it was in vain (P. Karn, C. Partridge, Improving round-trip time estimates, SIGCOMM 1987). In turns,
-/// not in time: when threads wait for cores there are fewer turns.
+/// doubled each time it was in vain (P. Karn, C. Partridge, Improving round-trip time estimates, SIGCOMM 1987). Turns are
+/// short where threads have cores, and then there is no need to wait for so much as a clock's tick. Where threads wait for
+/// cores each turn takes a time slice in which the other end will have had its turn, so few of them are enough.
 class ResendPatience {
  public:
+  using Clock = std::chrono::steady_clock;
   /// Frame `sequence` goes on the wire for the first time.
   void sent(std::uint64_t sequence) {
     if (timed_) return;
@@ -32,10 +35,12 @@ class ResendPatience {
     timed_ = false;
     quiet_ = 0;
   }
-  /// A turn in which something is out has passed. Whether it is time to send again.
-  bool ends() {
+  /// A turn in which something is out has passed. Whether it is time to send again. `now` tells the time when asked.
+  template <class Now>
+  bool ends(const Now& now) {
     ++turn_;
-    if (++quiet_ < turns()) return false;
+    if (++quiet_ == kSlow) slow_at_ = now() + kSlice;
+    if (quiet_ < turns() && (quiet_ <= kSlow || now() < slow_at_)) return false;
     went_back();
     factor_ = std::min<std::uint64_t>(2 * factor_, kMost);
     return true;
@@ -47,8 +52,12 @@ class ResendPatience {
  private:
   // A turn may find the other end in the middle of one. Where answers are lost, too, they seem to take ever longer.
   static constexpr std::uint64_t kLeast = 4, kMost = 64;
+  // If, after so many turns, the others take longer than this, cores are short.
+  static constexpr std::uint64_t kSlow = 1;
+  static constexpr std::chrono::microseconds kSlice{500};
 
   std::uint64_t turn_ = 0, quiet_ = 0;   // quiet: since something was heard, or sent again
+  Clock::time_point slow_at_{};
   double average_ = 2;
   std::uint64_t factor_ = 1;
   bool timed_ = false;                   // the frame that is being timed, and since when

@@ -180,9 +180,11 @@ TEST(ReliableLink, CarriesCopiesAndNoDamagedOne) {
 
 TEST(ResendPatience, LearnsHowLongAnAnswerTakesAndDoublesInVain) {
   ResendPatience patience;
+  ResendPatience::Clock::time_point time{};
+  const auto now = [&] { return time; };
   const auto turns_until_it_ends = [&] {
     int turns = 1;
-    while (!patience.ends()) ++turns;
+    while (!patience.ends(now)) ++turns;
     return turns;
   };
   const int first = turns_until_it_ends();
@@ -193,10 +195,14 @@ TEST(ResendPatience, LearnsHowLongAnAnswerTakesAndDoublesInVain) {
   for (int i = 0; i < 100; ++i) {
     patience.heard(sequence);
     patience.sent(sequence);
-    for (int turn = 0; turn < 20; ++turn) (void)patience.ends();
+    for (int turn = 0; turn < 20; ++turn) (void)patience.ends(now);
     patience.heard(++sequence);
   }
   EXPECT_GT(turns_until_it_ends(), 20);
+  // Turns that take a time slice each are few.
+  int slow = 1;
+  for (; !patience.ends(now); ++slow) time += std::chrono::milliseconds(3);
+  EXPECT_EQ(slow, 2);
 }
 
 TEST(FaultDice, TheSameSeedGivesTheSameFates) {
