@@ -37,7 +37,6 @@ constexpr double kSecondOrder = 1.01, kMost = 0x1p-8;
 /// Of rows of R and M: within it, ray directions that CullRay takes in the world are such as it takes below.
 constexpr double kLargest = 0x1p30;
 
-DMat3 magnitudes(const DMat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
 double largest(const DVec3& v) { return std::max({v.x, v.y, v.z}); }
 
 /// Of a and b above.
@@ -49,6 +48,8 @@ LineMargin margin(double a, double b, double least) {
 DMat3 rest_of(const DMat3& a, const DMat3& b) { return magnitudes(a * b - DMat3(1)) + 0x1p-50 * (magnitudes(a) * magnitudes(b)); }
 
 }  // namespace
+
+DMat3 magnitudes(const DMat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
 
 LineMargin margin_below() { return {kMarginPerReach, kLeastMargin}; }
 

@@ -5,6 +5,7 @@
 
 #include "accel/transform.h"
 #include "core/aabb.h"
+#include "core/vec.h"
 #include "scene/scene.h"
 
 namespace carousel::accel {
@@ -18,6 +19,9 @@ struct LineMargin {
 inline void widen(LineMargin& margin, const LineMargin& other) {
   margin = {std::max(margin.per_reach, other.per_reach), std::max(margin.least, other.least)};
 }
+
+/// Of every entry of a matrix.
+DMat3 magnitudes(const DMat3& m);
 
 /// Below the instances, where the line is that of the ray the kernel gets.
 LineMargin margin_below();

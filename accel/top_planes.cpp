@@ -13,8 +13,6 @@ namespace carousel::accel {
 
 namespace {
 
-DMat3 magnitudes(const DMat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
-
 DVec3 size_of(const Aabb& box) { return glm::max(glm::abs(DVec3(box.lo)), glm::abs(DVec3(box.hi))); }
 
 }  // namespace

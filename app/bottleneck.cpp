@@ -17,7 +17,8 @@ constexpr double kWorthIt = 0.05;
 /// A frame's rays alone; the picture they make is thrown away.
 class FrameWorkload final : public Workload {
  public:
-  FrameWorkload(const Prepared& prepared, const Config& config) : frame_(prepared, config) {}
+  FrameWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits)
+      : frame_(prepared, config, first_hits) {}
   std::uint32_t extra_effects(const RayResult& result) const override { return frame_.workload().extra_effects(result); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return frame_.workload().generate(worker, max_rays, out);
@@ -46,7 +47,7 @@ std::string verdict(const report::Bottleneck& b) {
 
 }  // namespace
 
-report::Bottleneck find_bottleneck(const Prepared& prepared, std::uint64_t first_rays, std::stop_token stop) {
+report::Bottleneck find_bottleneck(const Prepared& prepared, const Frame& frame, std::stop_token stop) {
   const Config& config = prepared.config();
   ringbus::RunOptions options;
   options.threads = prepared.threads;
@@ -54,8 +55,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, std::uint64_t first
   options.statistics = false;
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
       config, prepared.accel, prepared.scene_size(),
-      [&](const Config& machine) { return std::make_unique<FrameWorkload>(prepared, machine); },
-      std::min(first_rays, ringbus::pilot_paths(config)), options);
+      [&](const Config& machine) { return std::make_unique<FrameWorkload>(prepared, machine, frame.first_hits()); },
+      std::min(frame.first_rays(), ringbus::pilot_paths(config)), options);
   report::Bottleneck out;
   out.rays_per_kilocycle = found.rays_per_kilocycle;
   out.noise = found.noise;

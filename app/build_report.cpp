@@ -301,7 +301,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   }
   r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
                std::nullopt, {}, {}, 0, {}, {}};
-  add_effects(r.shading, prepared.scene, config, prepared.unread_image_bytes);
+  add_effects(r.shading, prepared.scene, config);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
   if (const FaultsConfig::Resource& fault = config.faults.resource;
       result.rays_restarted > 0 || (result.cycle && result.cycle->stop)) {

@@ -1,8 +1,12 @@
 #include "app/effects.h"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "shading/surface_class.h"
 
 namespace carousel::app {
 
@@ -21,12 +25,13 @@ std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan) {
   for (std::size_t i = 0; i < kEffects; ++i) {
     const shading::PlannedEffect& e = plan.effects[i];
     out.push_back({std::string(kEffectNames[i]), e.on, e.called_for, e.callers, e.why,
-                   {e.cost.rays_per_path, e.cost.texture_reads, e.cost.path_state_bytes}});
+                   {e.cost.rays_per_path, e.cost.texture_reads, e.cost.path_state_bytes, e.cost.cycles_per_hit,
+                    e.cost.cycles_per_path}});
   }
   return out;
 }
 
-void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config, std::uint64_t unread_image_bytes) {
+void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config) {
   const shading::EffectsPlan plan = shading::plan_effects(scene, config);
   Config everything = config;
   everything.shading.effects = {ShadingConfig::Effects::Choice::kAll, {}};
@@ -34,7 +39,8 @@ void add_effects(report::Shading& out, const scene::Scene& scene, const Config& 
   out.effects = effects_of(plan);
   out.effects_choice = choice_text(config.shading.effects);
   out.path_state_bytes = plan.path_state_bytes();
-  out.saved = {most - plan.path_state_bytes(), unread_image_bytes};
+  const std::vector<bool> read = shading::images_read(scene, config.shading.effects);
+  out.saved = {most - plan.path_state_bytes(), static_cast<std::uint64_t>(std::count(read.begin(), read.end(), false))};
   for (const auto& [surface, count] : shading::count_classes(scene, plan))
     out.classes.push_back({std::string(shading::class_name(surface)), count});
 }

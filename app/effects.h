@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/config.h"
@@ -13,7 +12,7 @@ namespace carousel::app {
 /// Which effects of light the scene calls for, which are computed, why, and what they cost.
 std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan);
 
-/// Fills in the effects' part of `out`. `unread_image_bytes` as drop_unread_images() says.
-void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config, std::uint64_t unread_image_bytes);
+/// Fills in the effects' part of `out`.
+void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config);
 
 }  // namespace carousel::app

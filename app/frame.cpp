@@ -9,7 +9,7 @@
 
 namespace carousel::app {
 
-Frame::Frame(const Prepared& prepared, const Config& config) {
+Frame::Frame(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
   const auto workers = static_cast<std::size_t>(config.shading.workers);
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
@@ -17,7 +17,9 @@ Frame::Frame(const Prepared& prepared, const Config& config) {
     first_rays_ = list_->size();
   } else {
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);
-    if (config.primary == Primary::kRaster) {
+    if (first_hits != nullptr) {
+      tracer_->set_first_hits(first_hits);
+    } else if (config.primary == Primary::kRaster) {
       const auto start = std::chrono::steady_clock::now();
       first_hits_ = shading::rasterize_first_hits(prepared.scene, config, prepared.alpha_test.get(),
                                                   *make_tbb_executor(prepared.threads));

@@ -20,13 +20,17 @@ class Frame {
  public:
   /// Reads the file of `rays_from`. Keeps references to `prepared`. Throws ConfigError and FileError.
   explicit Frame(const Prepared& prepared) : Frame(prepared, prepared.config()) {}
-  /// With another machine than the prepared one, for what-if runs.
-  Frame(const Prepared& prepared, const Config& config);
+  /// With another machine than the prepared one, for what-if runs. `first_hits`, if not null, are taken instead of a
+  /// raster pass of its own, and must outlive the frame.
+  Frame(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
   Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);
   /// Rays that no other ray causes: what the progress is measured by.
   std::uint64_t first_rays() const;
+
+  /// Of the raster pass; null when rays find the first hits.
+  const shading::FirstHits* first_hits() const { return raster_seconds_ ? &first_hits_ : nullptr; }
 
   // Results, for when the workers are joined.
 

@@ -47,7 +47,8 @@ Json json_of(const scene::Scene& s, const report::Shading& shading) {
   for (const report::Effect& e : shading.effects) {
     effects.push_back({{"name", e.name}, {"on", e.on}, {"called_for", e.called_for}, {"callers", e.callers}, {"why", e.why},
                        {"cost", {{"rays", e.cost.rays}, {"texture_reads", e.cost.texture_reads},
-                                 {"path_state_bytes", e.cost.path_state_bytes}}}});
+                                 {"path_state_bytes", e.cost.path_state_bytes}, {"cycles_per_hit", e.cost.cycles_per_hit},
+                                 {"cycles_per_path", e.cost.cycles_per_path}}}});
   }
   for (const report::ShaderClass& c : shading.classes) classes.push_back({{"name", c.name}, {"materials", c.materials}});
   return {{"scene", {{"name", s.name}, {"triangles", h.triangles}, {"instanced_triangles", h.instanced},
@@ -57,7 +58,7 @@ Json json_of(const scene::Scene& s, const report::Shading& shading) {
           {"effects_choice", shading.effects_choice}, {"effects", effects}, {"classes", classes},
           {"path_state_bytes", shading.path_state_bytes},
           {"saved", {{"path_state_bytes", shading.saved.path_state_bytes},
-                     {"unread_image_bytes", shading.saved.unread_image_bytes}}}};
+                     {"images_not_decoded", shading.saved.images_not_decoded}}}};
 }
 
 std::string cost_text(const report::EffectCost& cost) {
@@ -68,6 +69,8 @@ std::string cost_text(const report::EffectCost& cost) {
   add(cost.rays, "rays a path");
   add(cost.texture_reads, "lookups a hit");
   add(cost.path_state_bytes, "bytes a path");
+  add(cost.cycles_per_hit, "cycles a hit");
+  add(cost.cycles_per_path, "cycles a path");
   return text;
 }
 
@@ -79,15 +82,15 @@ std::string table_of(const scene::Scene& s, const report::Shading& shading) {
       s.name, report::grouped(h.triangles), report::grouped(h.instanced), h.spheres, s.meshes.size(),
       s.instances.size(), s.materials.size(), s.textures.size(), s.images.size(), report::bytes_text(h.image_bytes),
       s.lights.size(), s.cameras.size());
-  out += fmt::format("{:<28}{:<5}{:<32}{}\n", "effect", "", "cost", "why");
+  out += fmt::format("{:<28}{:<5}{:<52}{}\n", "effect", "", "cost", "why");
   for (const report::Effect& e : shading.effects)
-    out += fmt::format("{:<28}{:<5}{:<32}{}\n", e.name, e.on ? "on" : "off", cost_text(e.cost), e.why);
+    out += fmt::format("{:<28}{:<5}{:<52}{}\n", e.name, e.on ? "on" : "off", cost_text(e.cost), e.why);
   out += "\nsurfaces     ";
   for (const report::ShaderClass& c : shading.classes) out += fmt::format("{} {}   ", c.materials, c.name);
   out += fmt::format("\npath state   {} bytes, {} fewer than all effects take\n", shading.path_state_bytes,
                      shading.saved.path_state_bytes);
-  if (shading.saved.unread_image_bytes > 0)
-    out += fmt::format("images       {} are read by no effect\n", report::bytes_text(shading.saved.unread_image_bytes));
+  if (shading.saved.images_not_decoded > 0)
+    out += fmt::format("images       {} are read by no effect, and not decoded\n", shading.saved.images_not_decoded);
   return out;
 }
 
@@ -95,11 +98,12 @@ std::string table_of(const scene::Scene& s, const report::Shading& shading) {
 
 int inspect_command(const InspectArguments& arguments) {
   const LocatedConfig located = config_for(arguments);
-  scene::Scene scene = scene::load_scene(located.config.scene, {}, [](const std::string& w) { spdlog::warn("{}", w); });
-  shading::keep_effects(scene, located.config.shading.effects);
-  scene::Scene without_unread = scene;
+  const ShadingConfig::Effects& choice = located.config.shading.effects;
+  scene::Scene scene = scene::load_scene(located.config.scene, {}, [](const std::string& w) { spdlog::warn("{}", w); },
+                                         [&](const scene::Scene& s) { return shading::images_read(s, choice); });
+  shading::keep_effects(scene, choice);
   report::Shading shading;
-  add_effects(shading, scene, located.config, shading::drop_unread_images(without_unread));
+  add_effects(shading, scene, located.config);
   print_result(arguments.json ? json_of(scene, shading).dump(2) + "\n" : table_of(scene, shading));
   return kDone;
 }

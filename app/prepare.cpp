@@ -48,10 +48,8 @@ void load_scene(Prepared& p) {
   p.scene = scene::load_scene(p.config().scene, p.config_folder, [&](const std::string& warning) {
     spdlog::warn("{}", warning);
     p.warnings.push_back(warning);
-  });
+  }, [&](const scene::Scene& s) { return shading::images_read(s, p.config().shading.effects); });
   shading::keep_effects(p.scene, p.config().shading.effects);
-  if (p.config().shading.effects.choice != ShadingConfig::Effects::Choice::kAll)
-    p.unread_image_bytes = shading::drop_unread_images(p.scene);
   p.scene_seconds = watch.seconds();
 }
 

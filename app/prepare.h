@@ -27,7 +27,6 @@ struct Prepared {
   std::unique_ptr<scene::Scene> scene_storage = std::make_unique<scene::Scene>();
   scene::Scene& scene = *scene_storage;   ///< stays where it is when this is moved: others refer to it
   std::vector<std::string> warnings;  ///< of the import
-  std::uint64_t unread_image_bytes = 0;   ///< of textures that no effect reads, and that were dropped
   accel::Accel accel;
   std::unique_ptr<shading::AlphaTest> alpha_test;   ///< whom `accel` asks; null where nothing lets rays through
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;

@@ -119,7 +119,7 @@ int run_command(const RunArguments& arguments) {
   report::Report report = build_report(p, frame, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {
     report.bound = bound_of(p.config(), result);
-    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, frame.first_rays(), interrupt.token());
+    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, frame, interrupt.token());
   }
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, interrupt, report);

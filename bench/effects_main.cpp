@@ -12,7 +12,6 @@
 #include "core/executor.h"
 #include "scene/builtin.h"
 #include "shading/alpha_test.h"
-#include "shading/effects_plan.h"
 
 namespace carousel::bench {
 
@@ -27,7 +26,6 @@ struct EffectsOptions {
 
 EffectsScene run_scene(const EffectsOptions& o, const std::string& name, scene::Scene scene, const std::vector<Shading>& ways) {
   fmt::print(stderr, "{}\n", name);
-  shading::drop_unread_images(scene);
   accel::Accel accel = accel::build(scene, {}, *make_sequential_executor());
   const shading::AlphaTest alpha(scene);
   if (accel.may_pass) accel.any_hit = &alpha;

@@ -206,7 +206,7 @@ struct Bottleneck {
 };
 
 struct EffectCost {
-  std::uint64_t rays = 0, texture_reads = 0, path_state_bytes = 0;
+  std::uint64_t rays = 0, texture_reads = 0, path_state_bytes = 0, cycles_per_hit = 0, cycles_per_path = 0;
 };
 
 struct Effect {
@@ -223,7 +223,7 @@ struct ShaderClass {
   std::uint64_t materials = 0;
 };
 struct EffectsSaved {
-  std::uint64_t path_state_bytes = 0, unread_image_bytes = 0;
+  std::uint64_t path_state_bytes = 0, images_not_decoded = 0;
 };
 
 /// What `verify: effects` found.

@@ -327,6 +327,8 @@ void describe(V& v, EffectCost& r) {
   v.field("rays", r.rays, "rays", "of a path, at most");
   v.field("texture_reads", r.texture_reads, "lookups", "filtered, at a hit, at most");
   v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
+  v.field("cycles_per_hit", r.cycles_per_hit, "cycles", "modelled, of a shader worker or opacity unit where a surface has it");
+  v.field("cycles_per_path", r.cycles_per_path, "cycles", "modelled, of shader workers for those rays, at most; their tests come on top");
 }
 
 template <class V>
@@ -348,7 +350,7 @@ void describe(V& v, ShaderClass& r) {
 template <class V>
 void describe(V& v, EffectsSaved& r) {
   v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight, that all effects would take besides");
-  v.field("unread_image_bytes", r.unread_image_bytes, "bytes", "of pixels that no effect reads, not kept");
+  v.field("images_not_decoded", r.images_not_decoded, "images", "that no effect reads");
 }
 
 template <class V>

@@ -8,16 +8,6 @@ namespace carousel::scene {
 
 namespace {
 
-MaterialId add_material(Scene& scene, const char* name, Vec3 color, float metallic, float roughness) {
-  Material m;
-  m.name = name;
-  m.base_color = Vec4(color, 1);
-  m.metallic = metallic;
-  m.roughness = roughness;
-  scene.materials.push_back(m);
-  return MaterialId(static_cast<std::uint32_t>(scene.materials.size() - 1));
-}
-
 void add_instance(Scene& scene, Mesh mesh, float turn, Vec3 translation) {
   scene.meshes.push_back(std::move(mesh));
   Instance instance;

@@ -14,16 +14,6 @@ namespace carousel::scene {
 
 namespace {
 
-MaterialId add_material(Scene& scene, const char* name, Vec3 color, float metallic, float roughness) {
-  Material m;
-  m.name = name;
-  m.base_color = Vec4(color, 1);
-  m.metallic = metallic;
-  m.roughness = roughness;
-  scene.materials.push_back(m);
-  return MaterialId(static_cast<std::uint32_t>(scene.materials.size() - 1));
-}
-
 /// Meshes 0 to 6, all of about unit size around the origin.
 void add_shapes(Scene& scene) {
   const auto add = [&](const char* name, auto&& fill) {

@@ -15,17 +15,6 @@ namespace {
 
 constexpr float kLeastAspect = 10, kMostAspect = 1e5f;
 
-MaterialId add_material(Scene& scene, const char* name, Vec3 color, float metallic, float roughness) {
-  Material m;
-  m.name = name;
-  m.base_color = Vec4(color, 1);
-  m.metallic = metallic;
-  m.roughness = roughness;
-  m.double_sided = true;
-  scene.materials.push_back(m);
-  return MaterialId(static_cast<std::uint32_t>(scene.materials.size() - 1));
-}
-
 }  // namespace
 
 Scene make_sliver(std::int64_t triangles, std::int64_t seed) {
@@ -36,6 +25,7 @@ Scene make_sliver(std::int64_t triangles, std::int64_t seed) {
                                 add_material(scene, "rose", {0.78f, 0.10f, 0.20f}, 0, 0.6f),
                                 add_material(scene, "brass", {0.95f, 0.78f, 0.45f}, 1, 0.3f),
                                 add_material(scene, "violet", {0.26f, 0.10f, 0.55f}, 0, 0.6f)};
+  for (Material& m : scene.materials) m.double_sided = true;
 
   // Flat shading: the needles have no normals of their own.
   Mesh burst;

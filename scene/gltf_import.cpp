@@ -15,6 +15,7 @@
 #include "scene/gltf_checks.h"
 #include "scene/gltf_document.h"
 #include "scene/gltf_draco.h"
+#include "scene/gltf_images.h"
 #include "scene/gltf_materials.h"
 #include "scene/gltf_meshes.h"
 #include "scene/gltf_meshopt.h"
@@ -46,7 +47,7 @@ void read_used_meshes(MeshReader& reader, DracoReader& draco, std::size_t file_m
 }
 
 Scene import(std::span<const std::byte> bytes, const std::string& file,
-             std::optional<std::filesystem::path> folder, const WarningSink& warn) {
+             std::optional<std::filesystem::path> folder, const WarningSink& warn, const ImageChoice& choice) {
   GltfDocument document = parse_document(bytes, file);
   check_extensions(document, warn);
   check_schema(document);
@@ -55,8 +56,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file,
   const std::vector<std::size_t> images = read_materials(document, scene, warn);
   const MaterialId default_material(static_cast<std::uint32_t>(scene.materials.size() - 1));
   const GltfResources resources(document, std::move(folder));
-  GltfModel model = read_model(document, resources, images);
-  for (const std::size_t image : images) scene.images.push_back(std::move(model.images[image]));
+  GltfModel model = read_model(document, resources);
 
   const std::map<std::size_t, Bytes> unpacked = decode_meshopt_views(document, model);
   AccessorTable accessors(document, model, unpacked);
@@ -72,6 +72,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file,
   }
   const bool empty = std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
   if (empty) document.fail("", "the scene shows no triangles");
+  read_images(document, resources, model, images, choice, scene);
   if (scene.cameras.empty()) scene.cameras.push_back(fitted_camera(scene.bounds()));
   if (scene.name.empty()) scene.name = std::filesystem::path(file).stem().string();
   return scene;
@@ -79,7 +80,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file,
 
 }  // namespace
 
-Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn) {
+Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, const ImageChoice& images) {
   const std::string name = file.string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw SceneError(name, "", "no such file");
@@ -90,16 +91,16 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn) {
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw SceneError(name, "", "reading failed");
-    return import(bytes, name, file.parent_path(), warn);
+    return import(bytes, name, file.parent_path(), warn, images);
   } catch (const std::bad_alloc&) {
     throw SceneError(name, "", "not enough memory to load it");
   }
 }
 
 Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name,
-                            const WarningSink& warn) {
+                            const WarningSink& warn, const ImageChoice& images) {
   try {
-    return import(bytes, name, std::nullopt, warn);
+    return import(bytes, name, std::nullopt, warn, images);
   } catch (const std::bad_alloc&) {
     throw SceneError(name, "", "not enough memory to load it");
   }

@@ -1,12 +1,10 @@
 #include "scene/gltf_model.h"
 
 #include <exception>
-#include <span>
 #include <string>
 #include <utility>
 
 #include "core/error.h"
-#include "scene/image_decode.h"
 
 namespace carousel::scene {
 
@@ -15,11 +13,7 @@ namespace {
 /// What tinygltf's callbacks see. Addresses in the document it parses are "carousel-buffer-3" and
 /// "carousel-image-0", so that it never opens a file itself.
 struct Feed {
-  const GltfDocument& document;
-  const GltfResources& resources;
   std::vector<Bytes> buffers;
-  std::vector<bool> needed;
-  GltfModel& out;
 };
 
 constexpr std::string_view kBufferAddress = "carousel-buffer-", kImageAddress = "carousel-image-";
@@ -31,25 +25,12 @@ bool read_address(Bytes* out, std::string*, const std::string& address, void* us
     return true;
   }
   if (!address.starts_with(kImageAddress)) return false;
-  const std::size_t index = std::stoul(address.substr(kImageAddress.size()));
-  *out = feed.needed.at(index) ? feed.resources.image(index) : Bytes(1);
-  feed.out.bytes_read += out->size();
+  *out = Bytes(1);
   return true;
 }
 
-bool take_image(tinygltf::Image*, const int index, std::string*, std::string*, int, int,
-                const unsigned char* bytes, int size, void* user) {
-  Feed& feed = *static_cast<Feed*>(user);
-  const auto i = static_cast<std::size_t>(index);
-  if (!feed.needed.at(i)) return true;
-  const Json& image = feed.document.json["images"][i];
-  try {
-    feed.out.images[i] = decode_image({bytes, static_cast<std::size_t>(size)});
-  } catch (const std::runtime_error& e) {
-    feed.document.fail(json_path("/images", i), std::string("the image is ") + e.what());
-  }
-  feed.out.images[i].name =
-      image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
+/// Pixels are read_images()'s business.
+bool take_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
   return true;
 }
 
@@ -100,12 +81,9 @@ void check_embedded_images(const GltfDocument& document, const std::vector<bool>
 
 }  // namespace
 
-GltfModel read_model(const GltfDocument& document, const GltfResources& resources,
-                     const std::vector<std::size_t>& needed_images) {
+GltfModel read_model(const GltfDocument& document, const GltfResources& resources) {
   GltfModel out;
-  out.images.resize(document.json.contains("images") ? document.json["images"].size() : 0);
-  Feed feed{document, resources, {}, std::vector<bool>(out.images.size()), out};
-  for (const std::size_t image : needed_images) feed.needed[image] = true;
+  Feed feed;
   const std::size_t buffers = document.json.contains("buffers") ? document.json["buffers"].size() : 0;
   for (std::size_t i = 0; i < buffers; ++i) {
     std::optional<Bytes> bytes;

@@ -18,14 +18,12 @@ struct GltfModel {
   tinygltf::Model model;
   std::vector<bool>
       buffer_has_data;           ///< one a buffer; a buffer without data holds one byte that means nothing
-  std::vector<Image> images;     ///< one an image; empty where it is not needed
-  std::uint64_t bytes_read = 0;  ///< of buffers and images
+  std::uint64_t bytes_read = 0;  ///< of buffers
 };
 
 /// Runs tinygltf over a document that passed check_schema and check_links. All bytes it gets are ours: files
-/// come from `resources`, pixels from decode_image, of `needed_images` only; accessors are left to AccessorTable. Buffers
-/// that are a fallback for compressed ones are not read. Throws SceneError.
-GltfModel read_model(const GltfDocument& document, const GltfResources& resources,
-                     const std::vector<std::size_t>& needed_images);
+/// come from `resources`, images are left to read_images, accessors to AccessorTable. Buffers that are a fallback for
+/// compressed ones are not read. Throws SceneError.
+GltfModel read_model(const GltfDocument& document, const GltfResources& resources);
 
 }  // namespace carousel::scene

@@ -24,11 +24,11 @@ std::filesystem::path find_file(const std::string& name, const std::filesystem::
 }  // namespace
 
 Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir,
-                 const WarningSink& warn) {
+                 const WarningSink& warn, const ImageChoice& images) {
   if (config.file.empty() == !config.builtin.has_value()) {
     throw ConfigError({{{}, "scene", "expected exactly one of file and builtin"}});
   }
-  Scene scene = config.builtin ? make_builtin(config) : load_gltf(find_file(config.file, config_dir), warn);
+  Scene scene = config.builtin ? make_builtin(config) : load_gltf(find_file(config.file, config_dir), warn, images);
   if (config.sky || !config.builtin) {
     const SkyConfig sky = config.sky.value_or(SkyConfig{});
     scene.sky.radiance = sky.color * sky.strength;

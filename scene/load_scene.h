@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core/config.h"
+#include "scene/gltf_import.h"
 #include "scene/scene.h"
 #include "scene/warnings.h"
 
@@ -13,6 +14,6 @@ namespace carousel::scene {
 /// SkyConfig's default, and a sun when it brings no light at all. Throws SceneError for the file, ConfigError when neither or both of file and builtin
 /// are given, when a count is out of range, or when the scene has no camera of that index.
 Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir,
-                 const WarningSink& warn = {});
+                 const WarningSink& warn = {}, const ImageChoice& images = {});
 
 }  // namespace carousel::scene

@@ -71,6 +71,16 @@ const Icosphere& icosphere(int level) {
 
 }  // namespace
 
+MaterialId add_material(Scene& scene, const char* name, Vec3 color, float metallic, float roughness) {
+  Material m;
+  m.name = name;
+  m.base_color = Vec4(color, 1);
+  m.metallic = metallic;
+  m.roughness = roughness;
+  scene.materials.push_back(m);
+  return MaterialId(static_cast<std::uint32_t>(scene.materials.size() - 1));
+}
+
 void add_quad(Mesh& mesh, Vec3 a, Vec3 b, Vec3 c, Vec3 d, MaterialId material) {
   const Vec3 normal = glm::normalize(glm::cross(b - a, c - a));
   const std::uint32_t first = add_vertex(mesh, a, normal);

@@ -9,6 +9,9 @@ namespace carousel::scene {
 // Shapes the built-in scenes are made of. Each appends to a mesh, counter-clockwise seen from outside, and
 // keeps its arrays consistent: a mesh that has normals gets them for the new vertices too.
 
+/// A material of one colour, appended to the scene's.
+MaterialId add_material(Scene& scene, const char* name, Vec3 color, float metallic, float roughness);
+
 /// Two triangles a, b, c and a, c, d, flat normal of a, b, c.
 void add_quad(Mesh& mesh, Vec3 a, Vec3 b, Vec3 c, Vec3 d, MaterialId material);
 

@@ -12,13 +12,6 @@
 
 namespace carousel::shading {
 
-namespace {
-
-constexpr float kLeast = 1e-6f;  // a mirror loses nothing: 0 / 0 otherwise
-constexpr float kWideAlpha = 0.3f;
-
-}  // namespace
-
 float widened_roughness(float roughness) {
   return roughness * roughness >= kWideAlpha ? roughness : std::sqrt(kWideAlpha);
 }
@@ -30,7 +23,7 @@ Bsdf::Bsdf(const MaterialPoint& material, const Vec3& wo) : wo_(wo) {
 
   const GgxAlbedo& table = GgxAlbedo::table();
   const GgxAlbedo::Pair view = table.directional(wo.z, alpha_), mean = table.average(alpha_);
-  diffuse_ = albedo * (kInvPi * (1.0f - view.dielectric) / std::max(1.0f - mean.dielectric, kLeast));
+  diffuse_ = albedo * (kInvPi * (1.0f - view.dielectric) / std::max(1.0f - mean.dielectric, kLeastShare));
   // Light between several microfacets meets Fresnel's factor several times: not linear in F0, so the two
   // kinds of surface are mixed after, not before.
   auto scattered_back = [&](const Vec3& f0) {
@@ -39,7 +32,7 @@ Bsdf::Bsdf(const MaterialPoint& material, const Vec3& wo) : wo_(wo) {
   };
   const Vec3 returned =
       glm::mix(scattered_back(Vec3{kDielectricF0}), scattered_back(material.base_color), material.metallic);
-  multiple_ = returned * (kInvPi * (1.0f - view.metal) / std::max(1.0f - mean.metal, kLeast));
+  multiple_ = returned * (kInvPi * (1.0f - view.metal) / std::max(1.0f - mean.metal, kLeastShare));
 
   const float weight = schlick_weight(wo.z);
   const float specular = luminance(f0_ + (Vec3{1} - f0_) * weight) * view.metal;

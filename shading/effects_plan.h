@@ -3,8 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/config.h"
@@ -18,7 +16,15 @@ struct EffectCost {
   std::uint32_t rays_per_path = 0;      ///< at most
   std::uint32_t texture_reads = 0;      ///< filtered lookups at a hit, at most
   std::uint32_t path_state_bytes = 0;   ///< a path in flight
+  std::uint32_t cycles_per_hit = 0;     ///< of a simulated shader worker or opacity unit, at a surface that has it
+  std::uint32_t cycles_per_path = 0;    ///< of simulated shader workers for its rays, at most; not the rays' tests
 };
+
+/// Each takes `shading.cycles_per_effect` at a hit, in the cycle engine.
+inline constexpr std::array kExtraEffects{
+    Effect::kBaseColorTexture, Effect::kMetallicRoughnessTexture, Effect::kNormalMap, Effect::kTransmission,
+    Effect::kRefraction, Effect::kVolume, Effect::kIor, Effect::kSpecular, Effect::kClearcoat, Effect::kSheen,
+    Effect::kIridescence, Effect::kAnisotropy};
 
 struct PlannedEffect {
   bool called_for = false;      ///< by what can be reached from the instances
@@ -48,36 +54,8 @@ EffectsPlan plan_effects(const scene::Scene& scene, const Config& config);
 /// wall, without `mirror` no smoother than roughness 0.3, without `reflection` matte.
 void keep_effects(scene::Scene& scene, const ShadingConfig::Effects& choice);
 
-/// Empties images that no material on a triangle of an instance reads, and says how many bytes that freed. Call after
-/// keep_effects().
-std::uint64_t drop_unread_images(scene::Scene& scene);
-
-/// What a material needs of the shader: the least of these that has it is chosen once, not at each hit.
-enum class SurfaceClass : std::uint8_t {
-  kUnlit,
-  kPlain,             ///< metallic-roughness of the factors alone
-  kTextured,          ///< and textures, normal map or vertex colours
-  kLayered,           ///< and clearcoat or sheen
-  kOpaque,            ///< ior, specular, iridescence or anisotropy
-  kLayeredOpaque,
-  kTransmissive,
-  kLayeredTransmissive,
-  kAnything,          ///< asks at each hit what there is: `all`
-};
-inline constexpr std::size_t kSurfaceClasses = 9;
-std::string_view class_name(SurfaceClass surface);
-/// Classes of the materials on triangles of instances, as the plan has them shaded, each with how many; none of 0.
-std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::Scene& scene, const EffectsPlan& plan);
-/// By material: effects to be computed at a hit beyond those of a plain surface: textures, and what glTF's extensions add;
-/// with `all` as many as there are.
-std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan);
-/// By material: how the plan has it shaded.
-std::vector<SurfaceClass> surface_classes(const scene::Scene& scene, const EffectsPlan& plan);
-
-bool has_layers(const scene::Material& material);      ///< clearcoat or sheen
-bool has_interface(const scene::Material& material);   ///< a boundary that glTF's core does not describe
-bool has_volume(const scene::Material& material);      ///< transmits into what it is the hull of
-bool refracts(const scene::Material& material);        ///< and that is of another index of refraction
-bool absorbs(const scene::Material& material);         ///< and that takes some of the light
+/// By image: whether a material on a primitive of an instance has a texture of it that is read, once keep_effects() has
+/// been called with this choice (which may be before or after); all, if that is `all`. Reads no pixels.
+std::vector<bool> images_read(const scene::Scene& scene, const ShadingConfig::Effects& choice);
 
 }  // namespace carousel::shading

@@ -18,6 +18,12 @@ namespace carousel::shading {
 /// Below this a lobe is as good as a mirror, and its peak (1 / (pi alpha^2)) still harmless in float.
 inline constexpr float kMinAlpha = 1e-3f;
 
+/// From here on a lobe spreads too widely to show an image in it.
+inline constexpr float kWideAlpha = 0.3f;
+
+/// What is divided by where a share that a mirror does not lose would be 0 / 0.
+inline constexpr float kLeastShare = 1e-6f;
+
 /// Reflectance of glTF's dielectrics at normal incidence: index of refraction 1.5.
 inline constexpr float kDielectricF0 = 0.04f;
 

@@ -20,13 +20,15 @@ Integral integrate(float cos_theta, float alpha) {
   Integral sum;
   for (int i = 0; i < kStrata; ++i) {
     for (int j = 0; j < kStrata; ++j) {
-      const Vec2 u{(float(i) + 0.5f) / kStrata, (float(j) + 0.5f) / kStrata};
+      // Closer together where microfacets are seen edge-on: there masking changes fastest.
+      const float v = 1.0f - (float(j) + 0.5f) / kStrata, stretch = 2.0f * v;
+      const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};   // the other half is this one's mirror image
       const Vec3 h = sample_visible_normal(wo, alpha, u);
       const float oh = glm::dot(wo, h);
       const Vec3 wi = 2.0f * oh * h - wo;
       if (wi.z <= 0.0f) continue;
       const GgxValue value = ggx_value(wo, wi, h, alpha);
-      const float weight = value.f_cos / value.pdf;
+      const float weight = stretch * value.f_cos / value.pdf;
       sum.full += weight;
       sum.schlick += weight * schlick_weight(oh);
     }

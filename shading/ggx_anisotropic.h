@@ -25,14 +25,6 @@ inline float ggx_lambda(const Vec3& w, const Vec2& alpha) {
   return 0.5f * (std::sqrt(1.0f + (x * x + y * y) / (w.z * w.z)) - 1.0f);
 }
 
-/// The roughness that masks in direction `w`.
-inline float ggx_alpha_towards(const Vec3& w, const Vec2& alpha) {
-  const float sine2 = w.x * w.x + w.y * w.y;
-  if (alpha.x == alpha.y || !(sine2 > 0.0f)) return std::sqrt(alpha.x * alpha.y);
-  const float x = w.x * alpha.x, y = w.y * alpha.y;
-  return std::sqrt((x * x + y * y) / sine2);
-}
-
 /// As the isotropic one.
 inline Vec3 sample_visible_normal(const Vec3& wo, const Vec2& alpha, const Vec2& u) {
   const Vec3 stretched = glm::normalize(Vec3{wo.x * alpha.x, wo.y * alpha.y, wo.z});

@@ -10,6 +10,8 @@
 
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
+#include "shading/ggx_anisotropic.h"
+#include "shading/visible_normals.h"
 
 namespace carousel::shading {
 
@@ -23,45 +25,66 @@ Shares lerp(const Shares& a, const Shares& b, float t) {
           a.through_w + t * (b.through_w - a.through_w)};
 }
 
+/// Where one facet after the other sends the light of `wo`.
+class FacetSum {
+ public:
+  FacetSum(const Vec3& wo, const Vec2& alpha, float eta)
+      : wo_(wo), alpha_(alpha), eta_(eta), f0_(f0_of_eta(eta)), lambda_o_(ggx_lambda(wo, alpha)) {}
+
+  void add(const Vec3& h, float share) {
+    const float oh = glm::dot(wo_, h);
+    const Refraction r = refraction(oh, eta_);
+    const float w = fresnel_weight(r.reflected, f0_);
+    const Vec3 mirrored = 2.0f * oh * h - wo_;
+    if (mirrored.z > 0.0f) {
+      const float weight = unmasked(mirrored) * share;
+      if (r.total) {
+        sum_.total += weight;
+      } else {
+        sum_.reflected += weight;
+        sum_.reflected_w += weight * w;
+      }
+    }
+    if (r.total) return;
+    const Vec3 refracted = refract(wo_, h, eta_, r.cosine);
+    if (refracted.z >= 0.0f) return;
+    const float weight = unmasked(refracted) * share;
+    sum_.through += weight;
+    sum_.through_w += weight * w;
+  }
+  const Shares& sum() const { return sum_; }
+
+ private:
+  float unmasked(const Vec3& wi) const { return (1.0f + lambda_o_) / (1.0f + lambda_o_ + ggx_lambda(wi, alpha_)); }
+
+  Vec3 wo_;
+  Vec2 alpha_;
+  float eta_, f0_, lambda_o_;
+  Shares sum_;
+};
+
 Shares integrate(float cos_theta, float alpha, float eta) {
   constexpr int kStrata = 28;
-  const float f0 = f0_of_eta(eta);
   const Vec3 wo{std::sqrt(std::max(0.0f, 1.0f - cos_theta * cos_theta)), 0.0f, cos_theta};
-  const float lambda_o = ggx_lambda(wo, alpha);
-  const auto unmasked = [&](const Vec3& wi) { return (1.0f + lambda_o) / (1.0f + lambda_o + ggx_lambda(wi, alpha)); };
-  Shares sum;
+  FacetSum sum(wo, Vec2{alpha}, eta);
   for (int i = 0; i < kStrata; ++i) {
     for (int j = 0; j < kStrata; ++j) {
       // Closer together where microfacets are seen edge-on: there masking and refraction change fastest.
       const float v = 1.0f - (float(j) + 0.5f) / kStrata, stretch = 2.0f * v;
       const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};   // the other half is this one's mirror image
-      const Vec3 h = sample_visible_normal(wo, alpha, u);
-      const float oh = glm::dot(wo, h);
-      const Refraction r = refraction(oh, eta);
-      const float w = fresnel_weight(r.reflected, f0);
-      const Vec3 mirrored = 2.0f * oh * h - wo;
-      if (mirrored.z > 0.0f) {
-        const float weight = unmasked(mirrored) * stretch;
-        if (r.total) {
-          sum.total += weight;
-        } else {
-          sum.reflected += weight;
-          sum.reflected_w += weight * w;
-        }
-      }
-      if (r.total) continue;
-      const Vec3 refracted = refract(wo, h, eta, r.cosine);
-      if (refracted.z >= 0.0f) continue;
-      const float weight = unmasked(refracted) * stretch;
-      sum.through += weight;
-      sum.through_w += weight * w;
+      sum.add(sample_visible_normal(wo, alpha, u), stretch / (kStrata * kStrata));
     }
   }
-  constexpr float kInv = 1.0f / (kStrata * kStrata);
-  return {sum.reflected * kInv, sum.reflected_w * kInv, sum.total * kInv, sum.through * kInv, sum.through_w * kInv};
+  return sum.sum();
 }
 
 }  // namespace
+
+GlassAlbedo::Shares glass_shares(const Vec3& wo, const Vec2& alpha, float eta) {
+  FacetSum sum(wo, alpha, eta);
+  visit_visible_normals(fine_lattice(), wo, alpha, [&](const Vec3& h, float weight) { sum.add(h, weight); });
+  return sum.sum();
+}
 
 GlassAlbedo::GlassAlbedo(float eta) {
   for (int r = 0; r < kRoughnesses; ++r) {

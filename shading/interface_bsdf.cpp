@@ -11,13 +11,11 @@
 #include "shading/ggx_anisotropic.h"
 #include "shading/luminance.h"
 #include "shading/refraction_lobe.h"
+#include "shading/visible_normals.h"
 
 namespace carousel::shading {
 
 namespace {
-
-constexpr float kLeast = 1e-6f;
-constexpr float kWideAlpha = 0.3f;   // as in bsdf.cpp
 
 constexpr Vec3 kNowhere{1, 0, 0};   // along the surface: carries nothing
 
@@ -27,24 +25,20 @@ Vec3 returned_share(const Vec3& f0, float f90, float average) {
   return fresnel * fresnel * average / (Vec3{1} - fresnel * (1.0f - average));
 }
 
-/// What GgxAlbedo has no table for: too many dimensions.
-GgxAlbedo::Split anisotropic_split(const Vec3& wo, const Vec2& alpha) {
-  constexpr int kStrata = 6;
+/// Of the lobe of single scattering; two roughnesses are too many for GgxAlbedo's table.
+GgxAlbedo::Split single_split(const Vec3& wo, const Vec2& alpha) {
+  if (alpha.x == alpha.y) return GgxAlbedo::table().split(wo.z, alpha.x);
   const float lambda_o = ggx_lambda(wo, alpha);
   GgxAlbedo::Split sum;
-  for (int i = 0; i < kStrata; ++i) {
-    for (int j = 0; j < kStrata; ++j) {
-      const Vec3 h = sample_visible_normal(wo, alpha, {(float(i) + 0.5f) / kStrata, (float(j) + 0.5f) / kStrata});
-      const float oh = glm::dot(wo, h);
-      const Vec3 wi = 2.0f * oh * h - wo;
-      if (wi.z <= 0.0f) continue;
-      const float weight = (1.0f + lambda_o) / (1.0f + lambda_o + ggx_lambda(wi, alpha));
-      sum.full += weight;
-      sum.schlick += weight * schlick_weight(oh);
-    }
-  }
-  constexpr float kInv = 1.0f / (kStrata * kStrata);
-  return {sum.full * kInv, sum.schlick * kInv};
+  visit_visible_normals(coarse_lattice(), wo, alpha, [&](const Vec3& h, float share) {
+    const float oh = glm::dot(wo, h);
+    const Vec3 wi = 2.0f * oh * h - wo;
+    if (wi.z <= 0.0f) return;
+    const float weight = share * (1.0f + lambda_o) / (1.0f + lambda_o + ggx_lambda(wi, alpha));
+    sum.full += weight;
+    sum.schlick += weight * schlick_weight(oh);
+  });
+  return sum;
 }
 
 Vec3 single_albedo(const Vec3& f0, float f90, const GgxAlbedo::Split& split) {
@@ -70,12 +64,10 @@ void InterfaceBsdf<kTransmits>::opaque_lobes() {
   const Vec3& f0 = point_.dielectric_f0;
   const float f90 = point_.dielectric_f90;
   const float alpha = std::sqrt(point_.alpha.x * point_.alpha.y);
-  const GgxAlbedo& table = GgxAlbedo::table();
-  const GgxAlbedo::Split view = anisotropic_ ? anisotropic_split(wo_, point_.alpha) : table.split(wo_.z, alpha),
-                         mean = table.average_split(alpha);
+  const GgxAlbedo::Split view = single_split(wo_, point_.alpha), mean = GgxAlbedo::table().average_split(alpha);
 
   returned_ = returned_share(f0, f90, mean.full);
-  const float lost = anisotropic_ ? 1.0f - view.full : (1.0f - view.full) / std::max(1.0f - mean.full, kLeast);
+  const float lost = anisotropic_ ? 1.0f - view.full : (1.0f - view.full) / std::max(1.0f - mean.full, kLeastShare);
   const Vec3 metal_returned = returned_share(point_.metal_f0, 1.0f, mean.full);
   multiple_ = (metal_returned * m.metallic + returned_ * dielectric) * (kInvPi * lost);
 
@@ -83,7 +75,7 @@ void InterfaceBsdf<kTransmits>::opaque_lobes() {
   const Vec3 mean_coat = single_albedo(f0, f90, mean) + returned_ * (1.0f - mean.full);
   const Vec3 albedo = m.base_color * (dielectric * (1.0f - point_.transmission));
   diffuse_ = albedo * glm::max(Vec3{1} - coat, Vec3{0}) * kInvPi;
-  if (!anisotropic_) diffuse_ /= glm::max(Vec3{1} - mean_coat, Vec3{kLeast});
+  if (!anisotropic_) diffuse_ /= glm::max(Vec3{1} - mean_coat, Vec3{kLeastShare});
 
   Vec3 single = single_albedo(point_.metal_f0, 1.0f, view) * m.metallic + single_albedo(f0, f90, view) * dielectric;
   const float view_lost = 1.0f - view.full;
@@ -104,16 +96,23 @@ void InterfaceBsdf<kTransmits>::glass_lobes() {
   const float dielectric = 1.0f - m.metallic;
   const Vec3& f0 = point_.dielectric_f0;
   const float f90 = point_.dielectric_f90;
-  const float alpha = ggx_alpha_towards(wo_, point_.alpha);
-  const GlassAlbedo::Shares s = point_.glass->directional(wo_.z, alpha);
+  // What the base takes is what the boundary does not send up: between the table's nodes at the critical angle that
+  // would be wrong by a tenth.
+  const bool table_will_do = !anisotropic_ && (point_.transmission == 1.0f || point_.eta > 1.0f);
+  const GlassAlbedo::Shares s = table_will_do ? point_.glass->directional(wo_.z, point_.alpha.x)
+                                              : glass_shares(wo_, point_.alpha, point_.eta);
   const Vec3 up = f0 * (s.reflected - s.reflected_w) + Vec3{f90 * s.reflected_w + s.total};
   const Vec3 down = Vec3{s.through} - f0 * (s.through - s.through_w) - Vec3{f90 * s.through_w};
   const Vec3 lost = glm::max(Vec3{1} - up - down, Vec3{0});
-  const Vec3 lost_up = lost * up / glm::max(up + down, Vec3{kLeast}), below = Vec3{1} - up - lost_up;
+  const Vec3 lost_up = lost * up / glm::max(up + down, Vec3{kLeastShare}), below = Vec3{1} - up - lost_up;
 
-  const GgxAlbedo& table = GgxAlbedo::table();
-  const GgxAlbedo::Split view = table.split(wo_.z, alpha);
-  const Vec3 metal_lost = returned_share(point_.metal_f0, 1.0f, table.average_split(alpha).full) * (1.0f - view.full);
+  GgxAlbedo::Split view;
+  Vec3 metal_lost{0};
+  if (m.metallic > 0.0f) {
+    view = single_split(wo_, point_.alpha);
+    const float mean = GgxAlbedo::table().average_split(std::sqrt(point_.alpha.x * point_.alpha.y)).full;
+    metal_lost = returned_share(point_.metal_f0, 1.0f, mean) * (1.0f - view.full);
+  }
   multiple_ = (lost_up * dielectric + metal_lost * m.metallic) * kInvPi;
   diffuse_ = m.base_color * below * (dielectric * (1.0f - point_.transmission) * kInvPi);
   tint_ = m.base_color * (dielectric * point_.transmission);

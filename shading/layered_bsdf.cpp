@@ -6,6 +6,7 @@
 #include "shading/charlie.h"
 #include "shading/charlie_albedo.h"
 #include "shading/frame.h"
+#include "shading/ggx.h"
 #include "shading/ggx_albedo.h"
 #include "shading/lambert.h"
 #include "shading/luminance.h"
@@ -13,9 +14,6 @@
 namespace carousel::shading {
 
 namespace {
-
-constexpr float kLeast = 1e-6f;
-constexpr float kWideAlpha = 0.3f;   // as in bsdf.cpp
 
 /// Enough for a layer's own light not to be left to rare samples of others; none for a layer that is not there.
 float share_of(float albedo) {
@@ -34,7 +32,7 @@ Layers::Layers(const LayerPoint& point, const Vec3& wo)
   const GgxAlbedo::Pair view = table.directional(coat_wo_.z, coat_alpha_), mean = table.average(coat_alpha_);
   const float fresnel = (20.0f * kDielectricF0 + 1.0f) * (1.0f / 21.0f);
   const float returned = fresnel * fresnel * mean.metal / (1.0f - fresnel * (1.0f - mean.metal));
-  coat_multiple_ = returned * kInvPi * (1.0f - view.metal) / std::max(1.0f - mean.metal, kLeast);
+  coat_multiple_ = returned * kInvPi * (1.0f - view.metal) / std::max(1.0f - mean.metal, kLeastShare);
 
   const float coat = point_.coat * view.dielectric;
   const float sheen = CharlieAlbedo::table().directional(wo.z, sheen_alpha_);

@@ -5,10 +5,12 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/octahedral.h"
 #include "shading/luminance.h"
 #include "shading/punctual_light.h"
 #include "shading/spawn_point.h"
 #include "shading/surface.h"
+#include "shading/trigonometry.h"
 
 namespace carousel::shading {
 
@@ -24,9 +26,9 @@ float finite_weight(float flux) {
 
 }  // namespace
 
-LightSet::LightSet(const scene::Scene& scene, bool punctual, bool triangles) : scene_(scene), triangles_(scene) {
+LightSet::LightSet(const scene::Scene& scene, bool punctual, bool primitives) : scene_(scene), primitives_(scene) {
   std::vector<float> weights;
-  weights.reserve(scene.lights.size() + triangles_.all().size());
+  weights.reserve(scene.lights.size() + primitives_.all().size());
   float radius = 0;
   if (!scene.lights.empty()) {
     const Aabb bounds = scene.bounds();
@@ -35,7 +37,7 @@ LightSet::LightSet(const scene::Scene& scene, bool punctual, bool triangles) : s
   for (const scene::PunctualLight& light : scene.lights) {
     weights.push_back(punctual ? finite_weight(luminance(punctual_flux(light, radius))) : 0.0f);
   }
-  for (const EmissiveTriangle& light : triangles_.all()) weights.push_back(triangles ? finite_weight(light.flux) : 0.0f);
+  for (const EmissivePrimitive& light : primitives_.all()) weights.push_back(primitives ? finite_weight(light.flux) : 0.0f);
   choice_ = LightChoice(weights);
 }
 
@@ -43,7 +45,7 @@ LightSample LightSet::sample(const LightDraw& draw, const Vec3& origin, SpawnOff
   const std::uint32_t index = choice_.choose(draw.choice);
   const float probability = choice_.probability(index);
   if (index >= scene_.lights.size()) {
-    return sample_triangle(triangles_.all()[index - scene_.lights.size()], probability, draw.point, origin,
+    return sample_primitive(primitives_.all()[index - scene_.lights.size()], probability, draw.point, origin,
                            offset);
   }
   const PunctualSample light = sample_punctual(scene_.lights[index], origin);
@@ -53,22 +55,56 @@ LightSample LightSet::sample(const LightDraw& draw, const Vec3& origin, SpawnOff
           0.0f};
 }
 
-LightSample LightSet::sample_triangle(const EmissiveTriangle& light, float probability, const Vec2& u,
-                                      const Vec3& origin, SpawnOffset offset) const {
-  // Uniform over the triangle, keeping strata compact: E. Heitz, "A low-distortion map between triangle and
-  // square", 2019.
-  float b1 = u.x, b2 = u.y;
-  if (b2 > b1) {
-    b1 *= 0.5f;
-    b2 -= b1;
+namespace {
+
+/// Uniform over the triangle, keeping strata compact: E. Heitz, "A low-distortion map between triangle and square", 2019.
+Vec2 point_of_triangle(const Vec2& u) {
+  Vec2 b = u;
+  if (b.y > b.x) {
+    b.x *= 0.5f;
+    b.y -= b.x;
   } else {
-    b2 *= 0.5f;
-    b1 -= b2;
+    b.y *= 0.5f;
+    b.x -= b.y;
   }
-  const TriangleGeometry geometry = triangle_geometry(scene_, light.instance, light.primitive, b1, b2);
-  const bool front = glm::dot(geometry.normal, DVec3(origin) - geometry.position) > 0.0;
-  const TrianglePoint point = triangle_point(scene_, light.instance, light.primitive, b1, b2);
-  if (!emits(*point.material, front) || !(light.area > 0.0f)) return {};
+  return b;
+}
+
+Vec2 point_of_sphere(const Vec2& u) {
+  const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+  const SinCos around = sin_cos_turns(u.y);
+  return octahedral({double{r * around.cos}, double{r * around.sin}, double{z}});
+}
+
+bool is_sphere(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive) {
+  return primitive >= scene.meshes[scene.instances[instance].mesh.value].triangle_count();
+}
+
+/// The inverse of the density of sphere points: of two that lie opposite each other, the one on the viewer's side is taken.
+float sphere_area(const TriangleGeometry& geometry, bool front) {
+  return static_cast<float>(geometry.area) * (front ? 0.5f : 1.0f);
+}
+
+bool faces(const TriangleGeometry& geometry, const Vec3& origin) {
+  return glm::dot(geometry.normal, DVec3(origin) - geometry.position) > 0.0;
+}
+
+}  // namespace
+
+LightSample LightSet::sample_primitive(const EmissivePrimitive& light, float probability, const Vec2& u,
+                                      const Vec3& origin, SpawnOffset offset) const {
+  const bool sphere = is_sphere(scene_, light.instance, light.primitive);
+  Vec2 at = sphere ? point_of_sphere(u) : point_of_triangle(u);
+  TriangleGeometry geometry = triangle_geometry(scene_, light.instance, light.primitive, at.x, at.y);
+  bool front = faces(geometry, origin);
+  if (sphere && !front) {
+    at = octahedral(-from_octahedral(at.x, at.y));
+    geometry = triangle_geometry(scene_, light.instance, light.primitive, at.x, at.y);
+    front = faces(geometry, origin);
+  }
+  const float area = sphere ? sphere_area(geometry, front) : light.area;
+  const TrianglePoint point = triangle_point(scene_, light.instance, light.primitive, at.x, at.y);
+  if (!emits(*point.material, front) || !(area > 0.0f)) return {};
 
   LightSample s;
   s.direction = spawn_point(geometry, front ? Side::kFront : Side::kBack, offset) - origin;
@@ -78,22 +114,21 @@ LightSample LightSet::sample_triangle(const EmissiveTriangle& light, float proba
   s.wi = s.direction * (1.0f / std::sqrt(distance2));
   const float cos_light = std::abs(glm::dot(Vec3(geometry.normal), s.wi));
   if (!(cos_light > 0.0f)) return {};
-  s.pdf = probability * distance2 / (light.area * cos_light);
+  s.pdf = probability * distance2 / (area * cos_light);
   s.radiance = emitted(scene_, point) * (1.0f / s.pdf);
   // The shadow ray ends before the lamp, which would have let some rays pass.
   if (point.material->alpha_mode != scene::AlphaMode::kOpaque) s.radiance *= opacity(scene_, point);
   return s;
 }
 
-float LightSet::triangle_pdf(std::uint32_t instance, std::uint32_t primitive, float t,
-                             float cos_light) const {
+float LightSet::primitive_pdf(const Hit& hit, const TriangleGeometry& geometry, bool front, float cos_light) const {
   if (choice_.empty() || !(cos_light > 0.0f)) return 0.0f;
-  if (primitive >= scene_.meshes[scene_.instances[instance].mesh.value].triangle_count()) return 0.0f;   // a sphere
-  const std::uint32_t index = triangles_.index_of(scene_, instance, primitive);
-  const float area = triangles_.all()[index].area;
+  const std::uint32_t index = primitives_.index_of(scene_, hit.instance, hit.primitive);
+  const bool sphere = is_sphere(scene_, hit.instance, hit.primitive);
+  const float area = sphere ? sphere_area(geometry, front) : primitives_.all()[index].area;
   if (!(area > 0.0f)) return 0.0f;
   const float probability = choice_.probability(static_cast<std::uint32_t>(scene_.lights.size()) + index);
-  return probability * t * t / (area * cos_light);
+  return probability * hit.t * hit.t / (area * cos_light);
 }
 
 }  // namespace carousel::shading

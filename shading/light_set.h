@@ -6,7 +6,7 @@
 #include "core/ray.h"
 #include "core/vec.h"
 #include "scene/scene.h"
-#include "shading/emissive_triangles.h"
+#include "shading/emissive_primitives.h"
 #include "shading/light_choice.h"
 #include "shading/sampler.h"
 #include "shading/triangle_geometry.h"
@@ -22,28 +22,28 @@ struct LightSample {
   float pdf = 0;      ///< density per solid angle; 0 for lights that no other ray can hit
 };
 
-/// Everything that next-event estimation chooses from: punctual lights and emissive triangles, in proportion
+/// Everything that next-event estimation chooses from: punctual lights and emissive triangles and spheres, in proportion
 /// to their flux. Immutable; any thread.
 class LightSet {
  public:
-  /// Only what `punctual` and `triangles` let in is ever chosen.
-  explicit LightSet(const scene::Scene& scene, bool punctual = true, bool triangles = true);
+  /// Only what `punctual` and `primitives` let in is ever chosen.
+  explicit LightSet(const scene::Scene& scene, bool punctual = true, bool primitives = true);
 
   bool empty() const { return choice_.empty(); }
   /// Precondition: !empty().
   LightSample sample(const LightDraw& draw, const Vec3& origin, SpawnOffset offset) const;
 
-  /// Density per solid angle with which sample() finds a point of an emissive triangle that a ray of unit
-  /// direction met at distance `t` under |cosine| `cos_light`; 0 if it never does: spheres are not sampled.
-  float triangle_pdf(std::uint32_t instance, std::uint32_t primitive, float t, float cos_light) const;
+  /// Density per solid angle with which sample() finds the point of an emissive primitive that a ray of unit direction
+  /// met, on its `front` or not, under |cosine| `cos_light`.
+  float primitive_pdf(const Hit& hit, const TriangleGeometry& geometry, bool front, float cos_light) const;
 
  private:
-  LightSample sample_triangle(const EmissiveTriangle& light, float probability, const Vec2& u,
+  LightSample sample_primitive(const EmissivePrimitive& light, float probability, const Vec2& u,
                               const Vec3& origin, SpawnOffset offset) const;
 
   const scene::Scene& scene_;
-  EmissiveTriangles triangles_;
-  LightChoice choice_;  // punctual lights first, then triangles
+  EmissivePrimitives primitives_;
+  LightChoice choice_;  // punctual lights first, then primitives
 };
 
 }  // namespace carousel::shading

@@ -2,6 +2,8 @@
 
 // The parts of PathTracer that are made for the effects they have: included by who chooses among them.
 
+#include "shading/path_tracer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -10,7 +12,7 @@
 
 #include "shading/frame.h"
 #include "shading/luminance.h"
-#include "shading/path_tracer.h"
+#include "shading/material_effects.h"
 #include "shading/spawn_point.h"
 
 namespace carousel::shading {

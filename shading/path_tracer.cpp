@@ -200,8 +200,7 @@ void PathTracer::add_emission(PathState& path, const RayResult& result, const Tr
   float weight = 1.0f;
   if (result.tag.kind == RayKind::kBounce) {
     const float cos_light = std::abs(glm::dot(Vec3(geometry.normal), result.ray.direction));
-    weight = detail::balance(path.bounce_pdf, lights_.triangle_pdf(result.hit.instance, result.hit.primitive,
-                                                           result.hit.t, cos_light));
+    weight = detail::balance(path.bounce_pdf, lights_.primitive_pdf(result.hit, geometry, front, cos_light));
   }
   add_radiance(path, path.throughput * emitted(scene_, point) * weight, worker);
 }

@@ -22,6 +22,7 @@
 #include "shading/ray_recorder.h"
 #include "shading/sampler.h"
 #include "shading/surface.h"
+#include "shading/surface_class.h"
 #include "shading/surface_layers.h"
 
 namespace carousel::shading {

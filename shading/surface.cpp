@@ -5,7 +5,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/octahedral.h"
 #include "scene/opacity.h"
+#include "shading/lambert.h"
 #include "shading/luminance.h"
 #include "shading/texture_lookup.h"
 
@@ -23,9 +25,21 @@ const std::vector<Vec2>& uv_set(const scene::Mesh& mesh, const scene::TextureUse
   return use.uv_set == 0 ? mesh.uv0 : mesh.uv1;
 }
 
+/// Stands for the mesh of a sphere.
+const scene::Mesh& no_vertices() {
+  static const scene::Mesh none;
+  return none;
+}
+
+Vec2 on_sphere(const TrianglePoint& p) {
+  const Vec3 n(from_octahedral(p.weights[1], p.weights[2]));
+  return {0.5f + std::atan2(n.x, n.z) * (0.5f * kInvPi), std::acos(glm::clamp(n.y, -1.0f, 1.0f)) * kInvPi};
+}
+
 Vec2 texture_coordinates(const TrianglePoint& p, const scene::TextureUse& use) {
   const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
-  return transform_uv(use, uvs.empty() ? Vec2{0, 0} : interpolate(uvs, p));
+  if (!uvs.empty()) return transform_uv(use, interpolate(uvs, p));
+  return transform_uv(use, p.mesh == &no_vertices() ? on_sphere(p) : Vec2{0, 0});
 }
 
 Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use,
@@ -81,8 +95,7 @@ TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, 
                              float u, float v) {
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh.value];
   if (primitive >= mesh.triangle_count()) {
-    static const scene::Mesh kNoVertices;
-    return {&kNoVertices, &scene.materials[mesh.spheres[primitive - mesh.triangle_count()].material.value], {}, {1, 0, 0}};
+    return {&no_vertices(), &scene.materials[mesh.spheres[primitive - mesh.triangle_count()].material.value], {}, {1, u, v}};
   }
   const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t{primitive};
   return {&mesh,

@@ -12,13 +12,14 @@
 
 namespace carousel::shading {
 
-/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours, normals or
-/// texture coordinates: textures are read at (0, 0).
+/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours and no frame for
+/// normal maps; as texture coordinates it has its longitude (0 to 1 once around +y, from -z by way of -x) and its latitude
+/// (0 at +y, 1 at -y), in model space.
 struct TrianglePoint {
   const scene::Mesh* mesh;
   const scene::Material* material;
   std::array<std::uint32_t, 3> vertices;  ///< indices into the mesh's arrays
-  std::array<float, 3> weights;           ///< barycentric
+  std::array<float, 3> weights;           ///< barycentric; of a sphere: 1 and where on it (core/octahedral.h)
 };
 
 /// `u` weighs vertex 1 and `v` vertex 2.

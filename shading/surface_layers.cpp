@@ -6,10 +6,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "shading/effects_plan.h"
 #include "shading/fresnel.h"
 #include "shading/ggx.h"
 #include "shading/iridescence.h"
+#include "shading/material_effects.h"
 #include "shading/trigonometry.h"
 
 namespace carousel::shading {

@@ -1,5 +1,7 @@
 #include "shading/triangle_geometry.h"
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -14,12 +16,17 @@ TriangleGeometry sphere_geometry(const scene::Sphere& sphere, const scene::Affin
   TriangleGeometry g;
   g.linear = DMat3(world.linear);
   g.translation = DVec3(world.translation);
-  g.mirrored = glm::determinant(g.linear) < 0.0;
+  const double determinant = glm::determinant(g.linear);
+  g.mirrored = determinant < 0.0;
   const DVec3 normal = from_octahedral(u, v), point = DVec3(sphere.center) + double{sphere.radius} * normal;
   g.model = {point, point, point};
   g.weights = {1.0, 0.0, 0.0};
   g.position = g.linear * point + g.translation;
-  g.normal = glm::normalize(glm::transpose(glm::inverse(g.linear)) * normal);
+  const DVec3 stretched = glm::transpose(glm::inverse(g.linear)) * normal;
+  const double length = glm::length(stretched);
+  g.normal = stretched / length;
+  constexpr double kFourPi = 12.566370614359172954;
+  g.area = kFourPi * double{sphere.radius} * double{sphere.radius} * std::abs(determinant) * length;
   return g;
 }
 

@@ -50,7 +50,7 @@ CaseValues make_transform_case(CaseRandom& random) {
   return CaseWriter().add(m).add(p).add(Vec3(log_uniform(random, 1e-3, 1e3) * random_direction(random))).take();
 }
 
-std::string text(const QuadInverse::Vec& v) {
+std::string quad_text(const QuadInverse::Vec& v) {
   return fmt::format("({:.17g}, {:.17g}, {:.17g})", static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
 }
 
@@ -74,9 +74,9 @@ void judge_transform(const CaseValues& values, std::span<const AccuracyConfig> l
     out[i].broken = !(off <= allowed(level, 5, size, origin_terms)) || !(turned <= allowed(level, 4, length, along_terms));
     if (size > 0) out[i].error = off / size;
     if (story != nullptr)
-      *story = {fmt::format("origin {}, direction {}", accel::text(model.origin), accel::text(model.direction)),
-                fmt::format("origin {}, off by {:.3g} of {:.3g} allowed; direction {}, off by {:.3g} of {:.3g} allowed", text(origin),
-                            off, allowed(level, 5, size, origin_terms), text(along), turned, allowed(level, 4, length, along_terms))};
+      *story = {fmt::format("origin {}, direction {}", text(model.origin), text(model.direction)),
+                fmt::format("origin {}, off by {:.3g} of {:.3g} allowed; direction {}, off by {:.3g} of {:.3g} allowed", quad_text(origin),
+                            off, allowed(level, 5, size, origin_terms), quad_text(along), turned, allowed(level, 4, length, along_terms))};
   }
 }
 
@@ -117,7 +117,7 @@ void judge_world_box(const CaseValues& values, std::span<const AccuracyConfig> l
       rounded[row] = rounded_ratio<double>(x, Dyadic(1));
     }
     if (story != nullptr)
-      *story = {"box from " + accel::text(box.lo) + " to " + accel::text(box.hi),
+      *story = {"box from " + text(box.lo) + " to " + text(box.hi),
                 fmt::format("the point is at ({:.17g}, {:.17g}, {:.17g})", rounded.x, rounded.y, rounded.z)};
   }
 }

@@ -16,7 +16,7 @@ namespace carousel::shading {
 
 namespace {
 
-constexpr std::uint32_t kTile = 8;  // pixels, along each side
+constexpr std::uint32_t kBinSide = 8;  // pixels, along each side
 
 struct TriangleRef {
   std::uint32_t instance, primitive;
@@ -56,8 +56,8 @@ class Rasterizer {
         wishes_(wishes),
         any_hit_(opacity_.any() && !wishes.force_opaque ? any_hit : nullptr),
         one_eye_(camera.projection == scene::Camera::Projection::kPerspective),
-        tiles_across_((screen.width() + kTile - 1) / kTile),
-        bins_(std::size_t{tiles_across_} * ((screen.height() + kTile - 1) / kTile)) {
+        tiles_across_((screen.width() + kBinSide - 1) / kBinSide),
+        bins_(std::size_t{tiles_across_} * ((screen.height() + kBinSide - 1) / kBinSide)) {
     const std::size_t pixels = std::size_t{screen.width()} * screen.height();
     out_.samples = samples;
     out_.hits.resize(pixels * samples);
@@ -96,8 +96,8 @@ class Rasterizer {
       const TriangleRef ref{index, primitive};
       const PixelBox box = screen_.bounds(world_triangle(scene_, ref));
       if (box.empty()) continue;
-      for (std::uint32_t y = box.y0 / kTile; y <= (box.y1 - 1) / kTile; ++y) {
-        for (std::uint32_t x = box.x0 / kTile; x <= (box.x1 - 1) / kTile; ++x) {
+      for (std::uint32_t y = box.y0 / kBinSide; y <= (box.y1 - 1) / kBinSide; ++y) {
+        for (std::uint32_t x = box.x0 / kBinSide; x <= (box.x1 - 1) / kBinSide; ++x) {
           bins_[std::size_t{y} * tiles_across_ + x].push_back(ref);
           ++out_.counts.binned;
         }
@@ -106,8 +106,8 @@ class Rasterizer {
   }
 
   void draw(std::uint32_t tile, FirstHits::Counts& counts) {
-    const std::uint32_t x0 = tile % tiles_across_ * kTile, y0 = tile / tiles_across_ * kTile;
-    const PixelBox area{x0, y0, std::min(x0 + kTile, screen_.width()), std::min(y0 + kTile, screen_.height())};
+    const std::uint32_t x0 = tile % tiles_across_ * kBinSide, y0 = tile / tiles_across_ * kBinSide;
+    const PixelBox area{x0, y0, std::min(x0 + kBinSide, screen_.width()), std::min(y0 + kBinSide, screen_.height())};
     std::vector<Ray> rays;  // of the tile, row by row, the samples of a pixel together
     for (std::uint32_t y = area.y0; y < area.y1; ++y) {
       for (std::uint32_t x = area.x0; x < area.x1; ++x) {

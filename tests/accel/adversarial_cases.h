@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdlib>
 
 namespace carousel::accel {
@@ -10,5 +11,8 @@ inline int adversarial_cases() {
   const char* cases = std::getenv("CAROUSEL_ORACLE_RAYS");
   return static_cast<int>(cases != nullptr ? std::atof(cases) : 1e6);
 }
+
+/// Rays in all that are compared with another tracer's.
+inline std::size_t oracle_rays() { return static_cast<std::size_t>(adversarial_cases()); }
 
 }  // namespace carousel::accel

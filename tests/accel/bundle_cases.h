@@ -16,6 +16,10 @@
 
 namespace carousel::accel {
 
+inline constexpr Aabb kUnit{{-1, -1, -1}, {1, 1, 1}};
+
+inline Ray ray(const Vec3& origin, const Vec3& direction, float end = kInfinity) { return {origin, 0, direction, end}; }
+
 /// The record of these rays; the range of each ends at its tmax.
 inline BundleRecord record_of(const std::vector<Ray>& rays) {
   BundleRecord record;

@@ -30,10 +30,6 @@ void PrintTo(Verdict verdict, std::ostream* out) {
   *out << kNames[static_cast<int>(verdict)];
 }
 
-constexpr Aabb kUnit{{-1, -1, -1}, {1, 1, 1}};
-
-Ray ray(const Vec3& origin, const Vec3& direction, float end = kInfinity) { return {origin, 0, direction, end}; }
-
 Verdict verdict(const BundleAnswer& answer, int lane) {
   if (answer.all >> lane & 1) return Verdict::kAll;
   return answer.undecided >> lane & 1 ? Verdict::kUndecided : Verdict::kMiss;

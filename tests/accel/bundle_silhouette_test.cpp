@@ -21,10 +21,6 @@ namespace {
 using Edges = BundlesConfig::Edges;
 using Order = BundlesConfig::Order;
 
-constexpr Aabb kUnit{{-1, -1, -1}, {1, 1, 1}};
-
-Ray ray(const Vec3& origin, const Vec3& direction, float end = kInfinity) { return {origin, 0, direction, end}; }
-
 /// A narrow bundle from `eye` towards `aim`.
 std::vector<Ray> towards(const Vec3& aim, const Vec3& eye, float end = kInfinity) {
   const Vec3 d = aim - eye;

@@ -1,5 +1,4 @@
 // Cull planes: what they hold, exactly; what they must never lose; what they are worth.
-#include <cstdlib>
 #include <cstring>
 #include <iostream>
 
@@ -8,6 +7,7 @@
 
 #include "accel/cull_plane_test.h"
 #include "accel/dyadic.h"
+#include "tests/accel/adversarial_cases.h"
 #include "tests/accel/brute_force_answers.h"
 #include "tests/accel/plane_rays.h"
 #include "tests/accel/test_rays.h"
@@ -64,11 +64,6 @@ std::vector<HardMesh> hard_meshes() {
 bool same_bits(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof(Hit)) == 0; }
 
 /// Rays in all; CAROUSEL_ORACLE_RAYS asks for more.
-std::size_t ray_count() {
-  const char* rays = std::getenv("CAROUSEL_ORACLE_RAYS");
-  return rays != nullptr ? static_cast<std::size_t>(std::atof(rays)) : 1000000u;
-}
-
 // One triangle a leaf and eight planes everywhere: nothing else holds a ray up. Where every triangle has planes of its
 // own and of all nodes above, no hit may be missing, be it one that only rounding makes.
 void expect_none_lost(const AccuracyConfig& accuracy, std::size_t total) {
@@ -108,12 +103,12 @@ void expect_none_lost(const AccuracyConfig& accuracy, std::size_t total) {
   EXPECT_GT(counts.culled, total / 4);
 }
 
-TEST(CullPlanes, LoseNoHitThatIsFoundWithoutThem) { expect_none_lost({}, ray_count()); }
+TEST(CullPlanes, LoseNoHitThatIsFoundWithoutThem) { expect_none_lost({}, oracle_rays()); }
 
 TEST(CullPlanes, LoseNoHitOfExactTriangles) {
   AccuracyConfig accuracy;
   accuracy.triangle = TriangleLevel::kExact;
-  expect_none_lost(accuracy, ray_count() / 20);
+  expect_none_lost(accuracy, oracle_rays() / 20);
 }
 
 TEST(CullPlanes, GiveTheAnswersOfBruteForce) {

@@ -1,10 +1,10 @@
 // Ring and tracer share kernels, so their agreement proves little. Here Embree traces the same rays; where the
 // two disagree, exact arithmetic says who is right, and it must never be Embree alone.
-#include <cstdlib>
 #include <iostream>
 
 #include <gtest/gtest.h>
 
+#include "tests/accel/adversarial_cases.h"
 #include "tests/accel/embree_peer.h"
 #include "tests/accel/exact_oracle.h"
 #include "tests/accel/test_rays.h"
@@ -15,11 +15,6 @@ namespace carousel::accel {
 namespace {
 
 /// Rays in all five scenes together; CAROUSEL_ORACLE_RAYS asks for more.
-std::size_t ray_count() {
-  const char* rays = std::getenv("CAROUSEL_ORACLE_RAYS");
-  return rays != nullptr ? static_cast<std::size_t>(std::atof(rays)) : 1000000u;
-}
-
 bool agree(const Hit& a, const Hit& b) {
   if (!a.valid() || !b.valid()) return a.valid() == b.valid();
   return a.instance == b.instance && a.primitive == b.primitive && std::fabs(a.t - b.t) <= 1e-6f * std::fabs(a.t);
@@ -61,19 +56,19 @@ void expect_explained(const scene::Scene& scene, std::size_t rays) {
 }
 
 TEST(EmbreeOracle, ExplainsEveryDisagreementOnCornell) {
-  expect_explained(small_builtin(BuiltinScene::kCornell), ray_count() / 5);
+  expect_explained(small_builtin(BuiltinScene::kCornell), oracle_rays() / 5);
 }
 TEST(EmbreeOracle, ExplainsEveryDisagreementOnSpheres) {
-  expect_explained(small_builtin(BuiltinScene::kSpheres, 3000), ray_count() / 5);
+  expect_explained(small_builtin(BuiltinScene::kSpheres, 3000), oracle_rays() / 5);
 }
 TEST(EmbreeOracle, ExplainsEveryDisagreementOnTerrain) {
-  expect_explained(small_builtin(BuiltinScene::kTerrain, 3000), ray_count() / 5);
+  expect_explained(small_builtin(BuiltinScene::kTerrain, 3000), oracle_rays() / 5);
 }
 TEST(EmbreeOracle, ExplainsEveryDisagreementOnSliver) {
-  expect_explained(small_builtin(BuiltinScene::kSliver, 1000), ray_count() / 5);
+  expect_explained(small_builtin(BuiltinScene::kSliver, 1000), oracle_rays() / 5);
 }
 TEST(EmbreeOracle, ExplainsEveryDisagreementOnInstances) {
-  expect_explained(small_builtin(BuiltinScene::kInstances, 0, 12), ray_count() / 5);
+  expect_explained(small_builtin(BuiltinScene::kInstances, 0, 12), oracle_rays() / 5);
 }
 
 }  // namespace

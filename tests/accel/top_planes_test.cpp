@@ -1,6 +1,5 @@
 // Cull planes above the instances: they hold every vertex where the instance puts it, and lose no hit that the kernel
 // finds in the space it has rounded the ray to.
-#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "accel/cull_plane_test.h"
 #include "accel/dyadic.h"
 #include "core/config_enums.h"
+#include "tests/accel/adversarial_cases.h"
 #include "tests/accel/brute_force_answers.h"
 #include "tests/accel/placements.h"
 #include "tests/accel/plane_rays.h"
@@ -103,12 +103,6 @@ Accel built(const scene::Scene& scene, const CullPlanesConfig& planes, Transform
 const TransformLevel kBoundedLevels[] = {TransformLevel::kTwoStep, TransformLevel::kTwoStepDouble,
                                          TransformLevel::kTransposeIfRotation};
 
-/// Rays in all; CAROUSEL_ORACLE_RAYS asks for more.
-std::size_t ray_count() {
-  const char* rays = std::getenv("CAROUSEL_ORACLE_RAYS");
-  return rays != nullptr ? static_cast<std::size_t>(std::atof(rays)) : 1000000u;
-}
-
 struct Losses {
   std::size_t hits = 0, lost = 0, culled = 0;
   std::string example;
@@ -133,7 +127,7 @@ void count_losses(const Accel& plain, const Accel& planes, const RayBatch& rays,
 }
 
 TEST(TopPlanes, LoseNoHitOfInstancesAnywhere) {
-  const std::size_t total = ray_count();
+  const std::size_t total = oracle_rays();
   const std::vector<Placed> scenes = placed_scenes(run_seed() + 700);
   Losses sum;
   int turn = 0;
@@ -168,10 +162,10 @@ TEST(TopPlanes, LoseNoHitOfExactTriangles) {
     const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = Levels::kTlas};
     count_losses(built(placed.scene, {}, level, 1, TriangleLevel::kExact),
                  built(placed.scene, config, level, 1, TriangleLevel::kExact),
-                 plane_grazing_rays(placed.scene, ray_count() / 200, std::uint64_t{run_seed()} << 32 | 78), losses);
+                 plane_grazing_rays(placed.scene, oracle_rays() / 200, std::uint64_t{run_seed()} << 32 | 78), losses);
   }
   EXPECT_EQ(losses.lost, 0u) << "CAROUSEL_SEED=" << run_seed() << ": " << losses.example;
-  EXPECT_GT(losses.hits, ray_count() / 100);
+  EXPECT_GT(losses.hits, oracle_rays() / 100);
   EXPECT_GT(losses.culled, 1000u);
 }
 
@@ -188,7 +182,7 @@ Accel with_margins(Accel accel, float factor) {
 // What of the derived margin is needed: hits must go missing without one, and none well before the whole.
 TEST(TopPlanes, NeedTheirMargin) {
   const std::vector<Placed> scenes = placed_scenes(run_seed() + 701);
-  std::string table = fmt::format("\n{} rays at each of:\n\n| margin |", ray_count() / 50);
+  std::string table = fmt::format("\n{} rays at each of:\n\n| margin |", oracle_rays() / 50);
   for (const Placed& placed : scenes) table += " " + placed.name + " |";
   table += "\n|---|";
   for (std::size_t i = 0; i < scenes.size(); ++i) table += "---:|";
@@ -200,13 +194,13 @@ TEST(TopPlanes, NeedTheirMargin) {
       const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = Levels::kTlas};
       Losses losses;
       count_losses(built(placed.scene, {}), with_margins(built(placed.scene, config), factor),
-                   plane_grazing_rays(placed.scene, ray_count() / 50, std::uint64_t{run_seed()} << 32 | 77), losses);
+                   plane_grazing_rays(placed.scene, oracle_rays() / 50, std::uint64_t{run_seed()} << 32 | 77), losses);
       table += fmt::format(" {} |", losses.lost);
       lost += losses.lost;
     }
     table += "\n";
     if (factor == 0) {
-      EXPECT_GT(lost, ray_count() / 2000);
+      EXPECT_GT(lost, oracle_rays() / 2000);
     } else if (factor >= 0.5f) {
       EXPECT_EQ(lost, 0u) << factor;
     }

@@ -5,6 +5,7 @@
 #include "report/report_json.h"
 #include "tests/app/program.h"
 #include "tests/json_schema_check.h"
+#include "tests/scene/gltf_builder.h"
 
 namespace carousel {
 namespace {
@@ -68,6 +69,22 @@ TEST(EffectsRun, AListIsNamedBesideItsOtherPicture) {
   EXPECT_EQ(list["rays"]["by_kind"]["shadow"], 0);
 }
 
+TEST(EffectsRun, AnImageThatNoEffectReadsNeedNotBeThere) {
+  const Program program;
+  scene::GltfBuilder b = scene::GltfBuilder::square();
+  b.push("images", {{"uri", "nowhere.png"}});
+  b.push("textures", {{"source", 0}});
+  b.push("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  program.write("scene.gltf", b.text());
+  program.write("small.yaml", "scene: {file: scene.gltf}\nimage: {width: 4, height: 4, samples: 1}\n");
+  const Outcome outcome = program.run({"run", "small.yaml"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("nowhere.png"));
+  const Json list = run(program, "list", {"shading.effects=[sky, bounce_rays]"});
+  EXPECT_EQ(list["shading"]["saved"]["images_not_decoded"], 1);
+}
+
 TEST(EffectsRun, InspectSaysWhatASceneCallsFor) {
   const Program program;
   const Outcome table = program.run({"inspect", "builtin:cornell"});
@@ -76,8 +93,12 @@ TEST(EffectsRun, InspectSaysWhatASceneCallsFor) {
   EXPECT_THAT(table.out, HasSubstr("nothing calls for it"));
   const Json json = Json::parse(program.run({"inspect", "builtin:cornell", "--json"}).out);
   EXPECT_EQ(json["effects"].size(), kEffects);
-  for (const Json& effect : json["effects"])
+  for (const Json& effect : json["effects"]) {
     EXPECT_EQ(effect["on"], effect["called_for"]) << effect["name"];
+    if (effect["name"] == "shadow_rays") {
+      EXPECT_EQ(effect["cost"]["cycles_per_path"], 4 * 20);   // default depth and cycles
+    }
+  }
   EXPECT_EQ(program.run({"inspect", "none.glb"}).status, 2);
   EXPECT_EQ(program.run({"inspect", "builtin:cornel"}).status, 2);
 }

@@ -78,6 +78,25 @@ TEST(RunCommand, GoesOnWithoutAResourceThatStops) {
   }
 }
 
+TEST(RunCommand, TheRasteriserLeavesTheRestToASimulatedMachine) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  const std::vector<std::string> raster{"run", "small.yaml", "--set", "primary=raster", "--out"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = raster;
+    all.insert(all.end(), more.begin(), more.end());
+    return program.run(all);
+  };
+  ASSERT_EQ(with({"native"}).status, 0);
+  const Outcome outcome = with({"cycle", "--set", "engine.kind=cycle", "--set", "verify=reference"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json native = Json::parse(program.read("native/report.json")), cycle = Json::parse(program.read("cycle/report.json"));
+  EXPECT_EQ(cycle["digest"], native["digest"]);
+  EXPECT_EQ(cycle["rays"]["by_kind"]["camera"], 0);
+  EXPECT_EQ(cycle["raster"], native["raster"]);
+  EXPECT_FALSE(cycle["bottleneck"]["gains"].empty());
+}
+
 TEST(RunCommand, TheResolvedConfigGivesTheSameDigests) {
   const Program program;
   program.write("small.yaml", kSmall);

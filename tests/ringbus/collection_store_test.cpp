@@ -48,14 +48,14 @@ std::vector<std::uint32_t> drain(CollectionStore& store) {
   return order;
 }
 
-using Order = std::vector<std::uint32_t>;
+using Keys = std::vector<std::uint32_t>;
 
 TEST(CollectionStore, FullestFirst) {
   CollectionStore store(settings(Policy::kFullest, Select::kStrict));
   store.add(key(1), 1, 1, rays(0, 1));
   store.add(key(2), 1, 1, rays(10, 3));
   store.add(key(3), 1, 1, rays(20, 2));
-  EXPECT_EQ(drain(store), (Order{2, 3, 1}));
+  EXPECT_EQ(drain(store), (Keys{2, 3, 1}));
 }
 
 TEST(CollectionStore, OldestFirstAndNewestFirst) {
@@ -63,7 +63,7 @@ TEST(CollectionStore, OldestFirstAndNewestFirst) {
     CollectionStore store(settings(policy, Select::kStrict));
     for (const std::uint32_t k : {5u, 3u, 9u}) store.add(key(k), 1, 1, rays(k, 2));
     store.add(key(5), 1, 1, rays(50, 1));   // growing does not make it younger
-    EXPECT_EQ(drain(store), policy == Policy::kOldest ? (Order{5, 3, 9}) : (Order{9, 3, 5}));
+    EXPECT_EQ(drain(store), policy == Policy::kOldest ? (Keys{5, 3, 9}) : (Keys{9, 3, 5}));
   }
 }
 
@@ -73,7 +73,7 @@ TEST(CollectionStore, DeepestFirst) {
   store.add(key(2), 7, 1, rays(10, 1));
   store.add(key(3), 5, 1, rays(20, 2));
   EXPECT_EQ(store.key(*store.deepest()), key(2));
-  EXPECT_EQ(drain(store), (Order{2, 3, 1}));
+  EXPECT_EQ(drain(store), (Keys{2, 3, 1}));
   EXPECT_FALSE(store.deepest());
 }
 
@@ -85,7 +85,7 @@ TEST(CollectionStore, NearestFirstAndAnEarlierEntryBringsForward) {
   store.add(key(4), 1, 0.0f, rays(30, 1));
   store.add(key(1), 1, 1.0f, rays(40, 1));
   store.add(key(2), 1, 9.0f, rays(50, 1));   // a later one changes nothing
-  EXPECT_EQ(drain(store), (Order{4, 2, 1, 3}));
+  EXPECT_EQ(drain(store), (Keys{4, 2, 1, 3}));
 }
 
 TEST(CollectionStore, FullFirstOffersReadyOnesOnly) {

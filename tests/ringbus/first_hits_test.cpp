@@ -8,6 +8,8 @@
 #include "accel/exact_reference.h"
 #include "accel/reference_tracer.h"
 #include "core/executor.h"
+#include "ringbus/cycle_engine.h"
+#include "ringbus/what_if.h"
 #include "scene/builtin.h"
 #include "scene/mesh_shapes.h"
 #include "shading/alpha_test.h"
@@ -245,6 +247,44 @@ TEST(FirstHits, EnginesAgree) {
     run_native(config, accel, 10, tracer, on_threads(2));
     EXPECT_EQ(tracer.hits_digest().hex(), reference.hits_digest().hex());
     EXPECT_EQ(tracer.image_digest(), reference.image_digest());
+    config.engine.kind = EngineKind::kCycle;
+    std::uint64_t cycles = 0;
+    for (const std::size_t threads : {1, 2}) {
+      shading::PathTracer simulated(scene, config, 15, static_cast<std::size_t>(workers));
+      simulated.set_first_hits(&raster);
+      const RunResult result = run_cycle(config, accel, 10, simulated, on_threads(threads));
+      EXPECT_EQ(simulated.hits_digest().hex(), reference.hits_digest().hex());
+      EXPECT_EQ(simulated.image_digest(), reference.image_digest());
+      EXPECT_EQ(result.rays_completed, simulated.counts().emitted[1] + simulated.counts().emitted[2]);
+      if (cycles == 0) cycles = result.cycle->cycles;
+      EXPECT_EQ(result.cycle->cycles, cycles);
+    }
+    config.engine.kind = EngineKind::kNative;
+  }
+}
+
+// What-if runs stop after so many rays, with paths that have begun and rays held back.
+TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
+  const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
+  Config config = picture(16, 12, 2);
+  config.engine.kind = EngineKind::kCycle;
+  config.topology.resources = 3;
+  config.rays.slots_per_resource = 20;
+  config.shading.workers = 1;
+  config.shading.cycles_per_shade = 400;
+  const auto raster = shading::rasterize_first_hits(scene, config, nullptr, *make_sequential_executor());
+  const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
+  const auto frame = [&](const Config& machine) {
+    auto tracer = std::make_unique<shading::PathTracer>(scene, machine, 60, 1);
+    tracer->set_first_hits(&raster);
+    return tracer;
+  };
+  for (const std::uint64_t rays : {7u, 300u}) {
+    const Bottleneck found = find_bottleneck(config, accel, 10, frame, rays, on_threads(1));
+    ASSERT_FALSE(found.gains.empty()) << rays;
+    if (rays == 300u) {
+      EXPECT_EQ(found.gains.front().name, "shading");
+    }
   }
 }
 

@@ -33,7 +33,7 @@ inline void expect_one_digest(TestScene& scene, const std::vector<Factor>& facto
   const std::uint32_t array_seed = 32 * (run_seed() - 1) + number;
   std::vector<std::vector<int>> rows = pairwise(factors, array_seed);
 #ifdef __SANITIZE_THREAD__
-  rows.resize(rows.size() / 6);
+  rows.resize(rows.size() / 16);   // the checked build runs all of them
 #endif
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Cell cell = cell_of(factors, rows[i]);

@@ -8,7 +8,7 @@ namespace {
 
 using Distribute = ShadingConfig::Distribute;
 
-RayResult ray(std::uint32_t path) {
+RayResult ray_of_path(std::uint32_t path) {
   RayResult r;
   r.tag.path = path;
   return r;
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> paths_of(ShadeQueues& queues, std::uint32_t worker) {
 
 TEST(ShadeQueues, FifoFillGivesTheOldestToWhoeverAsks) {
   ShadeQueues q = queues(Distribute::kFifoFill, 3);
-  for (std::uint32_t path = 0; path < 5; ++path) q.push(ray(path));
+  for (std::uint32_t path = 0; path < 5; ++path) q.push(ray_of_path(path));
   EXPECT_EQ(q.take(2)->tag.path, 0u);
   EXPECT_EQ(q.take(0)->tag.path, 1u);
   EXPECT_EQ(q.take_any()->tag.path, 2u);
@@ -41,7 +41,7 @@ TEST(ShadeQueues, FifoFillGivesTheOldestToWhoeverAsks) {
 
 TEST(ShadeQueues, RoundRobinTakesTurns) {
   ShadeQueues q = queues(Distribute::kRoundRobin, 3);
-  for (std::uint32_t path = 0; path < 7; ++path) q.push(ray(path));
+  for (std::uint32_t path = 0; path < 7; ++path) q.push(ray_of_path(path));
   EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{1, 4}));
   EXPECT_EQ(paths_of(q, 0), (std::vector<std::uint32_t>{0, 3, 6}));
   EXPECT_EQ(paths_of(q, 0), (std::vector<std::uint32_t>{}));   // not of others
@@ -52,19 +52,19 @@ TEST(ShadeQueues, LoadCountsWhatIsInHand) {
   ShadeQueues q = queues(Distribute::kLoad, 3);
   q.hold(0, 1);
   q.hold(1, 3);
-  for (std::uint32_t path = 0; path < 5; ++path) q.push(ray(path));   // 2, then 0 or 2, the first first
+  for (std::uint32_t path = 0; path < 5; ++path) q.push(ray_of_path(path));   // 2, then 0 or 2, the first first
   EXPECT_EQ(paths_of(q, 2), (std::vector<std::uint32_t>{0, 2, 4}));
   EXPECT_EQ(paths_of(q, 0), (std::vector<std::uint32_t>{1, 3}));
   EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{}));
   q.hold(1, 0);
-  q.push(ray(9));
+  q.push(ray_of_path(9));
   EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{9}));
 }
 
 TEST(ShadeQueues, RandomDependsOnTheRayAlone) {
   ShadeQueues forward = queues(Distribute::kRandom, 4), backward = queues(Distribute::kRandom, 4);
-  for (std::uint32_t path = 0; path < 4000; ++path) forward.push(ray(path));
-  for (std::uint32_t path = 4000; path-- > 0;) backward.push(ray(path));
+  for (std::uint32_t path = 0; path < 4000; ++path) forward.push(ray_of_path(path));
+  for (std::uint32_t path = 4000; path-- > 0;) backward.push(ray_of_path(path));
   for (std::uint32_t worker = 0; worker < 4; ++worker) {
     const std::vector<std::uint32_t> paths = paths_of(forward, worker);
     std::vector<std::uint32_t> others = paths_of(backward, worker);
@@ -73,7 +73,7 @@ TEST(ShadeQueues, RandomDependsOnTheRayAlone) {
     EXPECT_NEAR(static_cast<double>(paths.size()), 1000, 100);
   }
   ShadeQueues kinds = queues(Distribute::kRandom, 4);
-  RayResult shadow = ray(0);
+  RayResult shadow = ray_of_path(0);
   shadow.tag.kind = RayKind::kShadow;
   for (std::uint8_t bounce = 0; bounce < 100; ++bounce) {
     shadow.tag.bounce = bounce;
@@ -85,9 +85,9 @@ TEST(ShadeQueues, RandomDependsOnTheRayAlone) {
 TEST(ShadeQueues, HelpersTakeFromTheLongest) {
   ShadeQueues q = queues(Distribute::kLoad, 2);
   q.hold(0, 100);
-  for (std::uint32_t path = 0; path < 3; ++path) q.push(ray(path));
+  for (std::uint32_t path = 0; path < 3; ++path) q.push(ray_of_path(path));
   q.hold(0, 0);
-  q.push(ray(3));   // to worker 0, which has none waiting
+  q.push(ray_of_path(3));   // to worker 0, which has none waiting
   EXPECT_EQ(q.take_any()->tag.path, 0u);
   EXPECT_EQ(q.take_any()->tag.path, 1u);
   EXPECT_EQ(q.size(), 2u);

@@ -131,6 +131,33 @@ TEST(GltfTexture, ImageNobodyUsesIsNotDecoded) {
   EXPECT_TRUE(b.load().images.empty());
 }
 
+TEST(GltfTexture, OnlyImagesThatAreWantedAreDecoded) {
+  GltfBuilder b = textured(encode("png", 1, 2, 3, {1, 2, 3, 4, 5, 6}));
+  b.push("images", {{"uri", "nowhere.png"}, {"name", "missing"}});
+  b.push("images", {{"bufferView", b.view(std::vector<unsigned char>(64, 'x'))}, {"mimeType", "image/png"}});
+  b.push("textures", {{"source", 1}});
+  b.push("textures", {{"source", 2}});
+  b.json["materials"][0]["normalTexture"] = {{"index", 1}};
+  b.json["materials"][0]["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 2}};
+  const auto decoded = [&](const ImageChoice& choice) {
+    std::string names;
+    for (const Image& image : load_gltf_from_memory(b.glb(), "scene.glb", {}, choice).images)
+      if (!image.rgba.empty()) names += image.name + " ";
+    return names;
+  };
+  bool triangles = false;
+  EXPECT_EQ(decoded([&](const Scene& scene) {
+              triangles = scene.unique_triangle_count() > 0;
+              std::vector<bool> wanted;
+              for (const Image& image : scene.images) wanted.push_back(image.name == "picture");
+              return wanted;
+            }),
+            "picture ");
+  EXPECT_TRUE(triangles);   // so that a choice can be made of what is on them
+  EXPECT_EQ(decoded([](const Scene& scene) { return std::vector<bool>(scene.images.size(), false); }), "");
+  EXPECT_THROW(b.load(), SceneError);   // all are wanted: two cannot be had
+}
+
 TEST(GltfTexture, ImageNeedsExactlyOneSource) {
   GltfBuilder b = textured({1});
   b.json["images"][0]["uri"] = "a.png";

@@ -11,6 +11,9 @@
 
 namespace carousel::shading {
 
+/// Of wo: from grazing to along the normal.
+inline constexpr float kCosines[] = {0.05f, 0.3f, 0.7f, 1.0f};
+
 inline Vec3 direction(float cosine, float turns = 0) {
   const SinCos angle = sin_cos_turns(turns);
   const float sine = std::sqrt(1 - cosine * cosine);

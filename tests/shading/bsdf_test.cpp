@@ -9,38 +9,19 @@
 #include "core/rng.h"
 #include "shading/lambert.h"
 #include "shading/sampler.h"
+#include "tests/shading/bsdf_integrals.h"
 
 namespace carousel::shading {
 namespace {
 
-constexpr float kRoughnesses[] = {0.0f, 0.1f, 0.25f, 0.5f, 0.75f, 1.0f};
-constexpr float kCosines[] = {0.05f, 0.3f, 0.7f, 1.0f};
-
-Vec3 direction(float cosine, float turns = 0) {
-  const SinCos angle = sin_cos_turns(turns);
-  const float sine = std::sqrt(1 - cosine * cosine);
-  return {sine * angle.cos, sine * angle.sin, cosine};
-}
-
-/// Share of a white sky that the surface sends towards wo, by importance sampling.
-Vec3 albedo(const Bsdf& bsdf) {
-  constexpr std::uint32_t kSamples = 4096;
-  const Sampler sampler(1, kSamples);
-  DVec3 sum{0};
-  for (std::uint32_t s = 0; s < kSamples; ++s) {
-    const DirectionDraw draw = sampler.direction(0, s, 0);
-    const BsdfValue value = bsdf.evaluate(bsdf.sample(draw.lobe, draw.direction));
-    if (value.pdf > 0) sum += DVec3(value.f_cos / value.pdf);
-  }
-  return Vec3(sum / double(kSamples));
-}
+constexpr float kMetalRoughnesses[] = {0.0f, 0.1f, 0.25f, 0.5f, 0.75f, 1.0f};
 
 TEST(Bsdf, AWhiteSurfaceReflectsEverything) {
   for (const float metallic : {0.0f, 0.4f, 1.0f}) {
-    for (const float roughness : kRoughnesses) {
+    for (const float roughness : kMetalRoughnesses) {
       for (const float cosine : kCosines) {
         const Bsdf bsdf({Vec3{1}, metallic, roughness}, direction(cosine));
-        EXPECT_NEAR(albedo(bsdf).x, 1.0f, 0.02f) << metallic << " " << roughness << " " << cosine;
+        EXPECT_NEAR(white_albedo(bsdf).x, 1.0f, 0.02f) << metallic << " " << roughness << " " << cosine;
       }
     }
   }
@@ -49,9 +30,9 @@ TEST(Bsdf, AWhiteSurfaceReflectsEverything) {
 TEST(Bsdf, NoSurfaceReflectsMoreThanArrives) {
   for (const Vec3& color : {Vec3{0, 0, 0}, Vec3{0.2f, 0.5f, 0.9f}}) {
     for (const float metallic : {0.0f, 1.0f}) {
-      for (const float roughness : kRoughnesses) {
+      for (const float roughness : kMetalRoughnesses) {
         for (const float cosine : kCosines) {
-          const Vec3 a = albedo(Bsdf({color, metallic, roughness}, direction(cosine)));
+          const Vec3 a = white_albedo(Bsdf({color, metallic, roughness}, direction(cosine)));
           for (int c = 0; c < 3; ++c) {
             EXPECT_GE(a[c], 0.0f);
             EXPECT_LE(a[c], 1.01f) << metallic << " " << roughness << " " << cosine;

@@ -113,14 +113,52 @@ TEST(EffectsPlan, EachMaterialHasTheLeastCodeThatShadesIt) {
     EXPECT_EQ(c, SurfaceClass::kAnything);
 }
 
-TEST(EffectsPlan, ImagesThatNothingReadsAreDropped) {
+TEST(EffectsPlan, ATextureMakesGlassOfWhatIsMetalByDefault) {
+  scene::Scene scene = scene_that_calls_for(Effect::kVolume);
+  scene.images[0].rgba = {0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255};   // B: no metal
+  scene.materials[2].metallic = 1;
+  EXPECT_FALSE(plan_effects(scene, small_image()).on(Effect::kTransmission));
+  scene.materials[2].metallic_roughness_texture.emplace();
+  const EffectsPlan plan = plan_effects(scene, small_image());
+  for (const Effect effect : {Effect::kTransmission, Effect::kRefraction, Effect::kVolume}) EXPECT_TRUE(plan.on(effect));
+  EXPECT_EQ(surface_classes(scene, plan)[2], SurfaceClass::kTransmissive);
+  const Picture glass = picture(scene, small_image());
+  EXPECT_EQ(glass.image, picture(scene, small_image(Choice::kAll)).image);
+  scene.materials[2].metallic = 0;
+  scene.materials[2].metallic_roughness_texture.reset();
+  const Picture plain = picture(scene, small_image());
+  for (std::size_t i = 0; i < glass.rgb.size(); ++i) EXPECT_NEAR(glass.rgb[i], plain.rgb[i], 1e-3f + 0.01f * plain.rgb[i]);
+}
+
+TEST(EffectsPlan, ImagesAreReadOnlyByEffectsThatAreOn) {
   scene::Scene scene = scene_that_calls_for(Effect::kClearcoat);
   scene.materials[2].transmission.texture.emplace();   // of weight 0
-  EXPECT_EQ(drop_unread_images(scene), 16u);
-  EXPECT_TRUE(scene.images[0].rgba.empty());
+  const std::vector<bool> yes{true}, no{false};
+  EXPECT_EQ(images_read(scene, {}), no);
+  EXPECT_EQ(images_read(scene, {Choice::kAll, {}}), yes);
   scene = scene_that_calls_for(Effect::kBaseColorTexture);
-  EXPECT_EQ(drop_unread_images(scene), 0u);
-  EXPECT_EQ(scene.images[0].rgba.size(), 16u);
+  EXPECT_EQ(images_read(scene, {}), yes);
+  EXPECT_EQ(images_read(scene, {Choice::kList, {"base_color_texture"}}), yes);
+  EXPECT_EQ(images_read(scene, {Choice::kList, {"normal_map", "shadow_rays"}}), no);
+  scene.instances.clear();
+  EXPECT_EQ(images_read(scene, {}), no);
+}
+
+TEST(EffectsPlan, CyclesAreThoseOfTheConfiguration) {
+  Config config = small_image();
+  config.image.max_depth = 3;
+  config.shading.cycles_per_shade = 20;
+  config.shading.cycles_per_effect = 7;
+  config.shading.cycles_per_any_hit = 11;
+  config.testers.any_hit_unit.interval_cycles = 2;
+  const EffectsPlan plan = plan_effects(scene_of_everything(), config);
+  EXPECT_EQ(plan.of(Effect::kClearcoat).cost.cycles_per_hit, 7u);
+  EXPECT_EQ(plan.of(Effect::kAlphaBlend).cost.cycles_per_hit, 2u);
+  EXPECT_EQ(plan.of(Effect::kShadowRays).cost.cycles_per_path, 3u * 20);
+  EXPECT_EQ(plan.of(Effect::kBounceRays).cost.cycles_per_path, 2u * 20);
+  EXPECT_EQ(plan.of(Effect::kReflection).cost.cycles_per_hit, 0u);
+  config.testers.any_hit = TestersConfig::AnyHit::kShader;
+  EXPECT_EQ(plan_effects(scene_of_everything(), config).of(Effect::kAlphaBlend).cost.cycles_per_hit, 11u);
 }
 
 TEST(EffectsPlan, PicturesOfEverythingDoNotDependOnWorkersOrOrder) {

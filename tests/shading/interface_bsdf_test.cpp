@@ -16,7 +16,6 @@ namespace carousel::shading {
 namespace {
 
 constexpr float kRoughnesses[] = {0.0f, 0.25f, 0.5f, 1.0f};
-constexpr float kCosines[] = {0.05f, 0.3f, 0.7f, 1.0f};
 
 InterfacePoint white(float metallic, float roughness, float transmission = 0) {
   InterfacePoint p;
@@ -36,7 +35,7 @@ InterfacePoint glass(float eta, float roughness, float transmission = 1) {
 
 /// Over roughness and direction.
 template <bool kTransmits>
-void expect_white(InterfacePoint p, float tolerance = 0.01f) {
+void expect_white(InterfacePoint p) {
   for (const float roughness : kRoughnesses) {
     for (const float cosine : kCosines) {
       const float stretch = p.alpha.x / p.alpha.y;
@@ -45,7 +44,7 @@ void expect_white(InterfacePoint p, float tolerance = 0.01f) {
       p.alpha.x = std::min(p.alpha.y * stretch, 1.0f);
       const Vec3 a = white_albedo(InterfaceBsdf<kTransmits>(p, direction(cosine, 0.1f)));
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(a[c], 1, tolerance) << a[c] << " roughness " << roughness << " cosine " << cosine << " channel " << c;
+        EXPECT_NEAR(a[c], 1, 0.01) << a[c] << " roughness " << roughness << " cosine " << cosine << " channel " << c;
       }
     }
   }
@@ -65,13 +64,13 @@ TEST(InterfaceBsdf, AWhiteSurfaceReflectsEverythingWhateverItsFresnelFactor) {
   }
 }
 
-TEST(InterfaceBsdf, StretchedHighlightsLoseLittle) {
+TEST(InterfaceBsdf, StretchedHighlightsLoseNothing) {
   for (const float stretch : {2.0f, 5.0f, 20.0f}) {
     for (const float metallic : {0.0f, 1.0f}) {
       InterfacePoint p = white(metallic, 0);
       p.alpha = {stretch, 1};
       SCOPED_TRACE(testing::Message() << "stretched " << stretch << " times, metallic " << metallic);
-      expect_white<false>(p, 0.1f);
+      expect_white<false>(p);
     }
   }
 }
@@ -91,8 +90,7 @@ TEST(InterfaceBsdf, GlassReflectsOrRefractsEverythingFromEitherSide) {
   for (const float eta : {1.1f, 1.5f, 2.4f, 1 / 1.1f, 1 / 1.5f, 1 / 2.4f}) {
     for (const float transmission : {0.4f, 1.0f}) {
       SCOPED_TRACE(testing::Message() << "eta " << eta << " transmission " << transmission);
-      // Diffuse light below a boundary, seen from inside: GlassAlbedo::Shares says why.
-      expect_white<true>(glass(eta, 0, transmission), transmission < 1 && eta < 1 ? 0.1f : 0.01f);
+      expect_white<true>(glass(eta, 0, transmission));
     }
   }
 }

@@ -14,7 +14,6 @@
 namespace carousel::shading {
 namespace {
 
-constexpr float kCosines[] = {0.05f, 0.3f, 0.7f, 1.0f};
 
 LayerPoint layers(float coat, float coat_roughness, float sheen, float sheen_roughness) {
   return {coat, coat_roughness, {0, 0, 1}, Vec3{sheen}, sheen_roughness};

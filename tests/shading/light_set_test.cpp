@@ -1,12 +1,16 @@
 #include "shading/light_set.h"
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/octahedral.h"
+#include "shading/lambert.h"
 #include "shading/path_tracer.h"
+#include "shading/trigonometry.h"
 #include "tests/shading/brute_force_tracer.h"
 #include "tests/shading/small_scenes.h"
 
@@ -62,6 +66,59 @@ TEST(LightSet, InstancedAndMirroredTrianglesGiveTheFormFactorsIrradiance) {
   EXPECT_NEAR(sampled_irradiance(lights, {0, 0, 0}, {0, 1, 0}), expected, 0.01 * expected);
 }
 
+TEST(LightSet, ASphereGivesTheIrradianceOfItsDisk) {
+  scene::Scene scene = empty_scene();
+  add_sphere(scene, {0, 3, 0}, 1, add_material(scene, lamp(Vec3{1})));
+  const LightSet lights(scene);
+  // pi (r / d)^2 cos, however near, as long as all of it is above the horizon.
+  for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{0, 1.9f, 0}, Vec3{4, 0, 1}}) {
+    const double d2 = glm::dot(DVec3(0, 3, 0) - DVec3(p), DVec3(0, 3, 0) - DVec3(p));
+    const double expected = 3.14159265358979 / d2 * (3.0 - p.y) / std::sqrt(d2);
+    EXPECT_NEAR(sampled_irradiance(lights, p, {0, 1, 0}), expected, 0.01 * expected);
+  }
+  EXPECT_EQ(sampled_irradiance(lights, {0, 3.2f, 0}, {0, 1, 0}), 0.0);   // its inside is dark
+  scene.materials[0].double_sided = true;
+  EXPECT_NEAR(sampled_irradiance(LightSet(scene), {0, 3.2f, 0}, {0, 1, 0}), 3.14159265358979, 0.03);
+}
+
+/// Where a ray of direction `d` from `p` first meets the unit sphere that `m` has stretched.
+std::optional<Hit> meet_ellipsoid(const scene::Affine& m, const Vec3& p, const Vec3& d) {
+  const DMat3 back = glm::inverse(DMat3(m.linear));
+  const DVec3 o = back * (DVec3(p) - DVec3(m.translation)), v = back * DVec3(d);
+  const double a = glm::dot(v, v), b = glm::dot(o, v), c = glm::dot(o, o) - 1, root = b * b - a * c;
+  if (root < 0 || b > 0) return std::nullopt;
+  const double t = (-b - std::sqrt(root)) / a;
+  const Vec2 at = octahedral(o + t * v);
+  return Hit{float(t), at.x, at.y, 0, 0};
+}
+
+TEST(LightSet, DensityOfAMetEllipsoidIsTheDensityOfChoosingIt) {
+  scene::Scene scene = empty_scene();
+  const scene::Affine stretched{Mat3(2, 0.3f, 0, 0, 0.5f, 0, 0, 0, -1), {0, 3, 1}};
+  add_sphere(scene, {0, 0, 0}, 1, add_material(scene, lamp(Vec3{1})), stretched);
+  const LightSet lights(scene);
+  const Vec3 p{0.5f, 0.2f, -0.3f};
+  constexpr std::uint32_t kDirections = 1 << 16;
+  const Sampler sampler(4, kDirections);
+  double share = 0, irradiance = 0;
+  int chosen = 0;
+  for (std::uint32_t s = 0; s < kDirections; ++s) {
+    const Vec2 u = sampler.direction(0, s, 0).direction;
+    const SinCos turn = sin_cos_turns(u.y);
+    const float sine = std::sqrt(1 - u.x * u.x);
+    const Vec3 d{sine * turn.cos, u.x, sine * turn.sin};   // even over the hemisphere above
+    if (const std::optional<Hit> hit = meet_ellipsoid(stretched, p, d)) {
+      const TriangleGeometry geometry = triangle_geometry(scene, 0, 0, hit->u, hit->v);
+      const auto cosine = float(-glm::dot(geometry.normal, DVec3(d)));
+      share += 2 * kPi / kDirections * double{lights.primitive_pdf(*hit, geometry, true, cosine)};
+      irradiance += 2 * kPi / kDirections * double{d.y};
+    }
+    chosen += lights.sample(sampler.light(0, s, 0), p, SpawnOffset::kBound).pdf > 0 ? 1 : 0;
+  }
+  EXPECT_NEAR(share, double(chosen) / kDirections, 0.01);
+  EXPECT_NEAR(sampled_irradiance(lights, p, {0, 1, 0}), irradiance, 0.02 * irradiance);
+}
+
 TEST(LightSet, DensityOfAMetTriangleIsTheDensityOfChoosingIt) {
   scene::Scene scene = mixed_scene();
   const LightSet lights(scene);
@@ -74,7 +131,8 @@ TEST(LightSet, DensityOfAMetTriangleIsTheDensityOfChoosingIt) {
     if (light.pdf == 0.0f) continue;
     const Hit hit = tracer.trace({p, 0, light.wi, kInfinity}, RayKind::kBounce);
     if (!hit.valid() || scene.instances[hit.instance].mesh.value != 1) continue;
-    const float pdf = lights.triangle_pdf(hit.instance, hit.primitive, hit.t, std::abs(light.wi.y));
+    const float pdf = lights.primitive_pdf(hit, triangle_geometry(scene, hit.instance, hit.primitive, hit.u, hit.v), true,
+                                           std::abs(light.wi.y));
     EXPECT_NEAR(pdf, light.pdf, 1e-3f * light.pdf);
     ++compared;
   }

@@ -39,6 +39,15 @@ inline void add_mesh(scene::Scene& scene, std::vector<Vec3> positions, std::vect
   scene.instances.push_back({MeshId(static_cast<std::uint32_t>(scene.meshes.size() - 1)), placement});
 }
 
+/// A mesh of its own with one instance.
+inline void add_sphere(scene::Scene& scene, const Vec3& center, float radius, std::uint32_t material,
+                       const scene::Affine& placement = {}) {
+  scene::Mesh mesh;
+  mesh.spheres.push_back({center, radius, MaterialId(material)});
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({MeshId(static_cast<std::uint32_t>(scene.meshes.size() - 1)), placement});
+}
+
 /// Corners counter-clockwise as seen from the front.
 inline void add_quad(scene::Scene& scene, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
                      std::uint32_t material) {

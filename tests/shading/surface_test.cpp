@@ -5,7 +5,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "shading/emissive_triangles.h"
+#include "core/octahedral.h"
+#include "shading/emissive_primitives.h"
 #include "tests/shading/small_scenes.h"
 
 namespace carousel::shading {
@@ -104,10 +105,28 @@ TEST(Surface, ShadingNormalsAreTurnedUntilTheViewerIsAboveTheHorizon) {
   EXPECT_GT(glm::dot(normal_at(scene, 0.2f, 0.2f, wo), wo), 0.0f);
 }
 
-TEST(EmissiveTriangles, AreMeasuredWhereTheyStand) {
+TEST(Surface, ASphereHasLongitudeAndLatitude) {
+  scene::Scene scene = empty_scene();
+  scene::Material material = matte(Vec3{1});
+  material.base_color_texture.emplace();
+  add_sphere(scene, {5, 5, 5}, 2, add_material(scene, material));
+  // Left and right columns, top and bottom rows.
+  scene.images.push_back({"four", 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}});
+  scene.textures.push_back({ImageId(0), {}, {}, false});
+  const auto color = [&](const DVec3& n) {
+    const Vec2 at = octahedral(glm::normalize(n));
+    return base_color(scene, triangle_point(scene, 0, 0, at.x, at.y));
+  };
+  expect_near(color({-1, 0.5, 0}), {1, 0, 0});
+  expect_near(color({1, 0.5, 0}), {0, 1, 0});
+  expect_near(color({-1, -0.5, 0.5}), {0, 0, 1});
+  expect_near(color({1, -0.5, -0.5}), {1, 1, 1});
+}
+
+TEST(EmissivePrimitives, AreMeasuredWhereTheyStand) {
   scene::Scene scene = triangle(lamp({1, 1, 1}), {Mat3(2.0f), {0, 0, 9}});
   scene.instances.push_back({MeshId(0), {}});
-  const EmissiveTriangles lights(scene);
+  const EmissivePrimitives lights(scene);
   ASSERT_EQ(lights.all().size(), 2u);
   EXPECT_FLOAT_EQ(lights.all()[0].area, 2.0f);
   EXPECT_FLOAT_EQ(lights.all()[1].area, 0.5f);
@@ -115,12 +134,12 @@ TEST(EmissiveTriangles, AreMeasuredWhereTheyStand) {
   EXPECT_EQ(lights.index_of(scene, 1, 0), 1u);
 }
 
-TEST(EmissiveTriangles, KnowWhatTheirTextureLeavesDark) {
+TEST(EmissivePrimitives, KnowWhatTheirTextureLeavesDark) {
   scene::Scene scene = triangle(lamp({1, 1, 1}));
   scene.materials[0].emissive_texture = scene::TextureUse{add_texel(scene, 0, 0, 0), 0, {}, {1, 1}, 0};
-  EXPECT_EQ(EmissiveTriangles(scene).all()[0].flux, 0.0f);
+  EXPECT_EQ(EmissivePrimitives(scene).all()[0].flux, 0.0f);
   scene.materials[0].unlit = true;
-  EXPECT_TRUE(EmissiveTriangles(scene).all().empty());
+  EXPECT_TRUE(EmissivePrimitives(scene).all().empty());
 }
 
 }  // namespace
