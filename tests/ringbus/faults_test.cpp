@@ -17,15 +17,13 @@ TEST(FaultIdentity, FaultsCostTimeAndChangeNoHit) {
       Cell cell;
       Config& c = cell.config;
       c.engine.kind = engine;
-      cell.threads = 2;
+      // On a busy machine two threads lose a time slice a loss on a link, or a window: RandomFaults has some of these.
+      cell.threads = engine == EngineKind::kNative && fault >= 2 ? 2 : 1;
       c.topology.resources = 3;
       c.topology.link.depth = 4;
       c.rays.slots_per_resource = 64;
       if (fault == 0) c.faults.links = {0.02, 0.02, 0.02, 0.02, 0.02, 30};
-      if (fault == 1) {
-        c.faults.links.drop = 0.3;
-        cell.threads = 1;   // two would lose a time slice a loss on a busy machine
-      }
+      if (fault == 1) c.faults.links.drop = 0.3;
       if (fault == 2) c.faults.resource = {Kind::kPause, 1, 20, 50'000, 4};
       if (fault == 3) c.faults.resource = {Kind::kSlow, 2, 0, 1, 20};
       const auto outcome = run_cell(scene, cell);
@@ -38,7 +36,7 @@ Cell with_a_stop(EngineKind engine, std::int64_t resources, std::int64_t number,
   Cell cell;
   Config& c = cell.config;
   c.engine.kind = engine;
-  cell.threads = 2;
+  cell.threads = engine == EngineKind::kNative ? 2 : 1;
   c.topology.resources = resources;
   c.topology.link.depth = 4;
   c.rays.slots_per_resource = 64;
