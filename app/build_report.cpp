@@ -279,7 +279,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.host = host(prepared, result);
   r.host.raster_seconds = frame.raster_seconds();
   r.raster = frame.raster();
-  if (result.rays_restarted > 0) r.host.recovery_seconds = result.recovery_seconds;
+  if (result.rays_restarted > 0 && !result.cycle) r.host.recovery_seconds = result.recovery_seconds;
   const bool alone = r.host.threads == 1;
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.deterministic = alone || result.cycle.has_value();
@@ -293,6 +293,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
             result.rays_completed,
             result.rays_emitted - result.rays_completed,
             result.rays_restarted,
+            result.paths_restarted,
             {emitted[0], emitted[1], emitted[2]}};
   if (!result.resources.empty()) {
     add_ring(r, result, config.packets, prepared.accel);
@@ -302,6 +303,18 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
                std::nullopt, {}, {}, 0, {}, {}};
   add_effects(r.shading, prepared.scene, config);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
+  if (const FaultsConfig::Resource& fault = config.faults.resource;
+      result.rays_restarted > 0 || (result.cycle && result.cycle->stop)) {
+    report::Stop& stop = r.faults.emplace().stop.emplace();
+    stop.resource = static_cast<std::uint64_t>(fault.number);
+    stop.packets_discarded = result.packets_discarded;
+    if (result.cycle && result.cycle->stop) {
+      const ringbus::cycle::StopLedger& at = *result.cycle->stop;
+      stop.stopped_cycle = at.stopped;
+      stop.noticed_cycle = at.noticed;
+      if (at.restarted > 0) stop.restarted_cycle = at.restarted;
+    }
+  }
   if (verifying) r.verify = verify(*verifying);
   r.digest = {frame.hits_digest(), frame.image_digest()};
   return r;

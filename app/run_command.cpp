@@ -12,6 +12,7 @@
 #include "app/build_report.h"
 #include "app/counting_workload.h"
 #include "app/effects_proof.h"
+#include "app/fault_cost.h"
 #include "app/frame.h"
 #include "app/hit_recorder.h"
 #include "app/interrupt.h"
@@ -120,6 +121,7 @@ int run_command(const RunArguments& arguments) {
     report.bound = bound_of(p.config(), result);
     if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, frame, interrupt.token());
   }
+  if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, interrupt, report);
   const std::filesystem::path folder = out_folder(arguments);
   write_files(folder, arguments, p, frame, report, recorder ? &*recorder : nullptr);

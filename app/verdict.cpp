@@ -13,8 +13,10 @@ ExitStatus verdict(const report::Report& report) {
   const auto& proof = report.shading.proof;
   const bool changed = proof && !(proof->same_hits && proof->same_image);
   if (changed) spdlog::error("with all effects the {} differ: something was left out that the scene calls for", proof->same_hits ? "pixels" : "hits");
+  const bool harmed = report.faults && !report.faults->same_hits.value_or(true);
+  if (harmed) spdlog::error("without faults hits or picture differ");
   if (report.incomplete) return kInterrupted;
-  return failed || changed ? kBroken : kDone;
+  return failed || changed || harmed ? kBroken : kDone;
 }
 
 }  // namespace carousel::app

@@ -260,7 +260,10 @@ struct FaultsConfig {
     std::int64_t cycles = 100'000;     ///< of a pause
     std::int64_t factor = 4;           ///< kSlow
     bool recover = true;               ///< kStop
+    std::int64_t silence_cycles = 10'000;   ///< kStop, under virtual time
   } resource;
+  bool compare = false;                ///< virtual time: simulate once more without faults
+  bool any() const { return links.any() || resource.kind != Resource::Kind::kNone; }
 };
 
 struct Config {

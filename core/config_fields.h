@@ -339,6 +339,8 @@ void describe(V& v, FaultsConfig::Resource& c) {
   v.field("cycles", c.cycles, IntRange{1, 1'000'000'000}, "cycles", "length of a pause; native: at engine.clock_mhz");
   v.field("factor", c.factor, IntRange{2, 1000}, "times", "slow: a step takes so many times as long");
   v.field("recover", c.recover, "", "stop: start its unfinished rays again elsewhere; or else end the run and say what is missing");
+  v.field("silence_cycles", c.silence_cycles, IntRange{1, 1'000'000'000}, "cycles",
+          "stop: without a sign of life before ray control gives it up; native: 100 ms");
 }
 
 template <class V>
@@ -346,6 +348,7 @@ void describe(V& v, FaultsConfig& c) {
   v.field("seed", c.seed, kSeed, "", "seed of the faults");
   v.section("links", c.links, "faults of links, which sequence numbers, checksums and go-back-N make good");
   v.section("resource", c.resource, "fault of a resource");
+  v.field("compare", c.compare, "", "engine.kind: cycle: simulate once more without faults and report what they cost");
 }
 
 template <class V>

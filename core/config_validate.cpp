@@ -265,6 +265,8 @@ class Rules {
     if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
       issue("faults.resource.after_rays", fmt::format("under virtual time a slow resource is so from the beginning; expected 0, found {}", r.after_rays));
     if (r.kind == FaultsConfig::Resource::Kind::kStop) a_machine_goes_on_without_one();
+    if (c.faults.compare && !cycle())
+      issue("faults.compare", "on the wall clock two runs differ by more than faults cost; expected false, or engine.kind: cycle");
     // The engine takes a machine that does nothing for ten seconds for one that is stuck.
     if (!cycle() && r.kind == FaultsConfig::Resource::Kind::kPause && r.cycles / c.engine.clock_mhz > 5'000'000)
       issue("faults.resource.cycles", fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
@@ -272,14 +274,7 @@ class Rules {
   }
 
   void a_machine_goes_on_without_one() {
-    if (cycle()) issue("faults.resource.kind", "stop is not built under virtual time yet; expected none, pause or slow, or engine.kind: native");
     if (c.topology.resources < 2) issue("topology.resources", "where one stops another has to go on; expected at least 2, found 1");
-    if (c.collections.home == Home::kHash)
-      issue("collections.home", "collections of a resource that stopped would have no home; expected issuer or local, found hash");
-    if (c.rays.placement != Placement::kBalanced && c.rays.placement != Placement::kRoundRobin)
-      issue("rays.placement", fmt::format("rays would go on asking a resource that stopped; expected balanced or round_robin, found {}",
-                                          enum_name(c.rays.placement)));
-    if (c.bundles.size > 0) issue("bundles.size", fmt::format("rays of bundles cannot be started again yet; expected 0, found {}", c.bundles.size));
   }
 
   void vary_names_keys() {

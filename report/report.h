@@ -54,7 +54,7 @@ struct RaysByKind {
 };
 
 struct Rays {
-  std::uint64_t emitted = 0, completed = 0, lost = 0, restarted = 0;
+  std::uint64_t emitted = 0, completed = 0, lost = 0, restarted = 0, paths_restarted = 0;
   RaysByKind by_kind;
 };
 
@@ -244,6 +244,20 @@ struct Shading {
   std::optional<EffectsProof> proof{};
 };
 
+/// A resource that stopped for good, and what became of its work.
+struct Stop {
+  std::uint64_t resource = 0, packets_discarded = 0;
+  std::optional<std::uint64_t> stopped_cycle{}, noticed_cycle{}, restarted_cycle{};
+};
+
+/// What went wrong on request, and what it cost.
+struct Faults {
+  std::optional<Stop> stop{};
+  std::optional<std::uint64_t> cycles_without{};
+  std::optional<std::int64_t> cycles_lost{};
+  std::optional<bool> same_hits{};
+};
+
 struct Verify {
   std::uint64_t compared = 0, mismatches = 0;
   std::string example;
@@ -295,6 +309,7 @@ struct Report {
   Shading shading;
   std::optional<Bound> bound;
   std::optional<Bottleneck> bottleneck;
+  std::optional<Faults> faults;
   std::optional<Verify> verify;
   Digest digest;
   Host host;

@@ -72,6 +72,7 @@ void describe(V& v, Rays& r) {
   v.field("completed", r.completed, "rays", "that shading got back");
   v.field("lost", r.lost, "rays", "emitted and never completed; 0 in a complete run");
   v.field("restarted", r.restarted, "rays", "under way when a resource stopped, and traced again from the root");
+  v.field("paths_restarted", r.paths_restarted, "(pixel, sample)s", "unfinished, that these rays belong to; what they had gathered before was kept");
   v.section("by_kind", r.by_kind, "emitted rays by kind");
 }
 
@@ -397,6 +398,23 @@ void describe(V& v, Machine& r) {
 }
 
 template <class V>
+void describe(V& v, Stop& r) {
+  v.field("resource", r.resource, "", "which");
+  v.field("packets_discarded", r.packets_discarded, "packets", "of all resources, that had been issued and not come home");
+  v.field("stopped_cycle", r.stopped_cycle, "cycles", "when it took its last step");
+  v.field("noticed_cycle", r.noticed_cycle, "cycles", "when ray control gave it up");
+  v.field("restarted_cycle", r.restarted_cycle, "cycles", "when nothing was under way any more and rays began again; absent when all had come back");
+}
+
+template <class V>
+void describe(V& v, Faults& r) {
+  v.section("stop", r.stop, "a resource that stopped for good");
+  v.field("cycles_without", r.cycles_without, "cycles", "that the same takes without faults (faults.compare)");
+  v.field("cycles_lost", r.cycles_lost, "cycles", "what the faults cost: engine.cycles less these");
+  v.field("same_hits", r.same_hits, "", "whether hits and picture are those of the run without");
+}
+
+template <class V>
 void describe(V& v, Host& r) {
   v.field("threads", r.threads, "threads", "worker threads");
   v.field("wall_seconds", r.wall_seconds, "s",
@@ -447,6 +465,7 @@ void describe(V& v, Report& r) {
   v.section("shading", r.shading, "shader workers");
   v.section("bound", r.bound, "what each class of parts alone would allow");
   v.section("bottleneck", r.bottleneck, "what limits the machine, found by lifting each class in turn");
+  v.section("faults", r.faults, "what went wrong on request and what it cost");
   v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
   v.section("digest", r.digest, "equal digests mean equal hits and an equal picture");
   v.section("host", r.host, "all that depends on the host and on time");

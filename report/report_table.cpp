@@ -204,11 +204,15 @@ std::string report_table(const Report& report) {
              report.host.threads, report.shading.workers);
   table.gap();
   const Rays& rays = report.rays;
+  const std::optional<Stop> stop = report.faults ? report.faults->stop : std::nullopt;
   table.line("rays", "{} emitted   {} completed   {} lost{}", grouped(rays.emitted), grouped(rays.completed),
              grouped(rays.lost),
              rays.restarted == 0 ? ""
-                                 : fmt::format("   {} restarted, {} after a resource stopped", grouped(rays.restarted),
-                                               seconds_text(report.host.recovery_seconds.value_or(0))));
+                                 : fmt::format("   {} restarted of {} paths, {} after a resource stopped", grouped(rays.restarted),
+                                               grouped(rays.paths_restarted),
+                                               stop && stop->restarted_cycle
+                                                   ? grouped(*stop->restarted_cycle - *stop->stopped_cycle) + " cycles"
+                                                   : seconds_text(report.host.recovery_seconds.value_or(0))));
   table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera),
              grouped(rays.by_kind.bounce), grouped(rays.by_kind.shadow));
   if (report.raster) {
@@ -217,6 +221,9 @@ std::string report_table(const Report& report) {
                grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
                seconds_text(report.host.raster_seconds.value_or(0)));
   }
+  if (report.faults && report.faults->cycles_without)
+    table.line("faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost, grouped(*report.faults->cycles_without),
+               report.faults->same_hits.value_or(true) ? ", the same hits and picture" : ", OTHER HITS OR ANOTHER PICTURE");
   table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
              scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
              seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));

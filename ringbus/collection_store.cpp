@@ -150,4 +150,10 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   }
 }
 
+void CollectionStore::discard() {
+  const Statistics kept = statistics_;
+  *this = CollectionStore(settings_);
+  statistics_ = kept;
+}
+
 }  // namespace carousel::ringbus

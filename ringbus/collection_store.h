@@ -59,6 +59,9 @@ class CollectionStore {
   /// Moves the first block's rays to `rays`; an empty collection ceases to exist.
   void take(CollectionId id, std::vector<RayId>& rays);
 
+  /// Forgets all collections; the statistics go on.
+  void discard();
+
   bool empty() const { return table_.size() == 0; }
   std::size_t collections() const { return table_.size(); }
   std::size_t memberships() const { return memberships_; }

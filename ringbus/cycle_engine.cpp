@@ -116,7 +116,7 @@ class CycleRun {
       }
       if (wire.from != node) continue;
       ports.out.emplace_back(*wires_[i], latency, depth, places);
-      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i));
+      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i, latency));
       ports.out_to.push_back(wire.to);
     }
     return ports;
@@ -262,6 +262,10 @@ class CycleRun {
     CycleResult& c = out.cycle.emplace();
     c.cycles = end;
     c.shading_busy = shading_->busy();
+    out.rays_restarted = shading_->rays_restarted();
+    out.paths_restarted = shading_->paths_restarted();
+    if (shading_->stop() && shading_->stop()->noticed > 0) c.stop = shading_->stop();
+    for (const auto& tile : tiles_) out.packets_discarded += tile->packets_discarded();
     c.memory_lines = memory_->lines();
     c.memory_busy = memory_->busy();
     steady(c);

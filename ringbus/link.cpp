@@ -37,11 +37,12 @@ std::unique_ptr<Link> make_link(QueueKind kind, std::size_t depth, ResourceId fr
   });
 }
 
-std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, ResourceId from, ResourceId to) {
+std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, ResourceId from, ResourceId to,
+                                std::span<Packet> packets) {
   const LinkConfig& link = config.topology.link;
   if (!config.faults.links.any()) return make_link(link.queue, static_cast<std::size_t>(link.depth), from, to);
   return with_queue_type(link.queue, [&](auto type) -> std::unique_ptr<Link> {
-    return std::make_unique<ReliableLink<decltype(type)::template Of>>(config, number, from, to);
+    return std::make_unique<ReliableLink<decltype(type)::template Of>>(config, number, from, to, packets);
   });
 }
 

@@ -107,8 +107,9 @@ class Link {
 
 /// A link whose queue is of the kind the configuration names.
 std::unique_ptr<Link> make_link(QueueKind kind, std::size_t depth, ResourceId from, ResourceId to);
-/// The `number`-th link of a configuration, which may have faults.
-std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, ResourceId from, ResourceId to);
+/// The `number`-th link of a configuration, which may have faults; it then carries copies of `packets` (ReliableLink).
+std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, ResourceId from, ResourceId to,
+                                std::span<Packet> packets = {});
 
 /// Whether queues of a kind serve so many producers and consumers at a time.
 bool queue_fits(QueueKind kind, Parties producers, Parties consumers);

@@ -12,7 +12,7 @@ Machine::Machine(const Config& c, const accel::Accel& a, float scene_size)
   // One resource sends on a wire and one receives, and one thread at a time plays a resource.
   require_parties(c.topology.link.queue, "topology.link.queue", Parties::kOne, Parties::kOne);
   for (const Topology::Wire& wire : topology.wires())
-    links.push_back(make_link(c, links.size(), wire.from, wire.to));
+    links.push_back(make_link(c, links.size(), wire.from, wire.to, packets));
 }
 
 }  // namespace carousel::ringbus

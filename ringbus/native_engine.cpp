@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "ringbus/faults/missing_rays.h"
 #include "ringbus/machine.h"
 #include "ringbus/native_port.h"
 #include "ringbus/shader_worker.h"
@@ -42,7 +43,8 @@ class NativeRun {
       if (error_) std::rethrow_exception(error_);
       if (stuck_) throw SimulationError(describe_stuck());
       if (!lost_ || given_up_) break;
-      if (!config_.faults.resource.recover) throw SimulationError(describe_missing());
+      if (!config_.faults.resource.recover)
+        throw SimulationError(missing_rays(*lost_, ledger_->open(), count_.completed.load()));
       restart();
     }
     const std::chrono::duration<double> wall = Clock::now() - start_;
@@ -80,17 +82,35 @@ class NativeRun {
     watch();
   }
 
-  /// All that was under way is gone, whoever had it; every ray that has not been shaded begins again at the resources
-  /// that are left. The port of the one that stopped goes on forwarding.
+  /// All that was under way is gone, whoever had it; every ray that had not been handed over to shading begins again at
+  /// the resources that are left. The port of the one that stopped goes on forwarding.
   void restart() {
+    std::vector<HitBatch> handed_over;
+    while (std::optional<HitBatch> batch = machine_->completed.pop()) handed_over.push_back(std::move(*batch));
+    for (const auto& port : ports_) packets_discarded_ += port->resource().packets_in_flight();
+    carry_links();
+    slots_used_ += machine_->control.slots_used();
+    slot_waits_ += machine_->control.slot_waits();
     build();
+    for (HitBatch& batch : handed_over) {
+      ledger_->remove(batch);
+      machine_->completed.push(std::move(batch));
+    }
     machine_->control.exclude(*lost_);
+    for (const auto& port : ports_) port->lose(*lost_);
     ports_[lost_->value]->stop();
     given_up_ = true;
     const RayBatch rays = ledger_->open();
     rays_restarted_ += rays.size();
+    paths_restarted_ += RetryLedger::paths_of(rays);
     recovery_seconds_ = std::chrono::duration<double>(Clock::now() - last_beat_).count();
     if (!rays.empty()) machine_->control.submit(rays);
+  }
+
+  /// What the links have counted so far goes on to be counted when they are made anew.
+  void carry_links() {
+    faults_before_.resize(machine_->links.size());
+    for (std::size_t i = 0; i < machine_->links.size(); ++i) faults_before_[i] += machine_->links[i]->faults();
   }
 
   /// Whether the resource that may stop is silent; `last_beat_` is when it last was not.
@@ -177,17 +197,6 @@ class NativeRun {
     return text;
   }
 
-  std::string describe_missing() const {
-    const RayBatch rays = ledger_->open();
-    std::string text = fmt::format("resource {} stopped and faults.resource.recover is off: {} rays are missing, of paths", lost_->value,
-                                   rays.size());
-    constexpr std::size_t kNamed = 8;
-    for (std::size_t i = 0; i < std::min(kNamed, rays.size()); ++i)
-      text += fmt::format(" {}{}", rays[i].tag.path, i + 1 < std::min(kNamed, rays.size()) ? "," : "");
-    if (rays.size() > kNamed) text += fmt::format(" and others; {} rays had been shaded", count_.completed.load());
-    return text;
-  }
-
   void check_drained() const {
     if (count_.emitted != count_.completed)
       throw SimulationError(fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
@@ -201,17 +210,20 @@ class NativeRun {
     out.rays_emitted = count_.emitted;
     out.rays_completed = count_.completed;
     out.rays_restarted = rays_restarted_;
+    out.paths_restarted = paths_restarted_;
+    out.packets_discarded = packets_discarded_;
     out.recovery_seconds = recovery_seconds_;
     out.wall_seconds = wall_seconds;
     out.threads = threads_;
-    out.slots_used = machine_->control.slots_used();
-    out.slot_waits = machine_->control.slot_waits();
+    out.slots_used = slots_used_ + machine_->control.slots_used();
+    out.slot_waits = slot_waits_ + machine_->control.slot_waits();
     for (std::size_t r = 0; r < ports_.size(); ++r) {
       if (sinks_[r]) out.resources.push_back(sinks_[r]->statistics());
       out.collections.push_back(ports_[r]->resource().collections().statistics());
     }
     for (const auto& link : machine_->links)
       out.links.push_back({link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
+    for (std::size_t i = 0; i < faults_before_.size(); ++i) out.links[i].faults += faults_before_[i];
     out.start = start_;
     return out;
   }
@@ -229,7 +241,9 @@ class NativeRun {
   Clock::time_point last_beat_{};
   std::optional<ResourceId> lost_;            // it has stopped
   bool given_up_ = false;                     // and the others go on without it
-  std::uint64_t rays_restarted_ = 0;
+  std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0, packets_discarded_ = 0;
+  std::uint64_t slots_used_ = 0, slot_waits_ = 0;   // before the machine was built anew
+  std::vector<LinkFaultCounts> faults_before_;      // likewise, by link
   double recovery_seconds_ = 0;
   std::vector<std::unique_ptr<StatisticsSink>> sinks_;
   std::vector<std::unique_ptr<NativePort>> ports_;

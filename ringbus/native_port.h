@@ -31,6 +31,8 @@ class NativePort {
   bool drained() const;
   /// From now on it only forwards, as one that has stopped does.
   void stop() { stopped_ = true; }
+  /// From now on another is known to have stopped. Before the first step.
+  void lose(ResourceId stopped) { resource_.lose(stopped); }
   /// Counts its steps, but not when it has stopped. Any thread may call.
   // Relaxed: the watcher only wants to see it change.
   std::uint64_t beats() const { return beats_.load(std::memory_order_relaxed); }

@@ -16,17 +16,36 @@ RayControl::RayControl(const Config& config, std::span<const std::unique_ptr<Ray
       stores_(stores),
       slots_(std::make_unique<SlotList[]>(stores.size())),
       inboxes_(std::make_unique<Inbox[]>(stores.size())) {
-  std::size_t total = 0;
-  for (std::uint32_t r = 0; r < resources_; ++r) {
-    for (std::uint32_t slot = stores[r]->slots(); slot-- > 0;) slots_[r].free.push_back(slot);
-    slots_[r].count = stores[r]->slots();
-    for (std::uint32_t bundle = stores[r]->room().loaded; bundle-- > 0;)
-      slots_[r].free_bundles.push_back(stores[r]->slots() + bundle);
-    total += stores[r]->slots();
-  }
+  free_all();
+  const std::size_t total = free_slots();
   // Groups are placed whole where possible; waiting for more than a quarter of the slots would idle the ring.
   if (config.bundles.size > 0) builder_.emplace(config.bundles, scene_size);
   enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_ : total) / 4);
+}
+
+void RayControl::free_all() {
+  for (std::uint32_t r = 0; r < resources_; ++r) {
+    SlotList& list = slots_[r];
+    list.free.clear();
+    list.free_bundles.clear();
+    for (std::uint32_t slot = stores_[r]->slots(); slot-- > 0;) list.free.push_back(slot);
+    for (std::uint32_t bundle = stores_[r]->room().loaded; bundle-- > 0;)
+      list.free_bundles.push_back(stores_[r]->slots() + bundle);
+    list.count = stores_[r]->slots();
+  }
+}
+
+void RayControl::discard() {
+  free_all();
+  for (std::uint32_t r = 0; r < resources_; ++r) {
+    stores_[r]->discard();
+    inboxes_[r].groups.clear();
+    inboxes_[r].any = false;
+  }
+  waiting_.clear();
+  waiting_bundles_.clear();
+  waiting_head_ = waiting_bundles_head_ = 0;
+  any_waiting_ = false;
 }
 
 void RayControl::exclude(ResourceId resource) {
@@ -125,7 +144,8 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
       group.rays.assign(next.begin(), next.end());
       for (std::size_t i = 0; placement_ == Placement::kAddressed && i < next.size(); ++i) {
         const std::size_t step = local_ ? 0 : i * resources_ / next.size();
-        group.addresses.emplace_back(static_cast<std::uint32_t>((issuer.value + step) % resources_));
+        const ResourceId address(static_cast<std::uint32_t>((issuer.value + step) % resources_));
+        group.addresses.push_back(address == excluded_ ? issuer : address);
       }
     } else {
       if (local_ && placement_ == Placement::kBalanced) issuer = emptiest();

@@ -36,8 +36,10 @@ class RayControl {
   RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores, std::int32_t initial_tests,
              float scene_size);
 
-  /// From now on `resource` gets no rays. Before the first submit().
+  /// From now on `resource` gets no rays. Before the first submit(), or after discard().
   void exclude(ResourceId resource);
+  /// Takes back all slots and forgets all rays. When nobody holds an ID any more, and nobody else calls.
+  void discard();
   /// Places a batch, behind those that still wait for slots.
   void submit(const RayBatch& rays);
   /// Places waiting rays as far as slots allow. Returns whether any was placed.
@@ -72,6 +74,7 @@ class RayControl {
     std::atomic<bool> any{false};
   };
 
+  void free_all();
   std::size_t place(std::span<const RayRequest> rays);
   bool place_all_waiting();
   void submit_bundles(const RayBatch& rays);

@@ -96,6 +96,12 @@ class RayStore {
   void retire(std::uint32_t slot) {
     if constexpr (kChecked) ++generations_[slot];
   }
+  /// Marks every slot as free.
+  void discard() {
+    // Two on, so that IDs of slots in use are stale and a count that is odd for a slot in use is even again.
+    if constexpr (kChecked)
+      for (std::uint32_t& generation : generations_) generation = (generation + 3) & ~1u;
+  }
   bool owns(RayId id) const { return layout_.owner(id) == owner_; }
   /// The slot of an ID this resource owns; in checked builds a stale ID is a SimulationError.
   std::uint32_t slot(RayId id) const {

@@ -1,6 +1,7 @@
 #include "ringbus/resource.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "accel/kernels.h"
 
@@ -47,8 +48,27 @@ Resource::Resource(const Config& config, const accel::Accel& accel, float scene_
       split_below_(static_cast<float>(config.bundles.split_below.box_size) * scene_size) {
   if (ordered_) stacks_.emplace(store_.slots(), accel.width, accel.max_depth);
   if (bundled_ && rebuilds_) builder_.emplace(config.bundles, scene_size);
-  const std::uint32_t loaded = store.slots() + store.room().loaded;
-  for (std::uint32_t bundle = store.room().own; bundle-- > 0;) free_bundles_.push_back(loaded + bundle);
+  free_own_bundles();
+}
+
+void Resource::free_own_bundles() {
+  free_bundles_.clear();
+  const std::uint32_t loaded = store_.slots() + store_.room().loaded;
+  for (std::uint32_t bundle = store_.room().own; bundle-- > 0;) free_bundles_.push_back(loaded + bundle);
+}
+
+std::uint32_t Resource::discard() {
+  collections_.discard();
+  issuing_ = {};
+  completed_.clear();
+  freed_slots_.clear();
+  for (std::uint32_t slot = 0; slot < store_.slots(); ++slot) {
+    if (ordered_) stacks_->clear(slot);
+    if (transforms_ != nullptr) transforms_->forget(slot);
+  }
+  free_own_bundles();
+  reserved_blocks_ = custody_ = 0;
+  return std::exchange(in_flight_, 0);
 }
 
 bool Resource::is_treelet(const Config& config, const accel::Accel& accel, accel::NodeKey key) {
@@ -67,8 +87,9 @@ std::int32_t Resource::initial_tests(const Config& config, const accel::Accel& a
 
 ResourceId Resource::home_of(accel::NodeKey key) const {
   if (config_.collections.home != Home::kHash) return id();
-  return ResourceId(static_cast<std::uint32_t>(((key.bits() * 0x9e3779b97f4a7c15ull) >> 33) %
-                                               static_cast<std::uint64_t>(config_.topology.resources)));
+  const std::uint32_t resources = static_cast<std::uint32_t>(config_.topology.resources);
+  const ResourceId home(static_cast<std::uint32_t>(((key.bits() * 0x9e3779b97f4a7c15ull) >> 33) % resources));
+  return home == lost_ ? ResourceId((home.value + 1) % resources) : home;
 }
 
 // ---- admission

@@ -90,6 +90,12 @@ class Resource {
   HitBatch& completed() { return completed_; }
   std::vector<std::uint32_t>& freed_slots() { return freed_slots_; }
 
+  /// Forgets all work: collections, packets under way, rays in slots, however far they are. Returns how many packets had
+  /// been issued and not come home; they are not to be retired any more.
+  std::uint32_t discard();
+  /// From now on `resource` is no home to collections. Before the first test, or after discard().
+  void lose(ResourceId resource) { lost_ = resource; }
+
   bool idle() const { return collections_.empty() && issuing_.rays.empty(); }
   const RayStore& rays() const { return store_; }
   const CollectionStore& collections() const { return collections_; }
@@ -109,6 +115,7 @@ class Resource {
   /// Tests a ray waits for when it joins `key`: one a packet that will carry it there.
   static std::int32_t tests_of(const Config& config, const accel::Accel& accel, accel::NodeKey key, int strip_size);
   ResourceId home_of(accel::NodeKey key) const;
+  void free_own_bundles();
   std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const;
   bool fits(std::uint32_t needed, std::uint32_t freed) const;
   std::optional<CollectionId> choose(bool partial, bool& storage);
@@ -152,6 +159,7 @@ class Resource {
   bool ordered_, single_, bounded_;
   bool hold_askers_ = false;
   std::uint32_t floor_blocks_;
+  std::optional<ResourceId> lost_;
   RayStore& store_;
   CollectionStore collections_;
   std::optional<RayStacks> stacks_;

@@ -37,7 +37,9 @@ struct RunResult {
   bool complete = true;                       ///< false: stopped early
   std::uint64_t rays_emitted = 0, rays_completed = 0;
   std::uint64_t rays_restarted = 0;           ///< started again because a resource stopped
-  double recovery_seconds = 0;                ///< from its last sign of life until then
+  std::uint64_t paths_restarted = 0;          ///< the unfinished (pixel, sample) they belong to
+  std::uint64_t packets_discarded = 0;        ///< with them: under way when it was found out
+  double recovery_seconds = 0;                ///< native: from its last sign of life until they began again
   double wall_seconds = 0;
   std::size_t threads = 1;                    ///< that were used
   std::chrono::steady_clock::time_point start{};   ///< native: what the links' series count from

@@ -96,12 +96,15 @@ Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, floa
   };
   Bottleneck out;
   out.paths = paths;
-  const RunResult base = simulate(config);
+  // What limits the machine, not what became of it.
+  Config whole = config;
+  if (whole.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) whole.faults.resource = {};
+  const RunResult base = simulate(whole);
   out.rays_per_kilocycle = steady_rate(*base.cycle, base.rays_completed);
   out.noise = base.cycle->steady_spread;
   for (const Lift& lift : lifts(config, accel)) {
     if (options.stop.stop_requested()) break;
-    Config lifted = config;
+    Config lifted = whole;
     lift.apply(lifted);
     const RunResult result = simulate(lifted);
     Gain gain{lift.name, lift.action, steady_rate(*result.cycle, result.rays_completed), 0};

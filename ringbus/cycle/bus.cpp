@@ -18,17 +18,24 @@ Cycle Bus::next() const {
     waiting |= in.next() <= now_;
     if (in.next() > now_) first = std::min(first, in.next());
   }
+  // In hand there is something only on links with faults, which are busy for longer than the bus.
+  for (const OutPort& out : out_)
+    if (!out.empty()) first = std::min(first, out.next(false));
   if (!waiting) return first;
   if (free_at_ > now_) return std::min(first, free_at_);
   // Free, and yet some wait: for places at their next stops.
-  for (const OutPort& out : out_) first = std::min(first, out.next(true));
+  for (const OutPort& out : out_)
+    if (out.empty()) first = std::min(first, out.next(true));
   return first;
 }
 
 void Bus::run(Cycle end) {
   for (Cycle now; (now = next()) < end;) {
     now_ = now;
-    for (OutPort& out : out_) out.take_credits(now);
+    for (OutPort& out : out_) {
+      out.take_credits(now);
+      out.send(now);
+    }
     if (free_at_ <= now) move_one(now);
   }
 }

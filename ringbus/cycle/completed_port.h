@@ -25,6 +25,9 @@ class CompletedPort {
     slots.clear();
   }
 
+  /// Behind the rays it has sent.
+  void tell(CompletedRays::Note note, Cycle now) { completed_.send(std::max(free_at_, now) + latency_, {{}, {}, note}); }
+
  private:
   Channel<CompletedRays>& completed_;
   Cycle record_cycles_, latency_;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ringbus/cycle/clock.h"
@@ -68,6 +69,14 @@ struct CacheResult {
   friend bool operator==(const CacheResult&, const CacheResult&) = default;
 };
 
+/// A resource stopped for good: when it did, when ray control gave it up, and when everything had been drained and rays
+/// began again (0 when all had come back meanwhile).
+struct StopLedger {
+  std::uint32_t resource = 0;
+  Cycle stopped = 0, noticed = 0, restarted = 0;
+  friend bool operator==(const StopLedger&, const StopLedger&) = default;
+};
+
 struct CycleResult {
   Cycle cycles = 0;                  ///< when the last ray was shaded and everything had come to rest
   Cycle steady_cycles = 0;           ///< between a quarter and three quarters of the rays
@@ -80,6 +89,7 @@ struct CycleResult {
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;            ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
+  std::optional<StopLedger> stop;    ///< if one was given up before the last ray was shaded
   EpochDigests epochs;
   std::vector<Step> steps;           ///< of RunOptions::trace
   friend bool operator==(const CycleResult&, const CycleResult&) = default;

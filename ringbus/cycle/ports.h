@@ -67,9 +67,16 @@ class OutPortOf {
 
   void take_credits(Cycle now) {
     while (wire_->credits.next() <= now) {
+      const Cycle at = wire_->credits.next();
       wire_->credits.take();
-      ++credits_;
+      if (!faults_) [[likely]] {
+        ++credits_;
+        continue;
+      }
+      make_good(at);
+      credits_ += faults_->acknowledge(at);
     }
+    if (faults_) [[unlikely]] make_good(now);
   }
   /// Sends one packet if it may; whether it did.
   bool send(Cycle now) {
@@ -101,12 +108,12 @@ class OutPortOf {
   /// When it will be open(), as far as is known and if nothing else is sent before.
   Cycle opens(std::uint32_t places) const {
     if (!queue_.empty()) return kNever;
-    return credits_ >= places ? free_at_ : std::max(free_at_, wire_->credits.next());
+    return credits_ >= places ? free_at_ : std::max(free_at_, next_credit());
   }
   /// When something can be sent, as far as is known; `want_credit`: wake for a credit even with nothing in hand.
   Cycle next(bool want_credit) const {
-    if (queue_.empty()) return want_credit ? wire_->credits.next() : kNever;
-    if (credits_ == 0) return wire_->credits.next();
+    if (queue_.empty()) return want_credit ? next_credit() : kNever;
+    if (credits_ == 0) return next_credit();
     return std::max(free_at_, queue_.front().ready);
   }
 
@@ -127,12 +134,24 @@ class OutPortOf {
     bool cut_through = false;
   };
 
+  Cycle next_credit() const {
+    return faults_ ? std::min(wire_->credits.next(), faults_->next()) : wire_->credits.next();
+  }
+  /// Credits that were lost on their way. Asking for them occupies the link like a packet, and is not waiting.
+  void make_good(Cycle now) {
+    const LinkFaultTimer::MadeGood made = faults_->made_good(now);
+    credits_ += made.places;
+    if (made.busy == 0) return;
+    free_at_ = std::max(free_at_, now) + made.busy;
+    busy_ += made.busy;
+    if (blocked_since_ != kNever) blocked_since_ += made.busy;
+  }
   void start(const Entry& entry, Cycle now) {
     const Cycle cycles = entry.token.link_cycles;
     Cycle arrival = now + latency_, busy = cycles;
     free_at_ = now + cycles;
     if (faults_) [[unlikely]] {
-      const LinkFaultTimer::Delivery delivery = faults_->send(now, cycles, latency_);
+      const LinkFaultTimer::Delivery delivery = faults_->send(now, cycles);
       arrival = delivery.arrival;
       busy = delivery.busy;
       free_at_ = delivery.link_free;

@@ -21,6 +21,8 @@ class ResourceAgent : public Agent {
   virtual TileResult result() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
+  /// Packets it had issued that were not waited for, because a resource had stopped.
+  virtual std::uint64_t packets_discarded() const { return 0; }
 
   /// The near ends of its links, as the topology's wires.
   virtual const std::vector<OutPort>& out() const = 0;

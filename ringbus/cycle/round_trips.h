@@ -25,6 +25,12 @@ class RoundTrips {
     --out_;
   }
 
+  /// It is not home, but will not be waited for.
+  void forget(Cycle now) {
+    count(now);
+    --out_;
+  }
+
   const LatencyHistogram& latency() const { return latency_; }
   Cycle packet_cycles() const { return packet_cycles_; }
 

@@ -22,6 +22,10 @@ class ShadeHelp {
   /// Takes a job in, starts it if no test is under way, ends it. Whether any of these happened.
   bool step(Cycle now, bool testers_free) {
     if (jobs_ == nullptr) return false;
+    if (stopped_) {
+      while (jobs_->next() <= now) jobs_->take();
+      return false;
+    }
     bool moved = false;
     if (jobs_->next() <= now) {
       cycles_ = jobs_->take().cycles;
@@ -38,10 +42,17 @@ class ShadeHelp {
   }
   /// At the end of a step: what there is to say, if anything.
   void tell(Cycle now, bool idle) {
-    if (jobs_ == nullptr || holds() || (!shaded_ && idle == told_idle_)) return;
+    if (jobs_ == nullptr || stopped_ || holds() || (!shaded_ && idle == told_idle_)) return;
     notes_->send(now + latency_, {shaded_, idle});
     told_idle_ = idle;
     shaded_ = false;
+  }
+
+  /// From now on jobs come to nothing.
+  void stop() {
+    stopped_ = true;
+    waiting_ = shaded_ = false;
+    done_ = kNever;
   }
 
   /// There is a job, so no test may begin.
@@ -54,7 +65,7 @@ class ShadeHelp {
   Channel<HelpNote>* notes_;
   Cycle latency_, cycles_ = 0;   // cycles: of the job
   Cycle done_ = kNever;
-  bool waiting_ = false, shaded_ = false;
+  bool waiting_ = false, shaded_ = false, stopped_ = false;
   bool told_idle_ = true;   // as everybody is at first
 };
 

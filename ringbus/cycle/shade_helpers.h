@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/workload.h"
@@ -42,6 +44,18 @@ class ShadeHelpers {
     helper.has_job = true;
     ++out_;
     helper.jobs->send(now + latency_, {cycles});
+  }
+  /// The helper whose jobs go by `jobs` has stopped. The ray it had, if any, is to be shaded by somebody else.
+  std::optional<RayResult> lose(const Channel<ShadeJob>* jobs) {
+    for (std::size_t i = 0; i < helpers_.size(); ++i) {
+      Helper& helper = helpers_[i];
+      if (helper.jobs != jobs) continue;
+      std::erase(idle_, i);
+      if (!std::exchange(helper.has_job, false)) return std::nullopt;
+      --out_;
+      return helper.ray;
+    }
+    return std::nullopt;
   }
   /// Rays sent that have not come back.
   std::size_t out() const { return out_; }

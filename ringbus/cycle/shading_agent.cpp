@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
+#include "ringbus/faults/missing_rays.h"
+
 namespace carousel::ringbus::cycle {
 
 ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window,
@@ -25,6 +28,7 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       helpers_(clients_, latency_),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
+  if (machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<RetryLedger>();
   for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
   const BundlesConfig& bundles = machine.config.bundles;
   if (bundles.size > 0) gather_ = std::max(group_, std::min(slots_ / 4, static_cast<std::size_t>(bundles.size * bundles.builder.open)));
@@ -33,8 +37,10 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
 Cycle ShadingAgent::next() const {
   if (!started_) return 0;
   Cycle first = jobs_.empty() ? kNever : jobs_.top().done;
+  // Nothing of importance comes when all is done, and one that stops then is not waited for.
+  if (!done()) first = std::min(first, give_up_at_);
   for (const SidePorts& client : clients_) {
-    first = std::min(first, client.completed->next());
+    if (!done()) first = std::min(first, client.completed->next());
     if (client.questions != nullptr) first = std::min(first, client.questions->next());
   }
   return std::min(first, helpers_.next());
@@ -47,6 +53,7 @@ void ShadingAgent::run(Cycle end) {
 void ShadingAgent::step(Cycle now) {
   started_ = true;
   take_completed(now);
+  if (give_up_at_ <= now) give_up(now);
   take_questions(now);
   // Shading that takes no time ends in the cycle in which it starts.
   while (finish_jobs(now) || start_jobs(now)) {
@@ -58,7 +65,12 @@ void ShadingAgent::take_completed(Cycle now) {
   for (std::uint32_t r = 0; r < clients_.size(); ++r) {
     while (clients_[r].completed->next() <= now) {
       const CompletedRays done = clients_[r].completed->take();
+      if (done.note != CompletedRays::Note::kDone) {
+        hear(r, done.note, now);
+        continue;
+      }
       machine_.control.free(ResourceId(r), done.slots);
+      if (ledger_) ledger_->remove(done.rays);
       for (const RayResult& ray : done.rays) queues_.push(ray);
     }
   }
@@ -158,15 +170,20 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
 }
 
 void ShadingAgent::place(Cycle now) {
+  if (draining_ > 0) return;
   const bool full = gathered_.size() >= gather_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
   bool placed = machine_.control.place_waiting();
   if (full || (last && !gathered_.empty())) {
     if (machine_.config.bundles.size > 0) builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
     machine_.control.submit(gathered_);
+    if (ledger_) ledger_->add(gathered_);
     gathered_.clear();
     placed = true;
   }
-  if (!placed) return;
+  if (placed) send_groups(now);
+}
+
+void ShadingAgent::send_groups(Cycle now) {
   const RayIdLayout& layout = machine_.stores.front()->layout();
   for (std::uint32_t r = 0; r < clients_.size(); ++r) {
     groups_.clear();
@@ -185,6 +202,51 @@ void ShadingAgent::place(Cycle now) {
       last_sent_[r] = std::max(last_sent_[r], loaded + latency_);
       clients_[r].new_rays->send(last_sent_[r], {std::move(group.ids)});
     }
+  }
+}
+
+// ---- a resource that has stopped
+
+void ShadingAgent::hear(std::uint32_t resource, CompletedRays::Note note, Cycle now) {
+  if (note == CompletedRays::Note::kLastBeat) {
+    stop_ = {resource, now - latency_, 0, 0};
+    give_up_at_ = now + static_cast<Cycle>(machine_.config.faults.resource.silence_cycles);
+  } else if (--draining_ == 0) {
+    restart(now);
+  }
+}
+
+void ShadingAgent::give_up(Cycle now) {
+  give_up_at_ = kNever;
+  stop_->noticed = now;
+  const ResourceId stopped(stop_->resource);
+  if (!machine_.config.faults.resource.recover) throw SimulationError(missing_rays(stopped, ledger_->open(), completed_));
+  if (const std::optional<RayResult> ray = helpers_.lose(clients_[stopped.value].jobs)) queues_.push(*ray);
+  draining_ = clients_.size();
+  order_all(NewRays::Order::kDiscard, now);
+}
+
+/// No packet is under way, and no resource holds an ID.
+void ShadingAgent::restart(Cycle now) {
+  stop_->restarted = now;
+  machine_.control.discard();
+  machine_.control.exclude(ResourceId(stop_->resource));
+  slots_ -= machine_.stores.front()->slots();
+  order_all(NewRays::Order::kGoOn, now);
+  const RayBatch rays = ledger_->open();
+  rays_restarted_ = rays.size();
+  paths_restarted_ = RetryLedger::paths_of(rays);
+  if (rays.empty()) return;
+  if (machine_.config.bundles.size > 0) builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
+  machine_.control.submit(rays);
+  send_groups(now);
+}
+
+/// An order comes behind the rays that were sent before it.
+void ShadingAgent::order_all(NewRays::Order order, Cycle now) {
+  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
+    last_sent_[r] = std::max(last_sent_[r], now + latency_);
+    clients_[r].new_rays->send(last_sent_[r], {{}, order});
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <queue>
 #include <string>
@@ -10,10 +11,12 @@
 #include "core/workload.h"
 #include "ringbus/cycle/agent.h"
 #include "ringbus/cycle/cycle_machine.h"
+#include "ringbus/cycle/cycle_result.h"
 #include "ringbus/cycle/shade_helpers.h"
 #include "ringbus/cycle/shade_queues.h"
 #include "ringbus/cycle/side_ports.h"
 #include "ringbus/cycle/trace.h"
+#include "ringbus/faults/retry_ledger.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -24,6 +27,10 @@ namespace carousel::ringbus::cycle {
 /// no worker has anything to do, and are then given slots; with bundles they gather until they would fill those that
 /// the builder holds open, and go through it `builder.rays_per_cycle` a cycle. A record of 64 bytes needs its owner's load port for as
 /// many link widths as it has.
+///
+/// Of a resource that has stopped it hears the last sign of life (which stands for regular ones, whose wires carry nothing
+/// else). So many cycles later it orders all resources to discard their work. Meanwhile what has come back is shaded and
+/// what that gives is gathered; when all resources are drained, the rays that have not come back are placed again.
 class ShadingAgent final : public Agent {
  public:
   /// `clients` by resource.
@@ -47,6 +54,10 @@ class ShadingAgent final : public Agent {
   };
   const std::vector<Milestone>& milestones() const { return milestones_; }
   const Trace& trace() const { return trace_; }
+  /// What became of a resource that stopped; absent if none was heard to.
+  const std::optional<StopLedger>& stop() const { return stop_; }
+  std::uint64_t rays_restarted() const { return rays_restarted_; }
+  std::uint64_t paths_restarted() const { return paths_restarted_; }
 
  private:
   /// Of a resource.
@@ -72,6 +83,11 @@ class ShadingAgent final : public Agent {
   Cycle cycles_for(const RayResult& ray) const;
   bool start_job(std::uint32_t worker, Cycle now);
   void place(Cycle now);
+  void send_groups(Cycle now);
+  void hear(std::uint32_t resource, CompletedRays::Note note, Cycle now);
+  void give_up(Cycle now);
+  void restart(Cycle now);
+  void order_all(NewRays::Order order, Cycle now);
   std::size_t room() const;
   void milestone(Cycle now);
 
@@ -94,6 +110,11 @@ class ShadingAgent final : public Agent {
   std::vector<Cycle> load_free_, last_sent_;   // by resource
   bool source_finished_ = false, source_dry_ = false, started_ = false;
   std::size_t making_ = 0;
+  std::unique_ptr<RetryLedger> ledger_;      // where a resource may stop
+  std::optional<StopLedger> stop_;
+  Cycle give_up_at_ = kNever;
+  std::size_t draining_ = 0;                 // resources that have not said that they are drained
+  std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;
   std::uint64_t milestone_rays_ = 64;

@@ -45,6 +45,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
              machine.topology.directions() * machine.packets_per_direction()) {
   const FaultsConfig::Resource& fault = machine.config.faults.resource;
   pauses_ = fault.kind == FaultsConfig::Resource::Kind::kPause && fault.number == id.value;
+  stops_ = fault.kind == FaultsConfig::Resource::Kind::kStop && fault.number == id.value;
   pause_after_ = static_cast<std::uint64_t>(fault.after_rays);
   resource_.set_subtree_tracer(&walk_);
   resource_.set_transform_account(&transforms_);
@@ -113,6 +114,7 @@ void Tile::run(Cycle end) {
 void Tile::step(Cycle now) {
   now_ = now;
   for (OutPort& out : ports_.out) out.take_credits(now);
+  if (stops_ && sink_.statistics().rays_completed >= pause_after_) stop(now);
   take_answers(now);
   take_opacities(now);
   take_new_rays(now);
@@ -127,6 +129,10 @@ void Tile::step(Cycle now) {
     again |= send(now);
   }
   hand_over(now);
+  if (drains_ && !told_drained_ && drained()) {
+    told_drained_ = true;
+    completed_port_.tell(CompletedRays::Note::kDrained, now);
+  }
   if (pauses_ && sink_.statistics().rays_completed >= pause_after_) {
     // The handler takes nothing up; what is in test is finished.
     handler_free_ = std::max(handler_free_, now) + static_cast<Cycle>(machine_.config.faults.resource.cycles);
@@ -161,7 +167,13 @@ TileState Tile::classify(Cycle now) const {
 // ---- what comes in beside the ring
 
 void Tile::take_new_rays(Cycle now) {
-  while (ports_.new_rays->next() <= now) waiting_.push_back(ports_.new_rays->take());
+  while (ports_.new_rays->next() <= now) {
+    NewRays rays = ports_.new_rays->take();
+    if (rays.order != NewRays::Order::kTake)
+      obey(rays.order, now);
+    else if (!only_forwards())
+      waiting_.push_back(std::move(rays));
+  }
 }
 
 bool Tile::admit() {

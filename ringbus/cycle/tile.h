@@ -35,6 +35,9 @@ inline constexpr std::uint32_t kContextTag = 1u << 31;
 /// With `visit: owners` packets without a ray here pass beside the handler. A packet with rays here needs a free
 /// test context and a place in hand before it is taken, so that tests always end; a packet without rays takes its
 /// way meanwhile (fills the bubble).
+///
+/// Of a resource that has stopped (`faults.resource`) only the ports are left: what comes in goes out by its way, a cycle
+/// each, packets of its own come to their end here, and memory and shading may answer to nobody.
 class Tile final : public ResourceAgent {
  public:
   struct Ports : SidePorts {
@@ -56,6 +59,7 @@ class Tile final : public ResourceAgent {
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
   const std::vector<OutPort>& out() const override { return ports_.out; }
   std::string blocked(std::size_t exit) const override;
+  std::uint64_t packets_discarded() const override { return discarded_; }
   const Trace& trace() const override { return trace_; }
 
  private:
@@ -101,6 +105,14 @@ class Tile final : public ResourceAgent {
   bool handle_issue(Cycle now);
   bool fill_issue(Cycle now);
   bool send(Cycle now);
+
+  // When a resource has stopped (tile_stop.cpp).
+  bool only_forwards() const { return stopped_ || drains_; }
+  void stop(Cycle now);
+  void obey(NewRays::Order order, Cycle now);
+  void discard_work(Cycle now);
+  void discard_home(PacketId id);
+  bool drained() const;
 
   Context* free_context();
   bool testers_free() const;
@@ -152,6 +164,12 @@ class Tile final : public ResourceAgent {
   bool storage_full_ = false;
   bool pauses_ = false;            // once, when so many rays are complete
   std::uint64_t pause_after_ = 0;
+  bool stops_ = false;             // when so many rays are complete
+  bool stopped_ = false;           // for good
+  bool drains_ = false;            // another has, or it: until everything that was under way is gone
+  bool told_drained_ = false;
+  std::uint64_t discarded_ = 0;
+  std::size_t fetches_out_ = 0, questions_out_ = 0;
   HitBatch done_;                              // to be handed over
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;

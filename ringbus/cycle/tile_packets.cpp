@@ -81,12 +81,18 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   Packet& packet = machine_.packet(id);
   if (packet.owner == id_) {
     in.take(now);
-    occupy_handler(now, packet.members.size());
-    come_home(id);
+    occupy_handler(now, only_forwards() ? 0 : packet.members.size());
+    only_forwards() ? discard_home(id) : come_home(id);
     return true;
   }
   OutPort& out = ports_.out[exit_of(packet)];
   if (!out.has_place()) return false;
+  if (only_forwards()) {
+    in.take(now);
+    occupy_handler(now, 0);
+    depart(id, handler_free_, false);
+    return true;
+  }
   const bool tested = packet.kind == PacketKind::kTest && machine_.topology.wanted(packet, id_);
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;

@@ -94,13 +94,18 @@ void Tile::end_test(Context& context, Cycle now) {
 void Tile::ask(Context& context, Cycle now) {
   if (context.question.slots.empty()) return;
   ports_.questions->send(now + control_latency(machine_.config), std::move(context.question));
+  ++questions_out_;
   context.question = {};
 }
 
 void Tile::take_opacities(Cycle now) {
   if (ports_.answers == nullptr) return;
-  while (ports_.answers->next() <= now)
-    for (const std::uint32_t slot : ports_.answers->take().slots) resource_.release(slot);
+  while (ports_.answers->next() <= now) {
+    --questions_out_;
+    const AnyHitAnswer answer = ports_.answers->take();
+    if (only_forwards()) continue;
+    for (const std::uint32_t slot : answer.slots) resource_.release(slot);
+  }
   take_completed(resource_.completed(), resource_.freed_slots());
 }
 
@@ -114,6 +119,7 @@ void Tile::take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots) {
 
 void Tile::fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now) {
   shapes_.request(strip, tag, now);
+  ++fetches_out_;
   // Its place in the buffer is taken now; whoever wants it meanwhile waits behind this one.
   shapes_.keep(strip);
 }
@@ -121,6 +127,8 @@ void Tile::fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now) {
 void Tile::take_answers(Cycle now) {
   while (shapes_.next() <= now) {
     const std::uint32_t tag = shapes_.take();
+    --fetches_out_;
+    if (only_forwards()) continue;
     if ((tag & kContextTag) == 0) {
       for (Issue& issue : issue_)
         if (issue.tag == tag && !issue.ready()) --issue.outstanding;

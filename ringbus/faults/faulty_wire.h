@@ -9,7 +9,7 @@
 namespace carousel::ringbus {
 
 /// The sending end of a queue that loses, doubles, damages, delays and reorders what is put into it. One thread's.
-/// Frame has flip(bit) to be damaged by.
+/// Frame has flip(random) to be damaged by, copy() to be doubled by, and drop() to be lost by.
 template <class Queue, class Frame>
 class FaultyWire {
  public:
@@ -17,21 +17,31 @@ class FaultyWire {
 
   FaultyWire(Queue& queue, const FaultsConfig& config, std::uint64_t stream, std::chrono::nanoseconds delay)
       : queue_(queue), dice_(config, stream), delay_(delay) {}
+  ~FaultyWire() {
+    for (Frame& one : after_next_) one.drop();
+    for (Late& one : late_) one.frame.drop();
+  }
+  FaultyWire(const FaultyWire&) = delete;
+  FaultyWire& operator=(const FaultyWire&) = delete;
 
   bool has_room() { return queue_.free_places() > 1; }   // one may come twice
 
+  /// Takes the frame, which is the wire's from then on.
   void put(Frame frame) {
     const FrameFate fate = dice_.next(counts_);
-    if (!fate.drop) {
+    if (fate.drop) {
+      frame.drop();
+    } else {
       if (fate.corrupt) frame.flip(fate.bits);
-      if (fate.delay)
+      if (fate.duplicate) send(frame.copy());
+      if (fate.delay) {
         late_.push_back({Clock::now() + delay_, frame});
-      else if (fate.reorder)
+      } else if (fate.reorder) {
         after_next_.push_back(frame);
-      else
+        return;   // the next one goes first
+      } else {
         send(frame);
-      if (fate.duplicate) send(frame);
-      if (fate.reorder && !fate.delay) return;   // the next one goes first
+      }
     }
     for (const Frame& one : after_next_) send(one);
     after_next_.clear();
@@ -59,7 +69,11 @@ class FaultyWire {
     Frame frame;
   };
   // A full queue loses it, as one more fault of the wire.
-  void send(const Frame& frame) { counts_.dropped += !queue_.try_push(frame); }
+  void send(Frame frame) {
+    if (queue_.try_push(frame)) return;
+    ++counts_.dropped;
+    frame.drop();
+  }
 
   Queue& queue_;
   FaultDice dice_;

@@ -48,6 +48,36 @@ TEST(RunCommand, LeavesPictureReportAndResolvedConfig) {
   EXPECT_EQ(config_json(resolved), report["config"]);
 }
 
+// On either engine the picture is that of the run without the fault; or the run ends and says what is missing.
+TEST(RunCommand, GoesOnWithoutAResourceThatStops) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  ASSERT_EQ(program.run({"run", "small.yaml", "--out", "whole"}).status, 0);
+  const Json whole = Json::parse(program.read("whole/report.json"));
+  for (const std::string engine : {"native", "cycle"}) {
+    std::vector<std::string> run{"run", "small.yaml", "--out", "out", "--set", "engine.kind=" + engine, "--set",
+                                 "engine.what_if=false", "--set", "rays.slots_per_resource=64", "--set",
+                                 "faults.resource.kind=stop", "--set", "faults.resource.number=1", "--set", "faults.resource.after_rays=20"};
+    if (engine == "cycle") run.insert(run.end(), {"--set", "faults.compare=true"});
+    const Outcome outcome = program.run(run);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json report = Json::parse(program.read("out/report.json"));
+    EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
+    EXPECT_EQ(report["digest"], whole["digest"]);
+    EXPECT_GT(report["rays"]["restarted"], 0);
+    EXPECT_GE(report["rays"]["restarted"], report["rays"]["paths_restarted"]);
+    EXPECT_EQ(report["faults"]["stop"]["resource"], 1);
+    if (engine == "cycle") {
+      EXPECT_EQ(report["faults"]["same_hits"], true);
+      EXPECT_EQ(report["engine"]["cycles"].get<std::int64_t>(), report["faults"]["cycles_without"].get<std::int64_t>() + report["faults"]["cycles_lost"].get<std::int64_t>());
+    }
+    run.insert(run.end(), {"--set", "faults.resource.recover=false"});
+    const Outcome lost = program.run(run);
+    EXPECT_EQ(lost.status, 1);
+    EXPECT_THAT(lost.err, HasSubstr("resource 1 stopped and faults.resource.recover is off: "));
+  }
+}
+
 TEST(RunCommand, TheRasteriserLeavesTheRestToASimulatedMachine) {
   const Program program;
   program.write("small.yaml", kSmall);

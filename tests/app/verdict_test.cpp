@@ -52,6 +52,15 @@ TEST_F(VerdictTest, EffectsThatChangeSomethingAreStatus1) {
   EXPECT_THAT(log_.str(), HasSubstr("with all effects the pixels differ"));
 }
 
+TEST_F(VerdictTest, FaultsThatChangeSomethingAreStatus1) {
+  report::Report report;
+  report.faults.emplace().same_hits = true;
+  EXPECT_EQ(verdict(report), kDone);
+  report.faults->same_hits = false;
+  EXPECT_EQ(verdict(report), 1);
+  EXPECT_THAT(log_.str(), HasSubstr("without faults hits or picture differ"));
+}
+
 TEST_F(VerdictTest, AnInterruptIsStatus130AndStillNamesMismatches) {
   report::Report report = verified(100, 3);
   report.incomplete = true;

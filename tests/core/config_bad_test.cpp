@@ -227,10 +227,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:3:42: faults.resource.number: expected a resource from 0 to 1, found 2"},
         BadConfig{"StopAlone", SCENE "topology: {resources: 1}\nfaults: {resource: {kind: stop}}\n",
                   "test.yaml:2:23: topology.resources: where one stops another has to go on; expected at least 2, found 1"},
-        BadConfig{"StopWithHashedHomes",
-                  SCENE "collections: {home: hash, when_full: spill}\nfaults: {resource: {kind: stop}}\n",
-                  "test.yaml:2:21: collections.home: collections of a resource that stopped would have no home; expected issuer "
-                  "or local, found hash"},
+        BadConfig{"FaultsComparedOnTheWallClock", SCENE "faults: {compare: true, links: {drop: 0.1}}\n",
+                  "test.yaml:2:19: faults.compare: on the wall clock two runs differ by more than faults cost; expected false, or "
+                  "engine.kind: cycle"},
         BadConfig{"OverrideTwice", SCENE "topology: {overrides: [{resource: 2}, {resource: 2}]}\n",
                   "test.yaml:2:50: topology.overrides.1.resource: resource 2 has an override already"},
         BadConfig{

@@ -6,6 +6,9 @@
  *   -DRULE=1  credits: at most DEPTH packets of a resource are out
  *   -DRULE=2  bubble: a packet enters only where two places of the link are free
  *   -DRULE=0  neither: must deadlock (the planted fault)
+ *   -DPLACES=n  the hand of the cycle engine (ringbus/cycle/ports.h): n places, and it takes a packet in whenever one is
+ *   free. A resource knows of places in the link by credits, which come back late; a packet of its own takes a place in
+ *   hand, and with the bubble rule only if two places of the link are left that nothing in hand will take.
  *   -DGREEDY_HAND with bubble: takes in as much as a link holds, whatever the link onward has room for. Each hand then
  *   takes places that the bubble has been counted on for, and three resources can fill the ring in spite of it. */
 #ifndef R
@@ -29,6 +32,8 @@
 
 #if RULE == 1
 #define MAY_ENTER out[r] < DEPTH
+#elif RULE == 2 && defined(PLACES)
+#define MAY_ENTER credit[r] >= len(hand) + 2
 #elif RULE == 2
 #define MAY_ENTER len(link[r]) + 2 <= DEPTH
 #else
@@ -38,6 +43,23 @@
 chan link[R] = [DEPTH] of { byte };   /* from resource r to the next; what travels is the owner */
 byte out[R];                          /* packets of r that are under way */
 
+#ifdef PLACES
+byte credit[R], back[R];   /* places of link[r] that r knows to be free; those it has not heard of yet */
+
+proctype resource(byte r) {
+  chan hand = [PLACES] of { byte };
+  byte owner, before;
+  before = (r + R - 1) % R;
+  credit[r] = DEPTH;
+  do
+  :: atomic { nempty(hand) && credit[r] > 0 -> credit[r]--; hand?owner; link[r]!owner }
+  :: atomic { back[r] > 0 -> back[r]--; credit[r]++ }
+  :: atomic { link[before]?[eval(r)] -> link[before]?owner; back[before]++; out[r]-- }
+  :: atomic { nempty(link[before]) && !link[before]?[eval(r)] && nfull(hand) -> link[before]?owner; back[before]++; hand!owner }
+  :: atomic { nfull(hand) && out[r] < MOST && MAY_ENTER -> out[r]++; hand!r }
+  od
+}
+#else
 proctype resource(byte r) {
   chan hand = [DEPTH] of { byte };
   byte owner, before, k, most;
@@ -65,6 +87,8 @@ proctype resource(byte r) {
   :: atomic { empty(hand) && nfull(link[r]) && out[r] < MOST && MAY_ENTER -> out[r]++; link[r]!r }
   od
 }
+
+#endif
 
 init {
   byte k;

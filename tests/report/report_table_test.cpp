@@ -31,6 +31,21 @@ TEST(ReportTable, SaysWhatHappened) {
   EXPECT_THAT(table, Not(HasSubstr("INCOMPLETE")));
 }
 
+TEST(ReportTable, SaysWhatFaultsCost) {
+  Report report = sample_report();
+  report.rays.restarted = 1234;
+  report.rays.paths_restarted = 500;
+  report.faults.emplace().stop = Stop{1, 3, 100, 200, 5100};
+  report.faults->cycles_without = 90'000;
+  report.faults->cycles_lost = 7000;
+  report.faults->same_hits = true;
+  const std::string table = report_table(report);
+  EXPECT_THAT(table, HasSubstr("10 lost   1,234 restarted of 500 paths, 5,000 cycles after a resource stopped\n"));
+  EXPECT_THAT(table, HasSubstr("faults       cost 7000 cycles: 90,000 without them, the same hits and picture\n"));
+  report.faults->same_hits = false;
+  EXPECT_THAT(report_table(report), HasSubstr("OTHER HITS OR ANOTHER PICTURE"));
+}
+
 TEST(ReportTable, StandsWithTheLeastThereIs) {
   Report report;
   report.incomplete = true;

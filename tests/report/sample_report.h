@@ -13,7 +13,7 @@ inline Report sample_report() {
   r.scene = {"cornell", 1234567, 1300000, 3, 5, 7, 0, 1, 1, {{-1, -2, -3}, {1, 2, 3}}, {}};
   r.engine.kind = "native";
   r.engine.reason = "threads";
-  r.rays = {1000, 990, 10, 0, {500, 300, 200}};
+  r.rays = {1000, 990, 10, 0, 0, {500, 300, 200}};
   r.raster = {9, 8, 7, 6, 5, 4, 3};
   r.throughput = {0.5, 2.5, 17.25};
   r.tests = {{8000, 8.5}, {0, 0}, {2000, 2.25}, {0, 0}, {990, 1}};
