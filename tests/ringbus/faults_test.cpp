@@ -1,6 +1,7 @@
 // Faults in a whole machine: they cost time and change no hit.
 #include <gtest/gtest.h>
 
+#include "tests/accel/passing_scenes.h"
 #include "tests/ringbus/factors.h"
 
 namespace carousel::ringbus {
@@ -124,6 +125,22 @@ TEST(StoppedResource, MayHaveBeenShadingOrWaitingForOpacity) {
   cell.config.shading.workers = 1;
   cell.config.faults.resource.silence_cycles = 500;
   expect_recovery(scene, cell);
+}
+
+// Where few workers answer slowly, many rays wait for an answer at any time, those of the one that stops among them.
+TEST(StoppedResource, MayHaveQuestionsOpen) {
+  const accel::HashedStop stop(0.4);
+  TestScene scene(accel::passing_scene(BuiltinScene::kSpheres, 20, run_seed()), 200, 3, 0.5f, {}, &stop);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
+    for (const std::int64_t after : {5, 20, 60}) {
+      SCOPED_TRACE(testing::Message() << "CAROUSEL_SEED=" << run_seed() << " engine " << static_cast<int>(engine) << " after " << after);
+      Cell cell = with_a_stop(engine, 3, 1, after);
+      cell.config.testers.any_hit = TestersConfig::AnyHit::kShader;
+      cell.config.shading.workers = 1;
+      cell.config.shading.cycles_per_any_hit = 200;
+      cell.config.faults.resource.silence_cycles = 500;
+      expect_recovery(scene, cell);
+    }
 }
 
 // The same whatever the host's threads do.
