@@ -100,6 +100,24 @@ TEST(BruteForce, AgreesOnSingularMirroredAndSkewedInstances) {
   for (const std::int64_t width : {2, 5, 8}) EXPECT_EQ(brute.differences(build_sequential(scene, width)), 0u);
 }
 
+TEST(BruteForce, AgreesOnSpheresInSkewedInstances) {
+  scene::Scene scene = empty_scene();
+  scene::Mesh ball;
+  ball.spheres.push_back({Vec3{0.1f, 0, -0.2f}, 0.5f, MaterialId(0)});
+  const std::uint32_t mesh = add_mesh(scene, ball);
+  Random random(run_seed());
+  for (int i = 0; i < 30; ++i) {
+    const float far = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 100.0f : 3000.0f;
+    Mat3 linear(1);
+    for (int c = 0; c < 3; ++c) linear[c] += random.in_box(Vec3{-0.7f}, Vec3{0.7f});
+    if (i % 4 == 0) linear[1] *= i % 8 == 0 ? 1e-3f : 1e-30f;   // nearly flat
+    add_instance(scene, mesh, {linear, far * random.in_box(Vec3{-1}, Vec3{1})});
+  }
+  const BruteForceAnswers brute(scene, mixed_rays(scene, 3000, run_seed()));
+  EXPECT_GT(brute.hits(), 100u) << "CAROUSEL_SEED=" << run_seed();
+  for (const std::int64_t width : {2, 8}) EXPECT_EQ(brute.differences(build_sequential(scene, width)), 0u) << "CAROUSEL_SEED=" << run_seed();
+}
+
 TEST(BruteForce, AgreesOnDegenerateTriangles) {
   Random random(16);
   std::vector<Vec3> corners;
