@@ -7,6 +7,7 @@
 #include "tests/accel/simd_guard.h"
 #include "tests/accel/test_rays.h"
 #include "tests/accel/test_scenes.h"
+#include "tests/random_runs.h"
 
 namespace carousel::accel {
 namespace {
