@@ -1,7 +1,10 @@
 #pragma once
 
 #include "report/cull_plane_fields.h"
+#include "report/link_fields.h"
 #include "report/report.h"
+#include "report/resource_fields.h"
+#include "report/shading_fields.h"
 #include "report/traffic_fields.h"
 
 namespace carousel::report {
@@ -154,87 +157,6 @@ void describe(V& v, Collections& r) {
 }
 
 template <class V>
-void describe(V& v, Stalls& r) {
-  v.field("credits", r.credits, "attempts", "no packet was free to issue with");
-  v.field("link", r.link, "attempts", "the outgoing link was full");
-  v.field("slots", r.slots, "attempts", "new rays waited for slots");
-  v.field("storage", r.storage, "attempts", "too few collection blocks were free");
-  v.field("reserve", r.reserve, "attempts", "the reserve was entered: one packet at a time, deepest first");
-}
-
-template <class V>
-void describe(V& v, UnitCycles& r) {
-  v.field("busy", r.busy, "cycles", "a test was started, or the units' interval kept one from starting");
-  v.field("other_units", r.other_units, "cycles", "a packet was in test, in other units or on its way through");
-  v.field("memory", r.memory, "cycles", "waiting for shape data");
-  v.field("link", r.link, "cycles", "waiting for a packet to leave");
-  v.field("credits", r.credits, "cycles", "all packets were out");
-  v.field("storage", r.storage, "cycles", "too few collection blocks were free");
-  v.field("shading", r.shading, "cycles", "helping the shader workers");
-  v.field("idle", r.idle, "cycles", "nothing to test");
-}
-
-template <class V>
-void describe(V& v, Units& r) {
-  v.section("box", r.box, "testers of boxes");
-  v.section("triangle", r.triangle, "testers of triangles");
-  v.section("plane", r.plane, "testers of cull planes");
-  v.section("bundle", r.bundle, "testers of bundles");
-  v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
-  v.section("procedural", r.procedural, "testers of procedural primitives");
-  v.section("any_hit", r.any_hit, "where it is looked up what lets rays through, with testers.any_hit: inline");
-  v.section("transform", r.transform, "transform units");
-  v.field("handler_busy", r.handler_busy, "cycles", "looking through packets' IDs");
-  v.field("handler_idle", r.handler_idle, "cycles", "the rest");
-}
-
-template <class V>
-void describe(V& v, Stack& r) {
-  v.field("pushed_bytes", r.pushed_bytes, "bytes", "4 for an inner node, 12 for a leaf");
-  v.field("popped_bytes", r.popped_bytes, "bytes", "the rest was left by rays that needed no more");
-  v.field("peak_bytes", r.peak_bytes, "bytes", "of all its rays at once");
-  v.field("ray_peak_bytes", r.ray_peak_bytes, "bytes", "of one ray");
-}
-
-template <class V>
-void describe(V& v, TransformedRays& r) {
-  v.field("written_bytes", r.written_bytes, "bytes", "24 a ray and instance");
-  v.field("read_bytes", r.read_bytes, "bytes", "at later visits");
-  v.field("peak_bytes", r.peak_bytes, "bytes", "kept at once");
-}
-
-template <class V>
-void describe(V& v, Resource& r) {
-  v.field("resource", r.resource, "", "number of the resource");
-  v.field("rays_admitted", r.rays_admitted, "IDs", "of rays, or of bundles of them, that joined its root collection");
-  v.field("rays_completed", r.rays_completed, "rays", "handed over to shading");
-  v.field("packets_issued", r.packets_issued, "packets", "from its collections");
-  v.field("packets_retired", r.packets_retired, "packets", "of its own that came back");
-  v.field("packets_seen", r.packets_seen, "packets", "looked at, its own and others'");
-  v.field("bubbles", r.bubbles, "packets", "seen without a local ray");
-  v.field("hops", r.hops, "packets", "sent on to a neighbour");
-  v.field("rays_tested", r.rays_tested, "rays", "members of packets tested here");
-  v.field("box_tests", r.box_tests, "tests", "ray against box");
-  v.field("triangle_tests", r.triangle_tests, "tests", "ray against triangle");
-  v.field("transforms", r.transforms, "rays", "brought to model space");
-  v.field("collections_created", r.collections_created, "collections", "in all");
-  v.field("collections_peak", r.collections_peak, "collections", "at once");
-  v.field("memberships_peak", r.memberships_peak, "ray IDs", "in collections at once");
-  v.field("spilled", r.spilled, "ray IDs", "stored beyond the capacity");
-  v.section("stalls", r.stalls, "what could not proceed at once");
-  v.section("units", r.units, "cycles of its units; each unit's add up to engine.cycles");
-  v.section("stack", r.stack, "of its rays, with topology.shape: independent");
-  v.section("transformed_rays", r.transformed_rays, "in model space, with accuracy.transformed_ray: store");
-}
-
-template <class V>
-void describe(V& v, LinkCycles& r) {
-  v.field("busy", r.busy, "cycles", "moving a packet");
-  v.field("stalled", r.stalled, "cycles", "a packet waited for a place at the other end");
-  v.field("idle", r.idle, "cycles", "nothing to move");
-}
-
-template <class V>
 void describe(V& v, Cache& r) {
   v.field("requests", r.requests, "strips", "asked for");
   v.field("lines", r.lines, "lines", "looked up");
@@ -251,44 +173,6 @@ void describe(V& v, Memory& r) {
   v.field("dram_bytes", r.dram_bytes, "bytes", "read");
   v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "moving lines");
   v.field("dram_utilisation", r.dram_utilisation, "fraction", "busy cycles over all");
-}
-
-template <class V>
-void describe(V& v, LinkOccupancy& r) {
-  v.field("seconds", r.seconds, "s", "since the start, at the end of this part");
-  v.field("mean", r.mean, "packets", "waiting, seen at every eighth send");
-  v.field("most", r.most, "packets", "waiting, seen at every eighth send");
-}
-
-template <class V>
-void describe(V& v, LinkFaults& r) {
-  v.field("dropped", r.dropped, "frames", "lost on the way");
-  v.field("duplicated", r.duplicated, "frames", "that came twice");
-  v.field("corrupted", r.corrupted, "frames", "with a bit flipped");
-  v.field("reordered", r.reordered, "frames", "that came after the next one");
-  v.field("delayed", r.delayed, "frames", "that came later");
-  v.field("resent", r.resent, "frames", "sent again");
-  v.field("discarded", r.discarded, "frames", "that the receiver had no use for");
-}
-
-template <class V>
-void describe(V& v, Link& r) {
-  v.field("from", r.from, "", "resource that sends");
-  v.field("to", r.to, "", "resource that receives");
-  v.field("depth", r.depth, "packets", "room of the queue");
-  v.field("packets", r.packets, "packets", "carried");
-  v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting: seen at every eighth send (native), over time (cycle)");
-  v.field("occupancy_max", r.occupancy_max, "packets", "waiting: seen at every eighth send and at refusals (native), ever (cycle)");
-  v.field("stalled", r.stalled, "attempts|cycles", "sends that found the queue full (native), cycles in which a packet waited for a credit (cycle)");
-  v.field("utilisation", r.utilisation, "fraction", "cycles in which it moved something, over all");
-  v.section("cycles", r.cycles, "they add up to engine.cycles");
-  v.field("queue", r.queue, "", "kind of queue (native)");
-  v.field("sent_at_once", r.sent_at_once, "packets", "mean of the sends that took any (native)");
-  v.field("received_at_once", r.received_at_once, "packets", "mean of the receptions that brought any (native)");
-  v.field("full_stalls", r.full_stalls, "sends", "that the queue did not take all of (native)");
-  v.field("empty_stalls", r.empty_stalls, "receptions", "that found nothing (native)");
-  v.section("occupancy", r.occupancy, "over time: equal numbers of samples (native)");
-  v.section("faults", r.faults, "where there are faults: what happened to frames and acknowledgements");
 }
 
 template <class V>
@@ -320,60 +204,6 @@ void describe(V& v, Bottleneck& r) {
   v.field("noise", r.noise, "fraction", "by how much the two halves of that steady state differ");
   v.field("paths", r.paths, "paths", "simulated for each lift");
   v.section("gains", r.gains, "greatest first");
-}
-
-template <class V>
-void describe(V& v, EffectCost& r) {
-  v.field("rays", r.rays, "rays", "of a path, at most");
-  v.field("texture_reads", r.texture_reads, "lookups", "filtered, at a hit, at most");
-  v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
-  v.field("cycles_per_hit", r.cycles_per_hit, "cycles", "modelled, of a shader worker or opacity unit where a surface has it");
-  v.field("cycles_per_path", r.cycles_per_path, "cycles", "modelled, of shader workers for those rays, at most; their tests come on top");
-}
-
-template <class V>
-void describe(V& v, Effect& r) {
-  v.field("name", r.name, "", "name of the effect");
-  v.field("on", r.on, "", "whether it was computed");
-  v.field("called_for", r.called_for, "", "whether the scene calls for it");
-  v.field("callers", r.callers, "callers", "materials, meshes or lights that do");
-  v.field("why", r.why, "", "what called for it, or that nothing did");
-  v.section("cost", r.cost, "what it costs where it occurs; zero if it is off");
-}
-
-template <class V>
-void describe(V& v, ShaderClass& r) {
-  v.field("name", r.name, "", "unlit, plain, textured, layered, opaque (other boundaries than glTF's core), transmissive, or anything");
-  v.field("materials", r.materials, "materials", "shaded by code for this");
-}
-
-template <class V>
-void describe(V& v, EffectsSaved& r) {
-  v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight, that all effects would take besides");
-  v.field("images_not_decoded", r.images_not_decoded, "images", "that no effect reads");
-}
-
-template <class V>
-void describe(V& v, EffectsProof& r) {
-  v.field("same_hits", r.same_hits, "", "digest.hits is the same");
-  v.field("same_image", r.same_image, "", "digest.image is the same");
-  v.field("rays_spared", r.rays_spared, "rays", "that all effects would have sent besides");
-  v.field("tests_spared", r.tests_spared, "tests", "box, triangle, procedural, plane and bundle tests; on the native engine they vary by timing");
-  v.field("cycles_spared", r.cycles_spared, "cycles", "of the simulated machine");
-}
-
-template <class V>
-void describe(V& v, Shading& r) {
-  v.field("workers", r.workers, "workers", "shader workers");
-  v.field("shaded", r.shaded, "rays", "completed rays shaded");
-  v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
-  v.field("utilisation", r.utilisation, "fraction", "of the workers' cycles, those spent on shading and camera rays");
-  v.section("effects", r.effects, "effects of light");
-  v.field("effects_choice", r.effects_choice, "", "shading.effects: auto, all, or the list; a list changes digest.image");
-  v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
-  v.section("saved", r.saved, "what effects that are off did not take");
-  v.section("proof", r.proof, "the same run with all effects, with verify: effects");
-  v.section("classes", r.classes, "materials on triangles, by the code that shades them");
 }
 
 template <class V>

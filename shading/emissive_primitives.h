@@ -12,8 +12,7 @@ namespace carousel::shading {
 struct EmissivePrimitive {
   std::uint32_t instance = 0, primitive = 0;
   float area = 0;  ///< world; of a triangle
-  float flux =
-      0;  ///< estimated luminance, all emitting sides; 0 if nothing was found by sampling its texture
+  float flux = 0;  ///< estimated luminance, all emitting sides; 0 if nothing was found by sampling its texture
 };
 
 /// Every emissive triangle and sphere of a scene, instance by instance, in the order of the mesh.
