@@ -10,5 +10,5 @@ if(Git_FOUND)
   endif()
 endif()
 # On the one file that uses them: a new commit recompiles nothing else.
-set_source_files_properties(core/version.cpp PROPERTIES COMPILE_DEFINITIONS
+set_source_files_properties(core/system/version.cpp PROPERTIES COMPILE_DEFINITIONS
   "CAROUSEL_VERSION=\"${PROJECT_VERSION}\";CAROUSEL_COMMIT=\"${CAROUSEL_COMMIT}\";CAROUSEL_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";CAROUSEL_BUILD_TYPE=\"${CMAKE_BUILD_TYPE}\"")

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <string>
 
-#include "core/error.h"
-#include "scene/builtin.h"
-#include "scene/gltf_import.h"
-#include "scene/key_light.h"
+#include "core/system/error.h"
+#include "scene/builtin/builtin.h"
+#include "scene/gltf/import.h"
+#include "scene/model/key_light.h"
 
 namespace carousel::scene {
 

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "core/config.h"
-#include "scene/gltf_import.h"
-#include "scene/scene.h"
-#include "scene/warnings.h"
+#include "core/config/config.h"
+#include "scene/gltf/import.h"
+#include "scene/model/scene.h"
+#include "scene/model/warnings.h"
 
 namespace carousel::scene {
 

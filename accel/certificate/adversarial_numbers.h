@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/ray.h"
+#include "core/types/ray.h"
 
 namespace carousel::accel {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "accel/certificate/adversarial_numbers.h"
-#include "core/aabb.h"
-#include "core/ray.h"
+#include "core/types/aabb.h"
+#include "core/types/ray.h"
 
 namespace carousel::accel {
 

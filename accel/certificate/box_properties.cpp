@@ -7,7 +7,7 @@
 #include "accel/certificate/exact_box.h"
 #include "accel/certificate/kernel_answers.h"
 #include "accel/certificate/properties.h"
-#include "accel/ray_check.h"
+#include "accel/traverse/ray_check.h"
 
 namespace carousel::accel {
 

@@ -3,8 +3,8 @@
 #include <bit>
 #include <cstdint>
 
-#include "core/rng.h"
-#include "core/vec.h"
+#include "core/numeric/rng.h"
+#include "core/types/vec.h"
 
 namespace carousel::accel {
 

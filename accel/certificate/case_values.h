@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "accel/certificate/property.h"
-#include "core/aabb.h"
-#include "core/ray.h"
-#include "scene/scene.h"
+#include "core/types/aabb.h"
+#include "core/types/ray.h"
+#include "scene/model/scene.h"
 
 namespace carousel::accel {
 

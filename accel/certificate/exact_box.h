@@ -5,8 +5,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "accel/certificate/big_quotient.h"
-#include "core/aabb.h"
-#include "core/ray.h"
+#include "core/types/aabb.h"
+#include "core/types/ray.h"
 
 namespace carousel::accel {
 

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "accel/kernels.h"
-#include "accel/ray_check.h"
+#include "accel/traverse/kernels.h"
+#include "accel/traverse/ray_check.h"
 
 namespace carousel::accel {
 

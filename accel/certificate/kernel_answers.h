@@ -4,11 +4,11 @@
 #include <span>
 #include <string>
 
-#include "accel/accel.h"
-#include "core/aabb.h"
-#include "core/config.h"
-#include "core/ray.h"
-#include "scene/scene.h"
+#include "accel/structure/accel.h"
+#include "core/types/aabb.h"
+#include "core/config/config.h"
+#include "core/types/ray.h"
+#include "scene/model/scene.h"
 
 namespace carousel::accel {
 

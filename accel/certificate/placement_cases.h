@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "accel/certificate/adversarial_numbers.h"
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace carousel::accel {
 

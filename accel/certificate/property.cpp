@@ -1,6 +1,6 @@
 #include "accel/certificate/property.h"
 
-#include "core/config_enums.h"
+#include "core/config/enum_names.h"
 
 namespace carousel::accel {
 

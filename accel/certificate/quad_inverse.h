@@ -4,7 +4,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace carousel::accel {
 

@@ -9,9 +9,9 @@
 #include "accel/certificate/placement_cases.h"
 #include "accel/certificate/properties.h"
 #include "accel/certificate/quad_inverse.h"
-#include "accel/dyadic.h"
-#include "accel/transform.h"
-#include "core/float_error.h"
+#include "accel/exact/dyadic.h"
+#include "accel/transform/transform.h"
+#include "core/numeric/rounding.h"
 
 namespace carousel::accel {
 

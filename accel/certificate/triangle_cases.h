@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "accel/certificate/adversarial_numbers.h"
-#include "core/ray.h"
+#include "core/types/ray.h"
 
 namespace carousel::accel {
 

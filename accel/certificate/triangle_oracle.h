@@ -10,12 +10,12 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include "accel/certificate/big_quotient.h"
-#include "core/ray.h"
+#include "core/types/ray.h"
 
 namespace carousel::accel {
 
 /// A ray and a triangle as big integers, times a power of two that they share: where the line meets the plane, and
-/// on which side of the edges that point lies. Not the formulas of accel/exact_triangle.cpp.
+/// on which side of the edges that point lies. Not the formulas of accel/exact/exact_triangle.cpp.
 class TriangleOracle {
  public:
   using Int = boost::multiprecision::cpp_int;

@@ -11,8 +11,8 @@
 #include "accel/certificate/properties.h"
 #include "accel/certificate/triangle_cases.h"
 #include "accel/certificate/triangle_oracle.h"
-#include "accel/exact_triangle.h"
-#include "accel/ray_check.h"
+#include "accel/exact/exact_triangle.h"
+#include "accel/traverse/ray_check.h"
 
 namespace carousel::accel {
 

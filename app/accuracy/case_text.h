@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "accel/certificate/property.h"
-#include "core/error.h"
+#include "core/system/error.h"
 
 namespace carousel::app {
 

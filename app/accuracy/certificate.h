@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "accel/certificate/property.h"
-#include "core/executor.h"
+#include "core/system/executor.h"
 
 namespace carousel::app {
 

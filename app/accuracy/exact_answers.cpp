@@ -5,8 +5,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include "accel/reference_tracer.h"
-#include "core/test_counts.h"
+#include "accel/traverse/reference_tracer.h"
+#include "core/types/intersection_counts.h"
 
 namespace carousel::app {
 

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "accel/accel.h"
-#include "accel/exact_reference.h"
-#include "core/workload.h"
-#include "report/accuracy.h"
+#include "accel/structure/accel.h"
+#include "accel/traverse/exact_reference.h"
+#include "core/types/workload.h"
+#include "report/accuracy/accuracy.h"
 
 namespace carousel::app {
 

@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include "app/accuracy/exact_answers.h"
-#include "core/executor.h"
-#include "scene/mesh_shapes.h"
-#include "shading/spawn_point.h"
+#include "core/system/executor.h"
+#include "scene/builtin/mesh_shapes.h"
+#include "shading/surface/spawn_point.h"
 
 namespace carousel::app {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "app/accuracy/pictures.h"
-#include "core/workload.h"
-#include "report/accuracy.h"
-#include "scene/scene.h"
+#include "core/types/workload.h"
+#include "report/accuracy/accuracy.h"
+#include "scene/model/scene.h"
 
 namespace carousel::app {
 

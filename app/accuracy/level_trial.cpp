@@ -4,12 +4,12 @@
 #include <ctime>
 
 #include "app/accuracy/exact_answers.h"
-#include "app/ray_list_workload.h"
-#include "core/config_validate.h"
-#include "core/executor.h"
-#include "report/ratio.h"
-#include "ringbus/cycle_engine.h"
-#include "ringbus/deadlock.h"
+#include "app/run/ray_list_workload.h"
+#include "core/config/validate.h"
+#include "core/system/executor.h"
+#include "report/text/ratio.h"
+#include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/protocol/deadlock.h"
 
 namespace carousel::app {
 

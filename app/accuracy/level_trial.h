@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "accel/accel.h"
+#include "accel/structure/accel.h"
 #include "app/accuracy/hard_scenes.h"
-#include "core/config.h"
-#include "report/accuracy.h"
+#include "core/config/config.h"
+#include "report/accuracy/accuracy.h"
 
 namespace carousel::app {
 

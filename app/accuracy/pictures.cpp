@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "accel/reference_tracer.h"
+#include "accel/traverse/reference_tracer.h"
 #include "app/accuracy/exact_answers.h"
-#include "app/hit_recorder.h"
-#include "app/memory_need.h"
-#include "shading/path_tracer.h"
+#include "app/run/hit_recorder.h"
+#include "app/run/memory_need.h"
+#include "shading/tracer/path_tracer.h"
 
 namespace carousel::app {
 

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/accel.h"
-#include "accel/exact_reference.h"
-#include "core/config.h"
-#include "report/accuracy.h"
-#include "report/ray_csv.h"
-#include "scene/scene.h"
+#include "accel/structure/accel.h"
+#include "accel/traverse/exact_reference.h"
+#include "core/config/config.h"
+#include "report/accuracy/accuracy.h"
+#include "report/csv/ray_csv.h"
+#include "scene/model/scene.h"
 
 namespace carousel::app {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/config.h"
-#include "scene/scene.h"
+#include "core/config/config.h"
+#include "scene/model/scene.h"
 
 namespace carousel::app {
 

@@ -10,8 +10,8 @@
 #include "accel/certificate/case_values.h"
 #include "accel/certificate/kernel_answers.h"
 #include "accel/certificate/placement_cases.h"
-#include "accel/dyadic.h"
-#include "shading/spawn_point.h"
+#include "accel/exact/dyadic.h"
+#include "shading/surface/spawn_point.h"
 
 namespace carousel::app {
 

@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "app/frame.h"
-#include "core/config_enums.h"
-#include "report/number_text.h"
-#include "report/ratio.h"
-#include "ringbus/native_engine.h"
+#include "app/run/render_job.h"
+#include "core/config/enum_names.h"
+#include "report/text/number_text.h"
+#include "report/text/ratio.h"
+#include "ringbus/native/native_engine.h"
 
 namespace carousel::app {
 

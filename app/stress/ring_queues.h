@@ -4,8 +4,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "app/prepare.h"
-#include "report/stress.h"
+#include "app/run/prepare.h"
+#include "report/stress/stress.h"
 
 namespace carousel::app {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ringbus/faults/fault_dice.h"
+#include "ringbus/faults/fault_injector.h"
 
 namespace carousel::ringbus {
 

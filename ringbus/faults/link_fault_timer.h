@@ -5,8 +5,8 @@
 #include <deque>
 #include <utility>
 
-#include "ringbus/cycle/clock.h"
-#include "ringbus/faults/fault_dice.h"
+#include "ringbus/cycle/time/clock.h"
+#include "ringbus/faults/fault_injector.h"
 
 namespace carousel::ringbus::cycle {
 

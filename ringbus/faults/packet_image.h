@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "ringbus/packet.h"
+#include "ringbus/packets/packet.h"
 
 namespace carousel::ringbus {
 

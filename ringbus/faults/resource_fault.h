@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/config.h"
-#include "core/ids.h"
+#include "core/config/config.h"
+#include "core/types/ids.h"
 
 namespace carousel::ringbus {
 

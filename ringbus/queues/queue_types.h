@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/config.h"
-#include "core/error.h"
+#include "core/config/config.h"
+#include "core/system/error.h"
 #include "ringbus/queues/atomic_queue_adapter.h"
 #include "ringbus/queues/boost_spsc_queue.h"
 #include "ringbus/queues/moodycamel_queue.h"

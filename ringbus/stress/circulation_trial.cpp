@@ -3,7 +3,7 @@
 #include <deque>
 #include <thread>
 
-#include "ringbus/stress/arrivals.h"
+#include "ringbus/stress/delivery_checker.h"
 #include "ringbus/stress/backoff.h"
 #include "ringbus/stress/trials.h"
 

@@ -1,6 +1,6 @@
 #include <array>
 
-#include "ringbus/stress/arrivals.h"
+#include "ringbus/stress/delivery_checker.h"
 #include "ringbus/stress/backoff.h"
 #include "ringbus/stress/trials.h"
 

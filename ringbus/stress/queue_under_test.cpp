@@ -1,6 +1,6 @@
 #include "ringbus/stress/queue_under_test.h"
 
-#include "core/config_enums.h"
+#include "core/config/enum_names.h"
 #include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus::stress {

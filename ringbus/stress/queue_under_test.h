@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/config.h"
+#include "core/config/config.h"
 #include "ringbus/queues/link_queue.h"
 #include "ringbus/stress/message.h"
 

@@ -3,7 +3,7 @@
 #include <random>
 #include <thread>
 
-#include "ringbus/stress/alone.h"
+#include "ringbus/stress/single_thread_check.h"
 #include "ringbus/stress/backoff.h"
 #include "ringbus/stress/trials.h"
 

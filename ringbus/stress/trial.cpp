@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "ringbus/stress/alone.h"
+#include "ringbus/stress/single_thread_check.h"
 #include "ringbus/stress/trials.h"
 
 namespace carousel::ringbus::stress {

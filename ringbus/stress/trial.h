@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <stop_token>
 
-#include "core/latency_histogram.h"
-#include "ringbus/stress/findings.h"
+#include "core/numeric/latency_histogram.h"
+#include "ringbus/stress/violations.h"
 #include "ringbus/stress/pattern.h"
 #include "ringbus/stress/queue_under_test.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ringbus/stress/crew.h"
+#include "ringbus/stress/worker_group.h"
 #include "ringbus/stress/trial.h"
 
 namespace carousel::ringbus::stress {

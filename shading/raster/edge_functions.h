@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/vec.h"
+#include "core/types/vec.h"
 
 namespace carousel::shading {
 

@@ -6,11 +6,11 @@
 
 #include <glm/matrix.hpp>
 
-#include "scene/opacity.h"
-#include "shading/camera_rays.h"
+#include "scene/model/opacity.h"
+#include "shading/camera/camera_rays.h"
 #include "shading/raster/edge_functions.h"
 #include "shading/raster/screen.h"
-#include "shading/sampler.h"
+#include "shading/math/sampler.h"
 
 namespace carousel::shading {
 

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/any_hit.h"
-#include "core/config.h"
-#include "core/executor.h"
-#include "core/ray.h"
-#include "scene/scene.h"
+#include "core/types/any_hit.h"
+#include "core/config/config.h"
+#include "core/system/executor.h"
+#include "core/types/ray.h"
+#include "scene/model/scene.h"
 
 namespace carousel::shading {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "core/vec.h"
-#include "scene/scene.h"
-#include "shading/camera_rays.h"
+#include "core/types/vec.h"
+#include "scene/model/scene.h"
+#include "shading/camera/camera_rays.h"
 
 namespace carousel::shading {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/error.h"
-#include "scene/gltf_import.h"
+#include "core/system/error.h"
+#include "scene/gltf/import.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -1,0 +1,177 @@
+#include "accel/box/bundle_intersect.h"
+
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+
+#include "accel/box/bundle_interval.h"
+#include "accel/box/bundle_silhouette.h"
+#include "accel/structure/cull_plane.h"
+
+namespace carousel::accel {
+namespace {
+
+// Boxes are tested four at a time.
+constexpr int kGroup = 4;
+using Float4 = float __attribute__((vector_size(16)));
+using Double4 = double __attribute__((vector_size(32)));
+template <class Real>
+using Lanes = std::conditional_t<std::is_same_v<Real, float>, Float4, Double4>;
+
+template <class Real>
+BoxPlanes<Lanes<Real>> planes_of(const Node& node, int first) {
+  BoxPlanes<Lanes<Real>> planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    Float4 lo, hi;
+    std::memcpy(&lo, &node.plane[axis][first], sizeof(lo));
+    std::memcpy(&hi, &node.plane[axis + 3][first], sizeof(hi));
+    planes.lo[axis] = __builtin_convertvector(lo, Lanes<Real>);
+    planes.hi[axis] = __builtin_convertvector(hi, Lanes<Real>);
+  }
+  return planes;
+}
+
+template <class Mask>
+std::uint32_t bits_of(const Mask& mask) {
+  std::uint32_t bits = 0;
+  for (int lane = 0; lane < kGroup; ++lane) bits |= static_cast<std::uint32_t>(mask[lane] & 1) << lane;
+  return bits;
+}
+
+/// The interval form at one level of accuracy. Lanes of its functions are those from `first` on; they answer for
+/// `lanes` and maybe others.
+template <class Real>
+class IntervalForm {
+ public:
+  IntervalForm(const BundleRecord& bundle, float widening, bool strict) : computed_(bundle, widening) {
+    if (strict) exact_.emplace(bundle, 1.0f);
+  }
+  std::uint32_t all_miss(const Node& node, int first, std::uint32_t) {
+    return bits_of(computed_.all_miss(planes_of<Real>(node, first)));
+  }
+  std::uint32_t all_hit(const Node& node, int first, std::uint32_t lanes) {
+    std::uint32_t hit = bits_of(computed_.all_hit(planes_of<Real>(node, first)));
+    if (exact_ && (hit & lanes) != 0) hit &= bits_of(exact_->all_hit_exactly(planes_of<double>(node, first)));
+    return hit;
+  }
+  void entries(const Node& node, int first, std::uint32_t lanes, float* out) {
+    const Lanes<Real> entry = computed_.entry(planes_of<Real>(node, first));
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      out[lane] = round_up(entry[lane]);
+    }
+  }
+  unsigned edges() const { return 0; }
+
+ private:
+  BundleInterval<Real> computed_;
+  std::optional<BundleInterval<double>> exact_;
+};
+
+/// The silhouette form. What it claims of all rays to hit is exact: strict or not is the same.
+template <class Real>
+class SilhouetteForm {
+ public:
+  SilhouetteForm(const BundleRecord& bundle, BoxLevel level, BundlesConfig::Edges edges)
+      : silhouette_(bundle, level, edges), interval_(bundle, far_widening(level), false) {}
+  std::uint32_t all_miss(const Node& node, int first, std::uint32_t lanes) {
+    return of_each(lanes, [&](int lane) { return silhouette_.all_miss(child_box(node, first + lane), edges_); });
+  }
+  std::uint32_t all_hit(const Node& node, int first, std::uint32_t lanes) {
+    return of_each(lanes, [&](int lane) { return silhouette_.all_hit(child_box(node, first + lane), edges_); });
+  }
+  void entries(const Node& node, int first, std::uint32_t lanes, float* out) {
+    interval_.entries(node, first, lanes, out);
+  }
+  unsigned edges() const { return edges_; }
+
+ private:
+  template <class Holds>
+  static std::uint32_t of_each(std::uint32_t lanes, const Holds& holds) {
+    std::uint32_t out = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      if (holds(lane)) out |= 1u << lane;
+    }
+    return out;
+  }
+
+  BundleSilhouette silhouette_;
+  IntervalForm<Real> interval_;
+  unsigned edges_ = 0;
+};
+
+struct Verdicts {
+  std::uint32_t all, undecided;
+};
+
+/// Of four boxes, in the order that is asked for; each test counts for the lanes that it is asked about.
+template <class Form>
+Verdicts verdicts(Form& form, const Node& node, int first, std::uint32_t lanes, BundlesConfig::Order order,
+                  TestCounts& counts) {
+  using Order = BundlesConfig::Order;
+  const auto hit_among = [&](std::uint32_t among) {
+    counts.bundle += static_cast<std::uint64_t>(std::popcount(among));
+    return among == 0 ? 0 : among & form.all_hit(node, first, among);
+  };
+  const auto possible_among = [&](std::uint32_t among) {
+    counts.bundle += static_cast<std::uint64_t>(std::popcount(among));
+    return among == 0 ? 0 : among & ~form.all_miss(node, first, among);
+  };
+  switch (order) {
+    case Order::kAllHitFirst: {
+      const std::uint32_t all = hit_among(lanes);
+      return {all, possible_among(lanes & ~all)};
+    }
+    case Order::kAnyHitFirst: {
+      const std::uint32_t possible = possible_among(lanes), all = hit_among(possible);
+      return {all, possible & ~all};
+    }
+    case Order::kParallel: {
+      const std::uint32_t possible = possible_among(lanes), all = hit_among(lanes) & possible;
+      return {all, possible & ~all};
+    }
+    case Order::kAllHitOnly: {
+      const std::uint32_t all = hit_among(lanes);
+      return {all, lanes & ~all};
+    }
+    case Order::kAnyHitOnly: return {possible_among(lanes), 0};
+  }
+  return {0, lanes};
+}
+
+template <class Form>
+BundleAnswer answer(Form form, const Node& node, std::uint32_t lanes, BundlesConfig::Order order, TestCounts& counts) {
+  BundleAnswer out;
+  lanes &= (1u << node.count) - 1;
+  for (int first = 0; first < kMaxWidth; first += kGroup) {
+    const std::uint32_t group = lanes >> first & ((1u << kGroup) - 1);
+    if (group == 0) continue;
+    const Verdicts found = verdicts(form, node, first, group, order, counts);
+    out.all |= static_cast<std::uint8_t>(found.all << first);
+    out.undecided |= static_cast<std::uint8_t>(found.undecided << first);
+    if (found.all != 0) form.entries(node, first, found.all, out.entry + first);
+  }
+  out.edges = static_cast<std::uint8_t>(form.edges());   // twelve a lane at most
+  return out;
+}
+
+template <class Real>
+BundleAnswer answer_as(BoxLevel level, const Node& node, std::uint32_t lanes, const BundleRecord& bundle,
+                       const BundlesConfig& config, TestCounts& counts) {
+  if (config.form == BundlesConfig::Form::kSilhouette && bundle.count != 1 && BundleSilhouette::applies(bundle))
+    return answer(SilhouetteForm<Real>(bundle, level, config.edges), node, lanes, config.order, counts);
+  return answer(IntervalForm<Real>(bundle, far_widening(level), config.strict), node, lanes, config.order, counts);
+}
+
+}  // namespace
+
+BundleAnswer test_bundle(const Accel& accel, const Node& node, std::uint32_t lanes, const BundleRecord& bundle,
+                         const BundlesConfig& config, TestCounts& counts) {
+  const BoxLevel level = accel.accuracy.box;
+  if (level == BoxLevel::kDouble) return answer_as<double>(level, node, lanes, bundle, config, counts);
+  return answer_as<float>(level, node, lanes, bundle, config, counts);
+}
+
+}  // namespace carousel::accel

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "accel/box/bundle.h"
+#include "core/types/aabb.h"
+#include "core/config/config.h"
+
+namespace carousel::accel {
+
+/// A bundle as the silhouette test wants it (US 11308683): the outline of a box, as seen from where the rays start, has
+/// four edges (one face is seen) or six, and a ray passes each inside or outside, which a comparison of two products
+/// says, without a division. For bundles of one octant only.
+class BundleSilhouette {
+ public:
+  /// Whether there is such a test of this bundle: the directions lie in one octant, and neither they nor the range are
+  /// so large or so small that what the slab test computes of them would overflow or underflow.
+  static bool applies(const BundleRecord& bundle);
+
+  BundleSilhouette(const BundleRecord& bundle, BoxLevel level, BundlesConfig::Edges edges);
+
+  /// Whether the slab test of every ray misses. Adds the edges tested to `edges`.
+  bool all_miss(const Aabb& box, unsigned& edges) const;
+  /// Whether every ray whose range ends where the bundle's does hits the box, exactly and in the slab test. Adds the
+  /// edges tested to `edges`.
+  bool all_hit(const Aabb& box, unsigned& edges) const;
+
+ private:
+  /// The rays along one axis; all that follows is along their direction.
+  struct Axis {
+    bool backwards;
+    double hindmost, foremost;   ///< origins
+    double slowest, fastest;     ///< sizes of directions
+  };
+  /// Of a box and an axis, from an origin to a plane.
+  struct Ways {
+    double to_near_least[3], to_near_most[3], to_far_least[3], to_far_most[3];
+    unsigned edges;   ///< of the silhouette
+  };
+  Ways ways(const Aabb& box) const;
+
+  Axis axes_[3];
+  double tmax_;
+  double rounding_, missed_by_, hit_by_;   // factors
+  bool one_after_another_;
+};
+
+}  // namespace carousel::accel

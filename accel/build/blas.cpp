@@ -1,0 +1,116 @@
+#include "accel/build/blas.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "accel/build/sah_build.h"
+#include "accel/structure/sphere.h"
+
+namespace carousel::accel {
+
+namespace {
+
+/// Triangles, then spheres, with their boxes.
+std::vector<BuildPrimitive> boxes(const scene::Mesh& mesh, Executor& executor) {
+  const std::size_t triangles = mesh.triangle_count();
+  std::vector<BuildPrimitive> out(triangles + mesh.spheres.size());
+  executor.parallel_for(out.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Aabb box;
+      for (std::size_t k = 0; k < 3 && i < triangles; ++k) box.extend(mesh.positions[mesh.indices[3 * i + k]]);
+      if (i >= triangles) box = sphere_box(mesh.spheres[i - triangles].center, mesh.spheres[i - triangles].radius);
+      out[i].lo = box.lo;
+      out[i].hi = box.hi;
+      out[i].index = static_cast<std::uint32_t>(i);
+    }
+  });
+  return out;
+}
+
+void fill_block(const scene::Mesh& mesh, const scene::Opacity& opacity, const BuildPrimitive* primitives,
+                std::uint32_t count, TriangleBlock& block) {
+  for (std::uint32_t lane = 0; lane < count; ++lane) {
+    const std::uint32_t index = primitives[lane].index;
+    const auto set = [&](std::size_t vertex, const Vec3& p) {
+      for (int axis = 0; axis < 3; ++axis) block.vertex[vertex][axis][lane] = p[axis];
+    };
+    bool asks;
+    if (index >= mesh.triangle_count()) {
+      const scene::Sphere& sphere = mesh.spheres[index - mesh.triangle_count()];
+      set(0, sphere.center);
+      block.vertex[1][0][lane] = sphere.radius;
+      asks = opacity.may_let_through(sphere);
+    } else {
+      for (std::size_t k = 0; k < 3; ++k) set(k, mesh.positions[mesh.indices[3 * std::size_t{index} + k]]);
+      asks = opacity.may_let_through(mesh, index);
+    }
+    block.primitive[lane] = index | (asks ? kAskBit : 0);
+  }
+}
+
+/// A tree over ranges of `primitives` from `first` on.
+std::vector<BinaryNode> build_range(std::vector<BuildPrimitive>& primitives, std::size_t first, std::size_t last,
+                                    const SahSettings& settings, Executor& executor) {
+  std::vector<BuildPrimitive> range(primitives.begin() + static_cast<std::ptrdiff_t>(first),
+                                    primitives.begin() + static_cast<std::ptrdiff_t>(last));
+  std::vector<BinaryNode> tree = build_sah(range, settings, executor);
+  std::copy(range.begin(), range.end(), primitives.begin() + static_cast<std::ptrdiff_t>(first));
+  for (BinaryNode& node : tree)
+    if (node.count > 0) node.first += static_cast<std::uint32_t>(first);
+  return tree;
+}
+
+/// One tree over triangles and spheres, whose leaves hold either the ones or the others.
+std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std::size_t triangles,
+                                   const SahSettings& settings, Executor& executor) {
+  if (triangles == 0 || triangles == primitives.size()) return build_sah(primitives, settings, executor);
+  std::vector<BinaryNode> joint(1);
+  for (const auto& [first, last] : {std::pair{std::size_t{0}, triangles}, std::pair{triangles, primitives.size()}}) {
+    const std::uint32_t at = static_cast<std::uint32_t>(joint.size());
+    (first == 0 ? joint[0].first : joint[0].right) = at;
+    for (BinaryNode node : build_range(primitives, first, last, settings, executor)) {
+      if (node.count == 0) node.first += at, node.right += at;
+      joint.push_back(node);
+    }
+    joint[0].box.extend(joint[at].box);
+  }
+  return joint;
+}
+
+}  // namespace
+
+Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor) {
+  Blas blas;
+  std::vector<BuildPrimitive> primitives = boxes(mesh, executor);
+  if (primitives.empty()) return blas;
+  SahSettings settings;
+  settings.leaf_primitives = static_cast<std::uint32_t>(config.leaf_triangles);
+  settings.block_primitives = std::min<std::uint32_t>(kBlockTriangles, settings.leaf_primitives);
+  const std::vector<BinaryNode> binary = build_both(primitives, mesh.triangle_count(), settings, executor);
+  blas.box = binary[0].box;
+
+  struct Fill {
+    std::uint32_t first, count;
+  };
+  std::vector<Fill> fills;   // one a block
+  fills.reserve(primitives.size() / 2);
+  const auto make_leaf = [&](const BinaryNode& leaf) {
+    const std::uint32_t first_block = static_cast<std::uint32_t>(fills.size());
+    for (std::uint32_t i = 0; i < leaf.count; i += kBlockTriangles)
+      fills.push_back({leaf.first + i, std::min<std::uint32_t>(kBlockTriangles, leaf.count - i)});
+    const bool procedural = primitives[leaf.first].index >= mesh.triangle_count();
+    return WideLeaf{procedural ? NodeRef::procedural(first_block, leaf.count) : NodeRef::leaf(first_block, leaf.count),
+                    static_cast<std::uint8_t>(leaf.count), leaf.count};
+  };
+  blas.nodes.reserve(primitives.size() / 8 + 1);
+  blas.tree = collapse(binary, static_cast<int>(config.width), make_leaf, blas.nodes);
+  blas.nodes.shrink_to_fit();
+  blas.blocks.resize(fills.size());
+  executor.parallel_for(fills.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      fill_block(mesh, opacity, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
+  });
+  return blas;
+}
+
+}  // namespace carousel::accel

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "accel/structure/node.h"
+#include "accel/build/wide_collapse.h"
+#include "core/types/aabb.h"
+#include "core/config/config.h"
+#include "core/system/executor.h"
+#include "scene/model/opacity.h"
+#include "scene/model/scene.h"
+
+namespace carousel::accel {
+
+/// Bottom-level structure of one mesh, with references into its own arrays.
+struct Blas {
+  NodeArray nodes;
+  BlockArray blocks;
+  WideTree tree;    ///< meaningless when the mesh is empty
+  Aabb box;
+};
+
+/// Primitives that may let rays through get kAskBit.
+Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor);
+
+}  // namespace carousel::accel

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/types/aabb.h"
+#include "core/system/executor.h"
+
+namespace carousel::accel {
+
+/// A primitive to build over: its box and where it came from.
+struct alignas(32) BuildPrimitive {
+  Vec3 lo;
+  std::uint32_t index;
+  Vec3 hi;
+  std::uint32_t unused = 0;
+};
+
+/// Node of the intermediate binary tree. Leaves hold primitives [first, first + count); inner nodes have
+/// count == 0 and their children at `first` (left) and `right`.
+struct BinaryNode {
+  Aabb box;
+  std::uint32_t first = 0;
+  std::uint32_t right = 0;
+  std::uint32_t count = 0;
+};
+
+struct SahSettings {
+  std::uint32_t leaf_primitives = 4;   ///< at most so many in a leaf
+  std::uint32_t block_primitives = 4;  ///< tested at the price of one (SIMD width of a leaf)
+  float traversal_cost = 1.0f;         ///< of a binary split, in block tests
+};
+
+/// Binned surface-area heuristic (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies").
+/// Reorders `primitives` so that leaves are ranges. Node 0 is the root; the places of nodes depend on the
+/// counts alone, so the tree is the same for any executor. `primitives` must not be empty. Boxes are finite.
+std::vector<BinaryNode> build_sah(std::vector<BuildPrimitive>& primitives, const SahSettings& settings,
+                                  Executor& executor);
+
+}  // namespace carousel::accel

@@ -1,0 +1,236 @@
+// Which children of a node their cull planes take away, all at once, in either order of planes and box. Why nothing is
+// taken that the triangle kernel hits: accel/planes/cull_plane_clip.h.
+//
+// What is left of the line is cut by the planes and by the box in both orders, so the same children are culled: the last
+// bounds are the same. With planes first a child that the planes alone cull needs no box test; of the others the box
+// test goes on with what the planes have left.
+//
+// Each lane is one child. Operations are the same for every width of registers, none of them contracted, so the answers
+// are. Comparisons are false for NaN, which cuts nothing off.
+#if defined(CAROUSEL_ACCEL_CULL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CAROUSEL_ACCEL_CULL_LANES_INL_H_
+#undef CAROUSEL_ACCEL_CULL_LANES_INL_H_
+#else
+#define CAROUSEL_ACCEL_CULL_LANES_INL_H_
+#endif
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <hwy/highway.h>
+
+#include "accel/structure/accel.h"
+#include "accel/planes/count_culled.h"
+#include "accel/structure/cull_plane.h"
+#include "accel/planes/cull_plane_clip.h"
+#include "accel/box/slab-inl.h"
+#include "core/types/cull_counts.h"
+#include "core/types/intersection_counts.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace carousel::accel::HWY_NAMESPACE {
+
+/// How many planes each child has, and how many those before it.
+struct LanePlaneCounts {
+  alignas(8) std::uint8_t own[kMaxWidth], before[kMaxWidth];
+
+  HWY_INLINE explicit LanePlaneCounts(std::uint32_t nibbles) {
+    std::uint64_t bytes = nibbles;
+    bytes = (bytes | bytes << 16) & 0x0000ffff0000ffffull;
+    bytes = (bytes | bytes << 8) & 0x00ff00ff00ff00ffull;
+    bytes = (bytes | bytes << 4) & 0x0f0f0f0f0f0f0f0full;
+    const std::uint64_t sums = bytes * 0x0101010101010100ull;   // at most 56
+    std::memcpy(own, &bytes, sizeof(own));
+    std::memcpy(before, &sums, sizeof(before));
+  }
+};
+
+#if HWY_TARGET != HWY_SCALAR
+/// Four numbers at `low` and, where a register has room for eight, those at `high` in its upper half.
+template <class D>
+HWY_INLINE hn::Vec<D> load_halves(D d, const CullPlane& low, const CullPlane& high) {
+  const hn::CappedTag<float, 4> d4;
+  const auto load = [&](const CullPlane& p) HWY_ATTR { return hn::LoadU(d4, reinterpret_cast<const float*>(&p)); };
+  if constexpr (hn::MaxLanes(d) == 8)
+    return hn::Combine(d, load(high), load(low));
+  else
+    return load(low);
+}
+#endif
+
+/// A plane of each lane.
+struct PlaneLanes {
+  using Tag = hn::CappedTag<float, kMaxWidth>;
+  hn::Vec<Tag> x, y, z, distance;
+
+  /// `at(lane)` is the plane of a lane. Whole planes are loaded and turned about: gathering is slower on many machines.
+  template <class At>
+  HWY_INLINE explicit PlaneLanes(const At& at) {
+    const Tag d;
+#if HWY_TARGET == HWY_SCALAR
+    const CullPlane& plane = at(0);
+    x = hn::Set(d, plane.normal[0]), y = hn::Set(d, plane.normal[1]), z = hn::Set(d, plane.normal[2]);
+    distance = hn::Set(d, plane.distance);
+#else
+    constexpr std::size_t kHigh = hn::MaxLanes(Tag()) == 8 ? 4 : 0;
+    const auto row = [&](std::size_t lane) HWY_ATTR { return load_halves(d, at(lane), at(lane + kHigh)); };
+    const auto a = row(0), b = row(1), c = row(2), e = row(3);
+    const hn::RepartitionToWide<Tag> wide;
+    const auto xy_ab = hn::BitCast(wide, hn::InterleaveLower(d, a, b)), zd_ab = hn::BitCast(wide, hn::InterleaveUpper(d, a, b));
+    const auto xy_ce = hn::BitCast(wide, hn::InterleaveLower(d, c, e)), zd_ce = hn::BitCast(wide, hn::InterleaveUpper(d, c, e));
+    x = hn::BitCast(d, hn::InterleaveLower(wide, xy_ab, xy_ce)), y = hn::BitCast(d, hn::InterleaveUpper(wide, xy_ab, xy_ce));
+    z = hn::BitCast(d, hn::InterleaveLower(wide, zd_ab, zd_ce));
+    distance = hn::BitCast(d, hn::InterleaveUpper(wide, zd_ab, zd_ce));
+#endif
+  }
+};
+
+/// What planes and box leave of a ray's line in some children.
+class CutLines {
+ public:
+  using Tag = PlaneLanes::Tag;
+  using V = hn::Vec<Tag>;
+  using M = hn::Mask<Tag>;
+
+  /// Of the lanes from `first` on.
+  HWY_INLINE CutLines(const Node& node, std::size_t first, const SlabRay& ray, float margins) : ray_(ray) {
+    const Tag d;
+    const auto half = hn::Set(d, 0.5f);
+    V reach = hn::Zero(d);
+    V* const from[3] = {&from_x_, &from_y_, &from_z_};
+    V* const lo[3] = {&lo_x_, &lo_y_, &lo_z_};
+    V* const hi[3] = {&hi_x_, &hi_y_, &hi_z_};
+    for (int axis = 0; axis < 3; ++axis) {
+      const V l = hn::Load(d, node.plane[axis] + first), h = hn::Load(d, node.plane[axis + 3] + first);
+      const V origin = hn::Set(d, ray.origin[axis]);
+      *lo[axis] = hn::Sub(l, origin);
+      *hi[axis] = hn::Sub(h, origin);
+      *from[axis] = hn::Sub(origin, hn::Add(hn::Mul(half, l), hn::Mul(half, h)));   // plane_centre()
+      reach = keep_max(hn::Abs(*lo[axis]), reach);
+      reach = keep_max(hn::Abs(*hi[axis]), reach);
+    }
+    margin_ = hn::Mul(hn::Set(d, margins), hn::Add(hn::Mul(hn::Set(d, node.margin_per_reach), reach), hn::Set(d, node.least_margin)));
+    entry_ = hn::Set(d, -kInfinity);
+    exit_ = hn::Set(d, kInfinity);
+  }
+
+  /// By the box, each face moved out.
+  HWY_INLINE void cut_by_box() {
+    cut_by_slab(0, lo_x_, hi_x_);
+    cut_by_slab(1, lo_y_, hi_y_);
+    cut_by_slab(2, lo_z_, hi_z_);
+  }
+
+  /// By a plane of each lane in `lanes`; other lanes' planes have no meaning.
+  HWY_INLINE void cut_by_plane(M lanes, const PlaneLanes& p, const Vec3& direction) {
+    const Tag d;
+    const V height = hn::Sub(hn::Add(hn::Add(hn::Mul(p.x, from_x_), hn::Mul(p.y, from_y_)), hn::Mul(p.z, from_z_)), p.distance);
+    const V outside = hn::Sub(height, margin_);   // of the origin
+    const V along = hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, direction.x)), hn::Mul(p.y, hn::Set(d, direction.y))),
+                            hn::Mul(p.z, hn::Set(d, direction.z)));
+    const V zero = hn::Zero(d), at = hn::Div(outside, hn::Neg(along));
+    // Seen from the front the line comes in; from the back it goes out, behind the origin or not.
+    const M in = hn::And(lanes, hn::And(hn::Lt(along, zero), hn::Gt(at, entry_)));
+    const M out = hn::And(lanes, hn::And(hn::Gt(along, zero), hn::Lt(at, exit_)));
+    const M beside = hn::And(lanes, hn::And(hn::Eq(along, zero), hn::Gt(outside, zero)));
+    entry_ = hn::IfThenElse(beside, hn::Set(d, kInfinity), hn::IfThenElse(in, at, entry_));
+    exit_ = hn::IfThenElse(beside, hn::Set(d, -kInfinity), hn::IfThenElse(out, at, exit_));
+  }
+
+  /// Where the line misses everything that stands in the child.
+  HWY_INLINE M empty() const { return hn::Gt(entry_, exit_); }
+
+ private:
+  HWY_INLINE void cut_by_slab(int axis, V lo, V hi) {
+    const Tag d;
+    const float inverse = ray_.inverse_near[axis];
+    // Along the faces, or so nearly that the reciprocal overflows: the box test sees to it.
+    if (!(std::fabs(inverse) < std::numeric_limits<float>::max())) return;
+    const V first = inverse < 0.0f ? hn::Add(hi, margin_) : hn::Sub(lo, margin_);
+    const V last = inverse < 0.0f ? hn::Sub(lo, margin_) : hn::Add(hi, margin_);
+    entry_ = keep_max(hn::Mul(first, hn::Set(d, inverse)), entry_);
+    exit_ = keep_min(hn::Mul(last, hn::Set(d, inverse)), exit_);
+  }
+
+  const SlabRay& ray_;
+  V lo_x_, lo_y_, lo_z_, hi_x_, hi_y_, hi_z_, from_x_, from_y_, from_z_, margin_, entry_, exit_;
+};
+
+/// Cuts the lines of `lanes`, from `first` on, by their planes one after another, until nothing is left of one. Returns
+/// the planes looked at.
+HWY_INLINE std::uint64_t cut_by_planes(CutLines& lines, const LanePlaneCounts& counts, std::size_t first,
+                                       const CullPlane* planes, CutLines::M lanes, const Vec3& direction) {
+  const CutLines::Tag d;
+  const hn::RebindToSigned<CutLines::Tag> di;
+  const hn::Rebind<std::uint8_t, CutLines::Tag> d8;
+  const auto count = hn::PromoteTo(di, hn::Load(d8, counts.own + first));
+  std::uint64_t tested = 0;
+  for (std::int32_t k = 0; k < kMaxCullPlanes; ++k) {
+    const auto some = hn::RebindMask(d, hn::Gt(count, hn::Set(di, k)));
+    const CutLines::M active = hn::And(lanes, hn::AndNot(lines.empty(), some));
+    if (hn::AllFalse(d, active)) break;
+    tested += hn::CountTrue(d, active);
+    const PlaneLanes turn([&](std::size_t lane) HWY_ATTR -> const CullPlane& {
+      const int before = counts.before[first + lane];
+      return planes[k < counts.own[first + lane] ? before + k : 0];   // a lane without another: any
+    });
+    lines.cut_by_plane(active, turn, direction);
+  }
+  return tested;
+}
+
+HWY_INLINE std::uint32_t bits_of(CutLines::M mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(CutLines::Tag(), mask, bits);
+  return bits[0];
+}
+
+HWY_INLINE CutLines::M mask_of(std::uint32_t bits) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits)};
+  return hn::LoadMaskBits(CutLines::Tag(), bytes);
+}
+
+/// Of the child lanes in `mask`, whose boxes were hit, those that no plane shows to be missed. With accel.planes_first
+/// the planes of all `lanes` are tested, and box tests that are not needed are taken from counts.box.
+HWY_NOINLINE std::uint32_t cull_lanes(const Accel& accel, const Node& node, const SlabRay& ray, const Vec3& direction,
+                                      std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
+  constexpr std::size_t kLanes = hn::MaxLanes(CutLines::Tag());
+  const LanePlaneCounts planes(node.plane_counts);
+  const CullPlane* const first_plane = accel.planes.data() + node.first_plane;
+  const float margins = covered_by_margin(direction, node.above_instances) ? 1.0f : kInfinity;
+  std::uint32_t with_planes = 0;
+  for (int lane = 0; lane < kMaxWidth; ++lane) with_planes |= std::uint32_t{planes.own[lane] != 0} << lane;
+  const std::uint32_t wanted = with_planes & (accel.planes_first ? lanes : mask);
+  CullLevel level;
+  std::uint32_t culled = 0;
+  for (std::size_t first = 0; first < kMaxWidth; first += kLanes) {
+    const std::uint32_t here = wanted >> first & ((1u << kLanes) - 1);
+    if (here == 0) continue;
+    CutLines lines(node, first, ray, margins);
+    if (!accel.planes_first) lines.cut_by_box();
+    level.plane_tests += cut_by_planes(lines, planes, first, first_plane, mask_of(here), direction);
+    if (accel.planes_first) {
+      level.boxes += hn::CountTrue(CutLines::Tag(), hn::And(lines.empty(), mask_of(here)));
+      lines.cut_by_box();
+    }
+    culled |= (bits_of(lines.empty()) & here) << first;
+  }
+  culled &= mask;
+  counts.plane += level.plane_tests;
+  counts.box -= level.boxes;
+  counts.culled += hwy::PopCount(culled);
+  if (culls != nullptr) {
+    level.children = hwy::PopCount(wanted);
+    for (std::uint32_t left = culled; left != 0; left &= left - 1)
+      count_culled(accel, node.child[std::countr_zero(left)], level);
+    culls->at(node.above_instances, node.depth) += level;
+  }
+  return mask & ~culled;
+}
+
+}  // namespace carousel::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

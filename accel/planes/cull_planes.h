@@ -1,0 +1,21 @@
+#pragma once
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "core/system/executor.h"
+#include "scene/model/scene.h"
+
+namespace carousel::accel {
+
+/// Gives children of nodes up to config.count planes each (US 20250259373): below the instances, above them or both;
+/// leaves, which above are instances, inner children or all. Once a structure, which was built of `scene` without planes.
+/// Deterministic for any executor. Without planes (count 0) nothing changes.
+void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor);
+
+/// The same structure with nothing but boxes: what rays are traced through to find out what planes and bounding spheres
+/// would have lost.
+Accel plain_copy(const Accel& accel);
+/// Whether that would be the structure itself.
+bool is_plain(const Accel& accel);
+
+}  // namespace carousel::accel

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "accel/planes/line_margin.h"
+#include "accel/planes/plane_candidates.h"
+#include "core/config/config.h"
+#include "scene/model/scene.h"
+
+namespace carousel::accel {
+
+/// Planes of a node's children.
+using LanePlanes = std::array<std::vector<CullPlane>, kMaxWidth>;
+
+/// What cull planes above the instances need: the instances as they stand in the world.
+class TopPlanes {
+ public:
+  /// Keeps references. `found` has the planes of nodes below the instances, if there are any, by node.
+  TopPlanes(const Accel& accel, const scene::Scene& scene, CullPlanesConfig::Fit fit, const std::vector<LanePlanes>& found);
+
+  /// What stands below a child of a node of the top level.
+  BoxedShape shape(const Node& node, int lane) const;
+  /// Offers normals of planes for an instance.
+  void offer(NodeRef instance, PlaneChoice& choice) const;
+  /// How far what is hit in the child may be off a ray's line; nothing: by more than planes make sense for.
+  const std::optional<LineMargin>& margin(NodeRef child) const;
+
+ private:
+  scene::Affine placement(std::uint32_t instance) const;
+  double farthest(NodeRef child, const DVec3& normal, const DVec3& centre, double most) const;
+
+  const Accel& accel_;
+  const scene::Scene& scene_;
+  CullPlanesConfig::Fit fit_;
+  const std::vector<LanePlanes>& found_;
+  std::vector<std::optional<LineMargin>> instance_margins_, node_margins_;   // of the top level, by node
+  std::vector<Aabb> model_boxes_;   // by instance
+};
+
+}  // namespace carousel::accel

@@ -1,0 +1,177 @@
+// A block of triangles at every level of accuracy.triangle: which of them the kernel hits, and what of that is a hit
+// as section 3 of the design defines it.
+#if defined(CAROUSEL_ACCEL_TRIANGLE_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CAROUSEL_ACCEL_TRIANGLE_BLOCK_INL_H_
+#undef CAROUSEL_ACCEL_TRIANGLE_BLOCK_INL_H_
+#else
+#define CAROUSEL_ACCEL_TRIANGLE_BLOCK_INL_H_
+#endif
+
+#include <array>
+#include <bit>
+#include <limits>
+
+#include <hwy/highway.h>
+
+#include "accel/exact/exact_triangle.h"
+#include "accel/primitive/local_ray.h"
+#include "accel/primitive/moller_trumbore-inl.h"
+#include "accel/structure/node.h"
+#include "accel/primitive/has_non_opaque.h"
+#include "accel/primitive/sphere_hit.h"
+#include "accel/primitive/watertight-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace carousel::accel::HWY_NAMESPACE {
+
+/// What a kernel says of a block: bit l of `inside` when triangle l is crossed by the ray's line.
+template <class T>
+struct Crossings {
+  std::uint32_t inside = 0;
+  alignas(sizeof(T) * kBlockTriangles) T t[kBlockTriangles], second[kBlockTriangles], third[kBlockTriangles];
+};
+
+HWY_INLINE std::array<Vec3, 3> corners(const TriangleBlock& block, int lane) {
+  std::array<Vec3, 3> p;
+  for (std::size_t k = 0; k < 3; ++k)
+    p[k] = {block.vertex[k][0][lane], block.vertex[k][1][lane], block.vertex[k][2][lane]};
+  return p;
+}
+
+HWY_INLINE Aabb box_of(const std::array<Vec3, 3>& p) {
+  Aabb box;
+  for (const Vec3& corner : p) box.extend(corner);
+  return box;
+}
+
+/// Lowers `hit` to the smallest (t', instance, primitive) of the triangles of `block` that are crossed, where t' also
+/// counts the entries of the triangle's own box and of the instance's world box. True when the hit changed.
+template <class T, class Slab>
+HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const Crossings<T>& crossings,
+                          const FrameRay<Slab>& ray, Hit& hit) {
+  bool changed = false;
+  for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
+    const int l = std::countr_zero(inside);
+    const float t = static_cast<float>(crossings.t[l]);
+    // Negated comparisons also turn NaN away.
+    if (!(t >= ray.slab.tmin && t <= std::numeric_limits<float>::max() && t <= hit.t)) continue;
+    float entry;
+    if (!slab(ray.slab, box_of(corners(block, l)), hit.t, entry)) continue;
+    float distance = entry > t ? entry : t;
+    distance = ray.instance_entry > distance ? ray.instance_entry : distance;
+    const std::uint32_t primitive = block.primitive[l] & kPrimitiveMask;
+    if (!comes_before(distance, ray.instance, primitive, hit)) continue;
+    const Hit found{distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]), ray.instance,
+                    primitive};
+    const std::uint32_t asks = block.primitive[l] & kAskBit;
+    if (HWY_UNLIKELY((asks | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
+        !stopped_by_triangle(accel, asks != 0, corners(block, l), ray, found))
+      continue;
+    hit = found;
+    changed = true;
+  }
+  return changed;
+}
+
+// Each tests the triangles of `block` that `lanes` selects: lower_hit() of what its kernel says.
+
+template <class T, class Slab>
+HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, const WatertightRay<T>& watertight, std::uint32_t lanes,
+                                 const FrameRay<Slab>& ray, Hit& hit) {
+  const hn::CappedTag<T, kBlockTriangles> d;
+  Crossings<T> c;
+  for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
+    c.inside |= watertight_lanes(d, block, i, watertight, c.t + i, c.second + i, c.third + i) << i;
+  c.inside &= lanes & ((1u << kBlockTriangles) - 1);
+  return lower_hit(accel, block, c, ray, hit);
+}
+
+template <class Slab>
+HWY_INLINE bool moller_trumbore_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
+                                      const FrameRay<Slab>& ray, Hit& hit) {
+  const hn::CappedTag<float, kBlockTriangles> d;
+  Crossings<float> c;
+  for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
+    c.inside |= moller_trumbore_lanes(d, block, i, ray.triangle.line, c.t + i, c.second + i, c.third + i) << i;
+  c.inside &= lanes & ((1u << kBlockTriangles) - 1);
+  return lower_hit(accel, block, c, ray, hit);
+}
+
+/// The triangle's own box, which a hit has to pass anyway, spares most of them the exact test.
+template <class Slab>
+HWY_INLINE bool exact_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
+                            const FrameRay<Slab>& ray, Hit& hit) {
+  Crossings<float> c;
+  for (int l = 0; l < kBlockTriangles; ++l) {
+    if (!(lanes >> l & 1)) continue;
+    const std::array<Vec3, 3> p = corners(block, l);
+    float entry;
+    if (!slab(ray.slab, box_of(p), hit.t, entry)) continue;
+    NearestCrossing crossing;
+    if (!exact_triangle(ray.triangle.line, p, crossing)) continue;
+    c.t[l] = crossing.t, c.second[l] = crossing.u, c.third[l] = crossing.v;
+    c.inside |= 1u << l;
+  }
+  return lower_hit(accel, block, c, ray, hit);
+}
+
+/// The blocks of a leaf, of whose triangles `lanes` selects some; `test` is one of the above.
+template <class Test>
+HWY_INLINE bool each_block(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const Test& test) {
+  bool changed = false;
+  for (std::uint32_t b = 0; b < leaf.blocks(); ++b, lanes >>= kBlockTriangles)
+    changed |= test(accel.blocks[leaf.first_block() + b], lanes);
+  return changed;
+}
+
+/// The spheres of a leaf likewise.
+template <class Slab>
+HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray, Hit& hit) {
+  bool changed = false;
+  for (std::uint32_t i = 0; i < leaf.triangles(); ++i)
+    if (lanes >> i & 1)
+      changed |= lower_by_sphere(accel, accel.blocks[leaf.first_block() + i / kBlockTriangles],
+                                 i % kBlockTriangles, ray, hit);
+  return changed;
+}
+
+/// Kept apart from test_leaf(), whose registers and code are the watertight kernel's.
+template <class Slab>
+HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
+                                      Hit& hit) {
+  if (leaf.is_procedural()) return test_spheres(accel, leaf, lanes, ray, hit);
+  const auto each = [&](const auto& test) HWY_ATTR { return each_block(accel, leaf, lanes, test); };
+  switch (accel.accuracy.triangle) {
+    case TriangleLevel::kFast:
+      return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
+        return moller_trumbore_block(accel, block, some, ray, hit);
+      });
+    case TriangleLevel::kDouble:
+      return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
+        return watertight_block(accel, block, ray.triangle.watertight_double, some, ray, hit);
+      });
+    case TriangleLevel::kExact:
+      return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
+        return exact_block(accel, block, some, ray, hit);
+      });
+    case TriangleLevel::kWatertight: break;
+  }
+  return false;
+}
+
+/// Tests the triangles, or procedural primitives, of `leaf` that `lanes` selects and lowers `hit`; true when it changed.
+/// Not inlined: its registers would push the traversal's own into memory.
+template <class Slab>
+HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
+                            Hit& hit) {
+  if (HWY_UNLIKELY(accel.accuracy.triangle != TriangleLevel::kWatertight || leaf.is_procedural()))
+    return test_leaf_otherwise(accel, leaf, lanes, ray, hit);
+  return each_block(accel, leaf, lanes, [&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
+    return watertight_block(accel, block, ray.triangle.watertight, some, ray, hit);
+  });
+}
+
+}  // namespace carousel::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,92 @@
+// Woop, Benthin, Wald 2013, "Watertight ray/triangle intersection": one ray against a block of triangles.
+// Products are never contracted: an edge shared by two triangles must give both the same number with opposite
+// signs.
+#if defined(CAROUSEL_ACCEL_WATERTIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CAROUSEL_ACCEL_WATERTIGHT_INL_H_
+#undef CAROUSEL_ACCEL_WATERTIGHT_INL_H_
+#else
+#define CAROUSEL_ACCEL_WATERTIGHT_INL_H_
+#endif
+
+#include <type_traits>
+
+#include <hwy/highway.h>
+
+#include "accel/structure/node.h"
+#include "accel/primitive/watertight.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace carousel::accel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Floats as lanes of the arithmetic that is wanted.
+template <class D>
+HWY_INLINE hn::Vec<D> load_floats(D d, const float* p) {
+  if constexpr (std::is_same_v<hn::TFromD<D>, float>)
+    return hn::Load(d, p);
+  else
+    return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), p));
+}
+
+/// For the lanes from `i` on: bit l of the result when triangle i + l is crossed by the ray's line (whatever the
+/// distance); stores t and the weights of the second and third vertex. T is float or double.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::size_t i, const WatertightRay<T>& ray,
+                                          T* HWY_RESTRICT t, T* HWY_RESTRICT second, T* HWY_RESTRICT third) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const auto load = [&](int vertex, int axis) HWY_ATTR {
+    return hn::Sub(load_floats(d, block.vertex[vertex][axis] + i), hn::Set(d, ray.origin[axis]));
+  };
+  const auto sx = hn::Set(d, ray.sx), sy = hn::Set(d, ray.sy), sz = hn::Set(d, ray.sz);
+  const auto akz = load(0, ray.kz), bkz = load(1, ray.kz), ckz = load(2, ray.kz);
+  const auto ax = hn::Sub(load(0, ray.kx), hn::Mul(sx, akz)), ay = hn::Sub(load(0, ray.ky), hn::Mul(sy, akz));
+  const auto bx = hn::Sub(load(1, ray.kx), hn::Mul(sx, bkz)), by = hn::Sub(load(1, ray.ky), hn::Mul(sy, bkz));
+  const auto cx = hn::Sub(load(2, ray.kx), hn::Mul(sx, ckz)), cy = hn::Sub(load(2, ray.ky), hn::Mul(sy, ckz));
+
+  auto u = hn::Sub(hn::Mul(cx, by), hn::Mul(cy, bx));
+  auto v = hn::Sub(hn::Mul(ax, cy), hn::Mul(ay, cx));
+  auto w = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
+
+  const auto zero = hn::Zero(d);
+  // A zero may be a rounded one. Doubles hold the products of floats exactly, so their sign is the true one; in
+  // double a rounded zero is let count as an edge for both its triangles: no leak either.
+  if constexpr (std::is_same_v<T, float>) {
+    const auto on_edge = hn::Or(hn::Eq(u, zero), hn::Or(hn::Eq(v, zero), hn::Eq(w, zero)));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, on_edge))) {
+      alignas(16) float a[2][kLanes], b[2][kLanes], c[2][kLanes], edge[3][kLanes];
+      hn::Store(ax, d, a[0]), hn::Store(ay, d, a[1]);
+      hn::Store(bx, d, b[0]), hn::Store(by, d, b[1]);
+      hn::Store(cx, d, c[0]), hn::Store(cy, d, c[1]);
+      hn::Store(u, d, edge[0]), hn::Store(v, d, edge[1]), hn::Store(w, d, edge[2]);
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        if (edge[0][l] != 0.0f && edge[1][l] != 0.0f && edge[2][l] != 0.0f) continue;
+        edge[0][l] = static_cast<float>(double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]));
+        edge[1][l] = static_cast<float>(double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]));
+        edge[2][l] = static_cast<float>(double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]));
+      }
+      u = hn::Load(d, edge[0]), v = hn::Load(d, edge[1]), w = hn::Load(d, edge[2]);
+    }
+  }
+
+  const auto any_negative = hn::Or(hn::Lt(u, zero), hn::Or(hn::Lt(v, zero), hn::Lt(w, zero)));
+  const auto any_positive = hn::Or(hn::Gt(u, zero), hn::Or(hn::Gt(v, zero), hn::Gt(w, zero)));
+  const auto det = hn::Add(u, hn::Add(v, w));
+  const auto outside = hn::Or(hn::And(any_negative, any_positive), hn::Eq(det, zero));
+  if (hn::AllTrue(d, outside)) return 0;
+
+  const auto scaled_t = hn::Add(hn::Mul(u, hn::Mul(sz, akz)),
+                                hn::Add(hn::Mul(v, hn::Mul(sz, bkz)), hn::Mul(w, hn::Mul(sz, ckz))));
+  const auto inverse_det = hn::Div(hn::Set(d, T{1}), det);
+  hn::Store(hn::Mul(scaled_t, inverse_det), d, t);
+  hn::Store(hn::Mul(v, inverse_det), d, second);
+  hn::Store(hn::Mul(w, inverse_det), d, third);
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, outside, bits);
+  return ~std::uint32_t{bits[0]} & ((1u << kLanes) - 1);
+}
+
+}  // namespace carousel::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/config.h"
+
+namespace carousel::accel {
+
+/// What hardware that follows the configuration stores of each instance's transform. The program itself always keeps
+/// what its kernels need; nothing here changes a hit.
+inline AccuracyConfig::InstanceData stored_instance_data(const AccuracyConfig& c) {
+  using Data = AccuracyConfig::InstanceData;
+  if (c.instance_data) return *c.instance_data;
+  if (c.invert == AccuracyConfig::Invert::kVisit) return Data::kForward;
+  return c.transform == TransformLevel::kInverseMatrix ? Data::kInverse : Data::kRt;
+}
+
+/// Its bytes: twelve floats of 3 x 4 entries; nine of them in fp64 where the inverse is stored and used in fp64.
+inline std::uint32_t instance_bytes(const AccuracyConfig& c) {
+  const bool fp64 = c.transform == TransformLevel::kTwoStepDouble &&
+                    stored_instance_data(c) == AccuracyConfig::InstanceData::kRt;
+  return fp64 ? 9 * 8 + 3 * 4 : 12 * 4;
+}
+
+/// Of a ray in model space, as `transformed_ray: store` keeps it beside the record: origin and direction.
+inline constexpr std::uint32_t kTransformedRayBytes = 6 * 4;
+
+/// Transforms whose time an inversion takes in the transform unit. A transform is 18 products, R^-1 times an origin
+/// and a direction; R^-1 by cofactors is 18 for the nine, 3 for the determinant and 9 to scale them, with one
+/// reciprocal: 30, two passes through the same multipliers.
+inline constexpr std::uint64_t kInversionPasses = 2;
+
+}  // namespace carousel::accel

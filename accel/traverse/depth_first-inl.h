@@ -1,0 +1,223 @@
+// Depth-first traversal with a stack, nearest child first: the reference tracer, and what a treelet's visit does.
+#if defined(CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
+#undef CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
+#else
+#define CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
+#endif
+
+#include <type_traits>
+
+#include <hwy/highway.h>
+
+#include "accel/structure/accel.h"
+#include "accel/planes/cull_lanes-inl.h"
+#include "accel/box/double_slab-inl.h"
+#include "accel/primitive/local_ray.h"
+#include "accel/traverse/kernels.h"
+#include "accel/box/slab-inl.h"
+#include "accel/primitive/triangle_block-inl.h"
+#include "core/types/intersection_counts.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace carousel::accel::HWY_NAMESPACE {
+
+/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/build/sah_build.cpp), above the instances and again
+/// below one that is entered in passing; a level leaves at most seven siblings behind.
+inline constexpr int kStackCapacity = 1024;
+
+/// Nodes that wait for their turn, a node's nearest child on top.
+struct DepthFirstStack {
+  struct Entry {
+    float entry;
+    std::uint32_t ref;   // bits of a NodeRef, which would be initialised: 1024 times a call for nothing
+  };
+  Entry entries[kStackCapacity];
+};
+
+HWY_INLINE void prefetch_lines(const void* bytes) {
+  for (std::size_t line = 0; line < sizeof(Node); line += 64)
+    __builtin_prefetch(static_cast<const char*>(bytes) + line);
+}
+
+/// What waits on the stack is on its way from memory while nearer nodes are visited.
+HWY_INLINE void prefetch(const Accel& accel, NodeRef ref) {
+  if (ref.is_inner())
+    prefetch_lines(accel.nodes.data() + ref.node());
+  else
+    prefetch_lines(accel.blocks.data() + ref.first_block());   // an instance: some block, which does no harm
+}
+
+/// The nearest of the children in `mask`, which is not empty; the others are pushed, the nearest of them on top.
+HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint32_t mask, const float* entry,
+                                 DepthFirstStack::Entry*& top) {
+  const int first = std::countr_zero(mask);
+  mask &= mask - 1;
+  if (mask == 0) return node.child[first];
+  const int second = std::countr_zero(mask);
+  mask &= mask - 1;
+  // Selected by arithmetic: compilers make a branch of a conditional, and which of the two is nearer is hard to guess.
+  const int flip = -static_cast<int>(entry[second] < entry[first]) & (first ^ second);
+  const int near_lane = first ^ flip, far_lane = second ^ flip;
+  DepthFirstStack::Entry nearest{entry[near_lane], node.child[near_lane].bits()};
+  DepthFirstStack::Entry* const bottom = top;
+  *top++ = {entry[far_lane], node.child[far_lane].bits()};
+  prefetch(accel, node.child[far_lane]);
+  for (; mask != 0; mask &= mask - 1) {
+    const int lane = std::countr_zero(mask);
+    DepthFirstStack::Entry other{entry[lane], node.child[lane].bits()};
+    if (other.entry < nearest.entry) std::swap(other, nearest);
+    DepthFirstStack::Entry* at = top++;
+    for (; at > bottom && at[-1].entry < other.entry; --at) *at = at[-1];
+    *at = other;
+  }
+  return NodeRef::from_bits(nearest.ref);
+}
+
+/// What a traversal counts.
+struct TraversalCounts : TestCounts {
+  CullCounts* culls;   ///< RayMembers::culls
+  explicit TraversalCounts(CullCounts* by_depth) : culls(by_depth) {}
+};
+
+/// Takes the lanes from `mask`, children among `lanes` whose boxes the ray hits, that the node's planes show to be
+/// missed. With planes first, the boxes of `lanes` that need no test are taken from counts.box.
+template <class Slab>
+HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& slab, const Vec3& direction,
+                              std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
+  if constexpr (std::is_same_v<Slab, SlabRay>)   // planes need accuracy.box: conservative
+    if (HWY_UNLIKELY(node.plane_counts != 0) && (mask != 0 || accel.planes_first))
+      return cull_lanes(accel, node, slab, direction, lanes, mask, counts, culls);
+  return mask;
+}
+
+HWY_INLINE void count_leaf(NodeRef leaf, TestCounts& counts) {
+  (HWY_UNLIKELY(leaf.is_procedural()) ? counts.procedural : counts.triangle) += leaf.triangles();
+}
+
+/// The children whose spheres the ray meets, with entries. To pass an instance's world box is part of what a hit is, so
+/// that is tested where its sphere is met, and counted.
+template <class Registers>
+HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Vec3& origin, const Vec3& direction,
+                                       const Registers& ray, float tmin, float tmax, float* entry, std::uint64_t& tested) {
+  const Node& node = accel.nodes[ref.node()];
+  std::uint32_t met = meet_spheres(accel.spheres[ref.node()], node.count, origin, direction, tmin, tmax, entry);
+  if (!node.above_instances || met == 0) return met;
+  std::uint32_t instances = 0;
+  for (int lane = 0; lane < node.count; ++lane) instances |= std::uint32_t{node.child[lane].is_instance()} << lane;
+  alignas(64) float ignored[kMaxWidth];
+  tested += static_cast<std::uint64_t>(std::popcount(instances & met));
+  met &= ~instances | slab_node(node, ray, tmax, ignored);
+  return met;
+}
+
+/// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node holds
+/// itself are not among them, nor counted.
+template <class Slab, class Registers>
+HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const FrameRay<Slab>& frame,
+                                      const Registers& ray, float tmax, float* entry, std::uint64_t& tested) {
+  const Node& node = accel.nodes[ref.node()];
+  tested += node.count;
+  if (HWY_LIKELY(accel.spheres.empty() && node.direct == 0)) return slab_node(node, ray, tmax, entry);
+  tested -= static_cast<std::uint64_t>(std::popcount(node.direct));
+  if (accel.spheres.empty()) return slab_node(node, ray, tmax, entry) & ~std::uint32_t{node.direct};
+  return met_spheres(accel, ref, frame.origin, frame.direction, ray, frame.slab.tmin, tmax, entry, tested) &
+         ~std::uint32_t{node.direct};
+}
+
+/// What is to be done after visiting something that is not an inner node.
+enum class Then { kPop, kEnter, kStop };
+
+/// Visits everything below `root`, until `visit_other(ref)`, which tests what is not an inner node, returns kStop;
+/// after kEnter it goes on with the node that `ref` has been set to. Adds the boxes and planes tested to `counts`. True
+/// when it was stopped.
+template <class Slab, class VisitOther>
+HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const FrameRay<Slab>& frame, const Hit& hit,
+                            DepthFirstStack& stack, TraversalCounts& counts, const VisitOther& visit_other) {
+  const auto ray = in_registers(frame.slab);
+  const Node* const nodes = accel.nodes.data();
+  DepthFirstStack::Entry* top = stack.entries;
+  NodeRef ref = root;
+  std::uint64_t tested = 0;
+  for (;;) {
+    while (ref.is_inner()) {
+      const Node& node = nodes[ref.node()];
+      alignas(64) float entry[kMaxWidth];
+      const std::uint32_t hits = met_children(accel, ref, frame, ray, hit.t, entry, tested);
+      for (std::uint32_t left = node.direct; HWY_UNLIKELY(left != 0); left &= left - 1) {
+        NodeRef leaf = node.child[std::countr_zero(left)];
+        if (visit_other(leaf) != Then::kStop) continue;
+        counts.box += tested;
+        return true;
+      }
+      const std::uint32_t mask = cull(accel, node, frame.slab, frame.direction, ~0u, hits, counts, counts.culls);
+      if (mask == 0) goto pop;
+      ref = nearest_child(accel, node, mask, entry, top);
+    }
+    if (const Then then = visit_other(ref); then != Then::kPop) {
+      if (then == Then::kEnter) continue;
+      counts.box += tested;
+      return true;
+    }
+  pop:
+    do {
+      if (top == stack.entries) {
+        counts.box += tested;
+        return false;
+      }
+      --top;
+    } while (top->entry > hit.t);
+    ref = NodeRef::from_bits(top->ref);
+  }
+}
+
+/// Stacks for what is above the instances and for what is below one.
+struct TraceStacks {
+  DepthFirstStack at[2];
+};
+
+/// Goes on into an instance without a transform: true, and `ref` is its root.
+template <class Slab>
+HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay<Slab>& frame) {
+  const InstanceNode& instance = accel.instances[ref.instance_index()];
+  if (!instance.transform.identity) return false;
+  frame.instance = ref.instance_index();
+  ref = instance.root;
+  return true;
+}
+
+/// Traces `record`'s ray below an instance with a transform. True when a search for any hit has found one.
+template <class Slab>
+HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord& record, TraceStacks& stacks,
+                                 TraversalCounts& counts);
+
+/// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform are
+/// entered in passing; `level` is 0 there and 1 below an instance with one.
+template <class Slab>
+HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, FrameRay<Slab>& frame,
+                              TraceStacks& stacks, int level, TraversalCounts& counts) {
+  const bool any_hit = record.tag.kind == RayKind::kShadow;
+  Hit& hit = record.hit;
+  return depth_first(accel, root, frame, hit, stacks.at[level], counts, [&](NodeRef& ref) HWY_ATTR {
+    if (HWY_LIKELY(!ref.is_instance())) {
+      count_leaf(ref, counts);
+      return test_leaf(accel, ref, ~0u, frame, hit) && any_hit ? Then::kStop : Then::kPop;
+    }
+    if (enter_instance(accel, ref, frame)) return Then::kEnter;
+    return trace_instance<Slab>(accel, ref, record, stacks, counts) ? Then::kStop : Then::kPop;
+  });
+}
+
+template <class Slab>
+HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord& record, TraceStacks& stacks,
+                                 TraversalCounts& counts) {
+  FrameStorage<Slab> below;
+  enter_frame(accel, instance.instance_index(), record, &below.ray, counts);
+  const NodeRef root = accel.instances[instance.instance_index()].root;
+  return trace_frame(accel, root, record, below.ray, stacks, 1, counts);
+}
+
+}  // namespace carousel::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard

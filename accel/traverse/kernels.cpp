@@ -1,0 +1,281 @@
+#include "accel/traverse/kernels.h"
+
+#include <utility>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "accel/traverse/kernels.cpp"
+#include <hwy/foreach_target.h>   // IWYU pragma: keep
+
+#include <hwy/highway.h>
+
+#include "accel/traverse/depth_first-inl.h"
+#include "accel/box/double_slab-inl.h"
+#include "accel/traverse/interleaved-inl.h"
+#include "accel/box/slab-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace carousel::accel::HWY_NAMESPACE {
+
+// Records of one packet lie scattered in the store; those to come are fetched while this one is tested. `kAhead` makes
+// up for the wait: the more, the shorter the tests of one record.
+template <std::size_t kAhead>
+HWY_INLINE RayRecord& member(const RayMembers& members, std::size_t i) {
+  if (members.slots == nullptr) return members.records[i];
+  if (i + kAhead < members.count) __builtin_prefetch(&members.records[members.slots[i + kAhead]], 1);
+  return members.records[members.slots[i]];
+}
+
+HWY_INLINE void settle(RayRecord& record) {
+  if (record.tag.kind == RayKind::kShadow && record.hit.valid()) record.tag.flags |= kRayDone;
+}
+
+/// Tests the primitives of the node's own leaves among `lanes`; true when the hit changed.
+template <class Slab>
+HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, const FrameRay<Slab>& frame, Hit& hit,
+                              TestCounts& counts) {
+  bool changed = false;
+  for (std::uint32_t left = node.direct & lanes; left != 0; left &= left - 1) {
+    const NodeRef leaf = node.child[std::countr_zero(left)];
+    count_leaf(leaf, counts);
+    changed |= test_leaf(accel, leaf, ~0u, frame, hit);
+  }
+  return changed;
+}
+
+/// The same for a ray that is not yet in the node's frame.
+template <class Slab>
+HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key, std::uint32_t lanes, RayRecord& record,
+                              std::uint8_t* asked, TestCounts& counts) {
+  TestCounts own;
+  FrameStorage<Slab> frame;
+  enter_frame(accel, key.instance, record, &frame.ray, own);
+  own.transforms = 0;   // counted with the boxes
+  test_direct(accel, node, lanes, frame.ray, record.hit, own);
+  settle(record);
+  if (asked != nullptr) *asked = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, own.asked));
+  counts += own;
+}
+
+// Slab: SlabRay, or DoubleSlabRay for accuracy.box: double.
+template <class Slab>
+void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+               const StripHits& hits, TestCounts& counts) {
+  const Node& node = accel.nodes[key.ref.node()];
+  const InstanceTransform* transform =
+      key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
+  lanes &= (1u << node.count) - 1;
+  const std::uint32_t direct = node.direct & lanes, held = ~std::uint32_t{node.direct};
+  const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes & held));
+  const float widening = far_widening(accel.accuracy.box);
+  alignas(64) float nearest[kMaxWidth];
+  std::copy(hits.nearest, hits.nearest + kMaxWidth, nearest);
+  for (std::size_t i = 0; i < members.count; ++i) {
+    RayRecord& record = member<16>(members, i);
+    if (record.tag.flags & kRayDone) {
+      hits.masks[i] = 0;
+      continue;
+    }
+    const bool move = transform != nullptr && !transform->identity;
+    const Ray model = move ? transform->to_model(record.ray) : record.ray;
+    const Slab ray(model, widening);
+    counts.transforms += move;
+    counts.box += boxes;
+    alignas(64) float entry[kMaxWidth];
+    std::uint32_t mask;
+    if (HWY_LIKELY(node.plane_counts == 0 && accel.spheres.empty())) {
+      mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes & held;
+    } else {
+      mask = accel.spheres.empty() ? slab_node(node, in_registers(ray), record.hit.t, entry)
+                                   : met_spheres(accel, key.ref, model.origin, model.direction, in_registers(ray), model.tmin,
+                                                 record.hit.t, entry, counts.box);
+      mask &= lanes & held;
+      mask = cull(accel, node, ray, model.direction, lanes, mask, counts, members.culls);
+      for (int lane = 0; lane < kMaxWidth; ++lane)
+        if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
+    }
+    if (HWY_UNLIKELY(direct != 0))
+      test_direct<Slab>(accel, node, key, direct, record, members.asked == nullptr ? nullptr : members.asked + i, counts);
+    hits.masks[i] = static_cast<std::uint8_t>(mask);
+    if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
+  }
+  for (int lane = 0; lane < kMaxWidth; ++lane)
+    if (lanes >> lane & 1) hits.nearest[lane] = nearest[lane];
+}
+
+template <class Slab>
+void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                   TestCounts& counts) {
+  lanes &= (1u << key.ref.triangles()) - 1;
+  const std::uint64_t tested = static_cast<std::uint64_t>(std::popcount(lanes));
+  std::uint64_t& tests = key.ref.is_procedural() ? counts.procedural : counts.triangle;
+  for (std::size_t i = 0; i < members.count; ++i) {
+    RayRecord& record = member<4>(members, i);
+    if (record.tag.flags & kRayDone) continue;
+    tests += tested;
+    const std::uint64_t asked = counts.asked;
+    FrameStorage<Slab> frame;
+    enter_frame(accel, key.instance, record, &frame.ray, counts);
+    test_leaf(accel, key.ref, lanes, frame.ray, record.hit);
+    if (members.asked != nullptr) members.asked[i] = static_cast<std::uint8_t>(counts.asked - asked);   // 32 at most
+    settle(record);
+  }
+}
+
+template <class Slab>
+void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                 const StripHits& hits, TestCounts& counts) {
+  if (key.ref.is_inner())
+    test_boxes<Slab>(accel, key, lanes, members, hits, counts);
+  else
+    test_triangles<Slab>(accel, key, lanes, members, counts);
+}
+
+template <class Slab>
+void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
+  TraceStacks stacks;
+  TraversalCounts counts(members.culls);
+  for (std::size_t i = 0; i < members.count; ++i) {
+    RayRecord& record = member<4>(members, i);
+    if (record.tag.flags & kRayDone) continue;
+    FrameStorage<Slab> frame;
+    enter_frame(accel, key.instance, record, &frame.ray, counts);
+    trace_frame(accel, key.ref, record, frame.ray, stacks, 0, counts);
+    settle(record);
+  }
+  total += counts;
+}
+
+template <class Slab>
+void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
+  constexpr std::size_t kWalkers = 4;   // two gain half as much, six nothing more
+  const Node* const nodes = accel.nodes.data();
+  TraceStacks stacks;
+  TraversalCounts counts(members.culls);
+  std::size_t next = 0;
+  Walker<Slab> walkers[kWalkers];
+  Walker<Slab>* active[kWalkers];
+  std::size_t count = 0;
+  const auto start = [&](Walker<Slab>& walker) HWY_ATTR {
+    while (next < members.count) {
+      RayRecord& record = member<8>(members, next++);
+      if (record.tag.flags & kRayDone) continue;
+      enter_frame(accel, key.instance, record, &walker.frame.ray, counts);
+      walker.record = &record;
+      walker.any_hit = record.tag.kind == RayKind::kShadow;
+      walker.top = walker.stack.entries;
+      if (walk_on(accel, walker, true, key.ref, stacks, counts)) return true;
+      settle(record);
+    }
+    return false;
+  };
+  for (Walker<Slab>& walker : walkers)
+    if (start(walker)) active[count++] = &walker;
+  while (count > 0) {
+    for (std::size_t k = 0; k < count; ++k) {
+      Walker<Slab>& walker = *active[k];
+      const Node& node = nodes[walker.ref.node()];
+      const FrameRay<Slab>& frame = walker.frame.ray;
+      walker.mask = met_children(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t, walker.entry,
+                                 counts.box);
+      walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
+      if (HWY_UNLIKELY(node.direct != 0) && test_direct(accel, node, ~0u, frame, walker.record->hit, counts) && walker.any_hit) {
+        walker.mask = 0;
+        walker.top = walker.stack.entries;
+      }
+    }
+    for (std::size_t k = 0; k < count;) {
+      Walker<Slab>& walker = *active[k];
+      const bool any = walker.mask != 0;
+      NodeRef ref;
+      if (any) ref = nearest_child(accel, nodes[walker.ref.node()], walker.mask, walker.entry, walker.top);
+      if (!walk_on(accel, walker, any, ref, stacks, counts)) {
+        settle(*walker.record);
+        if (!start(walker)) {
+          std::swap(active[k], active[--count]);
+          continue;
+        }
+      }
+      ++k;
+    }
+  }
+  total += counts;
+}
+
+void TestStrip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+               const StripHits& hits, TestCounts& counts) {
+  const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
+  (in_double ? test_shapes<DoubleSlabRay> : test_shapes<SlabRay>)(accel, key, lanes, members, hits, counts);
+}
+
+void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+  const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
+  (in_double ? trace_one_by_one<DoubleSlabRay> : trace_one_by_one<SlabRay>)(accel, key, members, counts);
+}
+
+void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+  const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
+  (in_double ? trace_in_turn<DoubleSlabRay> : trace_in_turn<SlabRay>)(accel, key, members, counts);
+}
+
+}  // namespace carousel::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <algorithm>
+
+#include "core/system/error.h"
+
+namespace carousel::accel {
+
+HWY_EXPORT(TestStrip);
+HWY_EXPORT(TraceSubtree);
+HWY_EXPORT(TraceInterleaved);
+
+void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                const StripHits& hits, TestCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(TestStrip)(accel, key, lanes, members, hits, counts);
+}
+
+void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(TraceSubtree)(accel, key, members, counts);
+}
+
+void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(TraceInterleaved)(accel, key, members, counts);
+}
+
+std::vector<std::string> simd_targets() {
+  std::vector<std::string> names;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) names.emplace_back(hwy::TargetName(target));
+  return names;
+}
+
+void select_simd_target(SimdTarget target) {
+  std::int64_t wanted = 0;
+  switch (target) {
+    case SimdTarget::kAuto:
+      hwy::SetSupportedTargetsForTest(0);
+      hwy::GetChosenTarget().DeInit();
+      return;
+    case SimdTarget::kScalar: wanted = HWY_SCALAR; break;
+    case SimdTarget::kSsse3: wanted = HWY_SSSE3; break;
+    case SimdTarget::kSse4: wanted = HWY_SSE4; break;
+    case SimdTarget::kAvx2: wanted = HWY_AVX2; break;
+    case SimdTarget::kAvx3: wanted = HWY_AVX3; break;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  const std::vector<std::int64_t> available = hwy::SupportedAndGeneratedTargets();
+  if (std::find(available.begin(), available.end(), wanted) == available.end()) {
+    std::string names;
+    for (const std::string& name : simd_targets()) names += (names.empty() ? "" : ", ") + name;
+    ConfigIssue issue;
+    issue.key_path = "engine.simd";
+    issue.message = std::string("this machine or build has no ") + hwy::TargetName(wanted) + "; it has " + names;
+    throw ConfigError({issue});
+  }
+  hwy::SetSupportedTargetsForTest(wanted);
+  hwy::GetChosenTarget().DeInit();
+}
+
+}  // namespace carousel::accel
+#endif  // HWY_ONCE

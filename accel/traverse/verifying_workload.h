@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+
+#include "accel/structure/accel.h"
+#include "core/types/workload.h"
+
+namespace carousel::accel {
+
+/// A workload that traces every completed ray of another one again, depth-first, and compares the bits of the
+/// hits (`verify: reference`). Shadow rays are compared by occluded or visible. Same threads as the workload.
+class VerifyingWorkload final : public Workload {
+ public:
+  /// Keeps references to both.
+  VerifyingWorkload(Workload& inner, const Accel& accel) : inner_(inner), accel_(accel) {}
+
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
+    return inner_.generate(worker, max_rays, out);
+  }
+  std::uint32_t extra_effects(const RayResult& result) const override { return inner_.extra_effects(result); }
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
+
+  struct Mismatch {
+    RayResult got, expected;
+  };
+  std::uint64_t compared() const { return compared_; }
+  std::uint64_t mismatches() const { return mismatches_; }
+  /// One of the mismatches, for the error message. Call when nothing runs.
+  const std::optional<Mismatch>& example() const { return example_; }
+
+ private:
+  Workload& inner_;
+  const Accel& accel_;
+  std::atomic<std::uint64_t> compared_{0}, mismatches_{0};
+  std::mutex example_mutex_;
+  std::optional<Mismatch> example_;
+};
+
+/// Whether two results of one ray are the same to the bit (of shadow rays: agree on occlusion).
+bool same_result(const RayResult& a, const RayResult& b);
+
+}  // namespace carousel::accel

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "accel/traverse/verifying_workload.h"
+#include "app/run/render_job.h"
+#include "app/run/prepare.h"
+#include "report/run/report.h"
+#include "ringbus/native/native_engine.h"
+
+namespace carousel::app {
+
+/// The report of a native run. `verifying` is null unless the run was verified.
+report::Report build_report(const Prepared& prepared, const Frame& frame, const ringbus::RunResult& result,
+                            const accel::VerifyingWorkload* verifying);
+
+}  // namespace carousel::app

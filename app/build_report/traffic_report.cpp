@@ -1,0 +1,84 @@
+#include "app/build_report/traffic_report.h"
+
+#include <algorithm>
+
+#include "accel/traverse/kernels.h"
+#include "app/host/machine_info.h"
+#include "app/host/program_info.h"
+#include "core/config/enum_names.h"
+#include "core/config/write.h"
+#include "core/numeric/digest.h"
+#include "report/text/ratio.h"
+
+namespace carousel::app {
+
+using report::ratio;
+
+namespace {
+
+report::Traffic traffic(const Config& config, const ringbus::TrafficResult& result) {
+  report::Traffic out;
+  out.packets = result.packets;
+  out.delivered = result.delivered;
+  out.flits_per_packet = result.flits;
+  out.window_begin = result.window_begin;
+  out.window_end = result.window_end;
+  out.measured = result.offered;
+  const std::uint64_t resource_cycles =
+      (result.window_end - result.window_begin) * static_cast<std::uint64_t>(config.topology.resources);
+  out.offered = ratio(result.offered, resource_cycles);
+  out.accepted = ratio(result.accepted, resource_cycles);
+  out.routers_mean = result.routers_mean();
+  out.zero_load_latency = result.zero_load_latency(config);
+  const LatencyHistogram& l = result.latency;
+  out.latency = {l.mean(), l.quantile(0.5), l.quantile(0.95), l.quantile(0.99), l.max()};
+  std::uint64_t busy = 0, busiest = 0;
+  for (const ringbus::cycle::LinkLedger& link : result.links) {
+    busy += link.use.busy;
+    busiest = std::max(busiest, link.use.busy);
+  }
+  out.link_utilisation = {ratio(busy, result.cycles * result.links.size()), ratio(busiest, result.cycles)};
+  out.flit_hops = result.flit_hops();
+  return out;
+}
+
+std::vector<report::Link> links(const Config& config, const ringbus::TrafficResult& result) {
+  std::vector<report::Link> out;
+  for (std::size_t i = 0; i < result.links.size(); ++i) {
+    const ringbus::cycle::LinkLedger& link = result.links[i];
+    report::Link& one = out.emplace_back();
+    one.from = link.from;
+    one.to = link.to;
+    one.depth = static_cast<std::uint64_t>(config.topology.link.depth);
+    one.packets = result.link_packets[i];
+    one.utilisation = ratio(link.use.busy, result.cycles);
+    one.cycles = report::LinkCycles{link.use.busy, link.use.stalled, result.cycles - link.use.busy - link.use.stalled};
+  }
+  return out;
+}
+
+}  // namespace
+
+report::Report traffic_report(const Prepared& prepared, const ringbus::TrafficResult& result) {
+  const Config& config = prepared.config();
+  report::Report r;
+  r.incomplete = !result.complete;
+  r.carousel = program_info();
+  r.config = config_json(config);
+  r.scene.name = "none";
+  r.engine.kind = enum_name(config.engine.kind);
+  r.engine.cycles = result.cycles;
+  r.engine.deterministic = true;
+  r.engine.reason = "virtual time: nothing depends on the host's threads";
+  r.links = links(config, result);
+  r.traffic = traffic(config, result);
+  r.digest.hits = HitsDigest().hex();   // of no rays
+  r.host.threads = result.threads;
+  r.host.wall_seconds = result.wall_seconds;
+  r.host.peak_memory_bytes = peak_memory_bytes();
+  r.host.simd = accel::simd_targets().front();
+  r.host.machine = machine_info();
+  return r;
+}
+
+}  // namespace carousel::app

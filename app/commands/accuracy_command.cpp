@@ -1,0 +1,216 @@
+#include "app/commands/accuracy_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <optional>
+
+#include "accel/traverse/exact_reference.h"
+#include "app/accuracy/exact_answers.h"
+#include "app/accuracy/hard_scenes.h"
+#include "app/accuracy/level_trial.h"
+#include "app/accuracy/pictures.h"
+#include "app/accuracy/sensible_levels.h"
+#include "app/host/exit_status.h"
+#include "app/host/interrupt.h"
+#include "app/host/machine_info.h"
+#include "app/host/output.h"
+#include "core/system/atomic_file.h"
+#include "core/config/enum_names.h"
+#include "report/accuracy/accuracy_plot.h"
+#include "report/accuracy/accuracy_table.h"
+#include "report/text/progress_line.h"
+
+namespace carousel::app {
+
+namespace {
+
+/// Pictures are made small enough that so many camera rays draw one.
+constexpr std::int64_t kCameraRays = 20000, kSampledPixels = 48 * 48;
+constexpr std::size_t kModelledRays = 20000;
+constexpr int kSamplingSeeds = 4;
+
+/// The picture's shape with at most `pixels`.
+void shrink(ImageConfig& image, std::int64_t pixels) {
+  while (image.width * image.height > pixels) {
+    image.width = std::max<std::int64_t>(1, image.width * 3 / 4);
+    image.height = std::max<std::int64_t>(1, image.height * 3 / 4);
+  }
+}
+
+/// Every n-th of the rays traced, as many as wanted.
+RayBatch choose_rays(const std::vector<report::HitRow>& rows, std::size_t wanted) {
+  RayBatch rays;
+  const std::size_t count = std::min(wanted, rows.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const RayResult& result = rows[i * rows.size() / count].result;
+    rays.push_back({result.ray, result.tag});
+    rays.back().tag.path = static_cast<std::uint32_t>(i);
+  }
+  return rays;
+}
+
+/// One run of the command, stage by stage. Between stages it may be stopped; the tables then end where it was.
+class Trial {
+ public:
+  Trial(const Prepared& prepared, const AccuracyArguments& arguments, const InterruptScope& interrupt)
+      : p_(prepared), arguments_(arguments), interrupt_(interrupt), small_(prepared.config()), accel_(p_.scene, small_.bvh),
+        exact_(p_.scene, p_.accel) {
+    if (!arguments.quiet) progress_.emplace(stderr);
+    small_.image.samples = std::min<std::int64_t>(small_.image.samples, 4);
+    shrink(small_.image, kCameraRays / small_.image.samples);
+    out_.scene = p_.scene.name;
+    out_.triangles = p_.scene.instanced_triangle_count();
+    out_.instances = p_.scene.instances.size();
+    out_.seed = arguments.seed;
+    out_.repetitions = arguments.repetitions;
+    out_.width = static_cast<std::uint64_t>(small_.image.width);
+    out_.height = static_cast<std::uint64_t>(small_.image.height);
+    out_.samples = static_cast<std::uint64_t>(small_.image.samples);
+    out_.machine = machine_info().cpu;
+  }
+
+  report::Accuracy run() {
+    levels_ = sensible_levels(p_.scene, small_.accuracy);
+    steps_ = 6 + 2 * levels_.size();
+    std::vector<report::HitRow> rows;
+    const Picture exact_picture = render_exact(p_.scene, small_, exact_);
+    done();
+    render(p_.scene, small_, accel_.at(small_.accuracy), &rows);
+    rays_ = choose_rays(rows, arguments_.rays);
+    out_.rays = rays_.size();
+    done();
+    make_hard();
+    try_levels(exact_picture);
+    try_spawn(exact_picture);
+    try_samples();
+    report::mark_frontier(out_.rows);
+    out_.verdict = report::accuracy_verdict(out_.rows);
+    out_.incomplete = stopped();
+    progress_.reset();
+    return std::move(out_);
+  }
+
+ private:
+  bool stopped() const { return interrupt_.interrupted(); }
+  void done() {
+    ++step_;
+    if (progress_) progress_->update(static_cast<double>(step_) / static_cast<double>(steps_), step_);
+  }
+
+  void make_hard() {
+    hard_ = hard_scenes(arguments_.hard_rays, arguments_.seed);
+    for (const HardScene& scene : hard_) {
+      out_.hard.push_back(scene.about);
+      LevelledAccel& structures = hard_accels_.emplace_back(scene.scene, BvhConfig{});
+      const accel::ExactReference reference(scene.scene, structures.at({}));
+      hard_exact_.push_back(exact_answers(reference, scene.rays));
+    }
+    done();
+  }
+
+  void try_levels(const Picture& exact_picture) {
+    const std::vector<accel::ExactHit> exact = exact_answers(exact_, rays_);
+    const std::vector<report::Spread> times =
+        time_levels(accel_, levels_, rays_, arguments_.repetitions, [&] { return stopped(); });
+    done();
+    RayBatch modelled = rays_;
+    if (modelled.size() > kModelledRays) modelled.resize(kModelledRays);
+    for (std::size_t i = 0; i < levels_.size() && !stopped(); ++i) {
+      const AccuracyConfig& levels = levels_[i];
+      report::AccuracyRow& row = out_.rows.emplace_back();
+      row.triangle = enum_name(levels.triangle), row.box = enum_name(levels.box), row.transform = enum_name(levels.transform);
+      row.ns_per_ray = times[i];
+      const accel::Accel& accel = accel_.at(levels);
+      row.scene = compare(rays_, trace(accel, rays_), exact);
+      row.picture = compare(render(p_.scene, small_, accel), exact_picture);
+      done();
+      row.modelled = modelled_cost(p_.config(), accel, p_.scene_size(), modelled);
+      for (std::size_t h = 0; h < hard_.size(); ++h) {
+        row.hard.push_back(compare(hard_[h].rays, trace(hard_accels_[h].at(levels), hard_[h].rays), hard_exact_[h]));
+        if (hard_[h].about.closed) row.leaks += row.hard.back().missed;
+      }
+      row.safe = row.leaks == 0 && row.scene.wrong() == 0;
+      done();
+    }
+  }
+
+  void try_spawn(const Picture& exact_picture) {
+    for (const SpawnOffset spawn : {SpawnOffset::kEpsilon, SpawnOffset::kUlp, SpawnOffset::kBound}) {
+      if (stopped()) return;
+      Config config = small_;
+      config.accuracy.spawn = spawn;
+      std::vector<report::HitRow> rows;
+      const Picture picture = render(p_.scene, config, accel_.at(small_.accuracy), &rows);
+      const SelfHits here = count_self_hits(std::move(rows));
+      const SelfHits far = self_hits_far_away(spawn, arguments_.hard_rays, arguments_.seed);
+      out_.spawn.push_back({std::string(enum_name(spawn)), here.bounces, here.self_hits, far.bounces, far.self_hits,
+                            compare(picture, exact_picture)});
+    }
+    done();
+  }
+
+  /// Few samples of some seeds against many of another.
+  void try_samples() {
+    Config config = small_;
+    shrink(config.image, kSampledPixels);
+    config.image.samples = 512;
+    config.image.seed = small_.image.seed + kSamplingSeeds;
+    const accel::Accel& accel = accel_.at(small_.accuracy);
+    if (stopped()) return;
+    const Picture truth = render(p_.scene, config, accel);
+    for (std::int64_t samples = 1; samples <= 64 && !stopped(); samples *= 2) {
+      config.image.samples = samples;
+      report::SamplingRow& row = out_.sampling.emplace_back(report::SamplingRow{static_cast<std::uint64_t>(samples), 0, 0});
+      for (int seed = 0; seed < kSamplingSeeds; ++seed) {
+        config.image.seed = small_.image.seed + seed;
+        const auto start = std::chrono::steady_clock::now();
+        const Picture picture = render(p_.scene, config, accel);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        row.rmse += noise(picture, truth) / kSamplingSeeds;
+        row.seconds += seconds.count() / kSamplingSeeds;
+      }
+    }
+    out_.sampling_slope = report::log_log_slope(out_.sampling);
+    done();
+  }
+
+  const Prepared& p_;
+  const AccuracyArguments& arguments_;
+  const InterruptScope& interrupt_;
+  Config small_;
+  LevelledAccel accel_;
+  accel::ExactReference exact_;
+  std::vector<AccuracyConfig> levels_;
+  RayBatch rays_;
+  std::vector<HardScene> hard_;
+  std::deque<LevelledAccel> hard_accels_;   // by hard_, whose scenes they refer to
+  std::vector<std::vector<accel::ExactHit>> hard_exact_;
+  std::optional<report::ProgressLine> progress_;
+  std::size_t step_ = 0, steps_ = 1;
+  report::Accuracy out_;
+};
+
+}  // namespace
+
+int accuracy_command(const AccuracyArguments& arguments) {
+  const InterruptScope interrupt;
+  const Prepared p = arguments.config.empty() ? prepare_config(kBuiltInConfig, "built-in", arguments.sets)
+                                              : prepare(arguments, {}, false);
+  if (p.config().workload.kind != WorkloadConfig::Kind::kRays)
+    throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});
+  const report::Accuracy accuracy = Trial(p, arguments, interrupt).run();
+  std::filesystem::path folder = arguments.out;
+  if (folder.empty())
+    folder = std::filesystem::path("out") / (arguments.config.empty() ? "accuracy" : std::filesystem::path(arguments.config).stem());
+  const std::string json = report::accuracy_json(accuracy).dump(2) + "\n";
+  write_file(folder / "accuracy.json", json);
+  write_file(folder / "accuracy.svg", report::accuracy_plot(accuracy));
+  if (arguments.json)
+    print_result(json);
+  else if (!arguments.quiet)
+    print_result(report::accuracy_table(accuracy) + "files: " + folder.string() + "/accuracy.json, accuracy.svg\n");
+  return accuracy.incomplete ? kInterrupted : kDone;
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,83 @@
+#include "app/commands/certify_command.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "accel/traverse/kernels.h"
+#include "app/accuracy/case_text.h"
+#include "app/accuracy/certificate.h"
+#include "app/accuracy/certificate_report.h"
+#include "app/host/exit_status.h"
+#include "app/host/interrupt.h"
+#include "app/host/output.h"
+#include "core/config/load.h"
+
+namespace carousel::app {
+
+namespace {
+
+/// None without a configuration: all levels.
+std::optional<AccuracyConfig> configured_level(const AccuracyArguments& arguments) {
+  if (arguments.config.empty() && arguments.sets.empty()) return std::nullopt;
+  const LocatedConfig located = arguments.config.empty() ? parse_located_config(kBuiltInConfig, "built-in", arguments.sets)
+                                                         : load_located_config(arguments.config, arguments.sets);
+  accel::select_simd_target(located.config.engine.simd);
+  return located.config.accuracy;
+}
+
+/// Cases of a file, one a line, among blank lines and comments; or the text itself.
+std::vector<CertificateCase> read_cases(const std::string& text_or_file) {
+  const std::vector<accel::Property>& properties = certified_properties();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(text_or_file, ignored)) return {parse_case(text_or_file, properties, {"--reproduce", 1, 1})};
+  std::vector<CertificateCase> cases;
+  std::ifstream file(text_or_file);
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.find_first_not_of(' ') == std::string::npos || line.starts_with('#')) continue;
+    cases.push_back(parse_case(line, properties, {text_or_file, number, 1}));
+  }
+  if (cases.empty()) throw ConfigError({{{text_or_file, 0, 0}, "", "expected a case, found none"}});
+  return cases;
+}
+
+}  // namespace
+
+int certify_command(const AccuracyArguments& arguments) {
+  const InterruptScope interrupt;
+  const std::optional<AccuracyConfig> level = configured_level(arguments);
+  const auto executor = make_tbb_executor(std::max(1u, std::thread::hardware_concurrency()));
+  const Certificate certificate = certify(arguments.seed, {arguments.cases, arguments.seconds}, level, *executor,
+                                          [&] { return interrupt.interrupted(); });
+  if (arguments.json)
+    print_result(certificate_json(certificate).dump(2) + "\n");
+  else if (!arguments.quiet || certificate.violations() > 0)
+    print_result(certificate_table(certificate));
+  if (certificate.violations() > 0) return kBroken;
+  return certificate.incomplete ? kInterrupted : kDone;
+}
+
+int reproduce_command(const AccuracyArguments& arguments) {
+  const std::vector<CertificateCase> cases = read_cases(arguments.reproduce);
+  bool broken = false;
+  nlohmann::json list = nlohmann::json::array();
+  std::string text;
+  for (const CertificateCase& one : cases) {
+    const Replay replay(one);
+    broken |= replay.judgement.broken;
+    list.push_back(replay_json(replay));
+    text += replay_text(replay);
+  }
+  if (arguments.json)
+    print_result(nlohmann::json{{"cases", list}, {"broken", broken}}.dump(2) + "\n");
+  else if (!arguments.quiet)
+    print_result(text);
+  return broken ? kBroken : kDone;
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,45 @@
+#include "app/commands/check_command.h"
+
+#include <sstream>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "app/host/exit_status.h"
+#include "app/host/machine_info.h"
+#include "app/run/memory_need.h"
+#include "app/host/output.h"
+#include "core/config/write.h"
+#include "ringbus/protocol/deadlock.h"
+
+namespace carousel::app {
+
+namespace {
+
+std::string commented(const std::string& text) {
+  std::istringstream in(text);
+  std::string out;
+  for (std::string line; std::getline(in, line);) out += "# " + line + "\n";
+  return out;
+}
+
+}  // namespace
+
+int check_command(const CheckArguments& arguments) {
+  // A topology that can deadlock gets its verdict here instead of a plain refusal.
+  const Prepared p = prepare(arguments, {.force = true}, false);
+  const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config().topology);
+  std::string text;
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
+    text = "scene: none, synthetic traffic\n";
+  } else {
+    text = fmt::format("scene: {}, {} triangles, {} instances\n", p.scene.name, p.scene.unique_triangle_count(),
+                       p.scene.instances.size());
+    text += memory_text(estimate(p.config(), false, p.scene, p.accel), usable_memory_bytes());
+  }
+  text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
+  print_result(resolved_yaml(p.config()) + "\n" + commented(text));
+  return verdict.can_deadlock ? kUsage : kDone;
+}
+
+}  // namespace carousel::app

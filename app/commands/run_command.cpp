@@ -1,0 +1,133 @@
+#include "app/commands/run_command.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include <spdlog/spdlog.h>
+
+#include "accel/planes/cull_planes.h"
+#include "accel/traverse/verifying_workload.h"
+#include "app/run/bottleneck.h"
+#include "app/build_report/build_report.h"
+#include "app/run/counting_workload.h"
+#include "app/run/effects_proof.h"
+#include "app/run/fault_cost.h"
+#include "app/run/render_job.h"
+#include "app/run/hit_recorder.h"
+#include "app/host/interrupt.h"
+#include "app/host/output.h"
+#include "app/build_report/traffic_report.h"
+#include "app/build_report/verdict.h"
+#include "core/system/atomic_file.h"
+#include "core/config/write.h"
+#include "report/text/progress_line.h"
+#include "report/text/ratio.h"
+#include "report/run/report_json.h"
+#include "report/run/report_table.h"
+#include "report/run/traffic_table.h"
+#include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/native/native_engine.h"
+#include "ringbus/cycle/traffic/traffic_engine.h"
+
+namespace carousel::app {
+
+namespace {
+
+std::filesystem::path out_folder(const RunArguments& arguments) {
+  if (!arguments.out.empty()) return arguments.out;
+  return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
+}
+
+ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& workload,
+                            const InterruptScope& interrupt, bool quiet) {
+  CountingWorkload counting(workload);
+  std::optional<report::ProgressLine> line;
+  if (!quiet) line.emplace(stderr);
+  ringbus::RunOptions options;
+  options.threads = p.threads;
+  options.stop = interrupt.token();
+  options.progress = [&](std::uint64_t completed) {
+    if (line) line->update(report::ratio(counting.generated(), frame.first_rays()), completed);
+  };
+  const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
+  return run(p.config(), p.accel, p.scene_size(), counting, options);
+}
+
+void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
+                  const std::filesystem::path& folder) {
+  if (arguments.json)
+    print_result(report::report_json(report).dump(2) + "\n");
+  else if (!arguments.quiet)
+    print_result(table + "files        " + folder.string() + "\n");
+}
+
+/// The network alone, without rays.
+int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt) {
+  std::optional<report::ProgressLine> line;
+  if (!arguments.quiet) line.emplace(stderr);
+  ringbus::RunOptions options;
+  options.threads = p.threads;
+  options.stop = interrupt.token();
+  options.progress = [&](std::uint64_t packets) {
+    if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets);
+  };
+  const ringbus::TrafficResult result = ringbus::run_traffic(p.config(), options);
+  line.reset();
+  const report::Report report = traffic_report(p, result);
+  const std::filesystem::path folder = out_folder(arguments);
+  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
+  write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
+  print_report(arguments, report, report::traffic_table(report), folder);
+  return verdict(report);
+}
+
+void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
+                 const Frame& frame, const report::Report& report, HitRecorder* recorder) {
+  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
+  frame.write_images(folder);
+  if (recorder) {
+    const std::vector<report::HitRow> rows = recorder->take();
+    if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
+    if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
+  }
+  // Last: who finds a report finds the files it speaks of.
+  write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments) {
+  const InterruptScope interrupt;
+  const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
+  const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits);
+  if (!p.config().vary.empty()) spdlog::warn("vary is for sweeps; run takes the values outside of it");
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return run_traffic_command(arguments, p, interrupt);
+
+  Frame frame(p);
+  std::optional<HitRecorder> recorder;
+  if (keep_hits) frame.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
+  std::optional<accel::VerifyingWorkload> verifying;
+  std::optional<accel::Accel> plain;   // planes and spheres are verified, too
+  if (p.config().verify == Verify::kReference) {
+    if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
+    verifying.emplace(frame.workload(), plain ? *plain : p.accel);
+  }
+  Workload& workload = verifying ? *verifying : frame.workload();
+
+  const ringbus::RunResult result = simulate(p, frame, workload, interrupt, arguments.quiet);
+  report::Report report = build_report(p, frame, result, verifying ? &*verifying : nullptr);
+  if (result.cycle) {
+    report.bound = bound_of(p.config(), result);
+    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, frame, interrupt.token());
+  }
+  if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
+  if (p.config().verify == Verify::kEffects) prove_effects(arguments, interrupt, report);
+  const std::filesystem::path folder = out_folder(arguments);
+  write_files(folder, arguments, p, frame, report, recorder ? &*recorder : nullptr);
+
+  print_report(arguments, report, report::report_table(report), folder);
+  return verdict(report);
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "app/run/prepare.h"
+
+namespace carousel::app {
+
+struct RunArguments : ConfigArguments {
+  std::string out;        ///< folder; empty: out/<name of the configuration>
+  std::string dump_rays;  ///< ray CSV to write; empty: none
+  bool hits = false, json = false, quiet = false, force = false;
+};
+
+/// `carousel run`: one simulation. Returns the exit status.
+int run_command(const RunArguments& arguments);
+
+}  // namespace carousel::app

@@ -1,0 +1,172 @@
+#include "app/commands/stress_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "app/host/exit_status.h"
+#include "app/host/interrupt.h"
+#include "app/host/output.h"
+#include "app/stress/ring_queues.h"
+#include "core/system/atomic_file.h"
+#include "core/config/enum_names.h"
+#include "core/config/edit_distance.h"
+#include "core/system/error.h"
+#include "report/text/progress_line.h"
+#include "report/text/ratio.h"
+#include "report/run/report_json.h"
+#include "report/stress/stress_table.h"
+#include "ringbus/native/link.h"
+#include "ringbus/stress/stress_run.h"
+
+namespace carousel::app {
+
+namespace {
+
+namespace stress = ringbus::stress;
+
+/// The values that the names spell; all there are for no names. Throws ConfigError.
+template <class Value, class Known>
+std::vector<Value> chosen(const std::vector<std::string>& names, const char* option, const Known& known) {
+  std::vector<Value> out;
+  std::vector<std::string> spellings;
+  for (const auto& [value, name] : known) spellings.emplace_back(name);
+  if (names.empty())
+    for (const auto& [value, name] : known) out.push_back(value);
+  for (const std::string& name : names) {
+    const auto at = std::find(spellings.begin(), spellings.end(), name);
+    if (at == spellings.end()) {
+      const auto near = nearest_name(name, spellings);
+      throw ConfigError({{{}, option, fmt::format("expected one of {}, found {}{}", fmt::join(spellings, ", "), name,
+                                                  near ? "; did you mean " + *near + "?" : "")}});
+    }
+    const auto& entry = *(std::begin(known) + (at - spellings.begin()));
+    const auto& [value, spelling] = entry;
+    out.push_back(value);
+  }
+  return out;
+}
+
+std::optional<report::StressLatency> latency_of(const LatencyHistogram& h) {
+  if (h.count() == 0) return std::nullopt;
+  const auto at = [&](double q) { return static_cast<double>(h.quantile(q)); };
+  return report::StressLatency{at(0.5), at(0.99), at(0.999), static_cast<double>(h.max())};
+}
+
+report::StressRow row_of(const stress::StressRow& row, const stress::QueueUnderTest& queue, std::size_t capacity) {
+  const stress::TrialResult& sum = row.sum;
+  report::StressRow out;
+  out.queue = queue.name;
+  out.pattern = stress::pattern_name(row.pattern);
+  out.message_bytes = row.message_bytes;
+  out.capacity = row.pattern == stress::Pattern::kCapacity1 ? 1 : row.pattern == stress::Pattern::kCapacity2 ? 2 : capacity;
+  out.threads = sum.threads;
+  out.messages = sum.messages;
+  out.rate_median = row.median();
+  out.rate_least = row.least();
+  out.rate_most = row.most();
+  out.transit = latency_of(sum.transit_ns);
+  out.round_trip = latency_of(sum.round_trip_ns);
+  out.fairness = sum.fairness;
+  out.push_refused = report::ratio(sum.push_refusals, sum.push_calls);
+  out.pop_refused = report::ratio(sum.pop_refusals, sum.pop_calls);
+  out.blocked = report::ratio(sum.blocked_seconds, sum.producer_seconds);
+  out.memory_bytes = sum.memory_bytes;
+  out.found = sum.findings.names();
+  out.detail = sum.findings.detail;
+  return out;
+}
+
+void require_sizes(const std::vector<std::size_t>& sizes) {
+  for (const std::size_t bytes : sizes)
+    if (bytes != stress::kSmall && bytes != stress::kLine && bytes != stress::kPacket)
+      throw ConfigError({{{}, "--bytes", fmt::format("expected {}, {} or {}, found {}", stress::kSmall, stress::kLine, stress::kPacket, bytes)}});
+}
+
+/// Shallow, as configured, deep.
+std::vector<std::int64_t> depths_about(const TopologyConfig& topology) {
+  std::vector<std::int64_t> depths{topology.flow == Flow::kBubble ? 2 : 1, topology.link.depth, 4 * topology.link.depth};
+  std::sort(depths.begin(), depths.end());
+  depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+  return depths;
+}
+
+}  // namespace
+
+int stress_command(const StressArguments& arguments) {
+  const InterruptScope interrupt;
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<QueueKind> kinds = chosen<QueueKind>(arguments.queues, "--queue", kEnumNames<QueueKind>);
+  std::vector<stress::Pattern> patterns = chosen<stress::Pattern>(arguments.patterns, "--pattern", stress::kPatterns);
+  require_sizes(arguments.bytes);
+  std::vector<stress::QueueUnderTest> queues;
+  for (const QueueKind kind : kinds) queues.push_back(stress::built_in_queue(kind));
+  for (const stress::Pattern pattern : patterns)
+    if (std::none_of(queues.begin(), queues.end(), [&](const auto& queue) { return stress::pattern_fits(queue, pattern); }) &&
+        !arguments.patterns.empty())
+      ringbus::require_parties(kinds[0], "--queue", ringbus::Parties::kMany, ringbus::Parties::kMany);
+  std::unique_ptr<const Prepared> prepared;
+  if (!arguments.config.empty()) {
+    prepared.reset(new Prepared(prepare(arguments, {}, false)));
+    if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic)
+      throw ConfigError({{prepared->located.positions.find("workload"), "workload", "stress tries queues with rays; expected rays"}});
+  }
+
+  std::optional<report::ProgressLine> line;
+  if (!arguments.quiet) line.emplace(stderr);
+  report::Stress out;
+  out.cores = std::max(1u, std::thread::hardware_concurrency());
+  out.repetitions = arguments.repetitions;
+
+  stress::StressOptions options;
+  options.patterns = patterns;
+  options.message_bytes = arguments.bytes;
+  options.repetitions = arguments.repetitions;
+  options.seconds = arguments.seconds;
+  options.messages = arguments.messages;
+  options.capacity = arguments.capacity;
+  options.seed = arguments.seed;
+  options.stop = interrupt.token();
+  options.progress = [&](double part) {
+    if (line) line->update(prepared ? part / 2 : part, 0);
+  };
+  for (const stress::StressRow& row : stress::run_stress(queues, options))
+    if (!row.rates.empty()) out.rows.push_back(row_of(row, queues[row.queue], arguments.capacity));
+
+  if (prepared && !interrupt.interrupted()) {
+    const std::vector<std::int64_t> depths =
+        arguments.depths.empty() ? depths_about(prepared->config().topology) : arguments.depths;
+    out.ring = try_in_ring(*prepared, kinds, depths, arguments.repetitions, interrupt.token(),
+                           [&](double part) { if (line) line->update(0.5 + part / 2, 0); });
+    out.ring_verdict = ring_verdict(out.ring);
+  }
+  line.reset();
+  out.incomplete = interrupt.interrupted();
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  std::filesystem::path folder = arguments.out;
+  if (folder.empty())
+    folder = std::filesystem::path("out") / (arguments.config.empty() ? "stress" : std::filesystem::path(arguments.config).stem());
+  const std::string json = report::stress_json(out).dump(2) + "\n";
+  write_file(folder / "stress.json", json);
+  if (arguments.json)
+    print_result(json);
+  else if (!arguments.quiet)
+    print_result(report::stress_table(out) + "files: " + (folder / "stress.json").string() + "\n");
+  if (out.broken()) {
+    std::string last;   // the table has the rest
+    for (const report::StressRow& row : out.rows)
+      if (!row.found.empty() && std::exchange(last, row.queue) != row.queue) spdlog::error("{} under {}: {} ({})", row.queue, row.pattern, row.found, row.detail);
+    return kBroken;
+  }
+  return out.incomplete ? kInterrupted : kDone;
+}
+
+}  // namespace carousel::app

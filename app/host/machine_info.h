@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+#include "report/run/report.h"
+
+namespace carousel::app {
+
+/// The machine this runs on; what cannot be found out is empty or 0.
+report::Machine machine_info();
+
+/// Memory this process may use: the machine's, or its control group's limit if that is less.
+std::uint64_t usable_memory_bytes();
+
+/// Most memory the process has had resident.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace carousel::app

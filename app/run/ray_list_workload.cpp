@@ -1,0 +1,40 @@
+#include "app/run/ray_list_workload.h"
+
+#include <algorithm>
+
+namespace carousel::app {
+
+Workload::Generated RayListWorkload::generate(WorkerId worker, std::size_t max_rays, RayBatch& out) {
+  // Relaxed: hands out disjoint ranges of a list that nobody writes.
+  std::size_t begin = next_.load(std::memory_order_relaxed), end = begin;
+  do {
+    end = begin + std::min(max_rays, rays_.size() - begin);
+  } while (!next_.compare_exchange_weak(begin, end, std::memory_order_relaxed));
+  for (std::size_t i = begin; i < end; ++i) {
+    out.push_back(rays_[i]);
+    ++workers_[worker.value].emitted[static_cast<std::size_t>(rays_[i].tag.kind)];
+  }
+  return {end - begin, end == rays_.size()};
+}
+
+void RayListWorkload::shade(WorkerId worker, const HitBatch& completed, RayBatch&) {
+  for (const RayResult& result : completed) {
+    workers_[worker.value].digest.add(hit_term(result.tag.path, 0, result.tag, result.hit));
+    if (recorder_) recorder_->record(worker, result.tag.path, 0, result);
+  }
+}
+
+std::array<std::uint64_t, kRayKinds> RayListWorkload::emitted() const {
+  std::array<std::uint64_t, kRayKinds> sum{};
+  for (const Worker& worker : workers_)
+    for (std::size_t kind = 0; kind < sum.size(); ++kind) sum[kind] += worker.emitted[kind];
+  return sum;
+}
+
+HitsDigest RayListWorkload::hits_digest() const {
+  HitsDigest sum;
+  for (const Worker& worker : workers_) sum.add(worker.digest);
+  return sum;
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "core/numeric/digest.h"
+#include "core/types/workload.h"
+#include "shading/tracer/ray_recorder.h"
+
+namespace carousel::app {
+
+/// Rays of a list (`workload: {rays_from: FILE}`): each is traced once and causes no other. Ray i counts as
+/// pixel i, sample 0.
+class RayListWorkload final : public Workload {
+ public:
+  /// rays[i].tag.path must be i.
+  RayListWorkload(RayBatch rays, std::size_t workers) : rays_(std::move(rays)), workers_(workers) {}
+
+  /// As PathTracer::set_recorder.
+  void set_recorder(shading::RayRecorder* recorder) { recorder_ = recorder; }
+
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
+
+  // Results, for when the workers are joined.
+
+  std::array<std::uint64_t, kRayKinds> emitted() const;  ///< by RayKind
+  HitsDigest hits_digest() const;
+  std::size_t size() const { return rays_.size(); }
+
+ private:
+  struct alignas(128) Worker {  // a worker writes to its own cache lines
+    std::array<std::uint64_t, kRayKinds> emitted{};
+    HitsDigest digest;
+  };
+
+  const RayBatch rays_;
+  std::vector<Worker> workers_;
+  std::atomic<std::size_t> next_{0};
+  shading::RayRecorder* recorder_ = nullptr;
+};
+
+}  // namespace carousel::app

@@ -1,0 +1,75 @@
+#include "app/run/render_job.h"
+
+#include <chrono>
+
+#include "app/run/memory_need.h"
+#include "core/system/executor.h"
+#include "report/csv/ray_csv.h"
+#include "shading/camera/image_file.h"
+
+namespace carousel::app {
+
+Frame::Frame(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
+  const auto workers = static_cast<std::size_t>(config.shading.workers);
+  if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
+    const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
+    list_ = std::make_unique<RayListWorkload>(report::read_rays_csv(path), workers);
+    first_rays_ = list_->size();
+  } else {
+    tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);
+    if (first_hits != nullptr) {
+      tracer_->set_first_hits(first_hits);
+    } else if (config.primary == Primary::kRaster) {
+      const auto start = std::chrono::steady_clock::now();
+      first_hits_ = shading::rasterize_first_hits(prepared.scene, config, prepared.alpha_test.get(),
+                                                  *make_tbb_executor(prepared.threads));
+      tracer_->set_first_hits(&first_hits_);
+      raster_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+    first_rays_ = static_cast<std::uint64_t>(config.image.width * config.image.height * config.image.samples);
+  }
+}
+
+Workload& Frame::workload() const {
+  return tracer_ ? static_cast<Workload&>(*tracer_) : *list_;
+}
+
+void Frame::set_recorder(shading::RayRecorder* recorder) {
+  if (tracer_) tracer_->set_recorder(recorder);
+  if (list_) list_->set_recorder(recorder);
+}
+
+std::uint64_t Frame::first_rays() const {
+  return first_rays_;
+}
+
+std::array<std::uint64_t, kRayKinds> Frame::emitted() const {
+  return tracer_ ? tracer_->counts().emitted : list_->emitted();
+}
+
+std::uint64_t Frame::saturated() const {
+  return tracer_ ? tracer_->counts().saturated : 0;
+}
+
+std::string Frame::hits_digest() const {
+  return (tracer_ ? tracer_->hits_digest() : list_->hits_digest()).hex();
+}
+
+std::optional<std::string> Frame::image_digest() const {
+  return tracer_ ? std::optional(tracer_->image_digest()) : std::nullopt;
+}
+
+std::optional<report::Raster> Frame::raster() const {
+  if (!raster_seconds_) return std::nullopt;
+  const shading::FirstHits::Counts& c = first_hits_.counts;
+  return report::Raster{c.triangles, c.binned, c.tested, c.asked, c.hits, c.misses, c.left_to_rays};
+}
+
+void Frame::write_images(const std::filesystem::path& folder) const {
+  if (!tracer_) return;
+  const std::vector<float> rgb = tracer_->linear_rgb();
+  shading::write_png(folder / "image.png", tracer_->width(), tracer_->height(), rgb);
+  shading::write_exr(folder / "image.exr", tracer_->width(), tracer_->height(), rgb);
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/rays/contestants.h"
+#include "core/config/config.h"
+
+namespace carousel::bench {
+
+/// What the command line of bench_rays asks for.
+struct Options {
+  std::vector<std::string> builtins{"terrain", "spheres"};
+  std::vector<std::int64_t> sizes{100'000};
+  std::vector<std::string> files;
+  std::vector<std::string> sets;    ///< empty: all
+  std::uint32_t image_side = 1024;  ///< of the primary rays' image
+  std::uint64_t seed = 1;
+  std::vector<int> threads{1, 2};
+  int repetitions = 5;
+  bool quick = false;
+  bool build = true;
+  RingSettings ring;
+  BvhConfig bvh;
+  Field field;
+  std::string json;               ///< where to write the results
+  std::string markdown;           ///< the document whose tables to draw
+  std::vector<std::string> from;  ///< results to draw instead of measuring
+  std::string micro;              ///< bench_kernels' results, to be drawn too
+
+  /// What the results should name, as key and value.
+  std::map<std::string, std::string> describe() const;
+};
+
+/// Nothing when the program is to end with `exit_status` (help, or an error that has been printed).
+std::optional<Options> parse_options(int argc, char** argv, int& exit_status);
+
+}  // namespace carousel::bench

@@ -1,0 +1,101 @@
+#include "core/config/load.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <tuple>
+
+#include "core/config/reader.h"
+#include "core/config/tree/tree.h"
+
+namespace carousel {
+
+namespace {
+
+/// Whether one of the two paths encloses the other; the empty path encloses all.
+bool related(std::string_view a, std::string_view b) {
+  if (a.empty() || b.empty()) return true;
+  const std::size_t shorter = std::min(a.size(), b.size());
+  if (a.substr(0, shorter) != b.substr(0, shorter)) return false;
+  return a.size() == b.size() || (a.size() > b.size() ? a : b)[shorter] == '.';
+}
+
+/// In the order of the file; what --set brought comes last.
+void sort_by_position(std::vector<ConfigIssue>& issues, const std::string& file) {
+  const auto rank = [&](const ConfigIssue& issue) {
+    const SourcePosition& at = issue.position;
+    return std::tuple(at.file != file, at.line, at.column);
+  };
+  std::stable_sort(issues.begin(), issues.end(),
+                   [&](const ConfigIssue& a, const ConfigIssue& b) { return rank(a) < rank(b); });
+}
+
+/// What an override of a single resource starts from: the testers all resources have.
+TestersConfig read_base_testers(const config::Node& root) {
+  TestersConfig testers;
+  std::vector<ConfigIssue> ignored;  // reported when the section is read for good
+  if (const config::Node* node = root.find("testers")) config::Reader(ignored, {}).read(*node, testers);
+  return testers;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+  const auto fail = [&](const std::string& why) {
+    throw ConfigError({{{path.string(), 0, 0}, "", "cannot be read: " + why}});
+  };
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) fail("it is a folder");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail(std::strerror(errno));
+  std::string text(config::kMaxBytes + 1, '\0');  // one more than allowed, so that too much is seen
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) fail(std::strerror(errno));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+}  // namespace
+
+LocatedConfig read_config(std::string_view text, const std::string& name, std::span<const std::string> sets,
+                          std::vector<ConfigIssue>& issues) {
+  config::Node root = config::parse_tree(text, name, issues);
+  if (root.kind == config::Node::Kind::kNull) root.kind = config::Node::Kind::kMap;  // an empty file
+  if (root.kind == config::Node::Kind::kMap)
+    for (const std::string& set : sets) config::apply_set(root, set, issues);
+  LocatedConfig out{{}, KeyPositions(root, name)};
+  config::Reader(issues, read_base_testers(root)).read(root, out.config);
+  return out;
+}
+
+LocatedConfig parse_located_config(std::string_view text, const std::string& name,
+                                   std::span<const std::string> sets, const ValidateOptions& options) {
+  std::vector<ConfigIssue> issues;
+  LocatedConfig located = read_config(text, name, sets, issues);
+  const std::size_t read_issues = issues.size();
+  for (ConfigIssue& issue : validate_config(located.config, located.positions, options)) {
+    // A field that could not be read has its default, of which nothing should be said.
+    const bool about_unread = std::any_of(issues.begin(), issues.begin() + std::ptrdiff_t(read_issues),
+                                          [&](const auto& r) { return related(r.key_path, issue.key_path); });
+    if (!about_unread) issues.push_back(std::move(issue));
+  }
+  if (issues.empty()) return located;
+  sort_by_position(issues, name);
+  throw ConfigError(std::move(issues));
+}
+
+Config parse_config(std::string_view text, const std::string& name, std::span<const std::string> sets,
+                    const ValidateOptions& options) {
+  return parse_located_config(text, name, sets, options).config;
+}
+
+LocatedConfig load_located_config(const std::filesystem::path& path, std::span<const std::string> sets,
+                                  const ValidateOptions& options) {
+  return parse_located_config(read_text(path), path.string(), sets, options);
+}
+
+Config load_config(const std::filesystem::path& path, std::span<const std::string> sets,
+                   const ValidateOptions& options) {
+  return load_located_config(path, sets, options).config;
+}
+
+}  // namespace carousel

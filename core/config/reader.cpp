@@ -1,0 +1,263 @@
+#include "core/config/reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/config/schema.h"
+#include "core/config/edit_distance.h"
+
+namespace carousel::config {
+
+namespace {
+
+std::string with_unit(const char* unit) {
+  return *unit ? fmt::format(" ({})", unit) : "";
+}
+
+std::string expected_integer(IntRange range, const char* unit) {
+  if (range.min == range.max) return std::to_string(range.min);
+  return fmt::format("an integer from {} to {}{}", range.min, range.max, with_unit(unit));
+}
+
+std::string expected_real(RealRange range, const char* unit) {
+  return fmt::format("a number {}{} to {:g}{}", range.above_min ? "above " : "from ", range.min, range.max,
+                     with_unit(unit));
+}
+
+std::optional<std::int64_t> integer_of(const Node& node, IntRange range) {
+  if (node.kind != Node::Kind::kInt) return std::nullopt;
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(node.text.data(), node.text.data() + node.text.size(), value);
+  if (error != std::errc{} || value < range.min || value > range.max) return std::nullopt;
+  return value;
+}
+
+template <class Real>
+std::optional<Real> real_of(const Node& node, RealRange range) {
+  if (node.kind != Node::Kind::kInt && node.kind != Node::Kind::kFloat) return std::nullopt;
+  Real value = 0;
+  const auto [end, error] = std::from_chars(node.text.data(), node.text.data() + node.text.size(), value);
+  // Written so that NaN is refused.
+  const bool inside = (range.above_min ? value > range.min : value >= range.min) && value <= range.max;
+  if (error != std::errc{} || !inside) return std::nullopt;
+  return value;
+}
+
+std::string join(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool is_scalar(const Node& node) {
+  return node.kind != Node::Kind::kSeq && node.kind != Node::Kind::kMap && node.kind != Node::Kind::kNull;
+}
+
+}  // namespace
+
+Reader::Visit::Visit(Reader& r, std::string_view key) : reader(r), node(r.frames_.back().node->find(key)) {
+  r.frames_.back().known.emplace_back(key);
+  r.path_.emplace_back(key);
+}
+
+std::string Reader::path() const {
+  return fmt::format("{}", fmt::join(path_, "."));
+}
+
+void Reader::wrong(const Node& node, const std::string& expected, const std::string& hint) {
+  issues_.push_back(
+      {node.position, path(), fmt::format("expected {}, found {}{}", expected, node.found(), hint)});
+}
+
+void Reader::field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (const auto number = integer_of(*visit.node, range))
+    value = *number;
+  else
+    wrong(*visit.node, expected_integer(range, unit));
+}
+
+template <class Real>
+void Reader::real(std::string_view key, Real& value, RealRange range, const char* unit) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (const auto number = real_of<Real>(*visit.node, range))
+    value = *number;
+  else
+    wrong(*visit.node, expected_real(range, unit));
+}
+
+void Reader::field(std::string_view key, float& value, RealRange range, const char* unit, const char*) {
+  real(key, value, range, unit);
+}
+void Reader::field(std::string_view key, double& value, RealRange range, const char* unit, const char*) {
+  real(key, value, range, unit);
+}
+
+void Reader::field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind != Node::Kind::kSeq || visit.node->items.size() != 3)
+    return wrong(*visit.node, "a list of 3 numbers");
+  for (int axis = 0; axis < 3; ++axis) {
+    const Node& item = visit.node->items[std::size_t(axis)];
+    if (const auto number = real_of<float>(item, range))
+      value[axis] = *number;
+    else
+      wrong(item, expected_real(range, unit));
+  }
+}
+
+void Reader::field(std::string_view key, bool& value, const char*, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind == Node::Kind::kBool)
+    value = visit.node->text == "true";
+  else
+    wrong(*visit.node, "true or false");
+}
+
+void Reader::field(std::string_view key, std::string& value, const char*, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  // A file may well be called 12 or true.
+  if (is_scalar(*visit.node) && !visit.node->text.empty())
+    value = visit.node->text;
+  else
+    wrong(*visit.node, "a text that is not empty");
+}
+
+void Reader::field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range,
+                           const char* unit, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind == Node::Kind::kString && visit.node->text == "auto")
+    value.reset();
+  else if (const auto number = integer_of(*visit.node, range))
+    value = *number;
+  else
+    wrong(*visit.node, "auto or " + expected_integer(range, unit));
+}
+
+std::optional<std::size_t> Reader::choose(const Node& node, const std::vector<std::string>& names) {
+  if (is_scalar(node))
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i] == node.text) return i;
+  const auto near = is_scalar(node) ? nearest_name(node.text, names) : std::nullopt;
+  wrong(node, "one of " + join(names), near ? fmt::format("; did you mean '{}'?", *near) : "");
+  return std::nullopt;
+}
+
+void Reader::section_or_number(std::string_view key, TesterUnits& value, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind == Node::Kind::kMap) return read(*visit.node, value);
+  const IntRange range{1, 1024};
+  if (const auto number = integer_of(*visit.node, range))
+    value.units = *number;
+  else
+    wrong(*visit.node, "a map or " + expected_integer(range, "units"));
+}
+
+void Reader::list(std::string_view key, std::vector<ResourceOverride>& value, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind != Node::Kind::kSeq) return wrong(*visit.node, "a list");
+  value.clear();
+  for (std::size_t i = 0; i < visit.node->items.size(); ++i) {
+    ResourceOverride item;
+    item.testers = base_testers_;
+    path_.push_back(std::to_string(i));
+    if (visit.node->items[i].kind == Node::Kind::kMap && !visit.node->items[i].find("resource"))
+      issues_.push_back({visit.node->items[i].position, path(), "expected the key 'resource'"});
+    read(visit.node->items[i], item);
+    path_.pop_back();
+    value.push_back(item);
+  }
+}
+
+void Reader::effects(std::string_view key, ShadingConfig::Effects& value, const char*) {
+  using Choice = ShadingConfig::Effects::Choice;
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  const Node& node = *visit.node;
+  if (node.kind == Node::Kind::kString && (node.text == "auto" || node.text == "all")) {
+    value.choice = node.text == "auto" ? Choice::kAuto : Choice::kAll;
+  } else if (node.kind == Node::Kind::kSeq) {
+    value.choice = Choice::kList;
+    value.names.clear();
+    for (const Node& item : node.items) {
+      if (item.kind == Node::Kind::kString)
+        value.names.push_back(item.text);
+      else
+        wrong(item, "the name of an effect");
+    }
+  } else {
+    wrong(node, "auto, all or a list of effects");
+  }
+}
+
+void Reader::workload(std::string_view key, WorkloadConfig& value, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  const Node& node = *visit.node;
+  const std::string expected = "rays, {rays_from: FILE} or {traffic: {...}}";
+  if (node.kind == Node::Kind::kString && node.text == "rays") {
+    value.kind = WorkloadConfig::Kind::kRays;
+  } else if (node.kind == Node::Kind::kMap) {
+    frames_.push_back({&node, {}});
+    field("rays_from", value.rays_from, "", "");
+    section("traffic", value.traffic, "");
+    report_unknown(frames_.back());
+    frames_.pop_back();
+    const bool from_file = node.find("rays_from"), traffic = node.find("traffic");
+    if (from_file == traffic)
+      issues_.push_back({node.position, path(), "expected " + expected});
+    else
+      value.kind = traffic ? WorkloadConfig::Kind::kTraffic : WorkloadConfig::Kind::kRaysFrom;
+  } else {
+    wrong(node, expected);
+  }
+}
+
+void Reader::vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind != Node::Kind::kMap) return wrong(*visit.node, "a map of key paths to values");
+  for (const Member& member : visit.node->members) {
+    path_.push_back(member.key);
+    std::vector<std::string>& texts = value[member.key];
+    if (is_scalar(member.value))
+      texts = {member.value.text};
+    else if (member.value.kind != Node::Kind::kSeq || member.value.items.empty())
+      wrong(member.value, "a list of values");
+    for (const Node& item : member.value.items) {
+      if (is_scalar(item))
+        texts.push_back(item.text);
+      else
+        wrong(item, "a value");
+    }
+    path_.pop_back();
+  }
+}
+
+void Reader::report_unknown(const Frame& frame) {
+  for (const Member& member : frame.node->members) {
+    if (std::find(frame.known.begin(), frame.known.end(), member.key) != frame.known.end()) continue;
+    path_.push_back(member.key);
+    std::string message = "unknown key";
+    if (const auto near = nearest_name(member.key, frame.known)) {
+      message += fmt::format("; did you mean '{}'?", *near);
+    } else if (const auto elsewhere = config_path_ending_in(member.key)) {
+      message += fmt::format("; did you mean '{}'?", *elsewhere);
+    } else {
+      message += "; known here: " + join(frame.known);
+    }
+    issues_.push_back({member.key_position, path(), std::move(message)});
+    path_.pop_back();
+  }
+}
+
+}  // namespace carousel::config

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/config/fields.h"
+#include "core/config/tree/tree.h"
+
+namespace carousel::config {
+
+/// The visitor that fills a Config from a tree. Nothing is thrown: what is wrong becomes an issue, and the
+/// field keeps its default.
+class Reader {
+ public:
+  Reader(std::vector<ConfigIssue>& issues, const TestersConfig& base)
+      : issues_(issues), base_testers_(base) {}
+
+  /// Reads the whole struct from `node`.
+  template <class T>
+  void read(const Node& node, T& value) {
+    if (node.kind != Node::Kind::kMap) return wrong(node, "a map");
+    frames_.push_back({&node, {}});
+    describe(*this, value);
+    report_unknown(frames_.back());
+    frames_.pop_back();
+  }
+
+  void field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*);
+  void field(std::string_view key, float& value, RealRange range, const char* unit, const char*);
+  void field(std::string_view key, double& value, RealRange range, const char* unit, const char*);
+  void field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*);
+  void field(std::string_view key, bool& value, const char*, const char*);
+  void field(std::string_view key, std::string& value, const char*, const char*);
+  void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range,
+                     const char* unit, const char*);
+
+  template <class E>
+  void choice(std::string_view key, E& value, const char*) {
+    const Visit visit(*this, key);
+    if (!visit.node) return;
+    if (const auto index = choose(*visit.node, names<E>())) value = kEnumNames<E>[*index].value;
+  }
+  template <class E>
+  void choice(std::string_view key, std::optional<E>& value, const char* meaning) {
+    E chosen{};
+    const std::size_t before = issues_.size();
+    choice(key, chosen, meaning);
+    if (issues_.size() == before && frames_.back().node->find(key)) value = chosen;
+  }
+
+  template <class T>
+  void section(std::string_view key, T& value, const char*) {
+    const Visit visit(*this, key);
+    if (visit.node) read(*visit.node, value);
+  }
+  template <class T>
+  void section(std::string_view key, std::optional<T>& value, const char*) {
+    const Visit visit(*this, key);
+    if (visit.node) read(*visit.node, value.emplace());
+  }
+
+  void section_or_number(std::string_view key, TesterUnits& value, const char*);
+  void list(std::string_view key, std::vector<ResourceOverride>& value, const char*);
+  void effects(std::string_view key, ShadingConfig::Effects& value, const char*);
+  void workload(std::string_view key, WorkloadConfig& value, const char*);
+  void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*);
+
+ private:
+  struct Frame {
+    const Node* node;
+    std::vector<std::string> known;  ///< keys asked for
+  };
+
+  /// Looks a key up in the innermost map and extends the path while its value is read.
+  struct Visit {
+    Visit(Reader& r, std::string_view key);
+    ~Visit() { reader.path_.pop_back(); }
+    Visit(const Visit&) = delete;
+    Visit& operator=(const Visit&) = delete;
+    Reader& reader;
+    const Node* node;  ///< null when the key is not given
+  };
+
+  template <class E>
+  static std::vector<std::string> names() {
+    std::vector<std::string> out;
+    for (const auto& entry : kEnumNames<E>) out.emplace_back(entry.name);
+    return out;
+  }
+
+  template <class Real>
+  void real(std::string_view key, Real& value, RealRange range, const char* unit);
+  std::optional<std::size_t> choose(const Node& node, const std::vector<std::string>& names);
+  void read_override(const Node& node, ResourceOverride& value);
+  void report_unknown(const Frame& frame);
+  void wrong(const Node& node, const std::string& expected, const std::string& hint = "");
+  std::string path() const;
+
+  std::vector<ConfigIssue>& issues_;
+  TestersConfig base_testers_;  ///< what an override starts from
+  std::vector<Frame> frames_;
+  std::vector<std::string> path_;
+};
+
+}  // namespace carousel::config

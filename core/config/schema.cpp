@@ -1,0 +1,240 @@
+#include "core/config/schema.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/config/fields.h"
+#include "core/config/write.h"
+#include "core/types/effect.h"
+
+namespace carousel {
+
+using Json = nlohmann::ordered_json;
+
+namespace config {
+
+namespace {
+
+/// The visitor that writes the schema of the struct it is shown, with that struct's values as defaults.
+class SchemaWriter {
+ public:
+  template <class T>
+  static Json object(T value, const char* meaning) {
+    SchemaWriter writer;
+    describe(writer, value);
+    Json out{{"type", "object"}};
+    if (*meaning) out["description"] = meaning;
+    out["properties"] = std::move(writer.properties_);
+    out["additionalProperties"] = false;
+    return out;
+  }
+
+  void field(std::string_view key, std::int64_t& value, IntRange range, const char* unit,
+             const char* meaning) {
+    Json out = integer(range);
+    out["default"] = value;
+    put(key, std::move(out), unit, meaning);
+  }
+  void field(std::string_view key, float& value, RealRange range, const char* unit, const char* meaning) {
+    Json out = real(range);
+    out["default"] = shortest(value);
+    put(key, std::move(out), unit, meaning);
+  }
+  void field(std::string_view key, double& value, RealRange range, const char* unit, const char* meaning) {
+    Json out = real(range);
+    out["default"] = value;
+    put(key, std::move(out), unit, meaning);
+  }
+  void field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* meaning) {
+    put(key,
+        {{"type", "array"},
+         {"items", real(range)},
+         {"minItems", 3},
+         {"maxItems", 3},
+         {"default", {shortest(value.x), shortest(value.y), shortest(value.z)}}},
+        unit, meaning);
+  }
+  void field(std::string_view key, bool& value, const char* unit, const char* meaning) {
+    put(key, {{"type", "boolean"}, {"default", value}}, unit, meaning);
+  }
+  void field(std::string_view key, std::string&, const char* unit, const char* meaning) {
+    put(key, {{"type", "string"}, {"minLength", 1}}, unit, meaning);
+  }
+  void field_or_auto(std::string_view key, std::optional<std::int64_t>&, IntRange range, const char* unit,
+                     const char* meaning) {
+    put(key, {{"anyOf", {Json{{"const", "auto"}}, integer(range)}}, {"default", "auto"}}, unit, meaning);
+  }
+  template <class E>
+  void choice(std::string_view key, E& value, const char* meaning) {
+    put(key, {{"enum", names<E>()}, {"default", enum_name(value)}}, "", meaning);
+  }
+  template <class E>
+  void choice(std::string_view key, std::optional<E>&, const char* meaning) {
+    put(key, {{"enum", names<E>()}}, "", meaning);
+  }
+  template <class T>
+  void section(std::string_view key, T& value, const char* meaning) {
+    properties_[std::string(key)] = object(value, meaning);
+  }
+  template <class T>
+  void section(std::string_view key, std::optional<T>&, const char* meaning) {
+    properties_[std::string(key)] = object(T{}, meaning);
+  }
+  void section_or_number(std::string_view key, TesterUnits& value, const char* meaning) {
+    const Json section = object(value, "");
+    Json units = section["properties"]["units"];
+    units.erase("default");
+    put(key, {{"anyOf", {section, std::move(units)}}}, "", meaning);
+  }
+  template <class T>
+  void list(std::string_view key, std::vector<T>&, const char* meaning) {
+    Json item = object(T{}, "");
+    item["required"] = {"resource"};
+    put(key, {{"type", "array"}, {"items", std::move(item)}, {"default", Json::array()}}, "", meaning);
+  }
+  void effects(std::string_view key, ShadingConfig::Effects&, const char* meaning) {
+    put(key,
+        {{"anyOf",
+          {Json{{"enum", {"auto", "all"}}}, Json{{"type", "array"}, {"items", {{"enum", kEffectNames}}}}}},
+         {"default", "auto"}},
+        "", meaning);
+  }
+  void workload(std::string_view key, WorkloadConfig& value, const char* meaning) {
+    const auto one_key = [](const char* name, Json schema) {
+      return Json{{"type", "object"},
+                  {"properties", {{name, std::move(schema)}}},
+                  {"required", {name}},
+                  {"additionalProperties", false}};
+    };
+    Json from = one_key(
+        "rays_from", {{"type", "string"},
+                      {"minLength", 1},
+                      {"description", "ray CSV, relative to the config's folder, then to the working one"}});
+    put(key,
+        {{"anyOf",
+          {Json{{"const", "rays"}}, from, one_key("traffic", object(value.traffic, "synthetic packets"))}},
+         {"default", "rays"}},
+        "", meaning);
+  }
+  void vary(std::string_view key, std::map<std::string, std::vector<std::string>>&, const char* meaning) {
+    const Json scalar{{"type", {"string", "number", "boolean"}}};
+    put(key,
+        {{"type", "object"},
+         {"additionalProperties",
+          {{"anyOf", {scalar, Json{{"type", "array"}, {"items", scalar}, {"minItems", 1}}}}}},
+         {"default", Json::object()}},
+        "", meaning);
+  }
+
+ private:
+  static Json integer(IntRange range) {
+    return {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}};
+  }
+  static Json real(RealRange range) {
+    return {{"type", "number"},
+            {range.above_min ? "exclusiveMinimum" : "minimum", range.min},
+            {"maximum", range.max}};
+  }
+  template <class E>
+  static std::vector<std::string> names() {
+    std::vector<std::string> out;
+    for (const auto& entry : kEnumNames<E>) out.emplace_back(entry.name);
+    return out;
+  }
+  void put(std::string_view key, Json schema, const char* unit, const char* meaning) {
+    if (*unit) schema["unit"] = unit;
+    schema["description"] = meaning;
+    properties_[std::string(key)] = std::move(schema);
+  }
+
+  Json properties_ = Json::object();
+};
+
+/// Calls visit(path, schema) for every key below `schema`, outer keys first.
+template <class Visit>
+void walk(const Json& schema, const std::string& path, const Visit& visit) {
+  if (const auto alternatives = schema.find("anyOf"); alternatives != schema.end())
+    for (const Json& alternative : *alternatives) walk(alternative, path, visit);
+  if (const auto items = schema.find("items"); items != schema.end()) walk(*items, path + ".0", visit);
+  const auto properties = schema.find("properties");
+  if (properties == schema.end()) return;
+  for (const auto& [key, value] : properties->items()) {
+    const std::string child = path.empty() ? key : path + "." + key;
+    visit(child, value);
+    walk(value, child, visit);
+  }
+}
+
+std::string kind_text(const Json& schema) {
+  if (schema.contains("const")) return schema["const"].get<std::string>();
+  if (schema.contains("enum"))
+    return fmt::format("{}", fmt::join(schema["enum"].get<std::vector<std::string>>(), ", "));
+  if (schema.contains("anyOf")) {
+    std::string out;
+    for (const Json& alternative : schema["anyOf"])
+      out += (out.empty() ? "" : " or ") + kind_text(alternative);
+    return out;
+  }
+  if (!schema["type"].is_string()) return "value";
+  const std::string type = schema["type"];
+  if (type == "object") return "map";
+  if (type == "array") return "list";
+  if (type == "string") return "text";
+  if (type == "boolean") return "true, false";
+  const bool above = schema.contains("exclusiveMinimum");
+  return fmt::format("{}{} to {}", above ? "above " : "",
+                     schema[above ? "exclusiveMinimum" : "minimum"].dump(), schema["maximum"].dump());
+}
+
+}  // namespace
+
+const std::vector<std::string>& config_key_paths() {
+  // Made once: a file may hold thousands of unknown keys.
+  static const std::vector<std::string> paths = [] {
+    std::vector<std::string> out;
+    walk(config_schema(), "", [&](const std::string& path, const Json&) { out.push_back(path); });
+    return out;
+  }();
+  return paths;
+}
+
+std::optional<std::string> config_path_ending_in(std::string_view key) {
+  const std::string ending = "." + std::string(key);
+  std::optional<std::string> best;
+  for (const std::string& path : config_key_paths()) {
+    if (path.size() <= ending.size() || path.compare(path.size() - ending.size(), ending.size(), ending) != 0)
+      continue;
+    if (!best || path.size() < best->size()) best = path;
+  }
+  return best;
+}
+
+}  // namespace config
+
+Json config_schema() {
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", "Carousel configuration"}};
+  schema.update(config::SchemaWriter::object(Config{}, ""));
+  schema["required"] = {"scene"};
+  Json& scene = schema["properties"]["scene"];
+  scene["oneOf"] = {Json{{"required", {"file"}}}, Json{{"required", {"builtin"}}}};
+  return schema;
+}
+
+std::string config_markdown() {
+  std::string out = "| key | values | default | unit | meaning |\n|---|---|---|---|---|\n";
+  config::walk(config_schema(), "", [&](const std::string& path, const Json& schema) {
+    if (path.find(".0.testers.") != path.npos) return;  // the same as testers, once is enough
+    const std::string value = schema.contains("default") ? schema["default"].dump() : "";
+    std::string shown = schema.contains("default") && schema["default"].is_string()
+                            ? schema["default"].get<std::string>()
+                            : value;
+    out += fmt::format("| `{}` | {} | {} | {} | {} |\n", path, config::kind_text(schema), shown,
+                       schema.value("unit", ""), schema.value("description", ""));
+  });
+  return out;
+}
+
+}  // namespace carousel

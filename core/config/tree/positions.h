@@ -1,0 +1,28 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "core/config/tree/tree.h"
+
+namespace carousel {
+
+/// Where the values of a configuration stand in the user's files, by key path.
+class KeyPositions {
+ public:
+  KeyPositions() = default;
+  KeyPositions(const config::Node& root, std::string file);
+
+  /// Of the value at `path`; of the nearest enclosing section when it is not given; of the file at last.
+  SourcePosition find(std::string_view path) const;
+  const std::string& file() const { return file_; }
+
+ private:
+  void collect(const config::Node& node, const std::string& path);
+
+  std::string file_;
+  std::map<std::string, SourcePosition, std::less<>> positions_;
+};
+
+}  // namespace carousel

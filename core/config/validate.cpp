@@ -1,0 +1,310 @@
+#include "core/config/validate.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/config/enum_names.h"
+#include "core/config/schema.h"
+#include "core/config/edit_distance.h"
+#include "core/types/effect.h"
+
+namespace carousel {
+
+namespace {
+
+class Rules {
+ public:
+  Rules(const Config& config, const KeyPositions& positions, const ValidateOptions& options)
+      : c(config), options_(options), positions_(positions) {}
+
+  std::vector<ConfigIssue> check() {
+    one_scene();
+    raster_needs_a_pinhole();
+    built_shape();
+    stored_transform_fits();
+    built_planes_and_bundles();
+    built_packets();
+    built_shading();
+    built_testers();
+    built_workload();
+    flow_that_can_deadlock();
+    bubble_needs_two_places();
+    ordered_needs_strips();
+    hashed_homes_spill();
+    overrides_name_resources();
+    faults_have_a_place();
+    vary_names_keys();
+    return std::move(issues_);
+  }
+
+ private:
+  void issue(const std::string& key, std::string message) {
+    issues_.push_back({positions_.find(key), key, std::move(message)});
+  }
+
+  template <class T>
+  void only(const std::string& key, T value, T built, std::string_view found, std::string_view expected) {
+    if (value != built) issue(key, fmt::format("{} is not built yet; expected {}", found, expected));
+  }
+  template <class E>
+  void only(const std::string& key, E value, E built) {
+    only(key, value, built, enum_name(value), enum_name(built));
+  }
+
+  void one_scene() {
+    if (c.scene.file.empty() && !c.scene.builtin) {
+      if (c.workload.kind == WorkloadConfig::Kind::kTraffic) return;  // traffic meets no scene
+      issue("scene", "expected a scene: file, or builtin (cornell, spheres, terrain, instances, sliver)");
+    }
+    if (!c.scene.file.empty() && c.scene.builtin)
+      issue("scene.builtin", "expected either file or builtin, found both");
+  }
+
+  void raster_needs_a_pinhole() {
+    if (c.primary != Primary::kRaster) return;
+    if (c.camera.aperture > 0)
+      issue("camera.aperture", fmt::format("primary: raster needs a pinhole; expected 0, or primary: rays, found {}",
+                                           c.camera.aperture));
+    if (c.workload.kind != WorkloadConfig::Kind::kRays)
+      issue("primary", "this workload has no camera; expected rays, found raster");
+  }
+
+  bool cycle() const { return c.engine.kind == EngineKind::kCycle; }
+
+  void built_shape() {
+    const TopologyShape shape = c.topology.shape;
+    if (shape == TopologyShape::kRing || shape == TopologyShape::kBidirectional ||
+        shape == TopologyShape::kPointToPoint)
+      return;
+    if (cycle() && (shape == TopologyShape::kMultiRing || shape == TopologyShape::kHierarchical ||
+                    shape == TopologyShape::kBus || shape == TopologyShape::kIndependent))
+      return;
+    issue("topology.shape",
+          fmt::format("the {} engine has no {}; expected ring, bidirectional{}",
+                      enum_name(c.engine.kind), enum_name(shape),
+                      cycle() ? ", multi_ring, hierarchical, point_to_point, bus or independent" : " or point_to_point"));
+  }
+
+  void stored_transform_fits() {
+    using Data = AccuracyConfig::InstanceData;
+    const AccuracyConfig& a = c.accuracy;
+    if (!a.instance_data) return;
+    const bool one_matrix = a.transform == TransformLevel::kInverseMatrix;
+    if (*a.instance_data == (one_matrix ? Data::kRt : Data::kInverse))
+      issue("accuracy.instance_data",
+            fmt::format("transform: {} {}; expected forward or {}, found {}", enum_name(a.transform),
+                        one_matrix ? "has the translation multiplied in" : "subtracts the translation first",
+                        one_matrix ? "inverse" : "rt", enum_name(*a.instance_data)));
+    const bool forward = *a.instance_data == Data::kForward;
+    if (a.invert && (*a.invert == AccuracyConfig::Invert::kVisit) != forward)
+      issue("accuracy.invert", fmt::format("instance_data: {} {}; expected {}, found {}", enum_name(*a.instance_data),
+                                           forward ? "stores nothing inverted" : "is stored inverted",
+                                           forward ? "visit" : "build", enum_name(*a.invert)));
+  }
+
+  void built_planes_and_bundles() {
+    if (c.verify == Verify::kEffects && c.shading.effects.choice != ShadingConfig::Effects::Choice::kAuto)
+      issue("verify", "effects compares what the scene calls for with all; expected shading.effects: auto");
+    if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
+      constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
+      if (c.cull_planes.count > 0) issue("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
+      if (c.bundles.size > 0) issue("bvh.elements", fmt::format(what, "bundles", "bundles.size: 0"));
+    }
+    if (c.cull_planes.count > 0) planes_need_bounded_errors();
+    if (c.bundles.size > 0) bundles_fit();
+  }
+
+  // A bundle has one owner, which answers for all of its rays at one visit.
+  void bundles_fit() {
+    const BundlesConfig& b = c.bundles;
+    if (b.size == 1) issue("bundles.size", "expected 2 rays or more, or 0 for none; found 1");
+    if (b.size > c.rays.slots_per_resource)
+      issue("bundles.size", fmt::format("a bundle's rays live in one resource; expected at most rays.slots_per_resource = "
+                                        "{}, found {}",
+                                        c.rays.slots_per_resource, b.size));
+    if (b.strict && b.order == BundlesConfig::Order::kAnyHitOnly)
+      issue("bundles.strict", "any_hit_only takes bundles along where only some of their rays hit; expected false, found true");
+    constexpr std::string_view without = ", or bundles.size: 0";
+    if (c.collections.traversal == Traversal::kOrdered)
+      issue("collections.traversal", fmt::format("rays of a bundle go several ways at once; expected spread or treelet, found ordered{}", without));
+    if (c.packets.shapes == PacketShapes::kSingle)
+      issue("packets.shapes", fmt::format("a bundle is tested against a whole strip; expected strip, found single{}", without));
+    if (c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed)
+      issue("rays.placement", fmt::format("bundles are made before their rays have slots; expected balanced or round_robin, "
+                                          "found {}{}",
+                                          enum_name(c.rays.placement), without));
+    if (c.topology.shape == TopologyShape::kIndependent)
+      issue("topology.shape", fmt::format("independent resources trace single rays; expected a ring or another network, "
+                                          "found independent{}", without));
+    if (std::bit_width(static_cast<std::uint64_t>(c.topology.resources - 1)) +
+            std::bit_width(static_cast<std::uint64_t>(2 * c.rays.slots_per_resource)) > 32)
+      issue("rays.slots_per_resource", fmt::format("IDs of 32 bits name bundles as well; expected fewer slots than {}{}",
+                                                   c.rays.slots_per_resource, without));
+  }
+
+  // The plane test's slack covers what these kernels may round, and has no bound for others.
+  void planes_need_bounded_errors() {
+    if (c.accuracy.triangle != TriangleLevel::kWatertight && c.accuracy.triangle != TriangleLevel::kExact)
+      issue("accuracy.triangle", fmt::format("cull planes could lose hits of {}; expected watertight or exact, or "
+                                             "cull_planes.count: 0",
+                                             enum_name(c.accuracy.triangle)));
+    if (c.accuracy.box != BoxLevel::kConservative)
+      issue("accuracy.box", fmt::format("cull planes go with conservative boxes; expected conservative, found {}, or "
+                                        "cull_planes.count: 0",
+                                        enum_name(c.accuracy.box)));
+    if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas && c.accuracy.transform == TransformLevel::kInverseMatrix)
+      issue("accuracy.transform", fmt::format("cull planes above the instances could lose hits of {}; expected two_step, "
+                                              "two_step_double or transpose_if_rotation, or cull_planes.levels: blas",
+                                              enum_name(c.accuracy.transform)));
+  }
+
+  void built_packets() {
+    if (!cycle()) only("packets.carry", c.packets.carry, PacketCarry::kReference);
+    if (cycle() && c.packets.carry == PacketCarry::kData && c.memory.fetch != MemoryConfig::Fetch::kPacket)
+      issue("memory.fetch", fmt::format("a packet that carries its shapes' data gets them from its issuer; expected "
+                                        "packet, found {}",
+                                        enum_name(c.memory.fetch)));
+    if (cycle() && c.memory.fetch == MemoryConfig::Fetch::kMulticast)
+      issue("memory.fetch", "multicast is not built yet; expected packet or resource");
+    if (cycle() && c.rays.placement != Placement::kBalanced && c.rays.placement != Placement::kRoundRobin)
+      issue("rays.placement", fmt::format("the cycle engine has no {}; expected balanced or round_robin",
+                                          enum_name(c.rays.placement)));
+    only("packets.results", c.packets.results, PacketResults::kMask);
+  }
+
+  void built_shading() {
+    const std::vector<std::string> known(kEffectNames.begin(), kEffectNames.end());
+    for (std::size_t i = 0; i < c.shading.effects.names.size(); ++i) {
+      const std::string& name = c.shading.effects.names[i];
+      if (effect_named(name)) continue;
+      const auto near = nearest_name(name, known);
+      issue(fmt::format("shading.effects.{}", i),
+            fmt::format("expected the name of an effect, found '{}'{}", name,
+                        near ? fmt::format("; did you mean '{}'?", *near)
+                             : fmt::format("; known are {}", fmt::join(known, ", "))));
+    }
+    if (!cycle()) only("shading.idle_resources_shade", c.shading.idle_resources_shade, false, "true", "false");
+  }
+
+  void built_testers() { only("testers.any_hit", c.testers.any_hit, TestersConfig::AnyHit::kInline); }
+
+  void built_workload() {
+    if (c.workload.kind != WorkloadConfig::Kind::kTraffic) return;
+    if (!cycle())
+      issue("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
+    if (c.topology.shape == TopologyShape::kHierarchical || c.topology.shape == TopologyShape::kBus ||
+        c.topology.shape == TopologyShape::kIndependent)
+      issue("topology.shape", fmt::format("there is no traffic on {}; expected ring, bidirectional, multi_ring or "
+                                          "point_to_point",
+                                          enum_name(c.topology.shape)));
+    const TrafficConfig& traffic = c.workload.traffic;
+    if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
+      issue("workload.traffic.hotspot", fmt::format("expected a resource from 0 to {}, found {}",
+                                                    c.topology.resources - 1, traffic.hotspot));
+    // Between bursts at least one cycle is quiet.
+    const double burst = static_cast<double>(traffic.burst_packets), most = burst / (burst + 1);
+    if (traffic.pattern == TrafficConfig::Pattern::kBursty && traffic.rate > most)
+      issue("workload.traffic.rate", fmt::format("bursts of {} packets make at most {:.4g} packets per cycle, found {}",
+                                                 traffic.burst_packets, most, traffic.rate));
+  }
+
+  void flow_that_can_deadlock() {
+    if (c.topology.flow == Flow::kNone && !options_.force)
+      issue("topology.flow", "none lets the links fill up and stop; expected credits or bubble, or --force");
+  }
+
+  void bubble_needs_two_places() {
+    if (c.topology.flow == Flow::kBubble && c.topology.link.depth < 2)
+      issue("topology.link.depth",
+            fmt::format("flow: bubble keeps one place of a link free; expected at least 2, found {}",
+                        c.topology.link.depth));
+  }
+
+  void ordered_needs_strips() {
+    if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip)
+      issue("packets.shapes",
+            "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
+  }
+
+  void hashed_homes_spill() {
+    if (c.collections.home == Home::kHash && c.collections.when_full != WhenFull::kSpill)
+      issue("collections.when_full",
+            "home: hash can fill one resource with another's collections and stop; expected spill, found "
+            "reserve");
+  }
+
+  void overrides_name_resources() {
+    std::map<std::int64_t, std::size_t> seen;
+    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i) {
+      const ResourceOverride& one = c.topology.overrides[i];
+      const std::string key = fmt::format("topology.overrides.{}.resource", i);
+      if (one.resource >= c.topology.resources)
+        issue(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1,
+                               one.resource));
+      else if (!seen.emplace(one.resource, i).second)
+        issue(key, fmt::format("resource {} has an override already", one.resource));
+      only(fmt::format("topology.overrides.{}.testers.any_hit", i), one.testers.any_hit,
+           TestersConfig::AnyHit::kInline);
+    }
+  }
+
+  void faults_have_a_place() {
+    const FaultsConfig::Resource& r = c.faults.resource;
+    const bool resource = r.kind != FaultsConfig::Resource::Kind::kNone;
+    if (resource && r.number >= c.topology.resources)
+      issue("faults.resource.number", fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
+    if (c.workload.kind == WorkloadConfig::Kind::kTraffic && (resource || c.faults.links.any()))
+      issue("faults", "there are no faults in traffic; expected none, or workload: rays");
+    if (resource && c.topology.shape == TopologyShape::kIndependent)
+      issue("faults.resource.kind", "independent resources have no faults; expected none");
+    if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
+      issue("faults.resource.after_rays", fmt::format("under virtual time a slow resource is so from the beginning; expected 0, found {}", r.after_rays));
+    if (r.kind == FaultsConfig::Resource::Kind::kStop) a_machine_goes_on_without_one();
+    if (c.faults.compare && !cycle())
+      issue("faults.compare", "on the wall clock two runs differ by more than faults cost; expected false, or engine.kind: cycle");
+    // The engine takes a machine that does nothing for ten seconds for one that is stuck.
+    if (!cycle() && r.kind == FaultsConfig::Resource::Kind::kPause && r.cycles / c.engine.clock_mhz > 5'000'000)
+      issue("faults.resource.cycles", fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
+                                                  5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
+  }
+
+  void a_machine_goes_on_without_one() {
+    if (c.topology.resources < 2) issue("topology.resources", "where one stops another has to go on; expected at least 2, found 1");
+  }
+
+  void vary_names_keys() {
+    if (c.vary.empty()) return;
+    const std::vector<std::string>& known = config::config_key_paths();
+    for (const auto& [keys, values] : c.vary) {
+      for (std::size_t begin = 0; begin <= keys.size();) {  // several keys vary together: "a.b,c.d"
+        const std::size_t end = std::min(keys.find(',', begin), keys.size());
+        const std::string key = keys.substr(begin, end - begin);
+        begin = end + 1;
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        const auto near = nearest_name(key, known);
+        issues_.push_back(
+            {positions_.find("vary." + keys), "vary." + keys,
+             fmt::format("unknown key '{}'{}", key, near ? "; did you mean '" + *near + "'?" : "")});
+      }
+    }
+  }
+
+  const Config& c;
+  const ValidateOptions& options_;
+  const KeyPositions& positions_;
+  std::vector<ConfigIssue> issues_;
+};
+
+}  // namespace
+
+std::vector<ConfigIssue> validate_config(const Config& config, const KeyPositions& positions,
+                                         const ValidateOptions& options) {
+  return Rules(config, positions, options).check();
+}
+
+}  // namespace carousel

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/types/ids.h"
+#include "core/types/ray.h"
+
+namespace carousel {
+
+/// A ray on its way into the ring.
+struct RayRequest {
+  Ray ray;
+  RayTag tag;
+};
+
+/// A completed ray on its way to a shader worker.
+struct RayResult {
+  Ray ray;
+  Hit hit;
+  RayTag tag;
+};
+
+using RayBatch = std::vector<RayRequest>;
+using HitBatch = std::vector<RayResult>;
+
+/// What produces rays and consumes their hits; the only thing an engine or the reference tracer knows of
+/// shading. `worker` names the calling shader worker, 0 <= worker < the count the workload was made for; a
+/// worker calls from one thread at a time, different workers may call at the same time. Results must not
+/// depend on which worker is called, in what order, or how rays are cut into batches.
+class Workload {
+ public:
+  struct Generated {
+    std::size_t rays = 0;    ///< appended to `out`
+    bool finished = false;   ///< no generate() call, by anyone, will ever append a ray again
+  };
+
+  virtual ~Workload() = default;
+
+  /// Appends at most `max_rays` rays that no earlier ray caused. May append none without being finished
+  /// (e.g. no path state is free); the caller then tries again after shade() calls.
+  virtual Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) = 0;
+
+  /// Effects of the surface that a completed ray has hit beyond a plain one's: what a simulated shader worker is charged for
+  /// besides. Call before the ray is given to shade().
+  virtual std::uint32_t extra_effects(const RayResult& /*result*/) const { return 0; }
+
+  /// Takes completed rays, in any order and mix, each ray exactly once; appends the rays they give rise to.
+  virtual void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) = 0;
+};
+
+}  // namespace carousel

@@ -1,0 +1,125 @@
+#include "report/accuracy/accuracy_table.h"
+
+#include <fmt/format.h>
+
+#include "report/text/number_text.h"
+
+namespace carousel::report {
+
+namespace {
+
+std::string cycles_text(const AccuracyRow& row) {
+  if (!row.modelled) return "-";
+  return fmt::format("{:.1f}/{:.1f}", row.modelled->cycles_per_ray, row.modelled->tester_cycles_per_ray);
+}
+
+std::string ulp_text(const HitErrors& e) { return fmt::format("{:.2g}/{:.3g}/{:.3g}", e.ulp_median, e.ulp_p99, e.ulp_max); }
+
+std::uint64_t hard_wrong(const AccuracyRow& row) { return row.wrong() - row.scene.wrong(); }
+
+void level_lines(const Accuracy& a, std::string& out) {
+  out += fmt::format("{:<2}{:<11}{:<13}{:<22}{:>8}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10}{:>10}\n", "", "triangle",
+                     "box", "transform", "ns/ray", "least-most", "cycles/ray", "missed", "extra", "other", "t error in ulp", "leaks",
+                     "hard", "pixels", "RMSE", "worst");
+  for (const AccuracyRow& row : a.rows) {
+    out += fmt::format("{:<2}{:<11}{:<13}{:<22}{:>8.0f}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10.2g}{:>10.2g}{}\n",
+                       row.frontier ? "*" : "", row.triangle, row.box, row.transform, row.ns_per_ray.median,
+                       fmt::format("{:.0f}-{:.0f}", row.ns_per_ray.least, row.ns_per_ray.most), cycles_text(row),
+                       grouped(row.scene.missed), grouped(row.scene.extra), grouped(row.scene.other), ulp_text(row.scene),
+                       grouped(row.leaks), grouped(hard_wrong(row)), grouped(row.picture.differ), row.picture.rmse,
+                       row.picture.worst, row.safe ? "  safe" : "");
+  }
+  out += "* on the frontier: nothing is both faster and less often wrong. cycles/ray: modelled, and of these units at work (summed\n"
+         "over the resources). missed, extra, other: rays of the scene that miss where exact arithmetic hits, hit where it misses,\n"
+         "hit another triangle; t error: median/p99/max; leaks: rays that get out of closed surfaces; hard: missed and extra hits\n"
+         "of the hard cases; pixels that differ from the exact picture.\n";
+}
+
+void hard_lines(const Accuracy& a, std::string& out) {
+  out += "\nhard cases: rays missed / extra / other\n";
+  for (std::size_t h = 0; h < a.hard.size(); ++h) out += fmt::format("  {:<14}{}\n", a.hard[h].name, a.hard[h].what);
+  out += fmt::format("{:<48}", "");
+  for (const HardCase& c : a.hard) out += fmt::format("{:>18}", c.name);
+  out += '\n';
+  for (const AccuracyRow& row : a.rows) {
+    out += fmt::format("{:<2}{:<11}{:<13}{:<22}", "", row.triangle, row.box, row.transform);
+    for (const HitErrors& e : row.hard) out += fmt::format("{:>18}", fmt::format("{} / {} / {}", e.missed, e.extra, e.other));
+    out += '\n';
+  }
+}
+
+void spawn_lines(const Accuracy& a, std::string& out) {
+  out += fmt::format("\n{:<10}{:>12}{:>12}{:>16}{:>16}{:>10}{:>10}\n", "spawn", "bounces", "self-hits", "far bounces", "far self-hits",
+                     "pixels", "RMSE");
+  for (const SpawnRow& row : a.spawn)
+    out += fmt::format("{:<10}{:>12}{:>12}{:>16}{:>16}{:>10}{:>10.2g}\n", row.spawn, grouped(row.bounces), grouped(row.self_hits),
+                       grouped(row.hard_bounces), grouped(row.hard_self_hits), grouped(row.picture.differ), row.picture.rmse);
+}
+
+void sampling_lines(const Accuracy& a, std::string& out) {
+  out += fmt::format("\n{:<10}{:>12}{:>12}\n", "samples", "RMSE", "time");
+  for (const SamplingRow& row : a.sampling)
+    out += fmt::format("{:<10}{:>12.4g}{:>12}\n", row.samples, row.rmse, seconds_text(row.seconds));
+  out += "RMSE of the picture as shown, values in [0, 1], without the 2 % that are farthest off\n";
+  out += fmt::format("It falls as samples to the power {:.2f} (Monte Carlo: -0.50)\n", a.sampling_slope);
+}
+
+nlohmann::ordered_json errors_json(const HitErrors& e) {
+  return {{"rays", e.rays},   {"missed", e.missed}, {"extra", e.extra}, {"other", e.other}, {"t_error_ulp_median", e.ulp_median},
+          {"t_error_ulp_p99", e.ulp_p99}, {"t_error_ulp_max", e.ulp_max}};
+}
+
+nlohmann::ordered_json picture_json(const PictureErrors& p) {
+  return {{"pixels", p.pixels}, {"differ", p.differ}, {"rmse", p.rmse}, {"worst", p.worst}};
+}
+
+nlohmann::ordered_json row_json(const AccuracyRow& row, const std::vector<HardCase>& cases) {
+  nlohmann::ordered_json j{{"triangle", row.triangle}, {"box", row.box}, {"transform", row.transform}};
+  j["ns_per_ray"] = {{"median", row.ns_per_ray.median}, {"least", row.ns_per_ray.least}, {"most", row.ns_per_ray.most}};
+  if (row.modelled) {
+    j["modelled_cycles_per_ray"] = row.modelled->cycles_per_ray;
+    j["modelled_tester_cycles_per_ray"] = row.modelled->tester_cycles_per_ray;
+  }
+  j["scene"] = errors_json(row.scene);
+  for (std::size_t h = 0; h < cases.size(); ++h) j["hard"][cases[h].name] = errors_json(row.hard[h]);
+  j["leaks"] = row.leaks;
+  j["picture"] = picture_json(row.picture);
+  j["frontier"] = row.frontier;
+  j["safe"] = row.safe;
+  return j;
+}
+
+}  // namespace
+
+std::string accuracy_table(const Accuracy& a) {
+  std::string out = fmt::format("{}: {} triangles, {} instances; {} rays, {} repetitions, seed {}; pictures {} x {} x {}\n\n",
+                                a.scene, grouped(a.triangles), grouped(a.instances), grouped(a.rays), a.repetitions, a.seed,
+                                a.width, a.height, a.samples);
+  if (a.incomplete) out = "INCOMPLETE: interrupted; what follows is what was done\n" + out;
+  level_lines(a, out);
+  hard_lines(a, out);
+  spawn_lines(a, out);
+  sampling_lines(a, out);
+  return out + "\n" + a.verdict + "\n";
+}
+
+nlohmann::ordered_json accuracy_json(const Accuracy& a) {
+  nlohmann::ordered_json j{{"schema_version", 1}, {"incomplete", a.incomplete}, {"scene", a.scene}, {"triangles", a.triangles}, {"instances", a.instances},
+                           {"rays", a.rays}, {"seed", a.seed}, {"repetitions", a.repetitions}};
+  j["picture"] = {{"width", a.width}, {"height", a.height}, {"samples", a.samples}};
+  j["levels"] = nlohmann::ordered_json::array();
+  for (const AccuracyRow& row : a.rows) j["levels"].push_back(row_json(row, a.hard));
+  j["spawn"] = nlohmann::ordered_json::array();
+  for (const SpawnRow& row : a.spawn)
+    j["spawn"].push_back({{"spawn", row.spawn}, {"bounces", row.bounces}, {"self_hits", row.self_hits},
+                          {"far_bounces", row.hard_bounces}, {"far_self_hits", row.hard_self_hits},
+                          {"picture", picture_json(row.picture)}});
+  j["sampling"] = {{"slope", a.sampling_slope}, {"rows", nlohmann::ordered_json::array()}};
+  for (const SamplingRow& row : a.sampling)
+    j["sampling"]["rows"].push_back({{"samples", row.samples}, {"rmse", row.rmse}, {"seconds", row.seconds}});
+  j["verdict"] = a.verdict;
+  j["host"] = {{"machine", a.machine}};
+  return j;
+}
+
+}  // namespace carousel::report

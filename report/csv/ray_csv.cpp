@@ -1,0 +1,73 @@
+#include "report/csv/ray_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "report/text/number_text.h"
+#include "report/csv/ray_csv_columns.h"
+
+namespace carousel::report {
+
+namespace {
+
+void append_ray(std::string& line, std::size_t number, const RayResult& result) {
+  line += std::to_string(number);
+  line += ',';
+  line += kRayKindNames[static_cast<std::size_t>(result.tag.kind)];
+  const Ray& ray = result.ray;
+  for (const float value : {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
+                            ray.direction.z, ray.tmin, ray.tmax}) {
+    line += ',';
+    line += float_text(value);
+  }
+}
+
+void append_hit(std::string& line, const RayResult& result) {
+  const Hit& hit = result.hit;
+  line += hit.valid() ? ",1" : ",0";
+  if (result.tag.kind == RayKind::kShadow) {
+    line += ",,,,,";  // which triangle hid the light depends on the order of tests
+  } else if (!hit.valid()) {
+    line += ",inf,,,,";
+  } else {
+    line += ',' + float_text(hit.t) + ',' + std::to_string(hit.instance) + ',' +
+            std::to_string(hit.primitive) + ',' + float_text(hit.u) + ',' + float_text(hit.v);
+  }
+}
+
+void write_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows, bool hits) {
+  AtomicFile file(path);
+  std::string line;
+  const std::size_t columns = hits ? kColumns.size() : kRayColumns;
+  for (std::size_t i = 0; i < columns; ++i) line += (i == 0 ? "" : ",") + std::string(kColumns[i]);
+  file.write(line + "\n");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    line.clear();
+    append_ray(line, i, rows[i].result);
+    if (hits) append_hit(line, rows[i].result);
+    line += '\n';
+    file.write(line);
+  }
+  file.commit();
+}
+
+}  // namespace
+
+void sort_rows(std::vector<HitRow>& rows) {
+  const auto key = [](const HitRow& row) {
+    const RayTag& tag = row.result.tag;
+    return std::tuple(row.pixel, row.sample, tag.bounce, tag.kind, tag.index);
+  };
+  std::sort(rows.begin(), rows.end(), [&](const HitRow& a, const HitRow& b) { return key(a) < key(b); });
+}
+
+void write_hits_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows) {
+  write_csv(path, rows, true);
+}
+
+void write_rays_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows) {
+  write_csv(path, rows, false);
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <istream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/system/atomic_file.h"
+#include "core/types/workload.h"
+
+namespace carousel::report {
+
+/// A completed ray and the place in the picture it belongs to.
+struct HitRow {
+  std::uint32_t pixel = 0, sample = 0;
+  RayResult result;
+};
+
+/// Sorts by pixel, sample, bounce, kind and index within the kind: an order that no engine can change.
+void sort_rows(std::vector<HitRow>& rows);
+
+/// One row a ray, in the order given; `ray` is the row's number. Columns of DESIGN.md section 7, world space,
+/// floats with the fewest digits that read back to the same bits. A miss has t = inf and no instance,
+/// primitive, u and v; of a shadow ray only `hit` is known. Throws FileError.
+void write_hits_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows);
+
+/// The first ten of these columns: the rays without their hits. Throws FileError.
+void write_rays_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows);
+
+/// Rays to trace, in file order: a header and at least the first ten columns; further ones are passed over,
+/// so that a hits.csv can be read too. The tag's path is the row's number. Throws a ConfigError with the
+/// positions of the first problems, and FileError when the file cannot be read.
+RayBatch read_rays_csv(const std::filesystem::path& path);
+RayBatch read_rays_csv(std::istream& in, const std::string& name);
+
+}  // namespace carousel::report

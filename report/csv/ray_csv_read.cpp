@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "core/system/error.h"
+#include "report/csv/ray_csv.h"
+#include "report/csv/ray_csv_columns.h"
+
+namespace carousel::report {
+
+namespace {
+
+constexpr std::size_t kMostIssues = 20;
+constexpr std::size_t kLongestLine = 4096;
+
+/// The values of one line and the columns (from 1) they begin at.
+struct Cells {
+  std::array<std::string_view, kRayColumns> text;
+  std::array<int, kRayColumns> column{};
+  std::size_t count = 0;  // of all cells, kept or not
+};
+
+Cells split(std::string_view line) {
+  Cells cells;
+  for (std::size_t begin = 0; begin <= line.size(); ++cells.count) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    if (cells.count < kRayColumns) {
+      cells.text[cells.count] = line.substr(begin, end - begin);
+      cells.column[cells.count] = static_cast<int>(begin) + 1;
+    }
+    begin = end + 1;
+  }
+  return cells;
+}
+
+std::optional<float> read_float(std::string_view text) {
+  float value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
+  if (error == std::errc{}) return value;
+  // Out of a float's range: too small rounds to 0, too large is refused.
+  double wide = 0;
+  std::from_chars(text.data(), text.data() + text.size(), wide);
+  return std::abs(wide) < 1 ? std::optional(static_cast<float>(wide)) : std::nullopt;
+}
+
+class RayReader {
+ public:
+  explicit RayReader(const std::string& name) : name_(name) {}
+
+  RayBatch read(std::istream& in) {
+    std::string line;
+    for (line_ = 1; std::getline(in, line) && issues_.size() < kMostIssues; ++line_) {
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      if (line.size() > kLongestLine) {
+        issue(0, "expected a line of CSV, found one of " + std::to_string(line.size()) + " bytes");
+      } else if (line_ == 1) {
+        read_header(line);
+        if (!issues_.empty()) break;  // the rest would only repeat it
+      } else if (!line.empty()) {
+        read_ray(line);
+      }
+    }
+    if (line_ == 1 && issues_.empty()) issue(0, "expected the header " + header());
+    if (in.bad()) throw FileError("cannot read " + name_);
+    if (!issues_.empty()) throw ConfigError(std::move(issues_));
+    return std::move(rays_);
+  }
+
+ private:
+  static std::string header() {
+    std::string out;
+    for (std::size_t i = 0; i < kRayColumns; ++i) out += (i == 0 ? "" : ",") + std::string(kColumns[i]);
+    return out;
+  }
+
+  void issue(int column, std::string message) {
+    issues_.push_back({{name_, line_, column}, "", std::move(message)});
+  }
+
+  void read_header(std::string_view line) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (line.substr(0, 3) == kByteOrderMark) line.remove_prefix(3);
+    const Cells cells = split(line);
+    for (std::size_t i = 0; i < kRayColumns; ++i)
+      if (cells.text[i] != kColumns[i])
+        return issue(std::max(1, cells.column[i]),
+                     fmt::format("expected the header {}, found '{}' in place of {}", header(), cells.text[i],
+                                 kColumns[i]));
+  }
+
+  void read_ray(std::string_view line) {
+    const Cells cells = split(line);
+    if (cells.count < kRayColumns)
+      return issue(1, fmt::format("expected at least {} values, found {}", kRayColumns, cells.count));
+    const std::size_t before = issues_.size();
+    RayRequest request;
+    request.tag.path = static_cast<std::uint32_t>(rays_.size());
+    request.tag.kind = kind(cells);
+    std::array<float, 8> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = number(cells, i + 2);
+    const auto& [ox, oy, oz, dx, dy, dz, tmin, tmax] = values;
+    request.ray = {{ox, oy, oz}, tmin, {dx, dy, dz}, tmax};
+    if (issues_.size() == before && dx == 0 && dy == 0 && dz == 0)
+      issue(cells.column[5], "expected a direction, found 0,0,0");
+    if (issues_.size() == before && !(tmin >= 0 && tmin <= tmax))
+      issue(cells.column[8],
+            fmt::format("expected 0 <= tmin <= tmax, found {} and {}", cells.text[8], cells.text[9]));
+    if (issues_.size() == before) rays_.push_back(request);
+  }
+
+  RayKind kind(const Cells& cells) {
+    const auto found = std::find(kRayKindNames.begin(), kRayKindNames.end(), cells.text[1]);
+    if (found == kRayKindNames.end()) {
+      issue(cells.column[1], fmt::format("expected camera, bounce or shadow, found '{}'", cells.text[1]));
+      return RayKind::kCamera;
+    }
+    return static_cast<RayKind>(found - kRayKindNames.begin());
+  }
+
+  float number(const Cells& cells, std::size_t cell) {
+    const std::optional<float> value = read_float(cells.text[cell]);
+    const bool may_be_infinite = kColumns[cell] == "tmax";
+    if (!value || std::isnan(*value) || (std::isinf(*value) && !may_be_infinite)) {
+      issue(cells.column[cell],
+            fmt::format("expected a {}number for {}, found '{}'", may_be_infinite ? "" : "finite ",
+                        kColumns[cell], cells.text[cell]));
+      return 1;
+    }
+    return *value;
+  }
+
+  const std::string& name_;
+  int line_ = 1;
+  RayBatch rays_;
+  std::vector<ConfigIssue> issues_;
+};
+
+}  // namespace
+
+RayBatch read_rays_csv(std::istream& in, const std::string& name) {
+  return RayReader(name).read(in);
+}
+
+RayBatch read_rays_csv(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path, ignored)) throw FileError("cannot read " + path.string());
+  return read_rays_csv(in, path.string());
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,146 @@
+#include "report/run/report_json.h"
+
+#include <string_view>
+
+#include "report/run/report_fields.h"
+#include "report/stress/stress_fields.h"
+
+namespace carousel::report {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+class JsonWriter {
+ public:
+  template <class T>
+  static Json value_of(T value) {
+    JsonWriter writer;
+    describe(writer, value);
+    return std::move(writer.out_);
+  }
+  template <class T>
+  static Json value_of(const std::vector<T>& list) {
+    Json out = Json::array();
+    for (const T& item : list) out.push_back(value_of(item));
+    return out;
+  }
+
+  template <class T>
+  void field(std::string_view key, T& value, const char*, const char*) {
+    put(key, value);
+  }
+  template <class T>
+  void field(std::string_view key, std::optional<T>& value, const char*, const char*) {
+    if (value) put(key, *value);
+  }
+  template <class T>
+  void section(std::string_view key, T& value, const char*) {
+    put(key, value_of(value));
+  }
+  template <class T>
+  void section(std::string_view key, std::optional<T>& value, const char*) {
+    if (value) put(key, value_of(*value));
+  }
+  void any(std::string_view key, Json& value, const char*) { put(key, value); }
+
+ private:
+  void put(std::string_view key, Json value) { out_[std::string(key)] = std::move(value); }
+
+  Json out_ = Json::object();
+};
+
+Json schema_of(const std::string&) {
+  return {{"type", "string"}};
+}
+Json schema_of(bool) {
+  return {{"type", "boolean"}};
+}
+Json schema_of(double) {
+  return {{"type", "number"}};
+}
+Json schema_of(std::uint64_t) {
+  return {{"type", "integer"}, {"minimum", 0}};
+}
+Json schema_of(std::int64_t) {
+  return {{"type", "integer"}};
+}
+Json schema_of(const std::vector<std::string>&) {
+  return {{"type", "array"}, {"items", {{"type", "string"}}}};
+}
+Json schema_of(const std::array<double, 3>&) {
+  return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+}
+
+class SchemaWriter {
+ public:
+  template <class T>
+  static Json schema_for(T value) {
+    SchemaWriter writer;
+    describe(writer, value);
+    return {{"type", "object"},
+            {"properties", std::move(writer.properties_)},
+            {"required", std::move(writer.required_)},
+            {"additionalProperties", false}};
+  }
+  template <class T>
+  static Json schema_for(const std::vector<T>&) {
+    return {{"type", "array"}, {"items", schema_for(T{})}};
+  }
+
+  template <class T>
+  void field(std::string_view key, T& value, const char* unit, const char* meaning) {
+    put(key, schema_of(value), true, unit, meaning);
+  }
+  template <class T>
+  void field(std::string_view key, std::optional<T>&, const char* unit, const char* meaning) {
+    put(key, schema_of(T{}), false, unit, meaning);
+  }
+  template <class T>
+  void section(std::string_view key, T& value, const char* meaning) {
+    put(key, schema_for(value), true, "", meaning);
+  }
+  template <class T>
+  void section(std::string_view key, std::optional<T>&, const char* meaning) {
+    put(key, schema_for(T{}), false, "", meaning);
+  }
+  void any(std::string_view key, Json&, const char* meaning) {
+    put(key, {{"type", "object"}}, true, "", meaning);
+  }
+
+ private:
+  void put(std::string_view key, Json schema, bool required, const char* unit, const char* meaning) {
+    if (*unit) schema["unit"] = unit;
+    schema["description"] = meaning;
+    properties_[std::string(key)] = std::move(schema);
+    if (required) required_.push_back(key);
+  }
+
+  Json properties_ = Json::object(), required_ = Json::array();
+};
+
+}  // namespace
+
+Json report_json(const Report& report) {
+  return JsonWriter::value_of(report);
+}
+
+Json stress_json(const Stress& stress) {
+  return JsonWriter::value_of(stress);
+}
+
+Json report_schema() {
+  Json schema{
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+      {"title", "Carousel report"},
+      {"description",
+       "Two runs are identical when all outside of host is equal. Where engine.deterministic is false, "
+       "throughput, tests, packets, collections, resources and links count what the threads happened to "
+       "do and may differ between runs; rays, shading, verify and digest may not."}};
+  schema.update(SchemaWriter::schema_for(Report{}));
+  schema["$defs"]["stress"] = SchemaWriter::schema_for(Stress{});
+  schema["$defs"]["stress"]["description"] = "stress.json of carousel stress";
+  return schema;
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "report/run/report.h"
+#include "report/stress/stress.h"
+
+namespace carousel::report {
+
+/// report.json (DESIGN.md section 9). Keys stand in the order of the description.
+nlohmann::ordered_json report_json(const Report& report);
+
+/// stress.json of `carousel stress`.
+nlohmann::ordered_json stress_json(const Stress& stress);
+
+/// JSON Schema (draft 2020-12) of the report, and under $defs.stress of the other: types, units, meanings.
+nlohmann::ordered_json report_schema();
+
+}  // namespace carousel::report

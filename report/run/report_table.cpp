@@ -1,0 +1,251 @@
+#include "report/run/report_table.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "report/text/number_text.h"
+#include "report/text/ratio.h"
+
+namespace carousel::report {
+
+namespace {
+
+class Table {
+ public:
+  /// A line that begins with a name on the left; an empty name continues the last one.
+  template <class... Args>
+  void line(std::string_view name, fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(out_), "{:<13}", name);
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+    out_ += '\n';
+  }
+  void gap() { out_ += '\n'; }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+};
+
+/// Least, mean and greatest over the resources: what balance looks like without a line for each.
+template <class Value>
+void spread_line(Table& table, std::string_view name, const std::vector<Resource>& resources,
+                 const Value& value) {
+  std::uint64_t least = value(resources.front()), most = least, sum = 0;
+  for (const Resource& resource : resources) {
+    least = std::min(least, value(resource));
+    most = std::max(most, value(resource));
+    sum += value(resource);
+  }
+  const double mean = ratio(sum, resources.size());
+  table.line("", "{:<18} {:>14} {:>14} {:>14}   {:.2f}", name, grouped(least),
+             grouped(static_cast<std::uint64_t>(mean + 0.5)), grouped(most), ratio(double(most), mean));
+}
+
+void resource_lines(Table& table, const std::vector<Resource>& resources) {
+  table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean",
+             fmt::format("{} of them", resources.size()), "least", "mean", "most");
+  spread_line(table, "rays", resources, [](const Resource& r) { return r.rays_completed; });
+  spread_line(table, "rays tested", resources, [](const Resource& r) { return r.rays_tested; });
+  spread_line(table, "box tests", resources, [](const Resource& r) { return r.box_tests; });
+  spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.triangle_tests; });
+  spread_line(table, "packets issued", resources, [](const Resource& r) { return r.packets_issued; });
+  spread_line(table, "packets seen", resources, [](const Resource& r) { return r.packets_seen; });
+  Stalls stalls;
+  for (const Resource& r : resources) {
+    stalls.credits += r.stalls.credits;
+    stalls.link += r.stalls.link;
+    stalls.slots += r.stalls.slots;
+    stalls.storage += r.stalls.storage;
+    stalls.reserve += r.stalls.reserve;
+  }
+  table.line("stalls", "credits {}   link {}   slots {}   storage {}   reserve {}", grouped(stalls.credits),
+             grouped(stalls.link), grouped(stalls.slots), grouped(stalls.storage), grouped(stalls.reserve));
+}
+
+void link_line(Table& table, const std::vector<Link>& links) {
+  std::uint64_t packets = 0, stalled = 0, occupancy = 0, depth = 0;
+  double mean = 0;
+  for (const Link& link : links) {
+    packets += link.packets;
+    stalled += link.stalled;
+    occupancy = std::max(occupancy, link.occupancy_max);
+    depth = std::max(depth, link.depth);
+    mean += link.occupancy_mean * static_cast<double>(link.packets);
+  }
+  const bool cycles = !links.empty() && links.front().cycles.has_value();
+  table.line("links", "{} of depth {}   {} packets   occupancy {:.1f} mean, {} most   {} {}", links.size(), depth,
+             grouped(packets), ratio(mean, double(packets)), occupancy, grouped(stalled),
+             cycles ? "cycles stalled" : "refused");
+}
+
+void test_line(Table& table, const Tests& t) {
+  std::string rare;
+  for (const auto& [name, test] : {std::pair{"plane", t.plane}, std::pair{"culled", t.culled}, std::pair{"bundle", t.bundle}})
+    if (test.count > 0) rare += fmt::format("   {} {:.2f}", name, test.per_ray);
+  if (t.procedural) rare += fmt::format("   procedural {:.2f}", t.procedural->per_ray);
+  if (t.any_hit) rare += fmt::format("   any-hit {:.2f}", t.any_hit->per_ray);
+  table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray,
+             t.triangle.per_ray, t.transforms.per_ray, rare);
+  if (const auto& b = t.bundles) {
+    const std::uint64_t boxes = b->sum.all_hit + b->sum.all_miss + b->sum.split;
+    table.line("bundles", "{} of {:.1f} rays   of their boxes {} all hit, {} all missed, {} split", grouped(b->formed), b->rays_mean,
+               percent(ratio(b->sum.all_hit, boxes)), percent(ratio(b->sum.all_miss, boxes)), percent(ratio(b->sum.split, boxes)));
+  }
+}
+
+/// The depths where most was spared stand in report.json; here is their sum.
+void cull_plane_lines(Table& table, const Report& report) {
+  CullPlaneLevel sum;
+  for (const CullPlaneLevel& level : report.cull_planes->levels) {
+    sum.children_tested += level.children_tested;
+    sum.culled += level.culled;
+    sum.box_tests_spared += level.box_tests_spared;
+    sum.nodes_spared += level.nodes_spared;
+    sum.leaves_spared += level.leaves_spared;
+    sum.triangle_tests_spared += level.triangle_tests_spared;
+    sum.transforms_spared += level.transforms_spared;
+  }
+  table.line("cull planes", "{} planes, {:.1f} bytes a node, found in {}   {} of {} children culled", grouped(report.cull_planes->planes),
+             report.cull_planes->bytes_per_node, seconds_text(report.host.plane_seconds.value_or(0)), grouped(sum.culled),
+             grouped(sum.children_tested));
+  table.line("", "spared: {} nodes   {} leaves of {} triangles   {} transforms   {} boxes", grouped(sum.nodes_spared),
+             grouped(sum.leaves_spared), grouped(sum.triangle_tests_spared), grouped(sum.transforms_spared),
+             grouped(sum.box_tests_spared));
+}
+
+void proof_line(Table& table, const EffectsProof& proof) {
+  std::string cycles;
+  if (proof.cycles_spared) cycles = fmt::format("   {} cycles", *proof.cycles_spared);
+  table.line("all effects", "hits {}   image {}   spared: {} rays   {} tests{}", proof.same_hits ? "the same" : "DIFFER",
+             proof.same_image ? "the same" : "DIFFERS", proof.rays_spared, proof.tests_spared, cycles);
+}
+
+void packet_lines(Table& table, const Report& report) {
+  if (const auto& p = report.packets) {
+    table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(p->issued),
+               grouped(p->retired), ratio(p->issued, report.rays.completed), ratio(p->hops, p->issued));
+    table.line("", "{:.1f} rays each   {} of them local where seen   {} of visits without any", p->rays_mean,
+               percent(p->local_fraction), percent(p->bubble_fraction));
+  }
+  if (const auto& c = report.collections) {
+    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled",
+               grouped(c->created), grouped(c->peak), percent(c->fullness_mean), grouped(c->memberships_peak),
+               grouped(c->spilled));
+  }
+}
+
+double busy_fraction(const std::vector<Resource>& resources, std::uint64_t cycles, UnitCycles Units::*bank) {
+  std::uint64_t busy = 0;
+  for (const Resource& r : resources)
+    if (r.units) busy += ((*r.units).*bank).busy;
+  return ratio(busy, cycles * resources.size());
+}
+
+/// Where the simulated machine's time went.
+void cycle_lines(Table& table, const Report& report) {
+  const std::uint64_t cycles = *report.engine.cycles;
+  const Throughput& t = *report.throughput;
+  std::string text = fmt::format("{} cycles", grouped(cycles));
+  if (t.whole)
+    text += fmt::format("   {:.2f} rays per kilocycle, {:.1f} Mrays/s at the clock", t.whole->rays_per_kilocycle,
+                        t.whole->mrays_per_second_at_clock);
+  if (t.steady) text += fmt::format("   steady {:.2f}", t.steady->rays_per_kilocycle);
+  table.line("simulated", "{}", text);
+  if (!report.resources || report.resources->empty()) return;
+  UnitCycles sum;
+  std::uint64_t handler = 0;
+  for (const Resource& r : *report.resources) {
+    if (!r.units) return;
+    const UnitCycles& u = r.units->box;
+    sum.memory += u.memory;
+    sum.link += u.link;
+    sum.credits += u.credits;
+    sum.storage += u.storage;
+    sum.shading += u.shading;
+    sum.idle += u.idle;
+    handler += r.units->handler_busy;
+  }
+  const std::uint64_t all = cycles * report.resources->size();
+  const auto part = [&](std::uint64_t x) { return percent(ratio(x, all)); };
+  table.line("busy", "box {}   triangle {}   transform {}   handling {}   shading {}   memory {}",
+             percent(busy_fraction(*report.resources, cycles, &Units::box)),
+             percent(busy_fraction(*report.resources, cycles, &Units::triangle)),
+             percent(busy_fraction(*report.resources, cycles, &Units::transform)), part(handler),
+             percent(report.shading.utilisation.value_or(0)),
+             percent(report.memory ? report.memory->dram_utilisation : 0));
+  table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),
+             part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle),
+             sum.shading > 0 ? "   shading " + part(sum.shading) : "");
+}
+
+std::string image_text(const nlohmann::ordered_json& config) {
+  const auto image = config.find("image");
+  if (image == config.end()) return "";
+  return fmt::format("   {} x {} pixels, {} samples", image->value("width", 0), image->value("height", 0),
+                     image->value("samples", 0));
+}
+
+std::string ring_text(const nlohmann::ordered_json& config) {
+  const auto topology = config.find("topology");
+  if (topology == config.end()) return "";
+  return fmt::format(": {} resources, {}", topology->value("resources", 0), topology->value("shape", ""));
+}
+
+}  // namespace
+
+std::string report_table(const Report& report) {
+  Table table;
+  if (report.incomplete) table.line("INCOMPLETE", "the run was interrupted; what follows is what was done");
+  table.line("scene", "{}: {} triangles, {} instances{}", report.scene.name, grouped(report.scene.triangles),
+             grouped(report.scene.instances), image_text(report.config));
+  table.line("engine", "{}{} on {} threads, {} shader workers", report.engine.kind, ring_text(report.config),
+             report.host.threads, report.shading.workers);
+  table.gap();
+  const Rays& rays = report.rays;
+  const std::optional<Stop> stop = report.faults ? report.faults->stop : std::nullopt;
+  table.line("rays", "{} emitted   {} completed   {} lost{}", grouped(rays.emitted), grouped(rays.completed),
+             grouped(rays.lost),
+             rays.restarted == 0 ? ""
+                                 : fmt::format("   {} restarted of {} paths, {} after a resource stopped", grouped(rays.restarted),
+                                               grouped(rays.paths_restarted),
+                                               stop && stop->restarted_cycle
+                                                   ? grouped(*stop->restarted_cycle - *stop->stopped_cycle) + " cycles"
+                                                   : seconds_text(report.host.recovery_seconds.value_or(0))));
+  table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera),
+             grouped(rays.by_kind.bounce), grouped(rays.by_kind.shadow));
+  if (report.raster) {
+    const Raster& raster = *report.raster;
+    table.line("raster", "{} triangles seen {} times by tiles   {} hits   {} left to rays   {}", grouped(raster.triangles),
+               grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
+               seconds_text(report.host.raster_seconds.value_or(0)));
+  }
+  if (report.faults && report.faults->cycles_without)
+    table.line("faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost, grouped(*report.faults->cycles_without),
+               report.faults->same_hits.value_or(true) ? ", the same hits and picture" : ", OTHER HITS OR ANOTHER PICTURE");
+  table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
+             scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
+             seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
+  if (report.engine.cycles && report.throughput) cycle_lines(table, report);
+  if (report.bottleneck) table.line("bottleneck", "{}", report.bottleneck->verdict);
+  if (report.bound && !report.bound->classes.empty())
+    table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
+               report.bound->classes.front().name, percent(report.bound->reached));
+  if (report.tests) test_line(table, *report.tests);
+  if (report.cull_planes) cull_plane_lines(table, report);
+  packet_lines(table, report);
+  if (report.shading.proof) proof_line(table, *report.shading.proof);
+  if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
+  if (report.links && !report.links->empty()) link_line(table, *report.links);
+  table.gap();
+  if (report.verify)
+    table.line("verify", "{} rays traced again, {} mismatches{}", grouped(report.verify->compared),
+               grouped(report.verify->mismatches),
+               report.verify->example.empty() ? "" : "; " + report.verify->example);
+  table.line("digest", "hits {}{}", report.digest.hits,
+             report.digest.image ? "   image " + *report.digest.image : "");
+  return table.take();
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "report/run/report.h"
+
+namespace carousel::report {
+
+/// The report as a person reads it on a terminal, with a newline at the end.
+std::string report_table(const Report& report);
+
+}  // namespace carousel::report

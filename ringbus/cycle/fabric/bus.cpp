@@ -1,0 +1,59 @@
+#include "ringbus/cycle/fabric/bus.h"
+
+#include <algorithm>
+
+namespace carousel::ringbus::cycle {
+
+Bus::Bus(CycleMachine& machine, std::vector<InPort> in, std::vector<OutPort> out)
+    : machine_(machine), in_(std::move(in)), out_(std::move(out)) {}
+
+Cycle Bus::latency_to(const LinkConfig& link) { return way_there(link.latency_cycles); }
+
+Cycle Bus::latency_from(const LinkConfig& link) { return way_back(link.latency_cycles); }
+
+Cycle Bus::next() const {
+  Cycle first = kNever;
+  bool waiting = false;
+  for (const InPort& in : in_) {
+    waiting |= in.next() <= now_;
+    if (in.next() > now_) first = std::min(first, in.next());
+  }
+  // In hand there is something only on links with faults, which are busy for longer than the bus.
+  for (const OutPort& out : out_)
+    if (!out.empty()) first = std::min(first, out.next(false));
+  if (!waiting) return first;
+  if (free_at_ > now_) return std::min(first, free_at_);
+  // Free, and yet some wait: for places at their next stops.
+  for (const OutPort& out : out_)
+    if (out.empty()) first = std::min(first, out.next(true));
+  return first;
+}
+
+void Bus::run(Cycle end) {
+  for (Cycle now; (now = next()) < end;) {
+    now_ = now;
+    for (OutPort& out : out_) {
+      out.take_credits(now);
+      out.send(now);
+    }
+    if (free_at_ <= now) move_one(now);
+  }
+}
+
+void Bus::move_one(Cycle now) {
+  for (std::size_t i = 0; i < in_.size(); ++i) {
+    const std::size_t from = (turn_ + i) % in_.size();
+    if (in_[from].next() > now) continue;
+    const Packet& packet = machine_.packet(in_[from].front().packet);
+    OutPort& out = out_[machine_.topology.next(packet, ResourceId(static_cast<std::uint32_t>(from))).value];
+    if (out.spare_places() <= 0) continue;
+    const Token token = in_[from].take(now);
+    out.push(token, now, false);
+    out.send(now);
+    free_at_ = now + token.link_cycles;
+    turn_ = from + 1;
+    return;
+  }
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/packets/packet.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Bytes of a packet on a link, as hardware would lay it out:
+///   header 16: node key 8, owner 2, home 2, count 2, depth 1, kind and lanes 1
+///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte), or with ordered traversal the next
+///   node 12 (key 8, entry 4)
+///   per shape of a strip of boxes: nearest entry 4, for the policy `nearest`
+///   with `carry: data` the shapes themselves, and below an instance what is stored of its transform
+class PacketSize {
+ public:
+  explicit PacketSize(const Config& config)
+      : ordered_(config.collections.traversal == Traversal::kOrdered),
+        entries_(config.collections.policy == Policy::kNearest),
+        data_(config.packets.carry == PacketCarry::kData) {}
+
+  std::uint32_t bytes(const Packet& packet, const ShapeMemory& memory, bool treelet) const {
+    const std::uint32_t rays = static_cast<std::uint32_t>(packet.members.size());
+    std::uint32_t bytes = 16 + 4 * rays;
+    if (packet.kind != PacketKind::kTest) return bytes;
+    if (ordered_)
+      bytes += 12 * rays;
+    else if (packet.key.ref.is_inner() && !treelet)
+      bytes += rays + (entries_ ? 4 * accel::kMaxWidth : 0);
+    if (data_ && !treelet) bytes += memory.strip(packet.key).bytes + memory.transform(packet.key.instance).bytes;
+    return bytes;
+  }
+
+ private:
+  bool ordered_, entries_, data_;
+};
+
+}  // namespace carousel::ringbus::cycle

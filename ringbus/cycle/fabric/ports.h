@@ -1,0 +1,182 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "ringbus/cycle/time/channel.h"
+#include "ringbus/results/cycle_result.h"
+#include "ringbus/cycle/time/fifo.h"
+#include "ringbus/cycle/fabric/token.h"
+#include "ringbus/faults/link_fault_timer.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A place in the receiver's input queue has become free.
+struct Credit {};
+
+/// A link between two nodes: packets one way, credits the other. What travels is a T that knows how many cycles it
+/// occupies a link, T::link_cycles: a Token, or synthetic traffic.
+template <class T>
+struct WireOf {
+  Channel<T> packets;
+  Channel<Credit> credits;
+  alignas(64) QueueLedger queue;   ///< the receiver's
+};
+
+/// Where packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A place is
+/// held until the packet is taken; the credit needs the link's latency to get back.
+template <class T>
+struct InPortOf {
+  WireOf<T>* wire = nullptr;
+  Cycle latency = 1;
+
+  Cycle next() const { return wire->packets.next(); }
+  const T& front() const { return wire->packets.front(); }
+  T take(Cycle now) {
+    if (const Cycle arrival = wire->packets.next(); arrival < now) note_wait(arrival, now);
+    wire->credits.send(now + latency, {});
+    return wire->packets.take();
+  }
+
+ private:
+  void note_wait(Cycle arrival, Cycle now) {
+    QueueLedger& queue = wire->queue;
+    queue.packet_cycles += now - arrival;
+    // What leaves now was there until now. The queue is never longer than at the moment before something leaves it.
+    if (wire->packets.size() > queue.most)
+      queue.most = std::max<std::uint64_t>(queue.most, wire->packets.arrived(now - 1));
+  }
+};
+
+/// Where packets leave: those in hand, and the near end of a link. A packet occupies the link for as many cycles
+/// as it has widths; its head arrives `latency` cycles after it started, its tail accordingly later.
+template <class T>
+class OutPortOf {
+ public:
+  OutPortOf(WireOf<T>& wire, Cycle latency, std::uint32_t depth, std::size_t places)
+      : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
+  /// From now on the link has faults.
+  void fail(const LinkFaultTimer& faults) { faults_ = faults; }
+
+  bool has_place() const { return queue_.size() + reserved_ < places_; }
+  void reserve() { ++reserved_; }
+  void release() { --reserved_; }
+  /// `ready`: not before then. `cut_through`: the receiver passes it on without waiting for the tail.
+  void push(const T& token, Cycle ready, bool cut_through) { queue_.push_back({token, ready, cut_through}); }
+
+  void take_credits(Cycle now) {
+    while (wire_->credits.next() <= now) {
+      const Cycle at = wire_->credits.next();
+      wire_->credits.take();
+      if (!faults_) [[likely]] {
+        ++credits_;
+        continue;
+      }
+      make_good(at);
+      credits_ += faults_->acknowledge(at);
+    }
+    if (faults_) [[unlikely]] make_good(now);
+  }
+  /// Sends one packet if it may; whether it did.
+  bool send(Cycle now) {
+    if (queue_.empty() || free_at_ > now || queue_.front().ready > now) return false;
+    if (credits_ == 0) {
+      if (blocked_since_ == kNever) blocked_since_ = now;
+      return false;
+    }
+    if (blocked_since_ != kNever) {
+      stalled_ += now - blocked_since_;
+      blocked_since_ = kNever;
+    }
+    start(queue_.front(), now);
+    queue_.pop_front();
+    return true;
+  }
+  /// Free places of the receiver's queue that nothing in hand will take.
+  std::int64_t spare_places() const {
+    return static_cast<std::int64_t>(credits_) - static_cast<std::int64_t>(queue_.size() + reserved_);
+  }
+  /// Whether, with nothing in hand, launch() may send something that leaves the receiver `places` - 1 free places.
+  /// Takes credits when it needs them.
+  bool open(Cycle now, std::uint32_t places) {
+    if (credits_ < places) take_credits(now);
+    return queue_.empty() && free_at_ <= now && credits_ >= places;
+  }
+  /// Sends what has not been in hand.
+  void launch(const T& token, Cycle now, bool cut_through) { start({token, now, cut_through}, now); }
+  /// When it will be open(), as far as is known and if nothing else is sent before.
+  Cycle opens(std::uint32_t places) const {
+    if (!queue_.empty()) return kNever;
+    return credits_ >= places ? free_at_ : std::max(free_at_, next_credit());
+  }
+  /// When something can be sent, as far as is known; `want_credit`: wake for a credit even with nothing in hand.
+  Cycle next(bool want_credit) const {
+    if (queue_.empty()) return want_credit ? next_credit() : kNever;
+    if (credits_ == 0) return next_credit();
+    return std::max(free_at_, queue_.front().ready);
+  }
+
+  bool empty() const { return queue_.empty(); }
+  std::size_t in_hand() const { return queue_.size(); }
+  PacketId front() const { return queue_.front().token.packet; }   ///< of Tokens
+  const T& first() const { return queue_.front().token; }
+  bool blocked() const { return blocked_since_ != kNever; }
+  Cycle busy() const { return busy_; }          ///< cycles in which the link moved something
+  Cycle stalled() const { return stalled_; }    ///< cycles in which a packet waited for a credit
+  std::uint64_t packets() const { return packets_; }
+  LinkFaultCounts faults() const { return faults_ ? faults_->counts() : LinkFaultCounts{}; }
+
+ private:
+  struct Entry {
+    T token;
+    Cycle ready = 0;
+    bool cut_through = false;
+  };
+
+  Cycle next_credit() const {
+    return faults_ ? std::min(wire_->credits.next(), faults_->next()) : wire_->credits.next();
+  }
+  /// Credits that were lost on their way. Asking for them occupies the link like a packet, and is not waiting.
+  void make_good(Cycle now) {
+    const LinkFaultTimer::MadeGood made = faults_->made_good(now);
+    credits_ += made.places;
+    if (made.busy == 0) return;
+    free_at_ = std::max(free_at_, now) + made.busy;
+    busy_ += made.busy;
+    if (blocked_since_ != kNever) blocked_since_ += made.busy;
+  }
+  void start(const Entry& entry, Cycle now) {
+    const Cycle cycles = entry.token.link_cycles;
+    Cycle arrival = now + latency_, busy = cycles;
+    free_at_ = now + cycles;
+    if (faults_) [[unlikely]] {
+      const LinkFaultTimer::Delivery delivery = faults_->send(now, cycles);
+      arrival = delivery.arrival;
+      busy = delivery.busy;
+      free_at_ = delivery.link_free;
+    }
+    // In order even where a head overtakes the tail before it.
+    last_arrival_ = std::max(last_arrival_, arrival + (entry.cut_through ? 0 : cycles - 1));
+    wire_->packets.send(faults_ ? last_arrival_ : arrival + (entry.cut_through ? 0 : cycles - 1), entry.token);
+    --credits_;
+    busy_ += busy;
+    ++packets_;
+  }
+
+  WireOf<T>* wire_;
+  Cycle latency_;
+  std::uint32_t credits_;
+  std::size_t places_, reserved_ = 0;
+  Fifo<Entry> queue_;
+  Cycle free_at_ = 0, busy_ = 0, stalled_ = 0, blocked_since_ = kNever;
+  std::uint64_t packets_ = 0;
+  Cycle last_arrival_ = 0;
+  std::optional<LinkFaultTimer> faults_;
+};
+
+using Wire = WireOf<Token>;
+using InPort = InPortOf<Token>;
+using OutPort = OutPortOf<Token>;
+
+}  // namespace carousel::ringbus::cycle

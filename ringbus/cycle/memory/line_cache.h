@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "ringbus/cycle/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Set-associative cache of lines, least recently used out first. Holds no data: only what would be there.
+class LineCache {
+ public:
+  /// At least one set; the number of sets is rounded down to a power of two.
+  LineCache(std::uint64_t bytes, std::uint64_t line_bytes, std::uint64_t ways)
+      : ways_(ways), sets_(std::bit_floor(std::max<std::uint64_t>(1, bytes / line_bytes / ways))),
+        lines_(sets_ * ways_, kEmpty) {}
+
+  /// Whether `line` is there; it is then the last to go.
+  bool touch(std::uint64_t line) {
+    std::uint64_t* set = &lines_[(line & (sets_ - 1)) * ways_];
+    for (std::uint64_t i = 0; i < ways_; ++i) {
+      if (set[i] != line) continue;
+      for (; i > 0; --i) set[i] = set[i - 1];
+      set[0] = line;
+      return true;
+    }
+    return false;
+  }
+  void insert(std::uint64_t line) {
+    if (touch(line)) return;
+    std::uint64_t* set = &lines_[(line & (sets_ - 1)) * ways_];
+    for (std::uint64_t i = ways_ - 1; i > 0; --i) set[i] = set[i - 1];
+    set[0] = line;
+  }
+
+ private:
+  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+  std::uint64_t ways_, sets_;
+  std::vector<std::uint64_t> lines_;   // by set, most recently used first
+};
+
+}  // namespace carousel::ringbus::cycle

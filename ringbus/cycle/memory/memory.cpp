@@ -1,0 +1,35 @@
+#include "ringbus/cycle/memory/memory.h"
+
+#include <algorithm>
+
+namespace carousel::ringbus::cycle {
+
+Cycle Memory::request_latency(const MemoryConfig& config) { return way_there(config.dram_latency_cycles); }
+
+Cycle Memory::answer_latency(const MemoryConfig& config) { return way_back(config.dram_latency_cycles); }
+
+Memory::Memory(const MemoryConfig& config, std::vector<Client> clients)
+    : answer_latency_(answer_latency(config)),
+      line_cycles_(ceil_div(static_cast<std::uint64_t>(config.line_bytes),
+                            static_cast<std::uint64_t>(config.dram_bytes_per_cycle))),
+      clients_(std::move(clients)) {}
+
+Cycle Memory::next() const {
+  Cycle first = kNever;
+  for (const Client& client : clients_) first = std::min(first, client.requests->next());
+  return first;
+}
+
+void Memory::run(Cycle end) {
+  for (Cycle now; (now = next()) < end;) {
+    for (const Client& client : clients_) {
+      while (client.requests->next() <= now) {
+        free_at_ = std::max(free_at_, now) + line_cycles_;
+        ++lines_;
+        client.answers->send(free_at_ + answer_latency_, client.requests->take());
+      }
+    }
+  }
+}
+
+}  // namespace carousel::ringbus::cycle

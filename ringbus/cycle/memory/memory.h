@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/time/agent.h"
+#include "ringbus/cycle/time/channel.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The memory behind the caches: one channel that moves so many bytes a cycle, a fixed latency, no banks. Lines
+/// are served in the order in which requests arrive (at one time: of the caches).
+class Memory final : public Agent {
+ public:
+  struct Client {
+    Channel<std::uint64_t>* requests = nullptr;   ///< line numbers
+    Channel<std::uint64_t>* answers = nullptr;
+  };
+  static Cycle request_latency(const MemoryConfig& config);
+  static Cycle answer_latency(const MemoryConfig& config);
+
+  Memory(const MemoryConfig& config, std::vector<Client> clients);
+
+  Cycle next() const override;
+  bool polled() const override { return false; }
+  void run(Cycle end) override;
+  std::string describe() const override { return ""; }
+
+  std::uint64_t lines() const { return lines_; }
+  Cycle busy() const { return lines_ * line_cycles_; }
+
+ private:
+  Cycle answer_latency_, line_cycles_;
+  std::vector<Client> clients_;
+  Cycle free_at_ = 0;
+  std::uint64_t lines_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

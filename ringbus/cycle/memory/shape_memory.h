@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "accel/transform/instance_data.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Bytes of shape data and where they stand in the simulated memory.
+struct ShapeSpan {
+  std::uint64_t address = 0;
+  std::uint32_t bytes = 0;
+};
+
+/// Where the acceleration structure lies: nodes first, each with its children's cull planes and the primitives it holds
+/// itself behind it, then leaves as they are laid out in the host's, then what is stored of each instance's transform, from a 64-byte border on.
+class ShapeMemory {
+ public:
+  ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
+      : accel_(accel),
+        node_bytes_(sizeof(accel::Node) - (accel.spheres.empty() ? 0 : sizeof(accel::Node::plane) - sizeof(accel::NodeSpheres))),
+        blocks_at_((accel.nodes.size() * node_bytes_ + bytes_behind_nodes() + 63) / 64 * 64),
+        instances_at_((blocks_at_ + accel.blocks.size() * sizeof(accel::TriangleBlock) + 63) / 64 * 64),
+        instance_bytes_(accel::instance_bytes(accuracy)) {}
+
+  /// The strip below `key`: a node with its children's boxes and planes, or a leaf's triangles.
+  ShapeSpan strip(accel::NodeKey key) const {
+    if (key.ref.is_inner()) {
+      const std::uint32_t node = key.ref.node();
+      const std::uint64_t address = std::uint64_t{node} * node_bytes_;
+      if (behind_before_.empty()) return {address, node_bytes_};
+      const std::uint64_t behind = behind_before_[node + 1] - behind_before_[node];
+      return {address + behind_before_[node], static_cast<std::uint32_t>(node_bytes_ + behind)};
+    }
+    return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
+            key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
+  }
+
+  /// What testing in `instance` needs of its transform; no bytes above the instances and where rays are not moved.
+  ShapeSpan transform(std::uint32_t instance) const {
+    if (instance == kNoInstance || accel_.instances[instance].transform.identity) return {};
+    return {instances_at_ + std::uint64_t{instance} * ((instance_bytes_ + 63) / 64 * 64), instance_bytes_};
+  }
+
+ private:
+  /// Fills in behind_before_; the bytes in all.
+  std::uint64_t bytes_behind_nodes() {
+    std::uint64_t bytes = 0;
+    behind_before_.reserve(accel_.nodes.size() + 1);
+    for (const accel::Node& node : accel_.nodes) {
+      behind_before_.push_back(bytes);
+      bytes += accel::plane_bytes(node, accel_.shared_normals);
+      for (int lane = 0; lane < node.count; ++lane)
+        if (node.direct >> lane & 1) bytes += node.child[lane].blocks() * sizeof(accel::TriangleBlock);
+    }
+    behind_before_.push_back(bytes);
+    if (bytes == 0) behind_before_.clear();
+    return bytes;
+  }
+
+  const accel::Accel& accel_;
+  std::vector<std::uint64_t> behind_before_;   // bytes, by node; empty when there are none
+  std::uint32_t node_bytes_;
+  std::uint64_t blocks_at_, instances_at_;
+  std::uint32_t instance_bytes_;
+};
+
+}  // namespace carousel::ringbus::cycle

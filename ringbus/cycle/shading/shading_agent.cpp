@@ -1,0 +1,269 @@
+#include "ringbus/cycle/shading/shading_agent.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/system/error.h"
+#include "ringbus/faults/unfinished_rays.h"
+
+namespace carousel::ringbus::cycle {
+
+ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window,
+                           std::vector<SidePorts> clients)
+    : machine_(machine),
+      workload_(workload),
+      clients_(std::move(clients)),
+      trace_(static_cast<std::uint32_t>(machine.topology.resources()), window),
+      shade_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_shade)),
+      effect_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_effect)),
+      any_hit_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_any_hit)),
+      load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
+      latency_(control_latency(machine.config)),
+      slots_(static_cast<std::size_t>(machine.config.topology.resources * machine.config.rays.slots_per_resource)),
+      group_(static_cast<std::size_t>(machine.config.packets.rays)),
+      gather_(group_),
+      builder_rate_(static_cast<Cycle>(machine.config.bundles.builder.rays_per_cycle)),
+      queues_(machine.config.shading, static_cast<std::uint64_t>(machine.config.image.seed)),
+      helpers_(clients_, latency_),
+      load_free_(clients_.size()),
+      last_sent_(clients_.size()) {
+  if (machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<RetryLedger>();
+  for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
+  const BundlesConfig& bundles = machine.config.bundles;
+  if (bundles.size > 0) gather_ = std::max(group_, std::min(slots_ / 4, static_cast<std::size_t>(bundles.size * bundles.builder.open)));
+}
+
+Cycle ShadingAgent::next() const {
+  if (!started_) return 0;
+  Cycle first = jobs_.empty() ? kNever : jobs_.top().done;
+  // Nothing of importance comes when all is done, and one that stops then is not waited for.
+  if (!done()) first = std::min(first, give_up_at_);
+  for (const SidePorts& client : clients_) {
+    if (!done()) first = std::min(first, client.completed->next());
+    if (client.questions != nullptr) first = std::min(first, client.questions->next());
+  }
+  return std::min(first, helpers_.next());
+}
+
+void ShadingAgent::run(Cycle end) {
+  for (Cycle now; (now = next()) < end;) step(now);
+}
+
+void ShadingAgent::step(Cycle now) {
+  started_ = true;
+  take_completed(now);
+  if (give_up_at_ <= now) give_up(now);
+  take_questions(now);
+  // Shading that takes no time ends in the cycle in which it starts.
+  while (finish_jobs(now) || start_jobs(now)) {
+  }
+  place(now);
+}
+
+void ShadingAgent::take_completed(Cycle now) {
+  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
+    while (clients_[r].completed->next() <= now) {
+      const CompletedRays done = clients_[r].completed->take();
+      if (done.note != CompletedRays::Note::kDone) {
+        hear(r, done.note, now);
+        continue;
+      }
+      machine_.control.free(ResourceId(r), done.slots);
+      if (ledger_) ledger_->remove(done.rays);
+      for (const RayResult& ray : done.rays) queues_.push(ray);
+    }
+  }
+}
+
+void ShadingAgent::take_questions(Cycle now) {
+  for (std::uint32_t r = 0; r < clients_.size() && clients_[r].questions != nullptr; ++r)
+    while (clients_[r].questions->next() <= now) questions_.push_back({r, clients_[r].questions->take()});
+}
+
+bool ShadingAgent::finish_jobs(Cycle now) {
+  shaded_.clear();
+  helpers_.take_notes(now, shaded_);
+  bool any = false;
+  for (; !jobs_.empty() && jobs_.top().done <= now; jobs_.pop()) {
+    const Job& job = jobs_.top();
+    any = true;
+    idle_.push_back(job.worker);
+    queues_.hold(job.worker, 0);
+    if (job.question) {
+      clients_[job.question->from].answers->send(now + latency_, {job.question->rays.slots});
+      continue;
+    }
+    if (job.made == 0) {
+      shaded_.push_back(job.ray);
+      continue;
+    }
+    making_ -= job.made;
+    const std::size_t before = gathered_.size();
+    const Workload::Generated made = workload_.generate(WorkerId(0), job.made, gathered_);
+    source_finished_ = made.finished;
+    source_dry_ = made.rays == 0;
+    outstanding_ += gathered_.size() - before;
+    emitted_ += gathered_.size() - before;
+  }
+  if (shaded_.empty()) return any;
+  const std::size_t before = gathered_.size();
+  workload_.shade(WorkerId(0), shaded_, gathered_);
+  trace_.note(now, StepKind::kShade, 0, shaded_.size());
+  outstanding_ += gathered_.size() - before;
+  emitted_ += gathered_.size() - before;
+  outstanding_ -= shaded_.size();
+  completed_ += shaded_.size();
+  source_dry_ = false;
+  milestone(now);
+  return true;
+}
+
+std::size_t ShadingAgent::room() const {
+  const std::uint64_t taken = outstanding_ + making_;
+  return taken >= slots_ ? 0 : std::min<std::size_t>(group_, slots_ - taken);
+}
+
+bool ShadingAgent::start_jobs(Cycle now) {
+  bool any = false;
+  // The last to fall idle first.
+  for (std::size_t i = idle_.size(); i-- > 0;) {
+    if (!start_job(idle_[i], now)) continue;
+    idle_.erase(idle_.begin() + static_cast<std::ptrdiff_t>(i));
+    any = true;
+  }
+  while (helpers_.any()) {
+    const std::optional<RayResult> ray = queues_.take_any();
+    if (!ray) break;
+    helpers_.give(*ray, cycles_for(*ray), now);
+    any = true;
+  }
+  return any;
+}
+
+Cycle ShadingAgent::cycles_for(const RayResult& ray) const {
+  return effect_cycles_ == 0 ? shade_cycles_ : shade_cycles_ + effect_cycles_ * workload_.extra_effects(ray);
+}
+
+bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
+  Job job;
+  job.worker = worker;
+  if (!questions_.empty()) {
+    job.question = std::move(questions_.front());
+    questions_.pop_front();
+    job.done = now + any_hit_cycles_ * job.question->rays.times;
+  } else if (const std::optional<RayResult> ray = queues_.take(worker)) {
+    job.ray = *ray;
+    job.done = now + cycles_for(*ray);
+  } else if (!source_finished_ && !source_dry_ && room() > 0) {
+    job.made = room();
+    making_ += job.made;
+    job.done = now + shade_cycles_ * job.made;
+    if (shade_cycles_ == 0) source_dry_ = true;   // until it has answered
+  } else {
+    return false;
+  }
+  queues_.hold(worker, std::max<std::size_t>(1, job.made));
+  busy_ += job.done - now;
+  jobs_.push(job);
+  return true;
+}
+
+void ShadingAgent::place(Cycle now) {
+  if (draining_ > 0) return;
+  const bool full = gathered_.size() >= gather_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
+  bool placed = machine_.control.place_waiting();
+  if (full || (last && !gathered_.empty())) {
+    if (machine_.config.bundles.size > 0) builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
+    machine_.control.submit(gathered_);
+    if (ledger_) ledger_->add(gathered_);
+    gathered_.clear();
+    placed = true;
+  }
+  if (placed) send_groups(now);
+}
+
+void ShadingAgent::send_groups(Cycle now) {
+  const RayIdLayout& layout = machine_.stores.front()->layout();
+  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
+    groups_.clear();
+    machine_.control.collect(ResourceId(r), groups_);
+    for (RayGroup& group : groups_) {
+      Cycle loaded = std::max(now, builder_free_);
+      for (const RayId id : group.ids) {
+        const RayStore& store = *machine_.stores[layout.owner(id).value];
+        const std::uint32_t slot = layout.slot(id);
+        const std::size_t records = store.is_bundle(slot) ? 1 + store.rays_of(slot).size() : 1;
+        Cycle& port = load_free_[layout.owner(id).value];
+        port = std::max(port, now) + load_cycles_ * records;
+        loaded = std::max(loaded, port);
+      }
+      trace_.note(now, StepKind::kPlace, 0, group.ids.size());
+      last_sent_[r] = std::max(last_sent_[r], loaded + latency_);
+      clients_[r].new_rays->send(last_sent_[r], {std::move(group.ids)});
+    }
+  }
+}
+
+// ---- a resource that has stopped
+
+void ShadingAgent::hear(std::uint32_t resource, CompletedRays::Note note, Cycle now) {
+  if (note == CompletedRays::Note::kLastBeat) {
+    stop_ = {resource, now - latency_, 0, 0};
+    give_up_at_ = now + static_cast<Cycle>(machine_.config.faults.resource.silence_cycles);
+  } else if (--draining_ == 0) {
+    restart(now);
+  }
+}
+
+void ShadingAgent::give_up(Cycle now) {
+  give_up_at_ = kNever;
+  stop_->noticed = now;
+  const ResourceId stopped(stop_->resource);
+  if (!machine_.config.faults.resource.recover) throw SimulationError(missing_rays(stopped, ledger_->open(), completed_));
+  if (const std::optional<RayResult> ray = helpers_.lose(clients_[stopped.value].jobs)) queues_.push(*ray);
+  draining_ = clients_.size();
+  order_all(NewRays::Order::kDiscard, now);
+}
+
+/// No packet is under way, and no resource holds an ID.
+void ShadingAgent::restart(Cycle now) {
+  stop_->restarted = now;
+  machine_.control.discard();
+  machine_.control.exclude(ResourceId(stop_->resource));
+  slots_ -= machine_.stores.front()->slots();
+  order_all(NewRays::Order::kGoOn, now);
+  const RayBatch rays = ledger_->open();
+  rays_restarted_ = rays.size();
+  paths_restarted_ = RetryLedger::paths_of(rays);
+  if (rays.empty()) return;
+  if (machine_.config.bundles.size > 0) builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
+  machine_.control.submit(rays);
+  send_groups(now);
+}
+
+/// An order comes behind the rays that were sent before it.
+void ShadingAgent::order_all(NewRays::Order order, Cycle now) {
+  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
+    last_sent_[r] = std::max(last_sent_[r], now + latency_);
+    clients_[r].new_rays->send(last_sent_[r], {{}, order});
+  }
+}
+
+void ShadingAgent::milestone(Cycle now) {
+  if (completed_ < milestone_rays_ * (milestones_.size() + 1)) return;
+  milestones_.push_back({now, completed_});
+  if (milestones_.size() < 1024) return;
+  for (std::size_t i = 0; i < 512; ++i) milestones_[i] = milestones_[2 * i + 1];
+  milestones_.resize(512);
+  milestone_rays_ *= 2;
+}
+
+std::string ShadingAgent::describe() const {
+  if (done()) return "";
+  return fmt::format("ray control and shading: {} rays outstanding, {} to be shaded, {} free slots, {}", outstanding_,
+                     queues_.size(), machine_.control.free_slots(),
+                     source_finished_ ? "no more to come" : "more to come");
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Equal test units side by side: each starts a test every `interval` cycles and answers `latency` cycles later.
+class UnitBank {
+ public:
+  explicit UnitBank(const TesterUnits& config)
+      : units_(static_cast<Cycle>(config.units)),
+        interval_(static_cast<Cycle>(config.interval_cycles)),
+        latency_(static_cast<Cycle>(config.latency_cycles)) {}
+
+  struct Reservation {
+    Cycle first = 0;   ///< the first answer
+    Cycle last = 0;    ///< the last one
+  };
+  /// Takes the bank for `tests`, as soon as it is free but not before `at`. None take no time.
+  Reservation reserve(Cycle at, std::uint64_t tests) {
+    if (tests == 0) return {at, at};
+    const Cycle start = std::max(at, free_at_), length = ceil_div(tests, units_) * interval_;
+    free_at_ = start + length;
+    busy_ += length;
+    tests_ += tests;
+    spare_ = ceil_div(tests, units_) * units_ - tests;
+    return {start + latency_, free_at_ - interval_ + latency_};
+  }
+  /// The same, but units that the tests before leave idle in their last cycle are taken first: single rays bring too
+  /// few tests to fill a bank.
+  Reservation reserve_beside(Cycle at, std::uint64_t tests) {
+    const Cycle last_start = free_at_ - interval_;
+    if (tests == 0 || spare_ == 0 || at > last_start) return reserve(at, tests);
+    const std::uint64_t beside = std::min(tests, spare_);
+    spare_ -= beside;
+    tests_ += beside;
+    const Cycle first = last_start + latency_;
+    return beside == tests ? Reservation{first, first} : Reservation{first, reserve(at, tests - beside).last};
+  }
+
+  Cycle latency() const { return latency_; }
+  Cycle busy() const { return busy_; }          ///< cycles in which a test was started or could not be
+  std::uint64_t tests() const { return tests_; }
+
+ private:
+  Cycle units_, interval_, latency_;
+  Cycle free_at_ = 0, busy_ = 0;
+  std::uint64_t tests_ = 0, spare_ = 0;   // spare: tests that could have been started with the last ones
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "ringbus/cycle/machine/cycle_machine.h"
+#include "ringbus/cycle/messages/side_ports.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Where a resource's completed rays leave for shading: record after record, a link's width a cycle.
+class CompletedPort {
+ public:
+  CompletedPort(const Config& config, const SidePorts& ports)
+      : completed_(*ports.completed),
+        record_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle))),
+        latency_(control_latency(config)) {}
+
+  /// Takes the rays and the slots they leave; both are empty afterwards.
+  void send(HitBatch& done, std::vector<std::uint32_t>& slots, Cycle now) {
+    free_at_ = std::max(free_at_, now) + done.size() * record_cycles_;
+    completed_.send(free_at_ + latency_, {std::move(done), std::move(slots)});
+    done.clear();
+    slots.clear();
+  }
+
+  /// Behind the rays it has sent.
+  void tell(CompletedRays::Note note, Cycle now) { completed_.send(std::max(free_at_, now) + latency_, {{}, {}, note}); }
+
+ private:
+  Channel<CompletedRays>& completed_;
+  Cycle record_cycles_, latency_;
+  Cycle free_at_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,175 @@
+#include "ringbus/cycle/tile/independent_tile.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "accel/traverse/ray_check.h"
+
+namespace carousel::ringbus::cycle {
+
+IndependentTile::IndependentTile(ResourceId id, CycleMachine& machine, bool statistics, TraceWindow window,
+                                 const SidePorts& ports)
+    : machine_(machine),
+      id_(id),
+      store_(*machine.stores[id.value]),
+      statistics_(statistics),
+      trace_(id.value, window),
+      ports_(ports),
+      tester_(testers_of(machine.config, id), machine.config.cull_planes.order, machine.config.rays.reads_per_cycle),
+      fetches_(machine.config.memory, ports),
+      completed_port_(machine.config, ports),
+      help_(machine.config, ports),
+      transforms_(machine.config.accuracy, machine.accel, store_.slots()),
+      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false, 0}) {}
+
+Cycle IndependentTile::next() const {
+  const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
+  const Cycle answered = ports_.answers == nullptr ? kNever : ports_.answers->next();
+  return std::min({tested, answered, ports_.new_rays->next(), fetches_.next(), help_.next()});
+}
+
+void IndependentTile::run(Cycle end) {
+  for (Cycle now; (now = next()) < end;) step(now);
+}
+
+void IndependentTile::step(Cycle now) {
+  take_new_rays(now);
+  while (ports_.answers != nullptr && ports_.answers->next() <= now)
+    for (const std::uint32_t slot : ports_.answers->take().slots) go_on(slot, now);
+  while (fetches_.next() <= now)
+    for (const std::uint32_t slot : fetches_.take()) fetched(slot, now);
+  do {
+    while (!tests_.empty() && tests_.top().done <= now) {
+      const std::uint32_t slot = tests_.top().slot;
+      tests_.pop();
+      trace_.note(now, StepKind::kTestedRay, slot, 1);
+      if (const std::uint64_t times = std::exchange(threads_[slot].asks, 0); times > 0)
+        ports_.questions->send(now + control_latency(machine_.config), {{slot}, times});
+      else
+        go_on(slot, now);
+    }
+  } while (help_.step(now, tests_.empty()));
+  if (!help_.holds()) test_held_back(now);
+  hand_over(now);
+  const TileState state = classify();
+  clock_.enter(state, now);
+  help_.tell(now, state == TileState::kIdle);
+}
+
+TileState IndependentTile::classify() const {
+  if (help_.shading()) return TileState::kShading;
+  if (!tests_.empty()) return TileState::kTesting;
+  return fetches_.empty() ? TileState::kIdle : TileState::kMemory;
+}
+
+void IndependentTile::take_new_rays(Cycle now) {
+  while (ports_.new_rays->next() <= now) {
+    const NewRays rays = ports_.new_rays->take();
+    trace_.note(now, StepKind::kNewRays, 0, rays.ids.size());
+    record({.kind = EventKind::kAdmit, .resource = id_, .rays = static_cast<std::uint32_t>(rays.ids.size())});
+    for (const RayId id : rays.ids) {
+      const std::uint32_t slot = store_.slot(id);
+      ++active_;
+      threads_[slot].ray = id;
+      threads_[slot].walk.start(machine_.accel.root_key());
+      go_on(slot, now);
+    }
+  }
+}
+
+// ---- a ray's turns
+
+void IndependentTile::go_on(std::uint32_t slot, Cycle now) {
+  Thread& thread = threads_[slot];
+  stack_held_ -= thread.walk.stack_bytes().held;
+  const std::optional<accel::NodeKey> next = thread.walk.next(store_.record(slot));
+  stack_held_ += thread.walk.stack_bytes().held;
+  if (!next) {
+    complete(slot);
+    return;
+  }
+  thread.strip = *next;
+  const ShapeSpan transform = machine_.memory.transform(next->instance);
+  thread.fetches_transform = thread.walk.enters(next->instance) && transform.bytes > 0 && !fetches_.want(transform, slot, now);
+  if (!thread.fetches_transform) want_strip(slot, now);
+}
+
+void IndependentTile::fetched(std::uint32_t slot, Cycle now) {
+  if (std::exchange(threads_[slot].fetches_transform, false))
+    want_strip(slot, now);
+  else
+    test(slot, now);
+}
+
+void IndependentTile::want_strip(std::uint32_t slot, Cycle now) {
+  if (fetches_.want(machine_.memory.strip(threads_[slot].strip), slot, now)) test(slot, now);
+}
+
+void IndependentTile::test_held_back(Cycle now) {
+  for (const std::uint32_t slot : held_back_) test(slot, now);
+  held_back_.clear();
+}
+
+void IndependentTile::test(std::uint32_t slot, Cycle now) {
+  if (help_.holds()) {
+    held_back_.push_back(slot);
+    return;
+  }
+  Thread& thread = threads_[slot];
+  stack_held_ -= thread.walk.stack_bytes().held;
+  const TestCounts counts = thread.walk.test(machine_.accel, thread.strip, 
+                                              {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
+  if (ports_.questions != nullptr) thread.asks = counts.asked;
+  const std::uint64_t held = thread.walk.stack_bytes().held;
+  stack_held_ += held;
+  stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);
+  stack_.ray_peak_bytes = std::max(stack_.ray_peak_bytes, held);
+  tests_.push({tester_.ray(now, counts), next_turn_++, slot});
+  const PacketMember member{thread.ray, 0};
+  record({.kind = EventKind::kTest, .resource = id_, .key = thread.strip, .rays = 1, .tests = counts, .members = {&member, 1}});
+}
+
+void IndependentTile::complete(std::uint32_t slot) {
+  const RayWalk::StackBytes& bytes = threads_[slot].walk.stack_bytes();
+  stack_.pushed_bytes += bytes.pushed;
+  stack_.popped_bytes += bytes.popped;
+  --active_;
+  accel::finish_record(store_.record(slot), completed_);
+  transforms_.forget(slot);
+  store_.retire(slot);
+  freed_slots_.push_back(slot);
+}
+
+void IndependentTile::hand_over(Cycle now) {
+  if (completed_.empty()) return;
+  trace_.note(now, StepKind::kComplete, 0, completed_.size());
+  record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(completed_.size())});
+  completed_port_.send(completed_, freed_slots_, now);
+}
+
+// ---- the end, good or bad
+
+TileResult IndependentTile::result() const {
+  TileResult t;
+  t.states = clock_.times();
+  tester_.account(t);
+  t.stack = stack_;
+  t.transformed_rays = transforms_.bytes();
+  return t;
+}
+
+ResourceStatistics IndependentTile::statistics() const {
+  ResourceStatistics s = sink_.statistics();
+  // Rays are tested one by one, not as members of packets.
+  s.visits = s.seen_rays = 0;
+  return s;
+}
+
+std::string IndependentTile::describe() const {
+  if (active_ == 0) return "";
+  return fmt::format("resource {}: {} rays in slots, {} in test", id_.value, active_, tests_.size());
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <queue>
+#include <string>
+#include <vector>
+
+#include "ringbus/cycle/tile/completed_port.h"
+#include "ringbus/cycle/machine/cycle_machine.h"
+#include "ringbus/cycle/tile/ray_walk.h"
+#include "ringbus/cycle/tile/resource_agent.h"
+#include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/time/state_clock.h"
+#include "ringbus/cycle/memory/strip_fetches.h"
+#include "ringbus/cycle/testers/tester.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A resource of the conventional machine: traces its own rays depth-first, each with a stack of its own, and has no
+/// links, packets or collections.
+///
+/// Every ray in a slot is a thread that turns by turn waits for the strip it needs next and is tested against it. A
+/// ray that is ready takes the units at once or behind those that were ready before it, so other rays' tests hide
+/// its wait for memory; picking rays and moving stack entries costs no cycles (the baseline is given its best, and
+/// the bytes its stacks move are told apart).
+class IndependentTile final : public ResourceAgent {
+ public:
+  IndependentTile(ResourceId id, CycleMachine& machine, bool statistics, TraceWindow window, const SidePorts& ports);
+
+  Cycle next() const override;
+  bool polled() const override { return false; }
+  void run(Cycle end) override;
+  std::string describe() const override;
+
+  void close(Cycle end) override { clock_.enter(TileState::kIdle, end); }
+  TileResult result() const override;
+  ResourceStatistics statistics() const override;
+  CollectionStore::Statistics collections() const override { return {}; }
+  const std::vector<OutPort>& out() const override { return no_links_; }
+  std::string blocked(std::size_t) const override { return ""; }
+  const Trace& trace() const override { return trace_; }
+
+ private:
+  struct Thread {
+    RayId ray;
+    RayWalk walk;
+    accel::NodeKey strip;   // fetched or in test
+    bool fetches_transform; // first
+    std::uint64_t asks;     // of a shader worker, when it has been tested
+  };
+  /// A ray in test. Of those that end at one time the one that began first goes on first.
+  struct Test {
+    Cycle done = 0;
+    std::uint64_t turn = 0;
+    std::uint32_t slot = 0;
+    bool operator>(const Test& o) const { return done != o.done ? done > o.done : turn > o.turn; }
+  };
+
+  void step(Cycle now);
+  void take_new_rays(Cycle now);
+  void go_on(std::uint32_t slot, Cycle now);
+  void test(std::uint32_t slot, Cycle now);
+  void fetched(std::uint32_t slot, Cycle now);
+  void want_strip(std::uint32_t slot, Cycle now);
+  void test_held_back(Cycle now);
+  void complete(std::uint32_t slot);
+  void hand_over(Cycle now);
+  TileState classify() const;
+  void record(const Event& event) {
+    if (statistics_) sink_.record(event);
+  }
+
+  CycleMachine& machine_;
+  ResourceId id_;
+  RayStore& store_;
+  bool statistics_;
+  StatisticsSink sink_;
+  Trace trace_;
+  SidePorts ports_;
+  Tester tester_;
+  StripFetches fetches_;
+  CompletedPort completed_port_;
+  ShadeHelp help_;
+
+  TransformAccount transforms_;
+  std::vector<Thread> threads_;   // by slot
+  std::priority_queue<Test, std::vector<Test>, std::greater<>> tests_;
+  std::vector<std::uint32_t> held_back_;   // slots of rays that are ready, but the resource shades
+  std::uint64_t next_turn_ = 0;
+  std::size_t active_ = 0;        // rays in slots
+  HitBatch completed_;
+  std::vector<std::uint32_t> freed_slots_;
+  std::uint64_t stack_held_ = 0;
+  StackLedger stack_;
+  StateClock<TileState, kTileStates> clock_;
+  std::vector<OutPort> no_links_;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,71 @@
+#include "ringbus/cycle/tile/ray_walk.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ringbus/resource/farthest_first.h"
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+std::uint64_t entry_bytes(accel::NodeKey key) { return key.ref.is_inner() ? 4 : 12; }
+
+}  // namespace
+
+void RayWalk::start(accel::NodeKey from) {
+  stack_.assign(1, {from, 0, 0, true});
+  nearest_in_hand_ = true;
+  instance_ = kNoInstance;
+  bytes_ = {};
+}
+
+std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record) {
+  if ((record.tag.flags & kRayDone) != 0) {
+    // What waits is forgotten where it stands.
+    stack_.clear();
+    bytes_.held = 0;
+  }
+  while (!stack_.empty())
+    if (const NextNode top = pop(); !(top.entry > record.hit.t)) return top.key;
+  return std::nullopt;
+}
+
+NextNode RayWalk::pop() {
+  const NextNode top = stack_.back();
+  stack_.pop_back();
+  if (std::exchange(nearest_in_hand_, false)) return top;
+  bytes_.popped += entry_bytes(top.key);
+  bytes_.held -= entry_bytes(top.key);
+  return top;
+}
+
+void RayWalk::enter(std::uint32_t instance, std::uint32_t slot, TestCounts& tests) {
+  instance_ = instance;
+  if (!transforms_->moves(instance) || !transforms_->needs(slot, instance)) return;
+  tests.transforms = 1;
+  tests.inversions = transforms_->inverts(instance);
+}
+
+TestCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray) {
+  std::uint8_t mask = 0;
+  float nearest[accel::kMaxWidth], entry[accel::kMaxWidth];
+  std::fill(std::begin(nearest), std::end(nearest), kInfinity);
+  TestCounts tests;
+  accel::test_strip(accel, key, ~0u, ray, {&mask, nearest, entry}, tests);
+  tests.transforms = 0;   // the kernel's own, for every strip
+  if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
+  if (!key.ref.is_inner() || mask == 0) return tests;
+  std::uint64_t bytes = 0;
+  farthest_first(mask, entry, [&](int lane) {
+    stack_.push_back({accel.child_key(key, lane), entry[lane], 0, true});
+    bytes += entry_bytes(stack_.back().key);
+  });
+  bytes -= entry_bytes(stack_.back().key);
+  nearest_in_hand_ = true;
+  bytes_.held += bytes;
+  bytes_.pushed += bytes;
+  return tests;
+}
+
+}  // namespace carousel::ringbus::cycle

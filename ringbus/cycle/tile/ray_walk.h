@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "accel/traverse/kernels.h"
+#include "core/types/intersection_counts.h"
+#include "ringbus/packets/packet.h"
+#include "ringbus/resource/transform_account.h"
+
+namespace carousel::ringbus::cycle {
+
+/// One ray's way through a tree, depth-first and nearest first, a strip at a time.
+///
+/// The nodes that wait stand on a stack, an entry of 32 bits for an inner node and of 96 for a leaf; the nearest
+/// child goes on at once without having been there. The ray's transformed copy stays in hand while it is within an
+/// instance; whether it is made anew when the ray comes there again, the account says.
+class RayWalk {
+ public:
+  /// Keeps a reference.
+  explicit RayWalk(TransformAccount& transforms) : transforms_(&transforms) {}
+  void start(accel::NodeKey from);
+  /// The strip the ray has to be tested against next; nothing when it is through, or needs to know no more.
+  std::optional<accel::NodeKey> next(const RayRecord& record);
+  /// Tests the ray, the one member of `ray`, against that strip. Returns what the hardware has to do for it.
+  TestCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
+
+  /// Whether a strip of `instance` would be one of another instance than the last.
+  bool enters(std::uint32_t instance) const { return instance != instance_; }
+
+  /// Bytes on the stack now, and moved onto it and from it since start().
+  struct StackBytes {
+    std::uint64_t held = 0, pushed = 0, popped = 0;
+  };
+  const StackBytes& stack_bytes() const { return bytes_; }
+
+ private:
+  NextNode pop();
+  void enter(std::uint32_t instance, std::uint32_t slot, TestCounts& tests);
+
+  TransformAccount* transforms_;
+  std::vector<NextNode> stack_;   // and on top of it the nearest child
+  bool nearest_in_hand_ = false;
+  std::uint32_t instance_ = kNoInstance;
+  StackBytes bytes_;
+};
+
+}  // namespace carousel::ringbus::cycle

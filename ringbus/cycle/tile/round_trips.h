@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/numeric/latency_histogram.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A resource's packets on their way: how long each was out, and, counted apart from that, for how many
+/// packet-cycles any were. By Little's law (J. D. C. Little, Operations Research 9 (1961)) the two must agree.
+class RoundTrips {
+ public:
+  /// For packets `first` to `first + packets - 1`.
+  RoundTrips(std::uint32_t first, std::size_t packets) : first_(first), left_at_(packets) {}
+
+  void leave(std::uint32_t packet, Cycle now) {
+    left_at_[packet - first_] = now;
+    count(now);
+    ++out_;
+  }
+  void return_home(std::uint32_t packet, Cycle now) {
+    latency_.add(now - left_at_[packet - first_]);
+    count(now);
+    --out_;
+  }
+
+  /// It is not home, but will not be waited for.
+  void forget(Cycle now) {
+    count(now);
+    --out_;
+  }
+
+  const LatencyHistogram& latency() const { return latency_; }
+  Cycle packet_cycles() const { return packet_cycles_; }
+
+ private:
+  void count(Cycle now) {
+    packet_cycles_ += out_ * (now - since_);
+    since_ = now;
+  }
+
+  std::uint32_t first_;
+  std::vector<Cycle> left_at_;
+  LatencyHistogram latency_;
+  std::uint64_t out_ = 0;
+  Cycle since_ = 0, packet_cycles_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <unordered_set>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/types/intersection_counts.h"
+#include "ringbus/cycle/tile/ray_walk.h"
+#include "ringbus/resource/resource.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Takes rays through a subtree, depth-first and nearest first, a strip at a time, and notes what the hardware
+/// that does so has to do: the kernels' own walk is faster on the host but keeps no account.
+class SubtreeWalk final : public SubtreeTracer {
+ public:
+  /// Cycles that one ray needs for a strip of boxes, of triangles, of procedural primitives, for planes, to be
+  /// transformed, and until it knows whether it is let through.
+  struct StepCycles {
+    std::uint64_t box = 1, triangle = 1, procedural = 1, plane = 1, transform = 1, any_hit = 0;
+  };
+  struct Account {
+    std::uint64_t chain = 0;                 ///< cycles of the slowest ray
+    std::vector<accel::NodeKey> strips;      ///< read by any of them, once each, in order of the first reading
+    std::vector<std::uint32_t> instances;    ///< whose transform was read, in the same way
+  };
+  /// Keeps references.
+  SubtreeWalk(const accel::Accel& accel, const StepCycles& step, TransformAccount& transforms)
+      : accel_(accel), step_(step), walk_(transforms) {}
+
+  void trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) override;
+  /// Of the last trace().
+  const Account& account() const { return account_; }
+
+ private:
+  std::uint64_t walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* asked, TestCounts& counts);
+  void note(accel::NodeKey key);
+
+  const accel::Accel& accel_;
+  StepCycles step_;
+  Account account_;
+  RayWalk walk_;
+  std::unordered_set<std::uint32_t> entered_;   // instances by any of the rays
+  std::vector<std::uint32_t> seen_;   // by a hash of the strip: its place in account_.strips, plus one
+};
+
+}  // namespace carousel::ringbus::cycle

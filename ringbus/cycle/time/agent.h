@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "ringbus/cycle/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A part of the machine with a clock of its own. Agents meet only through channels whose latency is at least
+/// the window's length, so that within a window each can run by itself, on any thread, and nothing depends on
+/// which runs first.
+class Agent {
+ public:
+  virtual ~Agent() = default;
+
+  /// The next cycle in which it has something to do; kNever until something arrives.
+  virtual Cycle next() const = 0;
+  /// Whether next() may change by what no WakeBoard tells of: false if its last answer holds until something is sent
+  /// on a connected channel.
+  virtual bool polled() const { return true; }
+  /// Does everything there is to do before `end`, in the order of time.
+  virtual void run(Cycle end) = 0;
+  /// What it holds and waits for, for the report of a machine that got stuck; empty when it is at rest.
+  virtual std::string describe() const = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

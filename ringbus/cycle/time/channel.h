@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+#include "ringbus/cycle/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// One way from one agent to another: things with the time at which they arrive, in sending order. Arrival times
+/// must not decrease. The two agents may live on different threads: what is sent within a window arrives after
+/// it (see windows.h), so whether the receiver sees it a little earlier changes nothing.
+///
+/// Things stand in a chain of blocks; the block the receiver has emptied goes back to the sender.
+template <class T>
+class Channel {
+ public:
+  Channel() : head_block_(new Block), tail_block_(head_block_) {}
+  ~Channel() {
+    delete spare_.load(std::memory_order_relaxed);
+    while (head_block_ != nullptr) delete std::exchange(head_block_, head_block_->next);
+  }
+  Channel(const Channel&) = delete;
+  Channel& operator=(const Channel&) = delete;
+
+  void send(Cycle arrival, T thing) {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed), place = tail % kBlock;
+    if (place == 0 && tail > 0) {
+      // Acquire: the receiver has done with the block it gave back.
+      Block* block = spare_.exchange(nullptr, std::memory_order_acquire);
+      if (block == nullptr) block = new Block;
+      block->next = nullptr;
+      tail_block_->next = block;
+      tail_block_ = block;
+    }
+    tail_block_->items[place] = {arrival, std::move(thing)};
+    tail_.store(tail + 1, std::memory_order_release);   // publishes the item, and the block's link
+    if (arrival < *wake_) *wake_ = arrival;
+  }
+  /// The earliest arrival that was sent since it was last cleared is kept in `slot`, which is the sender's to write.
+  void wakes(Cycle& slot) { wake_ = &slot; }
+
+  /// Arrival of the first thing; kNever when there is none.
+  Cycle next() const {
+    if (arrival_ == kNever && head_ != tail_.load(std::memory_order_acquire)) arrival_ = first().arrival;
+    return arrival_;
+  }
+  /// Only when next() is not kNever, as take().
+  const T& front() const { return first().thing; }
+  T take() {
+    T thing = std::move(const_cast<Item&>(first()).thing);
+    arrival_ = kNever;
+    if (++head_ % kBlock == 0) emptied_ = true;
+    return thing;
+  }
+  /// How many have arrived by `now`.
+  std::size_t arrived(Cycle now) const {
+    const std::size_t end = tail_.load(std::memory_order_acquire);
+    if (head_ == end) return 0;
+    first();   // the head block is the one that holds it
+    const Block* block = head_block_;
+    std::size_t at = head_;
+    for (; at != end; ++at) {
+      if (at != head_ && at % kBlock == 0) block = block->next;
+      if (block->items[at % kBlock].arrival > now) break;
+    }
+    return at - head_;
+  }
+  std::size_t size() const { return tail_.load(std::memory_order_acquire) - head_; }
+
+ private:
+  static constexpr std::size_t kBlock = 8;
+  struct Item {
+    Cycle arrival = 0;
+    T thing{};
+  };
+  struct Block {
+    std::array<Item, kBlock> items;
+    Block* next = nullptr;
+  };
+
+  const Item& first() const {
+    if (emptied_) [[unlikely]] {
+      // There is a first thing, so the next block has been linked.
+      Block* block = std::exchange(head_block_, head_block_->next);
+      delete spare_.exchange(block, std::memory_order_release);
+      emptied_ = false;
+    }
+    return head_block_->items[head_ % kBlock];
+  }
+
+  // The receiver's.
+  alignas(64) mutable Block* head_block_;
+  std::size_t head_ = 0;
+  mutable Cycle arrival_ = kNever;   // of the first thing, once it has been looked at
+  mutable bool emptied_ = false;   // the head block has been read to its end, and the next one not begun
+  // The sender's.
+  alignas(64) Block* tail_block_;
+  std::atomic<std::size_t> tail_{0};
+  Cycle unheard_ = kNever;
+  Cycle* wake_ = &unheard_;
+  mutable std::atomic<Block*> spare_{nullptr};   // beside them: touched once a block only
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "ringbus/cycle/time/agent.h"
+#include "ringbus/cycle/time/channel.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Word of what arrives, so that nobody looks into every channel before every window: for each pair of threads, the
+/// earliest arrival that the one has sent to each agent of the other. A row is written by its sending thread within
+/// a window, and read and cleared by its receiving thread between windows (windows.h); nothing in it is shared.
+class WakeBoard {
+ public:
+  /// Agents by thread, as run_windows() gets them.
+  explicit WakeBoard(std::span<const std::vector<Agent*>> parts) : threads_(parts.size()), rows_(threads_ * threads_) {
+    for (std::size_t t = 0; t < threads_; ++t) {
+      for (std::size_t i = 0; i < parts[t].size(); ++i) places_[parts[t][i]] = {t, i};
+      for (std::size_t from = 0; from < threads_; ++from) row(t, from).assign(parts[t].size(), kNever);
+    }
+  }
+
+  /// From now on `to` hears of what `from` sends. To be done for every channel to an agent that is not polled().
+  template <class T>
+  void connect(Channel<T>& channel, const Agent& from, const Agent& to) {
+    const Place place = places_.at(&to);
+    channel.wakes(row(place.thread, places_.at(&from).thread)[place.index]);
+  }
+  /// By agent of thread `to`.
+  std::vector<Cycle>& row(std::size_t to, std::size_t from) { return rows_[to * threads_ + from]; }
+
+ private:
+  struct Place {
+    std::size_t thread = 0, index = 0;
+  };
+  std::size_t threads_;
+  std::vector<std::vector<Cycle>> rows_;
+  std::unordered_map<const Agent*, Place> places_;
+};
+
+}  // namespace carousel::ringbus::cycle

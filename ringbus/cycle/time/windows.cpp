@@ -1,0 +1,182 @@
+#include "ringbus/cycle/time/windows.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "ringbus/rays/ray_id.h"
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+/// Where threads wait for each other, twice a window. A thread spins for about as long as waking a sleeper takes, if
+/// there is a core for everyone, and then sleeps: whoever is woken runs soon even on a busy machine, while one that
+/// yields goes behind everybody. Spinning in vain on a busy machine takes the core from the very thread that is waited
+/// for, so whoever had to sleep spins for half as long the next time.
+class Barrier {
+ public:
+  explicit Barrier(std::size_t threads) : threads_(threads), spins_(threads <= std::thread::hardware_concurrency()) {}
+
+  /// `patience` is the caller's own, kept from one wait to the next.
+  struct Patience {
+    std::chrono::nanoseconds spin = kLongest;
+  };
+
+  void wait(Patience& patience) {
+    const std::size_t turn = turn_.load(std::memory_order_relaxed);
+    // Acquire and release: whoever leaves sees what everyone did before arriving.
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
+      arrived_.store(0, std::memory_order_relaxed);
+      turn_.store(turn + 1, std::memory_order_release);
+      turn_.notify_all();
+      return;
+    }
+    if (spins_ && spun(turn, patience.spin)) {
+      patience.spin = std::min(kLongest, patience.spin * 2);
+      return;
+    }
+    patience.spin = std::max(kShortest, patience.spin / 2);
+    while (turn_.load(std::memory_order_acquire) == turn) turn_.wait(turn, std::memory_order_acquire);
+  }
+
+ private:
+  static constexpr std::chrono::nanoseconds kLongest = std::chrono::microseconds(100), kShortest = std::chrono::microseconds(1);
+
+  /// Whether the turn ended while the caller looked on.
+  bool spun(std::size_t turn, std::chrono::nanoseconds at_most) const {
+    const auto end = std::chrono::steady_clock::now() + at_most;
+    do {
+      for (int looks = 0; looks < 64; ++looks)
+        if (turn_.load(std::memory_order_acquire) != turn) return true;
+    } while (std::chrono::steady_clock::now() < end);
+    return false;
+  }
+
+  std::size_t threads_;
+  bool spins_;
+  alignas(64) std::atomic<std::size_t> arrived_{0};
+  alignas(64) std::atomic<std::size_t> turn_{0};
+};
+
+class WindowRun {
+ public:
+  WindowRun(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
+            const std::function<bool(Cycle)>& go_on)
+      : parts_(parts), board_(board), lookahead_(lookahead), go_on_(go_on), barrier_(parts.size()), next_(parts.size()) {}
+
+  Cycle run() {
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t t = 1; t < parts_.size(); ++t) threads.emplace_back([this, t] { work(t); });
+      work(0);
+    }
+    if (error_) std::rethrow_exception(error_);
+    return reached_;
+  }
+
+ private:
+  struct alignas(64) Next {
+    Cycle cycle = kNever;
+  };
+
+  void work(std::size_t thread) {
+    const std::vector<Agent*>& agents = parts_[thread];
+    Schedule schedule(agents);
+    const bool alone = parts_.size() == 1;
+    Barrier::Patience patience;
+    for (std::uint64_t window = 0;; ++window) {
+      Cycle first = look(thread, schedule);
+      // Written within windows only, so here, between two of them, everybody reads the same.
+      const bool stop = stop_.load(std::memory_order_relaxed);
+      if (!alone) {
+        next_[thread].cycle = first;
+        barrier_.wait(patience);
+        for (const Next& other : next_) first = std::min(first, other.cycle);
+      }
+      if (first == kNever || stop) break;   // everybody comes to the same conclusion
+      run_window(agents, schedule, first + lookahead_);
+      if (thread == 0) {
+        reached_ = first;
+        if (window % kLook == 0 && !go_on_(first)) stop_.store(true, std::memory_order_relaxed);
+      }
+      if (!alone) barrier_.wait(patience);
+    }
+  }
+
+  /// When each agent of a thread is next to run, and which of them must be asked before every window.
+  struct Schedule {
+    std::vector<Cycle> wake;
+    std::vector<std::uint8_t> polled;
+
+    explicit Schedule(const std::vector<Agent*>& agents) {
+      for (const Agent* agent : agents) {
+        wake.push_back(agent->next());
+        polled.push_back(agent->polled());
+      }
+    }
+  };
+
+  /// Between windows: what has been heard. Returns the earliest time at which an agent of the thread has to run.
+  Cycle look(std::size_t thread, Schedule& schedule) {
+    std::vector<Cycle>& wake = schedule.wake;
+    for (std::size_t from = 0; from < parts_.size(); ++from) {
+      std::vector<Cycle>& heard = board_.row(thread, from);
+      for (std::size_t i = 0; i < wake.size(); ++i) {
+        wake[i] = std::min(wake[i], heard[i]);
+        heard[i] = kNever;
+      }
+    }
+    Cycle first = kNever;
+    for (std::size_t i = 0; i < wake.size(); ++i) {
+      if (schedule.polled[i]) wake[i] = parts_[thread][i]->next();
+      first = std::min(first, wake[i]);
+    }
+    return first;
+  }
+
+  void run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle end) {
+    try {
+      for (std::size_t i = 0; i < agents.size(); ++i) {
+        if (schedule.wake[i] >= end) {
+          if (kChecked && agents[i]->next() < end) throw std::logic_error("an agent was not woken");
+          continue;
+        }
+        agents[i]->run(end);
+        schedule.wake[i] = agents[i]->next();
+        schedule.polled[i] = agents[i]->polled();
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      stop_.store(true, std::memory_order_relaxed);
+    }
+  }
+
+  static constexpr std::uint64_t kLook = 4096;
+
+  std::span<const std::vector<Agent*>> parts_;
+  WakeBoard& board_;
+  Cycle lookahead_;
+  const std::function<bool(Cycle)>& go_on_;
+  Barrier barrier_;
+  std::vector<Next> next_;
+  std::atomic<bool> stop_{false};
+  Cycle reached_ = 0;
+  std::mutex mutex_;   // guards error_
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
+                  const std::function<bool(Cycle)>& go_on) {
+  return WindowRun(parts, board, lookahead, go_on).run();
+}
+
+}  // namespace carousel::ringbus::cycle

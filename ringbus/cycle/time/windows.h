@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+#include "ringbus/cycle/time/agent.h"
+#include "ringbus/cycle/time/wakeup_table.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Runs agents to the end of time: window after window of `lookahead` cycles, the least latency between any two
+/// agents (conservative synchronous windows; R. Fujimoto, Parallel discrete event simulation, CACM 33 (1990)).
+/// The result is the same for any number of threads.
+///
+/// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `go_on` is called there now and
+/// then with the time reached; when it answers false the run ends early. Exceptions of agents pass through.
+/// Returns the last window's first cycle, the time reached.
+///
+/// Agents that are not polled() must have all their channels connected to `board`, which was made for `parts`.
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
+                  const std::function<bool(Cycle)>& go_on);
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,143 @@
+#include "ringbus/cycle/traffic/traffic_engine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "core/system/error.h"
+#include "ringbus/cycle/traffic/traffic_node.h"
+#include "ringbus/cycle/traffic/traffic_plan.h"
+#include "ringbus/cycle/time/windows.h"
+#include "ringbus/topology/topology.h"
+
+namespace carousel::ringbus {
+
+namespace cycle {
+
+namespace {
+
+/// Builds the nodes and the links between them, and runs them.
+class TrafficRun {
+ public:
+  TrafficRun(const Config& config, const RunOptions& options)
+      : config_(config), options_(options), topology_(config.topology), plan_(config) {
+    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
+      wires_.push_back(std::make_unique<WireOf<TrafficToken>>());
+      if (acknowledges()) acks_.push_back(std::make_unique<Channel<TrafficAck>>());
+    }
+    for (std::uint32_t r = 0; r < topology_.resources(); ++r)
+      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config, TrafficSource(config, ResourceId(r), plan_.gap),
+                                                     plan_.packets[r], plan_.window, ports_of(ResourceId(r))));
+  }
+
+  TrafficResult run() {
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<std::vector<Agent*>> parts = share_out();
+    auto last_report = start;
+    bool stopped = false;
+    WakeBoard board(parts);   // whose agents are polled
+    run_windows(parts, board, link_latency(), [&](Cycle reached) {
+      stopped = options_.stop.stop_requested();
+      const auto now = std::chrono::steady_clock::now();
+      if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
+        last_report = now;
+        const double done = std::min(1.0, static_cast<double>(reached) / static_cast<double>(plan_.window.end));
+        options_.progress(static_cast<std::uint64_t>(done * static_cast<double>(config_.workload.traffic.packets)));
+      }
+      return !stopped;
+    });
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    if (!stopped) check_at_rest();
+    TrafficResult out = result();
+    out.complete = !stopped;
+    out.wall_seconds = wall.count();
+    out.threads = parts.size();
+    return out;
+  }
+
+ private:
+  bool point_to_point() const { return config_.topology.shape == TopologyShape::kPointToPoint; }
+  bool acknowledges() const { return config_.topology.flow == Flow::kCredits && !point_to_point(); }
+  Cycle link_latency() const { return static_cast<Cycle>(config_.topology.link.latency_cycles); }
+
+  TrafficNode::Ports ports_of(ResourceId id) const {
+    TrafficNode::Ports ports;
+    const std::uint32_t depth = static_cast<std::uint32_t>(config_.topology.link.depth);
+    if (point_to_point()) ports.out_to.resize(topology_.resources());
+    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
+      const Topology::Wire& wire = topology_.wires()[i];
+      const std::size_t direction = wire.direction;
+      if (wire.to == id) {
+        const std::size_t at = point_to_point() ? ports.in.size() : direction;
+        if (ports.in.size() <= at) ports.in.resize(at + 1);
+        ports.in[at] = {wires_[i].get(), link_latency()};
+        if (acknowledges()) {
+          ports.acks_in.resize(ports.in.size());
+          ports.acks_in[at] = acks_[i].get();
+        }
+      }
+      if (wire.from != id) continue;
+      if (point_to_point()) ports.out_to[wire.to.value] = static_cast<std::uint32_t>(ports.out.size());
+      ports.out.emplace_back(*wires_[i], link_latency(), depth, 1);
+      if (acknowledges()) ports.acks_out.push_back(acks_[i].get());
+    }
+    return ports;
+  }
+
+  /// Neighbours go to the same thread.
+  std::vector<std::vector<Agent*>> share_out() const {
+    const std::size_t threads = std::clamp<std::size_t>(options_.threads, 1, nodes_.size());
+    std::vector<std::vector<Agent*>> parts(threads);
+    for (std::size_t r = 0; r < nodes_.size(); ++r) parts[r * threads / nodes_.size()].push_back(nodes_[r].get());
+    return parts;
+  }
+
+  void check_at_rest() const {
+    std::string waiting;
+    for (const auto& node : nodes_)
+      if (const std::string text = node->describe(); !text.empty()) waiting += "\n  " + text;
+    if (!waiting.empty()) throw SimulationError("nothing moves any more; who waits for whom:" + waiting);
+  }
+
+  TrafficResult result() const {
+    TrafficResult out;
+    out.window_begin = plan_.window.begin;
+    out.window_end = plan_.window.end;
+    out.packets = static_cast<std::uint64_t>(config_.workload.traffic.packets);
+    out.flits = nodes_.front()->flits();
+    for (const auto& node : nodes_) {
+      out.cycles = std::max(out.cycles, node->last() + 1);
+      out.delivered += node->delivered();
+      out.offered += node->offered();
+      out.accepted += node->accepted();
+      out.routers += node->routers();
+      out.latency.add(node->latency());
+    }
+    std::vector<std::size_t> exits(nodes_.size());
+    for (const Topology::Wire& wire : topology_.wires()) {
+      const TrafficNode::Out& port = nodes_[wire.from.value]->out()[exits[wire.from.value]++];
+      out.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[out.links.size()]->queue});
+      out.link_packets.push_back(port.packets());
+      out.hops += port.packets();
+    }
+    return out;
+  }
+
+  const Config& config_;
+  const RunOptions& options_;
+  Topology topology_;
+  TrafficPlan plan_;
+  std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;   // as the topology's
+  std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;     // beside them
+  std::vector<std::unique_ptr<TrafficNode>> nodes_;
+};
+
+}  // namespace
+
+}  // namespace cycle
+
+TrafficResult run_traffic(const Config& config, const RunOptions& options) {
+  return cycle::TrafficRun(config, options).run();
+}
+
+}  // namespace carousel::ringbus

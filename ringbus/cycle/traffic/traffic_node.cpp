@@ -1,0 +1,212 @@
+#include "ringbus/cycle/traffic/traffic_node.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace carousel::ringbus::cycle {
+
+TrafficNode::TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets,
+                         TrafficWindow window, Ports ports)
+    : topology_(config.topology),
+      id_(id),
+      ports_(std::move(ports)),
+      source_(std::move(source)),
+      window_(window),
+      inject_cycles_(static_cast<Cycle>(config.workload.traffic.inject_cycles)),
+      eject_cycles_(static_cast<Cycle>(config.workload.traffic.eject_cycles)),
+      ack_latency_(static_cast<Cycle>(config.topology.link.latency_cycles)),
+      flits_(static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(config.workload.traffic.packet_bytes),
+                                                 static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle)))),
+      places_wanted_(config.topology.flow == Flow::kBubble && ports_.out_to.empty() ? 2 : 1),
+      arrivals_(ports_.in.size()),
+      eager_(config.topology.flow == Flow::kNone),
+      to_create_(packets),
+      allowances_(ports_.acks_in.size(), {static_cast<std::uint32_t>(config.topology.link.depth), {}}),
+      passing_acks_(ports_.acks_in.size()) {
+  create();
+}
+
+void TrafficNode::create() {
+  waiting_ = to_create_ > 0;
+  if (!waiting_) return;
+  --to_create_;
+  source_.advance();
+  const ResourceId to = source_.destination();
+  route_ = traffic_route(topology_, id_, to, source_.random());
+  exit_ = ports_.out_to.empty() ? route_.direction : ports_.out_to[to.value];
+  ready_ = std::max(source_.created() + inject_cycles_, inject_free_);
+  if (source_.created() < window_.begin) return;
+  ++offered_;
+  routers_ += route_.hops + 1u;
+}
+
+// ---- time
+
+Cycle TrafficNode::next() const {
+  Cycle first = next_here();
+  for (const In& in : ports_.in)
+    if (const Cycle at = in.next(); at > now_) first = std::min(first, at);
+  for (const Channel<TrafficAck>* acks : ports_.acks_in) first = std::min(first, acks->next());
+  return first;
+}
+
+Cycle TrafficNode::next_here() const {
+  Cycle first = waiting_ ? next_injection() : kNever;
+  for (std::size_t d = 0; d < arrivals_.size(); ++d) {
+    // What is not later than the last step waits: for the sink, or for what is in hand to leave.
+    if (arrivals_[d] > now_)
+      first = std::min(first, arrivals_[d]);
+    else if (sink_free_ > now_ && ports_.in[d].front().skip == 0)
+      first = std::min(first, sink_free_);
+  }
+  if (hands_ > 0)
+    for (const Out& out : ports_.out)
+      if (!out.empty()) first = std::min(first, out.next(false));
+  return first;
+}
+
+Cycle TrafficNode::next_injection() const {
+  if (ready_ > now_) return ready_;
+  if (route_.hops == 0) return sink_free_ - (flits_ - 1u);
+  if (!allowances_.empty()) {
+    const Allowance& allowance = allowances_[route_.direction];
+    if (allowance.left == 0 && allowance.acks.empty()) return kNever;
+    if (allowance.left == 0 && allowance.acks.front() > now_) return allowance.acks.front();
+  }
+  return ports_.out[exit_].opens(places_wanted_);
+}
+
+void TrafficNode::run(Cycle end) {
+  // Nothing that is sent to it from now on arrives before `end`: it is enough to look once.
+  for (std::size_t d = 0; d < arrivals_.size(); ++d) arrivals_[d] = ports_.in[d].next();
+  take_acks(end);
+  for (Cycle now; (now = next_here()) < end;) step(now);
+  for (std::size_t a = 0; a < passing_acks_.size(); ++a) forward_acks(a, end);
+}
+
+void TrafficNode::step(Cycle now) {
+  now_ = now;
+  if (hands_ > 0) {
+    for (Out& out : ports_.out) {
+      if (out.empty()) continue;
+      out.take_credits(now);
+      hands_ -= out.send(now);
+    }
+  }
+  if (eager_ && waiting_ && ready_ <= now) inject(now);
+  const std::size_t ways = arrivals_.size(), first = first_in_;
+  for (std::size_t i = 0; i < ways; ++i) {
+    const std::size_t d = first + i < ways ? first + i : first + i - ways;
+    if (arrivals_[d] <= now) pass(d, now);
+  }
+  if (waiting_ && ready_ <= now) inject(now);
+}
+
+// ---- packets
+
+void TrafficNode::pass(std::size_t d, Cycle now) {
+  In& in = ports_.in[d];
+  for (; arrivals_[d] <= now; arrivals_[d] = in.next()) {
+    if (in.front().skip == 0) {
+      if (!sink_open(now)) return;
+      const TrafficToken token = in.take(now);
+      if (!allowances_.empty()) acknowledge(token, d, now);
+      deliver(token, now);
+      first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;   // the others first, the next time
+      continue;
+    }
+    Out& out = ports_.out[d];
+    const bool open = out.open(now, 1);
+    if (!open && !out.has_place()) return;
+    TrafficToken token = in.take(now);
+    --token.skip;
+    if (open) {
+      out.launch(token, now, token.skip > 0);
+    } else {
+      out.push(token, now, token.skip > 0);
+      out.send(now);   // does not, but counts the wait
+      ++hands_;
+    }
+  }
+}
+
+void TrafficNode::inject(Cycle now) {
+  const TrafficToken token{source_.created(), static_cast<std::uint16_t>(id_.value),
+                           static_cast<std::uint16_t>(route_.hops == 0 ? 0 : route_.hops - 1), flits_};
+  if (route_.hops == 0) {
+    const Cycle tail = now + flits_ - 1u;
+    if (!sink_open(tail)) return;
+    deliver(token, tail);
+  } else if (Out& out = ports_.out[exit_]; eager_) {
+    if (!out.has_place()) return;
+    out.push(token, now, token.skip > 0);
+    out.take_credits(now);
+    if (!out.send(now)) ++hands_;
+  } else {
+    if (!out.open(now, places_wanted_) || !may_send_more(now)) return;
+    out.launch(token, now, token.skip > 0);
+  }
+  inject_free_ = now + flits_;
+  create();
+}
+
+void TrafficNode::deliver(const TrafficToken& token, Cycle tail) {
+  sink_free_ = tail + flits_;
+  last_ = tail + eject_cycles_;   // the sink's packets come one after the other
+  ++delivered_;
+  accepted_ += last_ >= window_.begin && last_ < window_.end;
+  if (token.created >= window_.begin) latency_.add(last_ - token.created);
+}
+
+// ---- word of deliveries
+
+void TrafficNode::take_acks(Cycle end) {
+  for (std::size_t a = 0; a < ports_.acks_in.size(); ++a) {
+    Channel<TrafficAck>& acks = *ports_.acks_in[a];
+    for (Cycle at; (at = acks.next()) < end;) {
+      const TrafficAck ack = acks.take();
+      if (ack.source == id_.value)
+        allowances_[ack.direction].acks.push_back(at);
+      else
+        passing_acks_[a].push_back({at, ack});
+    }
+  }
+}
+
+void TrafficNode::forward_acks(std::size_t a, Cycle end) {
+  Fifo<PassingAck>& passing = passing_acks_[a];
+  for (; !passing.empty() && passing.front().at < end; passing.pop_front())
+    ports_.acks_out[a]->send(passing.front().at + ack_latency_, passing.front().ack);
+}
+
+void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle now) {
+  const std::size_t a = topology_.shape == TopologyShape::kBidirectional ? 1 - d : d;
+  forward_acks(a, now + 1);   // those that came earlier leave earlier
+  ports_.acks_out[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
+}
+
+bool TrafficNode::may_send_more(Cycle now) {
+  if (allowances_.empty()) return true;
+  Allowance& allowance = allowances_[route_.direction];
+  for (; !allowance.acks.empty() && allowance.acks.front() <= now; allowance.acks.pop_front()) ++allowance.left;
+  if (allowance.left == 0) return false;
+  --allowance.left;
+  return true;
+}
+
+// ---- the end, good or bad
+
+std::string TrafficNode::describe() const {
+  std::string text;
+  for (std::size_t d = 0; d < ports_.out.size(); ++d) {
+    const Out& out = ports_.out[d];
+    if (!out.empty())
+      text += fmt::format("; a packet of resource {}, {} hops from its destination, waits for a place", out.first().source,
+                          out.first().skip + 1);
+  }
+  if (waiting_) text += fmt::format("; {} packets wait to get in", to_create_ + 1);
+  return text.empty() ? text : fmt::format("resource {}", id_.value) + text;
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/time/agent.h"
+#include "core/numeric/latency_histogram.h"
+#include "ringbus/cycle/fabric/ports.h"
+#include "ringbus/cycle/traffic/traffic_route.h"
+#include "ringbus/cycle/traffic/traffic_source.h"
+#include "ringbus/cycle/traffic/traffic_token.h"
+
+namespace carousel::ringbus::cycle {
+
+/// What is measured: packets created from `begin` on; sources stop before `end`.
+struct TrafficWindow {
+  Cycle begin = 0, end = 0;
+};
+
+/// A resource in a network without rays: a source of packets, a sink, and a router with one place in hand for each
+/// way out. A packet that arrives for another resource goes on in the same cycle if its link is free (cut-through:
+/// its tail may still be arriving), so a hop takes topology.link.latency_cycles. From its creation to the last of
+/// its L flits' delivery, h hops away and with nobody in its way, a packet takes
+///     inject_cycles + h * latency_cycles + L - 1 + eject_cycles.
+/// One flit a cycle gets in from the source, and one out to the sink. What travels goes before what wants in. The
+/// source's queue is endless, and first in, first out.
+///
+/// Why packets that go part of the way round a ring cannot stop it (DESIGN.md section 4):
+/// - `bubble`: a packet is injected only if it leaves a free place in the next queue, so no round of queues is ever
+///   filled by injecting, and moving on does not change how many are full. Some packet always has a free place ahead
+///   (V. Puente et al., The adaptive bubble router, J. Parallel and Distributed Computing 61 (2001)).
+/// - `credits`: a source has at most `depth` packets on each ring until word comes that one was delivered, so R
+///   sources have R * depth packets against R * depth places in queues and R in hands: a place is always free. Word
+///   of a delivery travels on wires of its own that are never full (round a ring that has only one direction, back
+///   the other way of one that has two).
+/// - `none`: nothing prevents it, and what wants in goes first, so that it shows.
+/// - The sink takes every packet after a bounded time, so point to point no packet waits for another to move.
+class TrafficNode final : public Agent {
+ public:
+  using In = InPortOf<TrafficToken>;
+  using Out = OutPortOf<TrafficToken>;
+  struct Ports {
+    std::vector<In> in;     ///< a ring: by direction
+    std::vector<Out> out;   ///< a ring: by direction; point to point: by `out_to`
+    std::vector<std::uint32_t> out_to;            ///< point to point: by destination
+    std::vector<Channel<TrafficAck>*> acks_in, acks_out;   ///< by direction; empty where nobody waits for them
+  };
+
+  /// `packets`: that it takes from the source.
+  TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets, TrafficWindow window,
+              Ports ports);
+
+  Cycle next() const override;
+  void run(Cycle end) override;
+  std::string describe() const override;
+
+  const std::vector<Out>& out() const { return ports_.out; }
+  const LatencyHistogram& latency() const { return latency_; }   ///< of measured packets delivered here
+  std::uint64_t flits() const { return flits_; }         ///< of a packet
+  std::uint64_t delivered() const { return delivered_; }
+  std::uint64_t accepted() const { return accepted_; }   ///< delivered within the window
+  std::uint64_t offered() const { return offered_; }     ///< created within the window
+  std::uint64_t routers() const { return routers_; }     ///< that the packets offered had to visit, first and last included
+  Cycle last() const { return last_; }                   ///< when something was last delivered
+
+ private:
+  Cycle next_here() const;
+  Cycle next_injection() const;
+  void step(Cycle now);
+  void take_acks(Cycle end);
+  void forward_acks(std::size_t a, Cycle end);
+  void acknowledge(const TrafficToken& token, std::size_t d, Cycle now);
+  bool may_send_more(Cycle now);
+  void pass(std::size_t d, Cycle now);
+  void inject(Cycle now);
+  bool sink_open(Cycle tail) const { return sink_free_ <= tail; }
+  void deliver(const TrafficToken& token, Cycle tail);
+  void create();
+
+  const TopologyConfig& topology_;
+  ResourceId id_;
+  Ports ports_;
+  TrafficSource source_;
+  TrafficWindow window_;
+  Cycle inject_cycles_, eject_cycles_, ack_latency_;
+  std::uint16_t flits_;
+  std::uint32_t places_wanted_;   // in the next queue, to inject
+
+  Cycle now_ = 0;
+  std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted down when a window begins
+  std::size_t hands_ = 0;         // ways out with something in hand
+  std::size_t first_in_ = 0;      // has the sink before the others
+  Cycle sink_free_ = 0;           // for the next packet's tail
+
+  bool eager_;                    // injects before it lets pass
+
+  // The packet to inject next; it need not have been created yet.
+  bool waiting_ = false;
+  TrafficRoute route_;
+  std::size_t exit_ = 0;
+  Cycle ready_ = 0, inject_free_ = 0;   // not injected before
+  std::uint64_t to_create_;             // after it
+  struct Allowance {
+    std::uint32_t left = 0;   // packets it may have on the way besides those it has
+    Fifo<Cycle> acks;         // when there will be one more
+  };
+  std::vector<Allowance> allowances_;   // by direction; empty: any number
+  struct PassingAck {
+    Cycle at = 0;
+    TrafficAck ack;
+  };
+  std::vector<Fifo<PassingAck>> passing_acks_;   // by their direction
+
+  LatencyHistogram latency_;
+  std::uint64_t delivered_ = 0, accepted_ = 0, offered_ = 0, routers_ = 0;
+  Cycle last_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

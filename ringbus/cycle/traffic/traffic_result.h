@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/config/config.h"
+#include "ringbus/results/cycle_result.h"
+#include "core/numeric/latency_histogram.h"
+
+namespace carousel::ringbus {
+
+/// What a network did with synthetic traffic. Latencies, offered and accepted load are of the window.
+struct TrafficResult {
+  bool complete = true;                      ///< false: stopped early
+  cycle::Cycle cycles = 0;                   ///< until the last packet was delivered
+  cycle::Cycle window_begin = 0, window_end = 0;
+  std::uint64_t packets = 0, delivered = 0;  ///< in all
+  std::uint64_t flits = 1;                   ///< of a packet
+  std::uint64_t offered = 0;                 ///< packets created within the window
+  std::uint64_t accepted = 0;                ///< packets delivered within the window
+  std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
+  std::uint64_t hops = 0;                    ///< links crossed by packets
+  LatencyHistogram latency;           ///< of the packets offered
+  std::vector<cycle::LinkLedger> links;
+  std::vector<std::uint64_t> link_packets;   ///< by link
+  double wall_seconds = 0;
+  std::size_t threads = 1;
+
+  std::uint64_t flit_hops() const { return hops * flits; }
+  double routers_mean() const { return offered == 0 ? 0 : static_cast<double>(routers) / static_cast<double>(offered); }
+  /// Mean latency of the packets offered if each were alone: see ringbus/cycle/traffic/traffic_node.h.
+  double zero_load_latency(const Config& config) const {
+    if (offered == 0) return 0;
+    const TrafficConfig& t = config.workload.traffic;
+    return static_cast<double>(t.inject_cycles + t.eject_cycles) + static_cast<double>(flits - 1) +
+           (routers_mean() - 1) * static_cast<double>(config.topology.link.latency_cycles);
+  }
+};
+
+}  // namespace carousel::ringbus

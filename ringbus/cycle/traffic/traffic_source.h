@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/config/config.h"
+#include "core/types/ids.h"
+#include "core/numeric/rng.h"
+#include "ringbus/cycle/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The cycles from one event to the next of a process that has one in each cycle with probability `rate`: a
+/// geometric distribution. Products only, no logarithm, whose last bit differs between machines.
+class GeometricGap {
+ public:
+  explicit GeometricGap(double rate);
+  /// At least 1; `random`: 64 random bits.
+  Cycle operator()(std::uint64_t random) const;
+
+ private:
+  static constexpr std::size_t kPowers = 40;
+  static constexpr int kStartBits = 8;
+  /// Where to look for the gap of a random number, by its first bits.
+  struct Start {
+    double power = 1;         // of (1 - rate), to the `gap`: not less than any such number
+    Cycle gap = 0;
+    std::size_t levels = 0;   // powers_ that can lead from there to one of these numbers
+  };
+  void descend(double least, std::size_t levels, double& power, Cycle& gap) const;
+
+  std::array<double, kPowers> powers_{};   // probability of no event in 2^i cycles
+  std::array<Start, std::size_t{1} << kStartBits> starts_;
+};
+
+/// Of the packets of one source; with bursts, of the silences between them.
+GeometricGap traffic_gap(const TrafficConfig& config);
+
+/// The packets that one resource creates: when, and for whom. It knows nothing of the network, so the packets are
+/// the same in every one.
+///   uniform    to any resource, the source included
+///   tornado    almost half way round: (k + 1) / 2 - 1 on, of k (as BookSim2's)
+///   neighbour  to the next one
+///   hotspot    with `hotspot_fraction` to one resource, else uniform
+///   bursty     uniform; packets are created cycle after cycle, then none for a while: a two-state Markov chain (as
+///              BookSim2's on/off process with a rate of 1 when on)
+class TrafficSource {
+ public:
+  /// `gap` is that of traffic_gap(), which all sources share; it must outlive them.
+  TrafficSource(const Config& config, ResourceId id, const GeometricGap& gap);
+
+  /// Creates the next packet.
+  void advance();
+  /// When it was created; at least 1, and every packet later than the one before.
+  Cycle created() const { return created_; }
+  ResourceId destination() const;
+  /// For whoever has to toss a coin over it.
+  std::uint32_t random() const { return words_[2]; }
+
+ private:
+  ResourceId any() const { return ResourceId(static_cast<std::uint32_t>((std::uint64_t{words_[3]} * resources_) >> 32)); }
+
+  TrafficConfig::Pattern pattern_;
+  std::uint64_t seed_;
+  std::uint32_t id_, resources_;
+  ResourceId hotspot_;
+  double chance_;   // bursty: that a burst ends; hotspot: that a packet goes there
+  const GeometricGap* gap_;
+  std::uint64_t index_ = 0;
+  PhiloxCounter words_{};
+  Cycle created_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,118 @@
+#include "ringbus/cycle/what_if.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ringbus/cycle/cycle_engine.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+/// The first so many of a workload's own rays, with all that follow from them.
+class FirstPaths final : public Workload {
+ public:
+  FirstPaths(std::unique_ptr<Workload> whole, std::uint64_t paths) : whole_(std::move(whole)), left_(paths) {}
+
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
+    Generated made = whole_->generate(worker, std::min<std::uint64_t>(max_rays, left_), out);
+    left_ -= made.rays;
+    made.finished |= left_ == 0;
+    return made;
+  }
+  std::uint32_t extra_effects(const RayResult& result) const override { return whole_->extra_effects(result); }
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override { whole_->shade(worker, completed, out); }
+
+ private:
+  std::unique_ptr<Workload> whole_;
+  std::uint64_t left_;
+};
+
+std::int64_t halved(std::int64_t cycles) { return std::max<std::int64_t>(1, cycles / 2); }
+
+void double_units(TestersConfig& testers, TesterUnits TestersConfig::*bank) { (testers.*bank).units *= 2; }
+
+Lift units_lift(std::string name, std::string key, TesterUnits TestersConfig::*bank) {
+  return {std::move(name), "twice testers." + key + ".units", [bank](Config& c) {
+            double_units(c.testers, bank);
+            for (ResourceOverride& one : c.topology.overrides) double_units(one.testers, bank);
+          }};
+}
+
+}  // namespace
+
+std::vector<Lift> lifts(const Config& config, const accel::Accel& accel) {
+  std::vector<Lift> all;
+  all.push_back(units_lift("box_tests", "box", &TestersConfig::box));
+  all.push_back(units_lift("triangle_tests", "triangle", &TestersConfig::triangle));
+  if (accel.procedural_primitives) all.push_back(units_lift("procedural_tests", "procedural", &TestersConfig::procedural));
+  if (accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
+    all.push_back(units_lift("any_hit_lookups", "any_hit_unit", &TestersConfig::any_hit_unit));
+  if (config.cull_planes.count > 0) all.push_back(units_lift("plane_tests", "plane", &TestersConfig::plane));
+  if (config.bundles.size > 0) all.push_back(units_lift("bundle_tests", "bundle", &TestersConfig::bundle));
+  if (config.rays.reads_per_cycle > 0)
+    all.push_back({"ray_reads", "twice rays.reads_per_cycle", [](Config& c) { c.rays.reads_per_cycle *= 2; }});
+  all.push_back(units_lift("transforms", "transform", &TestersConfig::transform));
+  const bool independent = config.topology.shape == TopologyShape::kIndependent;
+  if (!independent) all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
+  all.push_back({"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", [](Config& c) {
+                   c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);
+                   c.memory.dram_latency_cycles = halved(c.memory.dram_latency_cycles);
+                 }});
+  all.push_back({"memory_bandwidth", "twice memory.dram_bytes_per_cycle",
+                 [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }});
+  all.push_back({"ray_slots", "twice rays.slots_per_resource", [](Config& c) { c.rays.slots_per_resource *= 2; }});
+  all.push_back({"shading", "twice shading.workers", [](Config& c) { c.shading.workers *= 2; }});
+  if (config.topology.resources > 1 && config.collections.home != Home::kLocal && !independent) {
+    all.push_back({"link_bandwidth", "twice topology.link.bytes_per_cycle",
+                   [](Config& c) { c.topology.link.bytes_per_cycle *= 2; }});
+    if (config.topology.link.latency_cycles > 1)
+      all.push_back({"link_latency", "half topology.link.latency_cycles",
+                     [](Config& c) { c.topology.link.latency_cycles = halved(c.topology.link.latency_cycles); }});
+    all.push_back({"packets_in_flight", "twice topology.link.depth", [](Config& c) { c.topology.link.depth *= 2; }});
+  }
+  return all;
+}
+
+std::uint64_t pilot_paths(const Config& config) {
+  // So many that what caches miss at first counts for little: small machines, whose slots turn over sooner, otherwise
+  // take their memory for slower than it is.
+  constexpr std::int64_t kWarm = 6000;
+  return static_cast<std::uint64_t>(std::max(kWarm, 8 * config.topology.resources * config.rays.slots_per_resource));
+}
+
+double steady_rate(const cycle::CycleResult& result, std::uint64_t rays) {
+  const bool steady = result.steady_cycles > 0 && result.steady_rays >= 64;
+  return 1000.0 * static_cast<double>(steady ? result.steady_rays : rays) /
+         static_cast<double>(std::max<cycle::Cycle>(1, steady ? result.steady_cycles : result.cycles));
+}
+
+Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
+                           const WorkloadFactory& make_workload, std::uint64_t paths, const RunOptions& options) {
+  const auto simulate = [&](const Config& machine) {
+    FirstPaths workload(make_workload(machine), paths);
+    return run_cycle(machine, accel, scene_size, workload, options);
+  };
+  Bottleneck out;
+  out.paths = paths;
+  // What limits the machine, not what became of it.
+  Config whole = config;
+  if (whole.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) whole.faults.resource = {};
+  const RunResult base = simulate(whole);
+  out.rays_per_kilocycle = steady_rate(*base.cycle, base.rays_completed);
+  out.noise = base.cycle->steady_spread;
+  for (const Lift& lift : lifts(config, accel)) {
+    if (options.stop.stop_requested()) break;
+    Config lifted = whole;
+    lift.apply(lifted);
+    const RunResult result = simulate(lifted);
+    Gain gain{lift.name, lift.action, steady_rate(*result.cycle, result.rays_completed), 0};
+    gain.gain = gain.rays_per_kilocycle / out.rays_per_kilocycle - 1;
+    out.gains.push_back(std::move(gain));
+  }
+  std::stable_sort(out.gains.begin(), out.gains.end(), [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
+  return out;
+}
+
+}  // namespace carousel::ringbus

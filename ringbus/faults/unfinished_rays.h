@@ -1,0 +1,25 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/types/ids.h"
+#include "core/types/workload.h"
+
+namespace carousel::ringbus {
+
+/// What is missing when a resource has stopped and nothing is to begin again; `open` as RetryLedger tells it.
+inline std::string missing_rays(ResourceId stopped, const RayBatch& open, std::uint64_t completed) {
+  std::string text = fmt::format("resource {} stopped and faults.resource.recover is off: {} rays are missing, of paths",
+                                 stopped.value, open.size());
+  constexpr std::size_t kNamed = 8;
+  const std::size_t named = std::min(kNamed, open.size());
+  for (std::size_t i = 0; i < named; ++i) text += fmt::format(" {}{}", open[i].tag.path, i + 1 < named ? "," : "");
+  if (open.size() > kNamed) text += " and others";
+  return text + fmt::format("; {} rays had been shaded", completed);
+}
+
+}  // namespace carousel::ringbus

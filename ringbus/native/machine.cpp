@@ -1,0 +1,18 @@
+#include "ringbus/native/machine.h"
+
+#include "ringbus/protocol/packet_pool.h"
+#include "ringbus/resource/resource.h"
+
+namespace carousel::ringbus {
+
+Machine::Machine(const Config& c, const accel::Accel& a, float scene_size)
+    : config(c), accel(a), topology(c.topology), packets_per_direction(packets_in_flight(c.topology)),
+      packets(make_packets(c, topology, packets_per_direction)),
+      stores(make_ray_stores(c)), control(c, stores, Resource::initial_tests(c, a), scene_size) {
+  // One resource sends on a wire and one receives, and one thread at a time plays a resource.
+  require_parties(c.topology.link.queue, "topology.link.queue", Parties::kOne, Parties::kOne);
+  for (const Topology::Wire& wire : topology.wires())
+    links.push_back(make_link(c, links.size(), wire.from, wire.to, packets));
+}
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,269 @@
+#include "ringbus/native/native_engine.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/system/error.h"
+#include "ringbus/faults/unfinished_rays.h"
+#include "ringbus/native/machine.h"
+#include "ringbus/native/native_port.h"
+#include "ringbus/native/shader_worker.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+/// One engine run: who steps what, and how it ends.
+class NativeRun {
+ public:
+  NativeRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
+            const RunOptions& options)
+      : options_(options), config_(config), accel_(accel), scene_size_(scene_size), workload_(workload) {
+    for (std::int64_t r = 0; r < config.topology.resources; ++r)
+      sinks_.push_back(options.statistics ? std::make_unique<StatisticsSink>() : nullptr);
+    if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<RetryLedger>();
+    build();
+    threads_ = std::clamp<std::size_t>(options.threads, 1, std::max(ports_.size(), workers_.size()));
+    progress_ = std::make_unique<Progress[]>(threads_);
+  }
+
+  RunResult run() {
+    start_ = Clock::now();
+    for (;;) {
+      run_threads();
+      if (error_) std::rethrow_exception(error_);
+      if (stuck_) throw SimulationError(describe_stuck());
+      if (!lost_ || given_up_) break;
+      if (!config_.faults.resource.recover)
+        throw SimulationError(missing_rays(*lost_, ledger_->open(), count_.completed.load()));
+      restart();
+    }
+    const std::chrono::duration<double> wall = Clock::now() - start_;
+    const bool complete = count_.done();
+    if (complete) check_drained();
+    return result(complete, wall.count());
+  }
+
+ private:
+  struct alignas(128) Progress {
+    std::atomic<std::uint64_t> steps{0};   // that moved something
+  };
+
+  using Clock = std::chrono::steady_clock;
+  // A resource that has taken no step for so long, while its thread has, is given up.
+  static constexpr std::chrono::milliseconds kSilence{100};
+
+  /// The machine and those who step it, with nothing in it.
+  void build() {
+    ports_.clear();
+    workers_.clear();
+    machine_ = std::make_unique<Machine>(config_, accel_, scene_size_);
+    for (std::uint32_t r = 0; r < sinks_.size(); ++r)
+      ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, scene_size_, sinks_[r].get()));
+    for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
+    for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(config_.shading.workers); ++w)
+      workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), *machine_, workload_, count_, ledger_.get()));
+  }
+
+  void run_threads() {
+    ended_ = 0;
+    end_ = false;
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
+    watch();
+  }
+
+  /// All that was under way is gone, whoever had it; every ray that had not been handed over to shading begins again at
+  /// the resources that are left. The port of the one that stopped goes on forwarding.
+  void restart() {
+    std::vector<HitBatch> handed_over;
+    while (std::optional<HitBatch> batch = machine_->completed.pop()) handed_over.push_back(std::move(*batch));
+    for (const auto& port : ports_) packets_discarded_ += port->resource().packets_in_flight();
+    carry_links();
+    slots_used_ += machine_->control.slots_used();
+    slot_waits_ += machine_->control.slot_waits();
+    build();
+    for (HitBatch& batch : handed_over) {
+      ledger_->remove(batch);
+      machine_->completed.push(std::move(batch));
+    }
+    machine_->control.exclude(*lost_);
+    for (const auto& port : ports_) port->lose(*lost_);
+    ports_[lost_->value]->stop();
+    given_up_ = true;
+    const RayBatch rays = ledger_->open();
+    rays_restarted_ += rays.size();
+    paths_restarted_ += RetryLedger::paths_of(rays);
+    recovery_seconds_ = std::chrono::duration<double>(Clock::now() - last_beat_).count();
+    if (!rays.empty()) machine_->control.submit(rays);
+  }
+
+  /// What the links have counted so far goes on to be counted when they are made anew.
+  void carry_links() {
+    faults_before_.resize(machine_->links.size());
+    for (std::size_t i = 0; i < machine_->links.size(); ++i) faults_before_[i] += machine_->links[i]->faults();
+  }
+
+  /// Whether the resource that may stop is silent; `last_beat_` is when it last was not.
+  bool silent() {
+    if (!ledger_ || given_up_) return false;
+    const ResourceId id(static_cast<std::uint32_t>(config_.faults.resource.number));
+    const std::uint64_t beats = ports_[id.value]->beats();
+    if (std::exchange(beats_, beats) != beats || last_beat_ == Clock::time_point{}) last_beat_ = Clock::now();
+    // Time in which its thread did not run does not count.
+    const std::uint64_t turns = turns_.load(std::memory_order_relaxed);
+    if (std::exchange(turns_seen_, turns) == turns) last_beat_ = std::max(last_beat_, Clock::now() - kSilence / 2);
+    if (Clock::now() - last_beat_ < kSilence) return false;
+    lost_ = id;
+    return true;
+  }
+
+  void work(std::size_t thread) {
+    try {
+      int idle = 0;
+      // Acquire: pairs with the release that asks everyone to end.
+      while (!end_.load(std::memory_order_acquire)) {
+        bool moved = false;
+        // Relaxed: the watcher only wants to see it change.
+        if (ledger_ && thread == static_cast<std::size_t>(config_.faults.resource.number) % threads_)
+          turns_.store(turns_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+        for (std::size_t r = thread; r < ports_.size(); r += threads_) moved |= ports_[r]->step();
+        for (std::size_t w = thread; w < workers_.size(); w += threads_) moved |= workers_[w]->step();
+        if (moved) {
+          idle = 0;
+          // Relaxed: the watcher only wants to see it change.
+          progress_[thread].steps.fetch_add(1, std::memory_order_relaxed);
+        } else if (count_.done() && packets_out() == 0) {
+          break;
+        } else if (++idle < 256) {
+          // Two threads on one core must not wait out each other's time slices.
+          std::this_thread::yield();
+        } else {
+          std::this_thread::sleep_for(std::chrono::microseconds(50));
+        }
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      end_.store(true, std::memory_order_release);
+    }
+    const std::lock_guard lock(mutex_);
+    ++ended_;
+    ended_changed_.notify_all();
+  }
+
+  // When the last ray has been shaded, packets may still be on their way home, through resources of any thread.
+  // From then on none is sent out any more, so a sum of zero stays zero.
+  std::uint64_t packets_out() const {
+    std::uint64_t out = 0;
+    for (const auto& port : ports_) out += port->packets_out();
+    return out;
+  }
+
+  /// On the calling thread: progress reports, the request to stop, and the run that no longer moves.
+  void watch() {
+    std::uint64_t last = 0;
+    Clock::time_point last_change = Clock::now();
+    std::unique_lock lock(mutex_);
+    const std::chrono::milliseconds interval(ledger_ ? 10 : 100);
+    while (!ended_changed_.wait_for(lock, interval, [this] { return ended_ == threads_; })) {
+      if (options_.progress) options_.progress(count_.completed.load(std::memory_order_relaxed));
+      std::uint64_t steps = 0;
+      for (std::size_t t = 0; t < threads_; ++t) steps += progress_[t].steps.load(std::memory_order_relaxed);
+      if (steps != last) {
+        last = steps;
+        last_change = Clock::now();
+      } else if (Clock::now() - last_change > options_.stuck_after) {
+        stuck_ = true;
+      }
+      // Release: pairs with the acquire in work().
+      if (stuck_ || silent() || options_.stop.stop_requested()) end_.store(true, std::memory_order_release);
+    }
+  }
+
+  std::string describe_stuck() const {
+    std::string text = fmt::format("no progress for {} ms with {} rays outstanding; who waits for whom:",
+                                   options_.stuck_after.count(), count_.outstanding.load());
+    for (const auto& port : ports_) text += "\n  " + port->describe();
+    return text;
+  }
+
+  void check_drained() const {
+    if (count_.emitted != count_.completed)
+      throw SimulationError(fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
+    for (const auto& port : ports_)
+      if (!(given_up_ && port->resource().id() == *lost_) && !port->drained()) throw SimulationError("not everything came home: " + port->describe());
+  }
+
+  RunResult result(bool complete, double wall_seconds) const {
+    RunResult out;
+    out.complete = complete;
+    out.rays_emitted = count_.emitted;
+    out.rays_completed = count_.completed;
+    out.rays_restarted = rays_restarted_;
+    out.paths_restarted = paths_restarted_;
+    out.packets_discarded = packets_discarded_;
+    out.recovery_seconds = recovery_seconds_;
+    out.wall_seconds = wall_seconds;
+    out.threads = threads_;
+    out.slots_used = slots_used_ + machine_->control.slots_used();
+    out.slot_waits = slot_waits_ + machine_->control.slot_waits();
+    for (std::size_t r = 0; r < ports_.size(); ++r) {
+      if (sinks_[r]) out.resources.push_back(sinks_[r]->statistics());
+      out.collections.push_back(ports_[r]->resource().collections().statistics());
+    }
+    for (const auto& link : machine_->links)
+      out.links.push_back({link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
+    for (std::size_t i = 0; i < faults_before_.size(); ++i) out.links[i].faults += faults_before_[i];
+    out.start = start_;
+    return out;
+  }
+
+  const RunOptions& options_;
+  const Config& config_;
+  const accel::Accel& accel_;
+  float scene_size_;
+  Workload& workload_;
+  std::unique_ptr<Machine> machine_;
+  RayCount count_;
+  std::unique_ptr<RetryLedger> ledger_;       // where a resource may stop
+  std::atomic<std::uint64_t> turns_{0};       // of the thread that plays it
+  std::uint64_t turns_seen_ = 0, beats_ = 0;
+  Clock::time_point last_beat_{};
+  std::optional<ResourceId> lost_;            // it has stopped
+  bool given_up_ = false;                     // and the others go on without it
+  std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0, packets_discarded_ = 0;
+  std::uint64_t slots_used_ = 0, slot_waits_ = 0;   // before the machine was built anew
+  std::vector<LinkFaultCounts> faults_before_;      // likewise, by link
+  double recovery_seconds_ = 0;
+  std::vector<std::unique_ptr<StatisticsSink>> sinks_;
+  std::vector<std::unique_ptr<NativePort>> ports_;
+  std::vector<std::unique_ptr<ShaderWorker>> workers_;
+  std::size_t threads_;
+  Clock::time_point start_{};
+  std::unique_ptr<Progress[]> progress_;
+  std::atomic<bool> end_{false};
+  bool stuck_ = false;
+  std::mutex mutex_;                         // guards ended_ and error_
+  std::condition_variable ended_changed_;
+  std::size_t ended_ = 0;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+RunResult run_native(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
+                     const RunOptions& options) {
+  return NativeRun(config, accel, scene_size, workload, options).run();
+}
+
+}  // namespace carousel::ringbus

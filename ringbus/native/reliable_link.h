@@ -1,0 +1,215 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ringbus/faults/faulty_wire.h"
+#include "ringbus/faults/packet_image.h"
+#include "ringbus/faults/retransmit_timer.h"
+#include "ringbus/native/link.h"
+#include "ringbus/queues/spsc_ring.h"
+
+namespace carousel::ringbus {
+
+/// A link over wires that fail: frames carry sequence numbers and checksums, the receiver takes them in order and says
+/// how far it is, and after silence, or when it hears that the first one out is still missing, the sender goes back to it
+/// (go-back-N; Tanenbaum, Computer Networks, "a protocol using go-back-n"). Above it nothing is lost, doubled or out of
+/// order; a packet holds its place until it is acknowledged.
+///
+/// A frame is a copy of all that the packet holds, and what comes out of the link is the copy: it is written over the
+/// packet, which nobody else touches between a send and its reception. Any part of a copy may be damaged on the wire.
+/// Time passes in turns, ticks of the sender (ResendPatience).
+template <template <class> class Queue>
+class ReliableLink final : public Link {
+ public:
+  /// Packets that are not among `packets` travel by their ID alone, for tests of links without a machine.
+  ReliableLink(const Config& config, std::uint64_t number, ResourceId from, ResourceId to, std::span<Packet> packets)
+      : Link(from, to), depth_(static_cast<std::size_t>(config.topology.link.depth)), number_(number), packets_(packets),
+        window_(depth_),
+        frames_(2 * depth_ + 2), acks_(kAcks),
+        out_(frames_, config.faults, 2 * number, delay_of(config)),
+        back_(acks_, config.faults, 2 * number + 1, delay_of(config)) {}
+  ~ReliableLink() override {
+    Frame frame;
+    while (frames_.try_pop(frame)) frame.drop();
+  }
+
+  std::size_t capacity() const override { return depth_; }
+  std::size_t free_places() override {
+    (void)take_acks();
+    return depth_ - static_cast<std::size_t>(next_ - base_);
+  }
+  bool tick() override {
+    const bool moved = take_acks();
+    out_.release();
+    if (base_ < sent_ && patience_.ends(ResendPatience::Clock::now)) go_back();
+    transmit();
+    return moved;
+  }
+  void tick_receiver() override {
+    take_frames([&](PacketId packet) {
+      if (held_) return false;
+      held_ = packet;
+      return true;
+    });
+  }
+  LinkFaultCounts faults() const override {
+    LinkFaultCounts sum = out_.counts();
+    sum += back_.counts();
+    sum.resent = resent_;
+    sum.discarded = discarded_;
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t kAcks = 64;
+
+  /// Owns its image, by hand: queues carry what is trivially copyable. Whoever has taken it last drops it.
+  struct Frame {
+    std::uint64_t sequence = 0, packet = 0, check = 0;
+    PacketImage* image = nullptr;
+
+    void flip(std::uint64_t bits) {
+      const std::size_t word = bits / 64 % (3 + image->size());
+      std::uint64_t* const head[] = {&sequence, &packet, &check};
+      *(word < 3 ? head[word] : &(*image)[word - 3]) ^= std::uint64_t{1} << bits % 64;
+    }
+    Frame copy() const { return {sequence, packet, check, new PacketImage(*image)}; }
+    void drop() { delete std::exchange(image, nullptr); }
+  };
+  struct Ack {
+    std::uint64_t expected = 0, check = 0;
+    void flip(std::uint64_t bits) { (bits % 2 ? expected : check) ^= std::uint64_t{1} << bits / 2 % 64; }
+    Ack copy() const { return *this; }
+    void drop() {}
+  };
+  /// What is not acknowledged.
+  struct Sent {
+    PacketId packet;
+    PacketImage image;
+  };
+
+  static std::chrono::nanoseconds delay_of(const Config& config) {
+    return std::chrono::nanoseconds(config.faults.links.delay_cycles * 1000 / config.engine.clock_mhz);
+  }
+  /// Differs for any two frames that differ within one word, as each step can be undone.
+  std::uint64_t check(std::uint64_t sequence, std::uint64_t packet, std::span<const std::uint64_t> image) const {
+    std::uint64_t x = number_ * 0x9e3779b97f4a7c15u;
+    const auto step = [&x](std::uint64_t word) {
+      x = (x ^ word) * 0xbf58476d1ce4e5b9u;
+      x ^= x >> 31;
+    };
+    step(sequence);
+    step(packet);
+    for (const std::uint64_t word : image) step(word);
+    return x;
+  }
+  std::uint64_t check(const Ack& ack) const { return check(ack.expected, ~std::uint64_t{0}, {}); }
+
+  std::size_t push(std::span<const PacketId> packets) override {
+    const std::size_t count = std::min(packets.size(), free_places());
+    for (std::size_t i = 0; i < count; ++i) {
+      const PacketId id = packets[i];
+      window_[next_++ % depth_] = {id, id.value < packets_.size() ? image_of(packets_[id.value]) : PacketImage{}};
+    }
+    transmit();
+    return count;
+  }
+  void transmit() {
+    for (; sent_ < next_ && out_.has_room(); ++sent_) {
+      const Sent& sent = window_[sent_ % depth_];
+      out_.put({sent_, sent.packet.value, check(sent_, sent.packet.value, sent.image), new PacketImage(sent.image)});
+      if (sent_ >= once_sent_) {
+        once_sent_ = sent_ + 1;
+        patience_.sent(sent_);
+      }
+    }
+  }
+  void go_back() {
+    resent_ += sent_ - base_;
+    sent_ = base_;
+  }
+  bool take_acks() {
+    bool moved = false;
+    Ack ack;
+    while (acks_.try_pop(ack)) {
+      if (ack.check != check(ack)) continue;
+      // The receiver still waits for the first that is out, though something came: that one was lost. Once for each.
+      if (ack.expected == base_ && base_ < sent_ && asked_for_ != base_) {
+        asked_for_ = base_;
+        patience_.went_back();
+        go_back();
+      }
+      // One behind is old; one beyond what was sent would be damage that the checksum missed.
+      if (ack.expected <= base_ || ack.expected > next_) continue;
+      base_ = ack.expected;
+      sent_ = std::max(sent_, base_);
+      patience_.heard(base_);
+      moved = true;
+    }
+    return moved;
+  }
+
+  std::size_t pull(std::span<PacketId> packets) override {
+    std::size_t count = 0;
+    if (!packets.empty() && held_) packets[count++] = *std::exchange(held_, std::nullopt);
+    take_frames([&](PacketId packet) {
+      if (count == packets.size()) return false;
+      packets[count++] = packet;
+      return true;
+    });
+    return count;
+  }
+  /// Reads the wire dry. What comes in its turn is offered to `take`, which may refuse it; what is not taken will come
+  /// again. Whatever came, how far the receiver is goes back: the acknowledgement of something's first coming may have
+  /// been lost, and its place at the sender is free only when it knows.
+  template <class Take>
+  void take_frames(const Take& take) {
+    bool heard = false;
+    Frame frame;
+    while (frames_.try_pop(frame)) {
+      heard = true;
+      const bool whole = frame.check == check(frame.sequence, frame.packet, *frame.image);
+      if (whole && frame.sequence == expected_ && take(PacketId(static_cast<std::uint32_t>(frame.packet)))) {
+        ++expected_;
+        if (frame.packet < packets_.size()) restore(*frame.image, packets_[frame.packet]);
+      } else {
+        ++discarded_;
+      }
+      frame.drop();
+    }
+    if (heard) {
+      Ack ack{expected_, 0};
+      ack.check = check(ack);
+      back_.put(ack);
+    }
+    back_.release();
+  }
+
+  std::size_t depth_;
+  std::uint64_t number_;
+  std::span<Packet> packets_;
+  // The sender's.
+  std::vector<Sent> window_;                          // by sequence number modulo depth
+  std::uint64_t base_ = 0, sent_ = 0, next_ = 0;      // acknowledged up to; on the wire up to; accepted up to
+  std::uint64_t once_sent_ = 0;                       // the first that has never been on the wire
+  ResendPatience patience_;
+  std::uint64_t asked_for_ = ~std::uint64_t{0};       // the frame that an acknowledgement last asked for again
+  std::uint64_t resent_ = 0;
+  // The receiver's.
+  alignas(128) std::uint64_t expected_ = 0;
+  std::uint64_t discarded_ = 0;
+  std::optional<PacketId> held_;   // taken in while nobody wanted it
+  // Between them.
+  alignas(128) Queue<Frame> frames_;
+  SpscRing<Ack> acks_;
+  alignas(128) FaultyWire<Queue<Frame>, Frame> out_;   // the sender's end
+  alignas(128) FaultyWire<SpscRing<Ack>, Ack> back_;   // the receiver's end
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,74 @@
+#include "ringbus/native/shader_worker.h"
+
+#include <algorithm>
+
+namespace carousel::ringbus {
+
+namespace {
+// Rays asked for at once: few enough that they are still in cache when ray control puts them into their slots.
+constexpr std::int64_t kGenerateBatch = 4096;
+}
+
+ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count,
+                           RetryLedger* ledger)
+    : id_(id),
+      machine_(machine),
+      workload_(workload),
+      count_(count),
+      ledger_(ledger),
+      slots_(machine.config.topology.resources * machine.config.rays.slots_per_resource) {}
+
+bool ShaderWorker::step() {
+  const bool placed = machine_.control.place_waiting();
+  return shade() || generate() || placed;
+}
+
+bool ShaderWorker::shade() {
+  std::optional<HitBatch> batch = machine_.completed.pop();
+  if (!batch) return false;
+  rays_.clear();
+  workload_.shade(id_, *batch, rays_);
+  const std::int64_t made = static_cast<std::int64_t>(rays_.size()), shaded = static_cast<std::int64_t>(batch->size());
+  // Relaxed: sums for the report and the progress bar.
+  count_.emitted.fetch_add(rays_.size(), std::memory_order_relaxed);
+  count_.completed.fetch_add(batch->size(), std::memory_order_relaxed);
+  // One addition for both: the count cannot pass through zero while rays are about to be submitted. Release:
+  // pairs with the acquire in done(); the shading is finished for whoever sees zero.
+  count_.outstanding.fetch_add(made - shaded, std::memory_order_release);
+  if (ledger_ != nullptr) {
+    ledger_->remove(*batch);
+    ledger_->add(rays_);
+  }
+  machine_.completed.give_back(std::move(*batch));
+  if (made > 0) machine_.control.submit(rays_);
+  return true;
+}
+
+bool ShaderWorker::generate() {
+  // Acquire: pairs with the release below, and is only a hint here.
+  if (count_.source_finished.load(std::memory_order_acquire)) return false;
+  const std::int64_t workers = machine_.config.shading.workers;
+  const std::int64_t room = slots_ - count_.outstanding.load(std::memory_order_relaxed);
+  // All that fit, so that resources find whole groups waiting when they come round again.
+  std::int64_t left = std::min(room, slots_ / workers + 1);
+  bool any = false;
+  while (left > 0) {
+    const std::int64_t asked = std::min(left, kGenerateBatch);
+    // Counted before they exist, so that nobody sees the source finished with the last rays not yet counted.
+    count_.outstanding.fetch_add(asked, std::memory_order_relaxed);
+    rays_.clear();
+    const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(asked), rays_);
+    count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - asked, std::memory_order_release);
+    count_.emitted.fetch_add(made.rays, std::memory_order_relaxed);
+    // Release: pairs with the acquire in done().
+    if (made.finished) count_.source_finished.store(true, std::memory_order_release);
+    if (ledger_ != nullptr) ledger_->add(rays_);
+    if (made.rays > 0) machine_.control.submit(rays_);
+    any |= made.rays > 0;
+    if (made.finished || static_cast<std::int64_t>(made.rays) < asked) break;
+    left -= asked;
+  }
+  return any;
+}
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "core/types/workload.h"
+#include "ringbus/faults/outstanding_rays.h"
+#include "ringbus/native/machine.h"
+
+namespace carousel::ringbus {
+
+/// How many rays there are, and whether more will come: the one count termination needs. A ray counts from
+/// before it is made until it has been shaded and its children are counted.
+struct RayCount {
+  std::atomic<std::int64_t> outstanding{0};
+  std::atomic<std::uint64_t> emitted{0}, completed{0};
+  std::atomic<bool> source_finished{false};
+
+  bool done() const {
+    // Acquire: pairs with the release in ShaderWorker::generate; whoever sees the end of the source also sees
+    // the count of the last rays that came out of it.
+    return source_finished.load(std::memory_order_acquire) && outstanding.load(std::memory_order_acquire) == 0;
+  }
+};
+
+/// Takes completed rays of any resource, shades them, and hands the new rays to ray control; with nothing to
+/// shade and slots to spare it asks the workload for rays of its own. One thread steps it.
+class ShaderWorker {
+ public:
+  /// `ledger` is told of every ray; null: none is kept.
+  ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, RetryLedger* ledger = nullptr);
+
+  /// Returns whether anything was done.
+  bool step();
+
+ private:
+  bool shade();
+  bool generate();
+
+  WorkerId id_;
+  Machine& machine_;
+  Workload& workload_;
+  RayCount& count_;
+  RetryLedger* ledger_;
+  std::int64_t slots_;
+  RayBatch rays_;
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,58 @@
+#include "ringbus/packets/statistics_sink.h"
+
+#include <algorithm>
+
+namespace carousel::ringbus {
+
+ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) {
+  rays_admitted += o.rays_admitted;
+  rays_completed += o.rays_completed;
+  packets_issued += o.packets_issued;
+  packet_rays += o.packet_rays;
+  packets_retired += o.packets_retired;
+  hops += o.hops;
+  visits += o.visits;
+  bubbles += o.bubbles;
+  local_rays += o.local_rays;
+  seen_rays += o.seen_rays;
+  memberships += o.memberships;
+  for (std::size_t i = 0; i < stalls.size(); ++i) stalls[i] += o.stalls[i];
+  tests += o.tests;
+  reads += o.reads;
+  bundles.resize(std::max(bundles.size(), o.bundles.size()));
+  for (std::size_t depth = 0; depth < o.bundles.size(); ++depth) bundles[depth] += o.bundles[depth];
+  culls += o.culls;
+  return *this;
+}
+
+void StatisticsSink::record(const Event& event) {
+  ResourceStatistics& s = statistics_;
+  switch (event.kind) {
+    case EventKind::kAdmit: s.rays_admitted += event.rays; break;
+    case EventKind::kIssue:
+      ++s.packets_issued;
+      s.packet_rays += event.rays;
+      break;
+    case EventKind::kTest:
+      ++s.visits;
+      s.bubbles += event.rays == 0;
+      s.local_rays += event.rays;
+      s.seen_rays += event.members.size();
+      s.tests += event.tests;
+      s.reads += event.reads;
+      if (event.bundles != nullptr) {
+        if (s.bundles.size() <= event.depth) s.bundles.resize(event.depth + std::size_t{1});
+        s.bundles[event.depth] += *event.bundles;
+      }
+      break;
+    case EventKind::kHop: ++s.hops; break;
+    case EventKind::kRetire:
+      ++s.packets_retired;
+      s.memberships += event.rays;
+      break;
+    case EventKind::kComplete: s.rays_completed += event.rays; break;
+    case EventKind::kStall: ++s.stalls[static_cast<std::size_t>(event.reason)]; break;
+  }
+}
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "core/system/error.h"
+
+namespace carousel::ringbus {
+
+/// Whether the links of a machine can fill up and stop, said before it runs (DESIGN.md section 4).
+struct DeadlockVerdict {
+  bool can_deadlock = false;
+  std::string rule;   ///< the rule that protects it, with its numbers; or what is missing
+};
+DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
+
+/// Ray IDs of collection storage a resource needs so that bounded storage (`when_full: reserve`) cannot block:
+/// twice the reserve that deepest-first draining uses, since new rays are admitted only above half free; one
+/// block for ordered traversal, which admits a ray a block. 0 with `when_full: spill`, and where nothing is collected.
+std::int64_t minimum_capacity(const Config& config, int width, int max_depth);
+
+/// The rules that need the built structure. Positions are left to the caller, who knows the file.
+std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel& accel);
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/types/workload.h"
+
+namespace carousel::ringbus {
+
+/// Groups similar rays (US 11308683): each joins the open bundle that it fits best, or opens one. A bundle is sent on
+/// when it is full, when it is old, when its place is needed (then the fullest, of those the oldest), or at the end of
+/// the call. Deterministic.
+class BundleBuilder {
+ public:
+  /// `scene_size` is what distances between origins are measured by.
+  BundleBuilder(const BundlesConfig& config, float scene_size);
+
+  /// Cuts `rays` into groups: writes the indices of `rays` group by group into `order`, and each group's length into
+  /// `sizes`. Every ray is in exactly one group; groups of one are rays on their own: those of other sources than
+  /// configured, with tmin other than 0 or not valid, and those that found fewer than `min_rays` - 1 others. Nothing
+  /// stays open between calls.
+  void group(std::span<const RayRequest> rays, std::vector<std::uint32_t>& order, std::vector<std::uint8_t>& sizes);
+
+ private:
+  /// What similarity is computed from.
+  struct Bounds {
+    Vec3 origin_min, origin_max, direction_min, direction_max;
+    double longest;   ///< direction; the others are measured by it
+
+    explicit Bounds(const Ray& ray);
+    void extend(const Bounds& other);
+  };
+  static constexpr std::size_t kMostRays = 64;
+  struct Open {
+    Bounds bounds;
+    double size;           ///< of the bounds
+    std::uint64_t opened;  ///< how many rays had been looked at
+    RayKind kind;
+    std::uint32_t signs;   ///< of its directions with same_signs
+    std::size_t count;
+    std::array<std::uint32_t, kMostRays> rays;
+  };
+  struct Groups {
+    std::vector<std::uint32_t>& order;
+    std::vector<std::uint8_t>& sizes;
+  };
+
+  bool may_share(const RayRequest& request) const;
+  bool may_join(const RayRequest& request, const Open& open) const;
+  double size_of(const Bounds& bounds) const;
+  double unlikeness(double before, double after) const;
+  void take(std::uint32_t index, const RayRequest& request, Groups& out);
+  void open(std::uint32_t index, const RayRequest& request, Groups& out);
+  /// The bundle at `place` of oldest_first_ goes.
+  void send(std::size_t place, Groups& out);
+
+  BundlesConfig config_;
+  double scene_size_;
+  std::vector<Open> open_;
+  std::vector<std::uint32_t> oldest_first_, unused_;   // places in open_
+  std::uint64_t looked_at_ = 0;
+};
+
+}  // namespace carousel::ringbus

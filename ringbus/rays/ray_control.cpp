@@ -1,0 +1,205 @@
+#include "ringbus/rays/ray_control.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace carousel::ringbus {
+
+RayControl::RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores,
+                       std::int32_t initial_tests, float scene_size)
+    : placement_(config.rays.placement),
+      rays_travel_(placement_ == Placement::kFirstTaker || placement_ == Placement::kAddressed),
+      local_(config.collections.home == Home::kLocal || config.topology.shape == TopologyShape::kIndependent),
+      resources_(static_cast<std::uint32_t>(stores.size())),
+      group_rays_(static_cast<std::size_t>(config.packets.rays)),
+      initial_tests_(initial_tests),
+      stores_(stores),
+      slots_(std::make_unique<SlotList[]>(stores.size())),
+      inboxes_(std::make_unique<Inbox[]>(stores.size())) {
+  free_all();
+  const std::size_t total = free_slots();
+  // Groups are placed whole where possible; waiting for more than a quarter of the slots would idle the ring.
+  if (config.bundles.size > 0) builder_.emplace(config.bundles, scene_size);
+  enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_ : total) / 4);
+}
+
+void RayControl::free_all() {
+  for (std::uint32_t r = 0; r < resources_; ++r) {
+    SlotList& list = slots_[r];
+    list.free.clear();
+    list.free_bundles.clear();
+    for (std::uint32_t slot = stores_[r]->slots(); slot-- > 0;) list.free.push_back(slot);
+    for (std::uint32_t bundle = stores_[r]->room().loaded; bundle-- > 0;)
+      list.free_bundles.push_back(stores_[r]->slots() + bundle);
+    list.count = stores_[r]->slots();
+  }
+}
+
+void RayControl::discard() {
+  free_all();
+  for (std::uint32_t r = 0; r < resources_; ++r) {
+    stores_[r]->discard();
+    inboxes_[r].groups.clear();
+    inboxes_[r].any = false;
+  }
+  waiting_.clear();
+  waiting_bundles_.clear();
+  waiting_head_ = waiting_bundles_head_ = 0;
+  any_waiting_ = false;
+}
+
+void RayControl::exclude(ResourceId resource) {
+  excluded_ = resource;
+  slots_[resource.value].free.clear();
+  slots_[resource.value].count = 0;
+}
+
+std::size_t RayControl::free_slots() const {
+  std::size_t total = 0;
+  for (std::uint32_t r = 0; r < resources_; ++r) total += free_slots(ResourceId(r));
+  return total;
+}
+
+ResourceId RayControl::emptiest() const {
+  ResourceId best(turn_ % resources_);
+  for (std::uint32_t i = 1; i < resources_; ++i) {
+    const ResourceId r((turn_ + i) % resources_);
+    if (free_slots(r) > free_slots(best)) best = r;
+  }
+  return best;
+}
+
+std::size_t RayControl::load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids) {
+  SlotList& list = slots_[resource.value];
+  const std::lock_guard lock(list.mutex);
+  const std::size_t count = std::min(rays.size(), list.free.size());
+  constexpr std::size_t kAhead = 8;   // records that are fetched while others are written
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i + kAhead < count) stores_[resource.value]->prefetch(list.free[list.free.size() - 1 - kAhead]);
+    ids.push_back(stores_[resource.value]->load(list.free.back(), rays[i], initial_tests_));
+    list.free.pop_back();
+  }
+  list.count.store(list.free.size(), std::memory_order_relaxed);
+  slots_used_.fetch_add(count, std::memory_order_relaxed);
+  return count;
+}
+
+std::optional<RayId> RayControl::load(ResourceId resource, const RayRequest& request) {
+  std::vector<RayId> id;
+  if (load_some(resource, {&request, 1}, id) == 0) return std::nullopt;
+  return id.front();
+}
+
+void RayControl::free(ResourceId resource, std::span<const std::uint32_t> slots) {
+  SlotList& list = slots_[resource.value];
+  const std::lock_guard lock(list.mutex);
+  if (!builder_)
+    list.free.insert(list.free.end(), slots.begin(), slots.end());
+  else
+    for (const std::uint32_t slot : slots)
+      (stores_[resource.value]->is_bundle(slot) ? list.free_bundles : list.free).push_back(slot);
+  list.count.store(list.free.size(), std::memory_order_relaxed);
+}
+
+std::size_t RayControl::place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids) {
+  std::size_t placed = 0;
+  if (placement_ == Placement::kRoundRobin) {
+    // One ray a resource in turn; those that are full are passed over.
+    for (std::uint32_t refused = 0; placed < rays.size() && refused < resources_;) {
+      const bool took = load_some(next_resource(), rays.subspan(placed, 1), ids) == 1;
+      refused = took ? 0 : refused + 1;
+      placed += took;
+    }
+    return placed;
+  }
+  // Balanced: equal shares, each a run of neighbouring rays; what full resources cannot take goes to the others.
+  for (int pass = 0; pass < 2 && placed < rays.size(); ++pass) {
+    for (std::uint32_t i = 0; i < resources_ && placed < rays.size(); ++i) {
+      const std::size_t left = resources_ - i;
+      const std::size_t share = pass == 0 ? (rays.size() - placed + left - 1) / left : rays.size() - placed;
+      placed += load_some(ResourceId((turn_ + i) % resources_), rays.subspan(placed, share), ids);
+    }
+  }
+  return placed;
+}
+
+void RayControl::send(ResourceId resource, RayGroup&& group) {
+  Inbox& inbox = inboxes_[resource.value];
+  const std::lock_guard lock(inbox.mutex);
+  inbox.groups.push_back(std::move(group));
+  // Relaxed: only a hint that the lock is worth taking; the mutex publishes the group.
+  inbox.any.store(true, std::memory_order_relaxed);
+}
+
+/// Places groups from the front of `rays` while there is room; returns how many rays were placed.
+std::size_t RayControl::place(std::span<const RayRequest> rays) {
+  if (builder_) return place_bundles(rays);
+  std::size_t done = 0;
+  while (done < rays.size()) {
+    const std::span<const RayRequest> next = rays.subspan(done, std::min(group_rays_, rays.size() - done));
+    RayGroup group;
+    std::size_t placed = next.size();
+    ResourceId issuer = next_resource();
+    if (rays_travel_) {
+      group.rays.assign(next.begin(), next.end());
+      for (std::size_t i = 0; placement_ == Placement::kAddressed && i < next.size(); ++i) {
+        const std::size_t step = local_ ? 0 : i * resources_ / next.size();
+        const ResourceId address(static_cast<std::uint32_t>((issuer.value + step) % resources_));
+        group.addresses.push_back(address == excluded_ ? issuer : address);
+      }
+    } else {
+      if (local_ && placement_ == Placement::kBalanced) issuer = emptiest();
+      const std::size_t room = local_ ? free_slots(issuer) : free_slots();
+      if (room < std::min(next.size(), enough_slots_)) {
+        slot_waits_.fetch_add(1, std::memory_order_relaxed);
+        // Taking turns, the next resource may have room.
+        if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= enough_slots_) continue;
+        break;
+      }
+      group.ids.reserve(next.size());
+      placed = local_ ? load_some(issuer, next, group.ids) : place_spread(next, group.ids);
+    }
+    if (placed == 0) break;
+    done += placed;
+    send(issuer, std::move(group));
+  }
+  return done;
+}
+
+void RayControl::submit(const RayBatch& rays) {
+  const std::lock_guard lock(waiting_mutex_);
+  if (builder_) return submit_bundles(rays);
+  const std::size_t placed = waiting_head_ == waiting_.size() ? place(rays) : 0;
+  if (placed == rays.size()) return;
+  waiting_.insert(waiting_.end(), rays.begin() + static_cast<std::ptrdiff_t>(placed), rays.end());
+  any_waiting_.store(true, std::memory_order_relaxed);
+}
+
+bool RayControl::place_waiting() {
+  // Relaxed: a hint; shader workers ask again and again.
+  if (!any_waiting_.load(std::memory_order_relaxed)) return false;
+  const std::lock_guard lock(waiting_mutex_);
+  return place_all_waiting();
+}
+
+bool RayControl::place_all_waiting() {
+  const std::size_t placed = place(std::span(waiting_).subspan(waiting_head_));
+  waiting_head_ += placed;
+  if (2 * waiting_head_ >= waiting_.size()) {
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_head_));
+    waiting_head_ = 0;
+  }
+  any_waiting_.store(!waiting_.empty(), std::memory_order_relaxed);
+  return placed > 0;
+}
+
+void RayControl::collect(ResourceId resource, std::vector<RayGroup>& out) {
+  Inbox& inbox = inboxes_[resource.value];
+  if (!inbox.any.load(std::memory_order_relaxed)) return;
+  const std::lock_guard lock(inbox.mutex);
+  std::move(inbox.groups.begin(), inbox.groups.end(), std::back_inserter(out));
+  inbox.groups.clear();
+  inbox.any.store(false, std::memory_order_relaxed);
+}
+
+}  // namespace carousel::ringbus

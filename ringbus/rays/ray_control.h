@@ -1,0 +1,115 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/types/ids.h"
+#include "core/types/workload.h"
+#include "ringbus/rays/bundle_builder.h"
+#include "ringbus/rays/ray_store.h"
+
+namespace carousel::ringbus {
+
+/// New rays on their way to a resource's root collection: IDs once they have slots, or the rays themselves when
+/// they are to look for slots on their way round the ring.
+struct RayGroup {
+  std::vector<RayId> ids;
+  RayBatch rays;
+  std::vector<ResourceId> addresses;   ///< addressed placement: one a ray; otherwise empty
+};
+
+/// Gives new rays a slot and an ID, in slots that completed rays freed. The rays of one group (as many as a
+/// packet carries) are spread over the resources, so that every packet finds work everywhere, and the group's
+/// IDs go to one resource, which issues it from its root collection; with `home: local` and
+/// independent resources a whole group lives where it is issued. With bundles each of them has one owner, and a group
+/// as many bundles and single rays as a packet carries IDs. With first_taker and addressed placement the rays travel instead, and resources ask for
+/// slots as packets pass. Any thread may call.
+class RayControl {
+ public:
+  /// `stores` by resource; `initial_tests` is what a ray waits for at the root.
+  RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores, std::int32_t initial_tests,
+             float scene_size);
+
+  /// From now on `resource` gets no rays. Before the first submit(), or after discard().
+  void exclude(ResourceId resource);
+  /// Takes back all slots and forgets all rays. When nobody holds an ID any more, and nobody else calls.
+  void discard();
+  /// Places a batch, behind those that still wait for slots.
+  void submit(const RayBatch& rays);
+  /// Places waiting rays as far as slots allow. Returns whether any was placed.
+  bool place_waiting();
+  /// Takes the groups for `resource`, oldest first, into `out` (appended).
+  void collect(ResourceId resource, std::vector<RayGroup>& out);
+
+  /// A slot of `resource` for a ray that has travelled there; nothing when it has none.
+  std::optional<RayId> load(ResourceId resource, const RayRequest& request);
+  /// Gives back slots that completed rays, and the bundles they were in, no longer need.
+  void free(ResourceId resource, std::span<const std::uint32_t> slots);
+
+  bool rays_travel() const { return rays_travel_; }
+  /// Relaxed: an estimate unless nothing runs.
+  std::size_t free_slots(ResourceId resource) const { return slots_[resource.value].count.load(std::memory_order_relaxed); }
+  std::size_t free_slots() const;
+  /// How often rays had to wait because there were too few free slots.
+  std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
+  /// How often a slot was handed out.
+  std::uint64_t slots_used() const { return slots_used_.load(std::memory_order_relaxed); }
+
+ private:
+  struct alignas(128) SlotList {
+    std::mutex mutex;
+    std::vector<std::uint32_t> free;   // last freed, first used: its record is still in cache
+    std::vector<std::uint32_t> free_bundles;
+    std::atomic<std::size_t> count{0};
+  };
+  struct alignas(128) Inbox {
+    std::mutex mutex;
+    std::vector<RayGroup> groups;
+    std::atomic<bool> any{false};
+  };
+
+  void free_all();
+  std::size_t place(std::span<const RayRequest> rays);
+  bool place_all_waiting();
+  void submit_bundles(const RayBatch& rays);
+  std::size_t place_bundles(std::span<const RayRequest> rays);
+  std::size_t load_bundle(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  std::size_t load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  std::size_t place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  void send(ResourceId resource, RayGroup&& group);
+  ResourceId next_resource() {
+    if (excluded_ == ResourceId(turn_ % resources_)) ++turn_;
+    return ResourceId(turn_++ % resources_);
+  }
+  ResourceId emptiest() const;
+
+  Placement placement_;
+  bool rays_travel_, local_;
+  std::uint32_t resources_;
+  std::size_t group_rays_, enough_slots_;
+  std::int32_t initial_tests_;
+  std::span<const std::unique_ptr<RayStore>> stores_;
+  std::unique_ptr<SlotList[]> slots_;
+  std::unique_ptr<Inbox[]> inboxes_;
+  std::atomic<std::uint64_t> slot_waits_{0}, slots_used_{0};
+
+  std::mutex waiting_mutex_;      // guards what follows
+  RayBatch waiting_;              // oldest at waiting_head_
+  std::size_t waiting_head_ = 0;
+  std::optional<BundleBuilder> builder_;
+  std::vector<std::uint8_t> waiting_bundles_;   // rays of each bundle, single rays among them, oldest at its head
+  std::size_t waiting_bundles_head_ = 0;
+  std::vector<std::uint32_t> order_, members_;   // scratch
+  std::vector<std::uint8_t> sizes_;              // scratch
+  std::uint32_t turn_ = 0;
+  std::optional<ResourceId> excluded_;
+  std::atomic<bool> any_waiting_{false};
+};
+
+}  // namespace carousel::ringbus

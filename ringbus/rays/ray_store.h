@@ -1,0 +1,154 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "accel/box/bundle.h"
+#include "accel/traverse/ray_check.h"
+#include "core/config/config.h"
+#include "core/system/error.h"
+#include "core/system/huge_pages.h"
+#include "core/types/workload.h"
+#include "ringbus/rays/ray_id.h"
+
+namespace carousel::ringbus {
+
+/// Room for bundles beside the rays: records that ray control hands out with new rays, and records of the owner's
+/// own for what it makes of the rays of split bundles.
+struct BundleRoom {
+  std::uint32_t loaded = 0, own = 0;
+  std::uint32_t rays = 0;   ///< of a bundle at most
+};
+
+/// A resource's ray data: records in slots. Ray control hands out the slots and fills in the records of new
+/// rays; from then on until the slot is freed a record is touched by its owner's thread only. Records of bundles have
+/// the slots behind those of the rays, and IDs of the same kind.
+class RayStore {
+ public:
+  RayStore(ResourceId owner, std::uint32_t slots, BundleRoom room = {})
+      : owner_(owner),
+        layout_(slots + room.loaded + room.own),
+        records_(slots),
+        room_(room),
+        bundles_(room.loaded + room.own),
+        bundle_rays_(bundles_.size() * room.rays) {
+    if constexpr (kChecked) generations_.resize(slots + bundles_.size());
+  }
+
+  /// Puts a ray into a free slot, waiting for `tests` tests. The ID is valid until the slot is freed.
+  RayId load(std::uint32_t slot, const RayRequest& request, std::int32_t tests) {
+    accel::start_record(request, records_[slot]);
+    records_[slot].pending = tests;
+    RayId id = layout_.make(owner_, slot);
+    if constexpr (kChecked) id.generation.set(++generations_[slot]);
+    return id;
+  }
+  /// Makes a bundle in a free slot of one, of rays in `ray_slots` (of this store), waiting for `tests` tests. Adds to
+  /// none of their counts.
+  RayId bundle_up(std::uint32_t slot, std::span<const std::uint32_t> ray_slots, std::int16_t tests) {
+    accel::BundleRecord& bundle = this->bundle(slot) = accel::BundleRecord();
+    bundle.rays = (slot - slots()) * room_.rays;
+    bundle.count = static_cast<std::uint8_t>(ray_slots.size());
+    bundle.pending = tests;
+    std::copy(ray_slots.begin(), ray_slots.end(), bundle_rays_.begin() + bundle.rays);
+    for (const std::uint32_t ray : ray_slots) {
+      const RayRecord& record = records_[ray];
+      bundle.widen(record.ray, record.hit.t);
+      if (record.hit.valid()) bundle.nearest = std::min(bundle.nearest, record.hit.t);
+    }
+    RayId id = layout_.make(owner_, slot);
+    if constexpr (kChecked) id.generation.set(++generations_[slot]);
+    return id;
+  }
+  /// Gives a bundle the bounds that its rays have in the space of an instance.
+  void rebound(std::uint32_t slot, const accel::BundleRecord& bounds) {
+    accel::BundleRecord& bundle = this->bundle(slot);
+    const accel::BundleRecord before = bundle;
+    bundle = bounds;
+    bundle.flags = accel::BundleRecord::kInModelSpace;
+    bundle.tmax = before.tmax;
+    bundle.nearest = before.nearest;
+    bundle.pending = before.pending;
+    bundle.count = before.count;
+    bundle.rays = before.rays;
+  }
+  /// The ID of a slot in use.
+  RayId id(std::uint32_t slot) const {
+    RayId id = layout_.make(owner_, slot);
+    if constexpr (kChecked) id.generation.set(generations_[slot]);
+    return id;
+  }
+  bool is_bundle(std::uint32_t slot) const { return slot >= slots(); }
+  accel::BundleRecord& bundle(std::uint32_t slot) { return bundles_[slot - slots()]; }
+  /// The slots of a bundle's rays.
+  std::span<const std::uint32_t> rays_of(std::uint32_t slot) const {
+    const accel::BundleRecord& bundle = bundles_[slot - slots()];
+    return std::span(bundle_rays_).subspan(bundle.rays, bundle.count);
+  }
+  const BundleRoom& room() const { return room_; }
+  /// Brings a record near that is about to be written.
+  void prefetch(std::uint32_t slot) const { __builtin_prefetch(&records_[slot], 1); }
+  /// Marks a slot as free: its IDs are stale from now on. Handing it out again is ray control's affair.
+  void retire(std::uint32_t slot) {
+    if constexpr (kChecked) ++generations_[slot];
+  }
+  /// Marks every slot as free.
+  void discard() {
+    // Two on, so that IDs of slots in use are stale and a count that is odd for a slot in use is even again.
+    if constexpr (kChecked)
+      for (std::uint32_t& generation : generations_) generation = (generation + 3) & ~1u;
+  }
+  bool owns(RayId id) const { return layout_.owner(id) == owner_; }
+  /// The slot of an ID this resource owns; in checked builds a stale ID is a SimulationError.
+  std::uint32_t slot(RayId id) const {
+    const std::uint32_t slot = layout_.slot(id);
+    if constexpr (kChecked) {
+      if (id.generation.get() != generations_[slot])
+        throw SimulationError("stale ray ID: resource " + std::to_string(owner_.value) + " slot " +
+                              std::to_string(slot) + " is at generation " + std::to_string(generations_[slot]) +
+                              ", the ID at " + std::to_string(id.generation.get()));
+    }
+    return slot;
+  }
+
+  ResourceId owner() const { return owner_; }
+  RayRecord* records() { return records_.data(); }
+  RayRecord& record(std::uint32_t slot) { return records_[slot]; }
+  std::uint32_t slots() const { return static_cast<std::uint32_t>(records_.size()); }
+  const RayIdLayout& layout() const { return layout_; }
+
+ private:
+  ResourceId owner_;
+  RayIdLayout layout_;
+  std::vector<RayRecord, HugePageAllocator<RayRecord>> records_;
+  BundleRoom room_;
+  std::vector<accel::BundleRecord> bundles_;
+  std::vector<std::uint32_t> bundle_rays_;   // slots, `room_.rays` a bundle
+  std::vector<std::uint32_t> generations_;   // odd while in use; checked builds only
+};
+
+/// Bundles have two rays or more; where a quarter of the slots is not enough, rays go on their own.
+inline BundleRoom bundle_room(const Config& config) {
+  if (config.bundles.size == 0) return {};
+  const std::uint32_t quarter = static_cast<std::uint32_t>(config.rays.slots_per_resource / 4 + 1);
+  const bool rebuilds = config.bundles.split == BundlesConfig::Split::kBuilder ||
+                        config.bundles.lifetime == BundlesConfig::Lifetime::kReformed ||
+                        config.bundles.at_instances == BundlesConfig::AtInstances::kRebound;
+  return {quarter, rebuilds ? 2 * quarter : 0, static_cast<std::uint32_t>(config.bundles.size)};
+}
+
+/// One for each resource.
+inline std::vector<std::unique_ptr<RayStore>> make_ray_stores(const Config& config) {
+  const std::uint32_t slots = static_cast<std::uint32_t>(config.rays.slots_per_resource);
+  const BundleRoom room = bundle_room(config);
+  std::vector<std::unique_ptr<RayStore>> stores;
+  for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(config.topology.resources); ++r)
+    stores.push_back(std::make_unique<RayStore>(ResourceId(r), slots, room));
+  return stores;
+}
+
+}  // namespace carousel::ringbus

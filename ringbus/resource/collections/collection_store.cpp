@@ -1,0 +1,159 @@
+#include "ringbus/resource/collections/collection_store.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace carousel::ringbus {
+
+namespace {
+
+// Eight buckets an octave; 27 octaves below the scene's size and 5 above.
+std::uint32_t octave_eighth(float x) { return std::bit_cast<std::uint32_t>(x > 0 ? x : 0.0f) >> 20; }
+
+}  // namespace
+
+CollectionStore::CollectionStore(const Settings& settings) : settings_(settings) {
+  const std::uint32_t top = octave_eighth(settings.scene_size > 0 ? settings.scene_size : 1.0f);
+  nearest_base_ = top > 27 * 8 ? top - 27 * 8 : 0;
+}
+
+std::uint32_t CollectionStore::bucket(const Collection& c) const {
+  constexpr std::uint32_t kLast = PriorityLists::kBuckets - 1;
+  switch (settings_.policy) {
+    case Policy::kFullest: return kLast - std::min(kLast, c.count * 128 / settings_.ready);
+    case Policy::kDeepest: return std::min<std::uint32_t>(kLast, settings_.max_depth > c.depth ? settings_.max_depth - c.depth : 0);
+    case Policy::kNearest: {
+      const std::uint32_t eighth = octave_eighth(c.entry);
+      return eighth > nearest_base_ ? std::min(kLast, eighth - nearest_base_) : 0;
+    }
+    case Policy::kOldest:
+    case Policy::kNewest: return 0;
+  }
+  return 0;
+}
+
+void CollectionStore::enlist(std::uint32_t index) {
+  const Collection& c = collections_[index];
+  if (settings_.policy == Policy::kNewest)
+    list(c).push_front(index, bucket(c));
+  else
+    list(c).push_back(index, bucket(c));
+}
+
+void CollectionStore::relist(std::uint32_t index, bool was_ready) {
+  Collection& c = collections_[index];
+  c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready;
+  if (c.ready == was_ready && list(c).bucket_of(index) == bucket(c)) return;
+  (was_ready ? ready_ : partial_).remove(index);
+  enlist(index);
+}
+
+std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t depth, float entry) {
+  std::uint32_t index;
+  if (free_collections_.empty()) {
+    index = static_cast<std::uint32_t>(collections_.size());
+    collections_.emplace_back();
+    ready_.resize(collections_.size());
+    partial_.resize(collections_.size());
+  } else {
+    index = free_collections_.back();
+    free_collections_.pop_back();
+  }
+  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict};
+  table_.insert(key, index);
+  ++statistics_.created;
+  statistics_.peak = std::max<std::uint64_t>(statistics_.peak, table_.size());
+  enlist(index);
+  return index;
+}
+
+std::uint32_t CollectionStore::new_block() {
+  ++blocks_used_;
+  statistics_.blocks_peak = std::max<std::uint64_t>(statistics_.blocks_peak, blocks_used_);
+  if (!free_blocks_.empty()) {
+    const std::uint32_t block = free_blocks_.back();
+    free_blocks_.pop_back();
+    return block;
+  }
+  const std::uint32_t block = static_cast<std::uint32_t>(next_block_.size());
+  next_block_.push_back(0);
+  block_rays_.resize(block_rays_.size() + settings_.block_rays);
+  return block;
+}
+
+void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays) {
+  if (rays.empty()) return;
+  const std::optional<std::uint32_t> found = table_.find(key);
+  const std::uint32_t index = found ? *found : new_collection(key, depth, entry);
+  Collection& c = collections_[index];
+  c.entry = std::min(c.entry, entry);
+  const std::uint32_t b = settings_.block_rays;
+  for (std::size_t done = 0; done < rays.size();) {
+    const std::uint32_t filled = c.count % b;
+    if (filled == 0) {
+      const std::uint32_t block = new_block();
+      (c.count == 0 ? c.head : next_block_[c.tail]) = block;
+      c.tail = block;
+    }
+    const std::size_t n = std::min<std::size_t>(b - filled, rays.size() - done);
+    std::copy_n(rays.begin() + static_cast<std::ptrdiff_t>(done), n,
+                block_rays_.begin() + std::ptrdiff_t{c.tail} * b + filled);
+    c.count += static_cast<std::uint32_t>(n);
+    done += n;
+    if (blocks_used_ > settings_.capacity_blocks) statistics_.spilled += n;
+  }
+  memberships_ += rays.size();
+  statistics_.memberships_peak = std::max<std::uint64_t>(statistics_.memberships_peak, memberships_);
+  relist(index, c.ready);
+}
+
+std::optional<CollectionId> CollectionStore::best(bool partial) const {
+  std::optional<std::uint32_t> index = ready_.first();
+  if (!index && partial) index = partial_.first();
+  if (!index) return std::nullopt;
+  return CollectionId(*index);
+}
+
+std::optional<CollectionId> CollectionStore::deepest() const {
+  std::optional<CollectionId> best;
+  for (std::uint32_t i = 0; i < collections_.size(); ++i)
+    if (collections_[i].count > 0 && (!best || collections_[i].depth > collections_[best->value].depth))
+      best = CollectionId(i);
+  return best;
+}
+
+std::uint32_t CollectionStore::front_rays(CollectionId id) const {
+  return std::min(collections_[id.value].count, settings_.block_rays);
+}
+
+void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
+  Collection& c = collections_[id.value];
+  // The chain is filled from the tail: while there are two blocks or more the first one is full, provided that
+  // takes go by whole blocks, which the remainder of `count` in the tail relies on.
+  const std::uint32_t n = front_rays(id);
+  const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
+  rays.assign(first, first + n);
+  const std::uint32_t freed = c.head;
+  c.head = next_block_[freed];
+  free_blocks_.push_back(freed);
+  --blocks_used_;
+  c.count -= n;
+  memberships_ -= n;
+  ++statistics_.taken_blocks;
+  statistics_.taken_rays += n;
+  if (c.count == 0) {
+    list(c).remove(id.value);
+    table_.erase(c.key);
+    free_collections_.push_back(id.value);
+  } else {
+    relist(id.value, c.ready);
+  }
+}
+
+void CollectionStore::discard() {
+  const Statistics kept = statistics_;
+  *this = CollectionStore(settings_);
+  statistics_ = kept;
+}
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "accel/structure/node.h"
+#include "core/config/config.h"
+#include "ringbus/resource/collections/collection_table.h"
+#include "ringbus/resource/collections/priority_lists.h"
+#include "ringbus/rays/ray_id.h"
+
+namespace carousel::ringbus {
+
+using CollectionId = Id<struct CollectionTag>;
+
+/// A resource's collections: ray IDs in fixed blocks, a chain of blocks a collection, all but the last one full.
+/// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block.
+class CollectionStore {
+ public:
+  struct Settings {
+    std::uint32_t block_rays = 32;    ///< packets.rays
+    std::uint32_t ready = 32;
+    std::uint32_t capacity_blocks = 2048;
+    Policy policy = Policy::kNearest;
+    Select select = Select::kFullFirst;
+    float scene_size = 1;             ///< scale of entry distances, for `nearest`
+    int max_depth = 1;                ///< for `deepest`
+  };
+  struct Statistics {
+    std::uint64_t created = 0;
+    std::uint64_t peak = 0;                ///< collections at once
+    std::uint64_t memberships_peak = 0;    ///< ray IDs at once
+    std::uint64_t spilled = 0;             ///< ray IDs put into blocks beyond the capacity
+    std::uint64_t blocks_peak = 0;
+    std::uint64_t taken_blocks = 0;
+    std::uint64_t taken_rays = 0;
+  };
+
+  explicit CollectionStore(const Settings& settings);
+
+  /// Adds rays to the collection of `key`, created if need be. `entry` is the nearest entry of any of them.
+  /// Uses at most one new block when at most block_rays rays are added. Storage beyond the capacity is taken
+  /// without a word and counted as spilled: whether that may happen is the caller's rule.
+  void add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays);
+
+  /// The collection to issue from, by policy: among those that are ready, or with `partial` among all; with
+  /// `select: strict` always among all.
+  std::optional<CollectionId> best(bool partial) const;
+  /// The deepest collection, whatever the policy. Takes time in proportion to the collections there are.
+  std::optional<CollectionId> deepest() const;
+
+  accel::NodeKey key(CollectionId id) const { return collections_[id.value].key; }
+  std::uint16_t depth(CollectionId id) const { return collections_[id.value].depth; }
+  float entry(CollectionId id) const { return collections_[id.value].entry; }
+  /// Rays the next take() gives.
+  std::uint32_t front_rays(CollectionId id) const;
+  /// Moves the first block's rays to `rays`; an empty collection ceases to exist.
+  void take(CollectionId id, std::vector<RayId>& rays);
+
+  /// Forgets all collections; the statistics go on.
+  void discard();
+
+  bool empty() const { return table_.size() == 0; }
+  std::size_t collections() const { return table_.size(); }
+  std::size_t memberships() const { return memberships_; }
+  /// Below zero when spilled.
+  std::int64_t free_blocks() const {
+    return std::int64_t{settings_.capacity_blocks} - static_cast<std::int64_t>(blocks_used_);
+  }
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  struct Collection {
+    accel::NodeKey key;
+    std::uint32_t head = 0, tail = 0;   // blocks
+    std::uint32_t count = 0;
+    float entry = 0;
+    std::uint16_t depth = 0;
+    bool ready = false;
+  };
+
+  std::uint32_t new_collection(accel::NodeKey key, std::uint16_t depth, float entry);
+  std::uint32_t new_block();
+  std::uint32_t bucket(const Collection& c) const;
+  PriorityLists& list(const Collection& c) { return c.ready ? ready_ : partial_; }
+  void enlist(std::uint32_t index);
+  void relist(std::uint32_t index, bool was_ready);
+
+  Settings settings_;
+  std::uint32_t nearest_base_;
+  CollectionTable table_;
+  PriorityLists ready_, partial_;
+  std::vector<Collection> collections_;
+  std::vector<std::uint32_t> free_collections_;
+  std::vector<RayId> block_rays_;            // block_rays IDs a block
+  std::vector<std::uint32_t> next_block_;    // one a block
+  std::vector<std::uint32_t> free_blocks_;
+  std::size_t blocks_used_ = 0, memberships_ = 0;
+  Statistics statistics_;
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ringbus/stress/violations.h"
+#include "ringbus/stress/message.h"
+
+namespace carousel::ringbus::stress {
+
+/// What one consumer has received of each producer; one thread's.
+class Arrivals {
+ public:
+  /// `most`: messages a producer may send.
+  Arrivals(std::size_t producers, std::uint64_t most);
+
+  /// Returns whose it is; empty when it is torn.
+  template <std::size_t kBytes>
+  std::optional<Origin> take(const Message<kBytes>& message) {
+    ++taken_;
+    std::optional<Origin> origin = message.open();
+    if (!origin || origin->producer >= from_.size() || origin->number >= most_) {
+      tear();
+      return std::nullopt;
+    }
+    note(*origin);
+    return origin;
+  }
+  /// A message that is known to be whole.
+  void note(Origin origin) {
+    From& from = from_[origin.producer];
+    std::uint64_t& word = from.seen[origin.number / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (origin.number % 64);
+    if ((word & bit) != 0 || origin.number < from.next) return misplaced(from, origin, (word & bit) != 0);
+    word |= bit;
+    from.next = std::uint64_t{origin.number} + 1;
+  }
+
+  std::uint64_t taken() const { return taken_; }
+
+  /// The verdict over all consumers; `sent`: how many of each producer's pushes succeeded.
+  static Findings judge(std::span<const Arrivals> consumers, std::span<const std::uint64_t> sent);
+
+ private:
+  struct From {
+    std::uint64_t next = 0;            // one beyond the latest
+    std::vector<std::uint64_t> seen;   // a bit a message
+  };
+  void tear();
+  void misplaced(From& from, Origin origin, bool again);
+
+  std::uint64_t most_, taken_ = 0;
+  std::vector<From> from_;
+  Findings findings_;
+};
+
+}  // namespace carousel::ringbus::stress

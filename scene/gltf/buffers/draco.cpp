@@ -1,0 +1,215 @@
+// KHR_draco_mesh_compression. The stream's beginning is read here as well, by the Draco bitstream specification 2.2
+// (google.github.io/draco/spec, 3 Draco decoder, 4.2 sequential and 5 edgebreaker connectivity), because the decoder
+// allocates for what the stream announces.
+#include "scene/gltf/buffers/draco.h"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include <draco/compression/config/compression_shared.h>
+#include <draco/compression/decode.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/metadata/metadata_decoder.h>
+
+#include "core/system/error.h"
+
+namespace carousel::scene {
+
+namespace {
+
+constexpr std::int64_t kIndices = -1;
+/// Real meshes take a quarter of a byte a triangle and more; a plane that one byte describes is small.
+constexpr std::uint64_t kMostPerByte = 64, kAlwaysAllowed = 4096;
+
+using Stream = std::span<const unsigned char>;
+
+/// What the stream announces; nothing when it is no mesh of bitstream 2.2, which is all that glTF allows.
+struct Announced {
+  std::uint32_t faces = 0, vertices = 0;
+};
+std::optional<Announced> announced(Stream bytes) {
+  constexpr std::size_t kHeader = 11;
+  constexpr unsigned char kMesh = 1, kSequential = 0, kMetadata = 0x80;
+  if (bytes.size() < kHeader || std::memcmp(bytes.data(), "DRACO", 5) != 0) return std::nullopt;
+  if (bytes[5] != 2 || bytes[6] != 2 || bytes[7] != kMesh) return std::nullopt;
+  draco::DecoderBuffer in;
+  in.Init(reinterpret_cast<const char*>(bytes.data()) + kHeader, bytes.size() - kHeader, 0x0202);
+  if ((bytes[10] & kMetadata) != 0) {
+    draco::GeometryMetadata ignored;
+    if (!draco::MetadataDecoder().DecodeGeometryMetadata(&in, &ignored)) return std::nullopt;
+  }
+  Announced out;
+  if (bytes[8] == kSequential) {
+    if (!draco::DecodeVarint(&out.faces, &in) || !draco::DecodeVarint(&out.vertices, &in)) return std::nullopt;
+    return out;
+  }
+  std::uint8_t traversal;
+  if (!in.Decode(&traversal)) return std::nullopt;
+  if (!draco::DecodeVarint(&out.vertices, &in) || !draco::DecodeVarint(&out.faces, &in)) return std::nullopt;
+  return out;
+}
+
+std::unique_ptr<draco::Mesh> decode_stream(const GltfDocument& document, Stream bytes, const std::string& path) {
+  const auto broken = [&](const std::string& why) { document.fail(path, "the compressed data is broken: " + why); };
+  try {
+    const auto counts = announced(bytes);
+    if (!counts) broken("not a mesh of Draco bitstream 2.2");
+    const std::uint64_t most = kAlwaysAllowed + kMostPerByte * bytes.size();
+    if (counts->faces > most || counts->vertices > most) {
+      document.fail(path, "announces " + std::to_string(counts->faces) + " triangles and " +
+                              std::to_string(counts->vertices) + " vertices in only " + std::to_string(bytes.size()) +
+                              " bytes");
+    }
+    draco::DecoderBuffer in;
+    in.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    auto result = draco::Decoder().DecodeMeshFromBuffer(&in);
+    if (!result.ok()) broken(result.status().error_msg_string());
+    return std::move(result).value();
+  } catch (const SceneError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    broken("it asks for too much memory");
+  } catch (const std::exception& e) {
+    broken(e.what());
+  }
+  return nullptr;
+}
+
+template <class T>
+bool copy_values(const draco::PointAttribute& from, std::size_t points, int width, Bytes& out) {
+  out.resize(points * static_cast<std::size_t>(width) * sizeof(T));
+  if (!from.is_mapping_identity() && from.indices_map_size() < points) return false;
+  T value[4];
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto at = from.mapped_index(draco::PointIndex(static_cast<std::uint32_t>(i)));
+    if (at.value() >= from.size() || !from.ConvertValue<T>(at, static_cast<std::int8_t>(width), value)) return false;
+    std::memcpy(out.data() + i * static_cast<std::size_t>(width) * sizeof(T), value,
+                static_cast<std::size_t>(width) * sizeof(T));
+  }
+  return true;
+}
+
+bool copy_attribute(const draco::PointAttribute& from, std::size_t points, int width, Component component, Bytes& out) {
+  switch (component) {
+    case Component::kByte:
+      return copy_values<std::int8_t>(from, points, width, out);
+    case Component::kUnsignedByte:
+      return copy_values<std::uint8_t>(from, points, width, out);
+    case Component::kShort:
+      return copy_values<std::int16_t>(from, points, width, out);
+    case Component::kUnsignedShort:
+      return copy_values<std::uint16_t>(from, points, width, out);
+    case Component::kUnsignedInt:
+      return copy_values<std::uint32_t>(from, points, width, out);
+    case Component::kFloat:
+      return copy_values<float>(from, points, width, out);
+  }
+  return false;
+}
+
+/// False when a vertex's number needs more room than the component has. Little-endian, as glTF is.
+bool copy_indices(const draco::Mesh& from, Component component, Bytes& out) {
+  const std::size_t size = size_of(component);
+  const std::uint64_t end = std::uint64_t{1} << (8 * size);
+  out.resize(std::size_t{from.num_faces()} * 3 * size);
+  unsigned char* to = out.data();
+  for (draco::FaceIndex f(0); f < from.num_faces(); ++f) {
+    for (const draco::PointIndex& corner : from.face(f)) {
+      const std::uint32_t index = corner.value();
+      if (index >= end) return false;
+      std::memcpy(to, &index, size);
+      to += size;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void DracoReader::decode(std::size_t mesh) {
+  const Json& primitives = document_.json["meshes"][mesh]["primitives"];
+  for (std::size_t p = 0; p < primitives.size(); ++p) {
+    if (!primitives[p].contains(Json::json_pointer("/extensions/KHR_draco_mesh_compression"))) continue;
+    decode_primitive(primitives[p], json_path(json_path(json_path("/meshes", mesh), "primitives"), p));
+  }
+}
+
+void DracoReader::decode_primitive(const Json& primitive, const std::string& path) {
+  constexpr int kTriangles = 4;
+  const std::string where = path + "/extensions/KHR_draco_mesh_compression";
+  const Json& extension = primitive["extensions"]["KHR_draco_mesh_compression"];
+  const auto view = extension["bufferView"].get<std::size_t>();
+  if (primitive.value("mode", kTriangles) != kTriangles) {
+    document_.fail(json_path(path, "mode"), "expected triangles (4) beside KHR_draco_mesh_compression");
+  }
+  if (!primitive.contains("indices")) document_.fail(json_path(path, "indices"), "missing");
+
+  struct Target {
+    std::size_t accessor;
+    std::int64_t id;
+    std::string path;
+  };
+  std::vector<Target> targets{{primitive["indices"].get<std::size_t>(), kIndices, json_path(path, "indices")}};
+  for (const auto& [name, id] : extension["attributes"].items()) {
+    const auto accessor = primitive["attributes"].find(name);
+    const std::string at = json_path(json_path(where, "attributes"), name);
+    if (accessor == primitive["attributes"].end()) document_.fail(at, "the primitive has no such attribute");
+    targets.push_back({accessor->get<std::size_t>(), id.get<std::int64_t>(), at});
+  }
+  bool needed = false;
+  for (const Target& target : targets) {
+    const auto source = sources_.find(target.accessor);
+    if (source == sources_.end()) {
+      needed = needed || !accessors_.stored(target.accessor);
+    } else if (source->second != std::pair(view, target.id)) {
+      document_.fail(target.path, "accessor " + std::to_string(target.accessor) + " has its data from buffer view " +
+                                      std::to_string(source->second.first) + " already");
+    }
+  }
+  if (!needed) return;
+
+  const Stream bytes = accessors_.view(view);
+  if (bytes.empty()) document_.fail(json_path(where, "bufferView"), "the buffer holds no data");
+  const std::unique_ptr<draco::Mesh> mesh = decode_stream(document_, bytes, where);
+  for (const Target& target : targets) {
+    const bool indices = target.id == kIndices;
+    const std::size_t found = indices ? std::size_t{mesh->num_faces()} * 3 : mesh->num_points();
+    const std::string name = "accessor " + std::to_string(target.accessor);
+    if (accessors_.count(target.accessor) != found) {
+      document_.fail(target.path, name + " has " + std::to_string(accessors_.count(target.accessor)) +
+                                      " elements, the compressed data " + std::to_string(found));
+    }
+    const Component component = accessors_.component(target.accessor);
+    const int width = accessors_.components(target.accessor);
+    Bytes data;
+    if (indices) {
+      accessors_.check_type(target.accessor, AccessorUse::kIndices, target.path);
+      if (!copy_indices(*mesh, component, data)) {
+        document_.fail(target.path, name + " has " + name_of(component) + " elements, too small for " +
+                                        std::to_string(mesh->num_points()) + " vertices");
+      }
+    } else {
+      const draco::PointAttribute* attribute =
+          target.id > 0xffffffff ? nullptr : mesh->GetAttributeByUniqueId(static_cast<std::uint32_t>(target.id));
+      if (attribute == nullptr) {
+        document_.fail(target.path, "the compressed data has no attribute " + std::to_string(target.id));
+      }
+      if (width > 4 || attribute->num_components() != width) {
+        document_.fail(target.path, name + " has " + std::to_string(width) + " components, the compressed data " +
+                                        std::to_string(attribute->num_components()));
+      }
+      if (!copy_attribute(*attribute, mesh->num_points(), width, component, data)) {
+        document_.fail(target.path, "the compressed data does not fit " + std::string(name_of(component)) + " elements");
+      }
+    }
+    budget_.earn(data.size());
+    accessors_.replace(target.accessor, std::move(data));
+    sources_[target.accessor] = {view, target.id};
+  }
+}
+
+}  // namespace carousel::scene

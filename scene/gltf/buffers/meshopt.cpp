@@ -1,0 +1,113 @@
+// EXT_meshopt_compression: the rules of its section "JSON schema updates", the bitstreams by meshoptimizer.
+#include "scene/gltf/buffers/meshopt.h"
+
+#include <span>
+#include <string>
+
+#include <meshoptimizer.h>
+
+namespace carousel::scene {
+
+namespace {
+
+/// 16 bytes of an attribute take at least the 2 bits of their header, a triangle's 12 bytes at least one byte, an
+/// index's 4 at least one.
+constexpr std::uint64_t kMostPacking = 64;
+
+class MeshoptView {
+ public:
+  MeshoptView(const GltfDocument& document, const Json& view, std::string path)
+      : document_(document),
+        view_(view),
+        path_(std::move(path)),
+        extension_(view.at(Json::json_pointer("/extensions/EXT_meshopt_compression"))),
+        length_(view["byteLength"].get<std::uint64_t>()),
+        count_(extension_["count"].get<std::uint64_t>()),
+        stride_(extension_["byteStride"].get<std::uint64_t>()),
+        mode_(extension_["mode"].get<std::string>()),
+        filter_(extension_.value("filter", "NONE")) {}
+
+  Bytes decode(const GltfModel& model) const {
+    check_parameters();
+    const std::span<const unsigned char> packed = source(model);
+    if (length_ / kMostPacking > packed.size()) {
+      fail("count", std::to_string(length_) + " bytes cannot come out of " + std::to_string(packed.size()));
+    }
+    Bytes out(static_cast<std::size_t>(length_));
+    const auto count = static_cast<std::size_t>(count_), stride = static_cast<std::size_t>(stride_);
+    const int failure =
+        mode_ == "ATTRIBUTES"  ? meshopt_decodeVertexBuffer(out.data(), count, stride, packed.data(), packed.size())
+        : mode_ == "TRIANGLES" ? meshopt_decodeIndexBuffer(out.data(), count, stride, packed.data(), packed.size())
+                               : meshopt_decodeIndexSequence(out.data(), count, stride, packed.data(), packed.size());
+    if (failure != 0) document_.fail(path_, "the compressed data is broken or ends early");
+    if (filter_ == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
+    if (filter_ == "QUATERNION") meshopt_decodeFilterQuat(out.data(), count, stride);
+    if (filter_ == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), count, stride);
+    return out;
+  }
+
+ private:
+  [[noreturn]] void fail(const char* key, const std::string& message) const {
+    document_.fail(json_path(path_, key), message);
+  }
+
+  void check_parameters() const {
+    const bool attributes = mode_ == "ATTRIBUTES";
+    if (attributes ? stride_ % 4 != 0 : stride_ != 2 && stride_ != 4) {
+      fail("byteStride", std::string(attributes ? "expected a multiple of 4" : "expected 2 or 4") + " in mode " + mode_ +
+                             ", found " + std::to_string(stride_));
+    }
+    if (mode_ == "TRIANGLES" && count_ % 3 != 0) {
+      fail("count", "expected a multiple of 3 in mode TRIANGLES, found " + std::to_string(count_));
+    }
+    if (filter_ != "NONE" && !attributes) fail("filter", "filters go with mode ATTRIBUTES only");
+    if ((filter_ == "OCTAHEDRAL" && stride_ != 4 && stride_ != 8) || (filter_ == "QUATERNION" && stride_ != 8)) {
+      fail("filter", "filter " + filter_ + " does not go with a byteStride of " + std::to_string(stride_));
+    }
+    if (length_ % stride_ != 0 || length_ / stride_ != count_) {  // a product might wrap
+      fail("count", std::to_string(count_) + " elements of " + std::to_string(stride_) +
+                        " bytes are not the buffer view's " + std::to_string(length_));
+    }
+    if (view_.value("byteStride", stride_) != stride_) {
+      fail("byteStride", "the buffer view's own is " + view_["byteStride"].dump());
+    }
+  }
+
+  std::span<const unsigned char> source(const GltfModel& model) const {
+    const auto buffer = extension_["buffer"].get<std::size_t>();
+    if (!model.buffer_has_data[buffer]) fail("buffer", "buffer " + std::to_string(buffer) + " holds no data");
+    const auto offset = extension_.value("byteOffset", std::uint64_t{0});
+    const auto size = extension_["byteLength"].get<std::uint64_t>();
+    const auto announced = document_.json["buffers"][buffer]["byteLength"].get<std::uint64_t>();
+    if (offset + size > announced) {  // all at most 2^53
+      document_.fail(path_, "bytes " + std::to_string(offset) + " to " + std::to_string(offset + size) +
+                                " lie outside buffer " + std::to_string(buffer) + ", which has " +
+                                std::to_string(announced));
+    }
+    return std::span<const unsigned char>(model.model.buffers[buffer].data)
+        .subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(size));
+  }
+
+  const GltfDocument& document_;
+  const Json& view_;
+  const std::string path_;
+  const Json& extension_;
+  const std::uint64_t length_, count_, stride_;
+  const std::string mode_, filter_;
+};
+
+}  // namespace
+
+std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, const GltfModel& model) {
+  std::map<std::size_t, Bytes> out;
+  if (!document.json.contains("bufferViews")) return out;
+  const Json& views = document.json["bufferViews"];
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].contains(Json::json_pointer("/extensions/EXT_meshopt_compression"))) continue;
+    const std::string path = json_path("/bufferViews", i) + "/extensions/EXT_meshopt_compression";
+    out.emplace(i, MeshoptView(document, views[i], path).decode(model));
+  }
+  return out;
+}
+
+}  // namespace carousel::scene

@@ -1,0 +1,118 @@
+#include "scene/gltf/buffers/model.h"
+
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "core/system/error.h"
+
+namespace carousel::scene {
+
+namespace {
+
+/// What tinygltf's callbacks see. Addresses in the document it parses are "carousel-buffer-3" and
+/// "carousel-image-0", so that it never opens a file itself.
+struct Feed {
+  std::vector<Bytes> buffers;
+};
+
+constexpr std::string_view kBufferAddress = "carousel-buffer-", kImageAddress = "carousel-image-";
+
+bool read_address(Bytes* out, std::string*, const std::string& address, void* user) {
+  Feed& feed = *static_cast<Feed*>(user);
+  if (address.starts_with(kBufferAddress)) {
+    *out = std::move(feed.buffers.at(std::stoul(address.substr(kBufferAddress.size()))));
+    return true;
+  }
+  if (!address.starts_with(kImageAddress)) return false;
+  *out = Bytes(1);
+  return true;
+}
+
+/// Pixels are read_images()'s business.
+bool take_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+  return true;
+}
+
+/// The document with addresses replaced, and with every accessor naming some buffer view: tinygltf insists on
+/// one for indices, though a sparse accessor may do without.
+std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buffers) {
+  Json json = checked;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    json["buffers"][i]["uri"] = std::string(kBufferAddress) + std::to_string(i);
+    json["buffers"][i]["byteLength"] = buffers[i].size();
+  }
+  if (json.contains("images")) {
+    for (std::size_t i = 0; i < json["images"].size(); ++i) {
+      Json& image = json["images"][i];
+      if (image.contains("uri")) image["uri"] = std::string(kImageAddress) + std::to_string(i);
+    }
+  }
+  if (json.contains("accessors") && json.contains("bufferViews") && !json["bufferViews"].empty()) {
+    for (Json& accessor : json["accessors"]) {
+      if (!accessor.contains("bufferView")) accessor["bufferView"] = 0;
+    }
+  }
+  json.erase("skins");
+  json.erase("animations");
+  return json.dump();
+}
+
+/// Only for readers that know no EXT_meshopt_compression.
+bool is_fallback(const Json& buffer) {
+  const Json::json_pointer pointer("/extensions/EXT_meshopt_compression/fallback");
+  return buffer.contains(pointer) && buffer.at(pointer).get<bool>();
+}
+
+/// Every image in a buffer view must find its bytes there, before tinygltf looks.
+void check_embedded_images(const GltfDocument& document, const std::vector<bool>& has_data) {
+  if (!document.json.contains("images")) return;
+  const Json& images = document.json["images"];
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!images[i].contains("bufferView")) continue;
+    const Json& view = document.json["bufferViews"][images[i]["bufferView"].get<std::size_t>()];
+    const std::string path = json_path(json_path("/images", i), "bufferView");
+    if (!has_data[view["buffer"].get<std::size_t>()]) {
+      document.fail(path, "the buffer holds no data");
+    }
+    if (view["byteLength"].get<std::uint64_t>() > 0x7fffffff) document.fail(path, "larger than 2 GiB");
+  }
+}
+
+}  // namespace
+
+GltfModel read_model(const GltfDocument& document, const GltfResources& resources) {
+  GltfModel out;
+  Feed feed;
+  const std::size_t buffers = document.json.contains("buffers") ? document.json["buffers"].size() : 0;
+  for (std::size_t i = 0; i < buffers; ++i) {
+    std::optional<Bytes> bytes;
+    if (!is_fallback(document.json["buffers"][i])) bytes = resources.buffer(i);
+    out.buffer_has_data.push_back(bytes.has_value());
+    feed.buffers.push_back(bytes ? std::move(*bytes) : Bytes(1));
+    out.bytes_read += feed.buffers.back().size();
+  }
+  check_embedded_images(document, out.buffer_has_data);
+  const std::string text = text_for_tinygltf(document.json, feed.buffers);
+  if (text.size() > 0xffffffffu) document.fail("", "more than 4 GiB of JSON");
+
+  tinygltf::TinyGLTF reader;
+  reader.SetImageLoader(take_image, &feed);
+  reader.SetFsCallbacks({[](const std::string&, void*) { return true; },
+                         [](const std::string& name, void*) { return name; }, read_address, nullptr, &feed});
+  std::string error, warning;
+  try {
+    if (reader.LoadASCIIFromString(&out.model, &error, &warning, text.data(),
+                                   static_cast<unsigned int>(text.size()), "")) {
+      return out;
+    }
+  } catch (const SceneError&) {
+    throw;
+  } catch (const std::exception& e) {
+    error = e.what();
+  }
+  while (!error.empty() && error.back() == '\n') error.pop_back();
+  document.fail("", "tinygltf: " + (error.empty() ? "cannot be read" : error));
+}
+
+}  // namespace carousel::scene

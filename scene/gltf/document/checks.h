@@ -1,0 +1,18 @@
+#pragma once
+
+#include "scene/gltf/document/document.h"
+#include "scene/model/warnings.h"
+
+namespace carousel::scene {
+
+/// Refuses a file that requires an extension Carousel does not read; warns once of the optional ones it
+/// ignores, and of skins, morph targets and animations, which are shown in their base pose. For the JSON as
+/// it was parsed, before check_schema.
+void check_extensions(const GltfDocument& document, const WarningSink& warn);
+
+/// What the schema cannot say, for the JSON after check_schema: buffer views lie inside their buffers, an
+/// image has one source, indices are stored somewhere, cameras and spot lights have their details, animation
+/// channels name a sampler, and the nodes form trees of which scenes name the roots. Throws SceneError.
+void check_links(const GltfDocument& document);
+
+}  // namespace carousel::scene

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "scene/gltf/document/checks.h"
+
+namespace carousel::scene {
+
+namespace {
+
+constexpr auto kRead = std::to_array<std::string_view>({
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+});
+
+bool has_morph_targets(const Json& json) {
+  const auto meshes = json.find("meshes");
+  if (meshes == json.end() || !meshes->is_array()) return false;
+  for (const Json& mesh : *meshes) {
+    if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
+    for (const Json& primitive : mesh["primitives"]) {
+      if (primitive.is_object() && primitive.contains("targets")) return true;
+    }
+  }
+  return false;
+}
+
+bool has_entries(const Json& json, const char* key) {
+  const auto entry = json.find(key);
+  return entry != json.end() && entry->is_array() && !entry->empty();
+}
+
+}  // namespace
+
+void check_extensions(const GltfDocument& document, const WarningSink& warn) {
+  const Json& json = document.json;
+  if (has_entries(json, "extensionsRequired")) {
+    const Json& required = json["extensionsRequired"];
+    for (std::size_t i = 0; i < required.size(); ++i) {
+      if (!required[i].is_string()) continue;  // the schema check says it better
+      const auto& name = required[i].get_ref<const std::string&>();
+      if (std::ranges::find(kRead, name) == kRead.end()) {
+        document.fail(json_path("/extensionsRequired", i),
+                      "the file requires " + name + ", which Carousel does not read");
+      }
+    }
+  }
+  if (!warn) return;
+  std::string ignored;
+  if (has_entries(json, "extensionsUsed")) {
+    for (const Json& entry : json["extensionsUsed"]) {
+      if (!entry.is_string()) continue;
+      const auto& name = entry.get_ref<const std::string&>();
+      if (std::ranges::find(kRead, name) != kRead.end()) continue;
+      ignored += (ignored.empty() ? "" : ", ") + name;
+    }
+  }
+  if (!ignored.empty()) warn(document.file + ": optional extensions ignored: " + ignored);
+  std::string posed;
+  for (const char* key : {"animations", "skins"}) {
+    if (has_entries(json, key)) posed += (posed.empty() ? "" : ", ") + std::string(key);
+  }
+  if (has_morph_targets(json)) posed += (posed.empty() ? "" : ", ") + std::string("morph targets");
+  if (!posed.empty()) warn(document.file + ": ignored, the base pose is shown: " + posed);
+}
+
+}  // namespace carousel::scene

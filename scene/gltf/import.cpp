@@ -1,0 +1,109 @@
+#include "scene/gltf/import.h"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <new>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/system/error.h"
+#include "scene/model/camera_pose.h"
+#include "scene/gltf/buffers/accessor.h"
+#include "scene/gltf/buffers/buffers.h"
+#include "scene/gltf/document/checks.h"
+#include "scene/gltf/document/document.h"
+#include "scene/gltf/buffers/draco.h"
+#include "scene/gltf/materials/images.h"
+#include "scene/gltf/materials/materials.h"
+#include "scene/gltf/meshes.h"
+#include "scene/gltf/buffers/meshopt.h"
+#include "scene/gltf/buffers/model.h"
+#include "scene/gltf/nodes.h"
+#include "scene/gltf/document/schema.h"
+
+namespace carousel::scene {
+
+namespace {
+
+/// Reads the meshes that instances name (by the file's indices, then those of `spheres`) and renames them to ours, in
+/// the file's order.
+void read_used_meshes(MeshReader& reader, DracoReader& draco, std::size_t file_meshes, std::vector<Mesh> spheres,
+                      Scene& scene) {
+  std::vector<std::optional<MeshId>> ids(file_meshes + spheres.size());
+  for (const Instance& instance : scene.instances) ids[instance.mesh.value] = MeshId(0);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (!ids[i]) continue;
+    ids[i] = MeshId(static_cast<std::uint32_t>(scene.meshes.size()));
+    if (i < file_meshes) {
+      draco.decode(i);
+      scene.meshes.push_back(reader.read(i));
+    } else {
+      scene.meshes.push_back(std::move(spheres[i - file_meshes]));
+    }
+  }
+  for (Instance& instance : scene.instances) instance.mesh = *ids[instance.mesh.value];
+}
+
+Scene import(std::span<const std::byte> bytes, const std::string& file,
+             std::optional<std::filesystem::path> folder, const WarningSink& warn, const ImageChoice& choice) {
+  GltfDocument document = parse_document(bytes, file);
+  check_extensions(document, warn);
+  check_schema(document);
+  check_links(document);
+  Scene scene;
+  const std::vector<std::size_t> images = read_materials(document, scene, warn);
+  const MaterialId default_material(static_cast<std::uint32_t>(scene.materials.size() - 1));
+  const GltfResources resources(document, std::move(folder));
+  GltfModel model = read_model(document, resources);
+
+  const std::map<std::size_t, Bytes> unpacked = decode_meshopt_views(document, model);
+  AccessorTable accessors(document, model, unpacked);
+  ImportBudget budget(document, bytes.size() + model.bytes_read);
+  for (const auto& [view, decoded] : unpacked) budget.earn(decoded.size());
+  std::vector<Mesh> spheres = read_nodes(document, model.model, accessors, budget, default_material, scene);
+  MeshReader meshes(document, model.model, accessors, budget, default_material);
+  DracoReader draco(document, accessors, budget);
+  read_used_meshes(meshes, draco, model.model.meshes.size(), std::move(spheres), scene);
+  if (meshes.skipped_primitives() > 0 && warn) {
+    warn(file + ": " + std::to_string(meshes.skipped_primitives()) +
+         " primitives skipped: points, lines or without positions");
+  }
+  const bool empty = std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
+  if (empty) document.fail("", "the scene shows no triangles");
+  read_images(document, resources, model, images, choice, scene);
+  if (scene.cameras.empty()) scene.cameras.push_back(fitted_camera(scene.bounds()));
+  if (scene.name.empty()) scene.name = std::filesystem::path(file).stem().string();
+  return scene;
+}
+
+}  // namespace
+
+Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, const ImageChoice& images) {
+  const std::string name = file.string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) throw SceneError(name, "", "no such file");
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) throw SceneError(name, "", "cannot be read");
+  try {
+    std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw SceneError(name, "", "reading failed");
+    return import(bytes, name, file.parent_path(), warn, images);
+  } catch (const std::bad_alloc&) {
+    throw SceneError(name, "", "not enough memory to load it");
+  }
+}
+
+Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name,
+                            const WarningSink& warn, const ImageChoice& images) {
+  try {
+    return import(bytes, name, std::nullopt, warn, images);
+  } catch (const std::bad_alloc&) {
+    throw SceneError(name, "", "not enough memory to load it");
+  }
+}
+
+}  // namespace carousel::scene

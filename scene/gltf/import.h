@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <vector>
+#include <string>
+
+#include "scene/model/scene.h"
+#include "scene/model/warnings.h"
+
+namespace carousel::scene {
+
+/// Which images of a scene are worth decoding, one entry an image, asked when all but their pixels is there.
+using ImageChoice = std::function<std::vector<bool>(const Scene&)>;
+
+/// Reads a glTF 2.0 file (.gltf or .glb, told apart by content). The scene's sky is black; the caller sets
+/// it. Images that `images` does not want are not even looked for; without it all that a material names are decoded.
+/// Throws SceneError naming file, JSON path and what is wrong, for whatever bytes the file holds.
+Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn = {}, const ImageChoice& images = {});
+
+/// The same from memory; `name` stands for the file in messages. Buffers and images must be embedded.
+Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name,
+                            const WarningSink& warn = {}, const ImageChoice& images = {});
+
+}  // namespace carousel::scene

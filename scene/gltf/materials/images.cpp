@@ -1,0 +1,51 @@
+// Khronos glTF 2.0 specification, 5.18 (image).
+#include "scene/gltf/materials/images.h"
+
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "scene/images/image_decode.h"
+
+namespace carousel::scene {
+
+namespace {
+
+Image decode(const GltfDocument& document, std::size_t index, std::span<const unsigned char> encoded) {
+  try {
+    return decode_image(encoded);
+  } catch (const std::runtime_error& e) {
+    document.fail(json_path("/images", index), std::string("the image is ") + e.what());
+  }
+}
+
+Image read_image(const GltfDocument& document, const GltfResources& resources, const tinygltf::Model& model,
+                 std::size_t index) {
+  const Json& image = document.json["images"][index];
+  if (!image.contains("bufferView")) return decode(document, index, resources.image(index));
+  const tinygltf::BufferView& view = model.bufferViews[image["bufferView"].get<std::size_t>()];
+  const std::span<const unsigned char> buffer = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+  if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+    document.fail(json_path(json_path("/images", index), "bufferView"), "lies beyond its buffer");
+  return decode(document, index, buffer.subspan(view.byteOffset, view.byteLength));
+}
+
+}  // namespace
+
+void read_images(const GltfDocument& document, const GltfResources& resources, const GltfModel& model,
+                 const std::vector<std::size_t>& file_images, const ImageChoice& choice, Scene& scene) {
+  scene.images.resize(file_images.size());
+  for (std::size_t i = 0; i < file_images.size(); ++i) {
+    const Json& image = document.json["images"][file_images[i]];
+    scene.images[i].name = image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
+  }
+  const std::vector<bool> wanted = choice ? choice(scene) : std::vector<bool>(file_images.size(), true);
+  for (std::size_t i = 0; i < file_images.size(); ++i) {
+    if (!wanted.at(i)) continue;
+    std::string name = std::move(scene.images[i].name);
+    scene.images[i] = read_image(document, resources, model.model, file_images[i]);
+    scene.images[i].name = std::move(name);
+  }
+}
+
+}  // namespace carousel::scene

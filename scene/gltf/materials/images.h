@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "scene/gltf/buffers/buffers.h"
+#include "scene/gltf/import.h"
+#include "scene/gltf/buffers/model.h"
+#include "scene/model/scene.h"
+
+namespace carousel::scene {
+
+/// Fills `scene.images`: image i is `file_images[i]` of the file. Only those that `choice` wants are looked for and
+/// decoded; the others keep a name and no pixels, whatever is wrong with them. Call when all else of the scene is there.
+/// Throws SceneError.
+void read_images(const GltfDocument& document, const GltfResources& resources, const GltfModel& model,
+                 const std::vector<std::size_t>& file_images, const ImageChoice& choice, Scene& scene);
+
+}  // namespace carousel::scene

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/document/document.h"
+#include "scene/model/scene.h"
+#include "scene/model/warnings.h"
+
+namespace carousel::scene {
+
+/// Turns the texture slots of materials into ours. Textures and images nobody uses are left out.
+class TextureReader {
+ public:
+  /// Fills `scene.textures`. The document has passed check_schema.
+  TextureReader(const GltfDocument& document, Scene& scene) : document_(document), scene_(scene) {}
+
+  /// The texture in slot `slot` of `owner` (a material, or one of its extension objects at JSON path `path`), with
+  /// KHR_texture_transform and either of the first two sets of texture coordinates. Nothing where the slot is empty or
+  /// its texture cannot be had, which is counted. Throws SceneError for a texture that is Basis Universal only.
+  std::optional<TextureUse> use(const Json& owner, const char* slot, const std::string& path);
+
+  /// One warning of all uses that were dropped.
+  void warn_of_dropped_uses(const WarningSink& warn) const;
+  /// Image i of the scene is this one of the file.
+  const std::vector<std::size_t>& images() const { return images_; }
+
+ private:
+  std::optional<std::size_t> image_of(std::size_t texture);
+  TextureId texture(std::size_t index, std::size_t image);
+
+  const GltfDocument& document_;
+  Scene& scene_;
+  std::map<std::size_t, std::uint32_t> textures_, image_ids_;
+  std::vector<std::size_t> images_;
+  std::map<std::string, int> dropped_;
+};
+
+}  // namespace carousel::scene

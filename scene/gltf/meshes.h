@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/buffers/accessor.h"
+#include "scene/gltf/document/document.h"
+#include "scene/model/scene.h"
+
+namespace carousel::scene {
+
+/// Turns glTF meshes into ours.
+class MeshReader {
+ public:
+  /// `default_material` stands where a primitive names none.
+  MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
+             ImportBudget& budget, MaterialId default_material);
+  ~MeshReader();
+
+  /// The triangles of all primitives in order; strips and fans become lists. Primitives with the same
+  /// attributes share their vertices. Where only some primitives have normals, the others get flat ones.
+  /// Points, lines and primitives without positions are skipped and counted. Throws SceneError.
+  Mesh read(std::size_t mesh);
+
+  std::size_t skipped_primitives() const { return skipped_; }
+
+ private:
+  struct Attributes;
+  struct Cache;
+
+  /// The primitive's attributes; valid until the next call. The last ones are kept, because exporters like to
+  /// let many primitives share one set of vertices.
+  const Attributes& attributes_of(const tinygltf::Primitive& primitive, const std::string& path);
+  Attributes read_attributes(const tinygltf::Primitive& primitive, const std::string& path) const;
+  std::vector<std::uint32_t> read_triangles(const tinygltf::Primitive& primitive, std::uint64_t vertices,
+                                            const std::string& path);
+  static Attributes picked(const Attributes& from, const std::vector<std::uint32_t>& vertices);
+  static void add_vertices(Mesh& mesh, const Attributes& more);
+
+  const GltfDocument& document_;
+  const tinygltf::Model& model_;
+  const AccessorTable& accessors_;
+  ImportBudget& budget_;
+  MaterialId default_material_;
+  std::unique_ptr<Cache> cache_;
+  std::size_t skipped_ = 0;
+};
+
+}  // namespace carousel::scene

@@ -1,0 +1,215 @@
+#include "scene/gltf/nodes.h"
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "scene/gltf/transform.h"
+
+namespace carousel::scene {
+
+namespace {
+
+Vec3 color_of(const std::vector<double>& color) {
+  if (color.size() != 3) return Vec3(1);
+  return Vec3(DVec3(std::max(color[0], 0.0), std::max(color[1], 0.0), std::max(color[2], 0.0)));
+}
+
+class NodeReader {
+ public:
+  NodeReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
+             ImportBudget& budget, MaterialId default_material, Scene& scene)
+      : document_(document),
+        model_(model),
+        accessors_(accessors),
+        budget_(budget),
+        default_material_(default_material),
+        scene_(scene) {}
+
+  std::vector<Mesh> take_spheres() { return std::move(spheres_); }
+
+  void walk(const std::vector<int>& roots) {
+    // A stack of our own: a chain of nodes may be as long as the file.
+    struct Visit {
+      int node;
+      DMat4 parent;
+    };
+    std::vector<Visit> stack;
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, DMat4(1)});
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+      const std::string path = json_path("/nodes", static_cast<std::size_t>(visit.node));
+      const DMat4 world = visit.parent * node_transform(document_, node, path);
+      if (const auto mesh = mesh_of(visit.node, node)) add_instances(node, *mesh, world, path);
+      if (node.camera >= 0) add_camera(node, world, path);
+      add_light(node, world, path);
+      for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+        stack.push_back({*child, world});
+    }
+  }
+
+ private:
+  std::optional<MeshId> mesh_of(int index, const tinygltf::Node& node) {
+    if (node.mesh >= 0) return MeshId(static_cast<std::uint32_t>(node.mesh));
+    const Json& json = document_.json["nodes"][static_cast<std::size_t>(index)];
+    const Json::json_pointer pointer("/extras/carousel_sphere");
+    if (!json.contains(pointer)) return std::nullopt;
+    const Json& sphere = json.at(pointer);
+    const auto radius = sphere["radius"].get<float>();
+    const std::uint32_t material = sphere.value("material", default_material_.value);
+    const auto [entry, fresh] = sphere_ids_.try_emplace(
+        {radius, material}, static_cast<std::uint32_t>(model_.meshes.size() + spheres_.size()));
+    if (fresh) {
+      Mesh mesh;
+      mesh.name = node.name.empty() ? "sphere" : node.name;
+      mesh.spheres.push_back({Vec3(0), radius, MaterialId(material)});
+      spheres_.push_back(std::move(mesh));
+    }
+    return MeshId(entry->second);
+  }
+
+  void add_instance(MeshId mesh, const DMat4& world, const std::string& path) {
+    scene_.instances.push_back({mesh, rounded(document_, world, path)});
+  }
+
+  void add_instances(const tinygltf::Node& node, MeshId mesh, const DMat4& world, const std::string& path) {
+    const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+    if (extension == node.extensions.end()) {
+      budget_.spend(1, path);
+      add_instance(mesh, world, path);
+      return;
+    }
+    const std::string where = path + "/extensions/EXT_mesh_gpu_instancing/attributes";
+    const tinygltf::Value& attributes = extension->second.Get("attributes");
+    std::optional<std::uint64_t> count;
+    for (const std::string& name : attributes.Keys()) {
+      const auto accessor = static_cast<std::size_t>(attributes.Get(name).GetNumberAsInt());
+      if (count && *count != accessors_.count(accessor)) {
+        document_.fail(json_path(where, name), "accessor " + std::to_string(accessor) + " has " +
+                                                   std::to_string(accessors_.count(accessor)) +
+                                                   " elements, other attributes have " +
+                                                   std::to_string(*count));
+      }
+      count = accessors_.count(accessor);
+    }
+    if (!count) document_.fail(where, "expected at least one attribute");
+    budget_.spend(*count, where);
+    const auto read = [&](const char* name, AccessorUse use) -> std::vector<float> {
+      if (!attributes.Has(name)) return {};
+      const auto accessor = static_cast<std::size_t>(attributes.Get(name).GetNumberAsInt());
+      accessors_.check_use(accessor, use, json_path(where, name));
+      return accessors_.floats(accessor, json_path(where, name));
+    };
+    const std::vector<float> translations = read("TRANSLATION", AccessorUse::kTranslation);
+    const std::vector<float> rotations = read("ROTATION", AccessorUse::kRotation);
+    const std::vector<float> scales = read("SCALE", AccessorUse::kScale);
+    const auto triple = [](const std::vector<float>& v, std::size_t i, double fallback) {
+      return v.empty() ? DVec3(fallback) : DVec3(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
+    };
+    for (std::size_t i = 0; i < *count; ++i) {
+      double rotation[4] = {0, 0, 0, 1};
+      for (std::size_t c = 0; c < 4 && !rotations.empty(); ++c) rotation[c] = rotations[4 * i + c];
+      const auto local = compose_trs(triple(translations, i, 0), rotation, triple(scales, i, 1));
+      if (!local)
+        document_.fail(json_path(where, "ROTATION"),
+                       "the quaternion of instance " + std::to_string(i) + " has length zero");
+      add_instance(mesh, world * *local, path);
+    }
+  }
+
+  Frame frame_of(const DMat4& world, const std::string& path) const {
+    const auto frame = orthonormal_frame(world);
+    if (!frame) document_.fail(path, "the transform to world space leaves no view direction");
+    return *frame;
+  }
+
+  void add_camera(const tinygltf::Node& node, const DMat4& world, const std::string& path) {
+    const tinygltf::Camera& from = model_.cameras[static_cast<std::size_t>(node.camera)];
+    const Frame frame = frame_of(world, path);
+    Camera to;
+    to.name = from.name.empty() ? node.name : from.name;
+    to.position = rounded(document_, world, path).translation;
+    to.right = frame.right;
+    to.up = frame.up;
+    to.back = frame.back;
+    if (from.type == "orthographic") {
+      to.projection = Camera::Projection::kOrthographic;
+      to.xmag = static_cast<float>(std::abs(from.orthographic.xmag));
+      to.ymag = static_cast<float>(std::abs(from.orthographic.ymag));
+      to.znear = static_cast<float>(from.orthographic.znear);
+      if (!(to.xmag > 0 && to.ymag > 0)) {
+        document_.fail(json_path("/cameras", static_cast<std::size_t>(node.camera)) + "/orthographic",
+                       "xmag and ymag must not be 0");
+      }
+    } else {
+      to.yfov = static_cast<float>(from.perspective.yfov);
+      if (from.perspective.aspectRatio > 0)
+        to.aspect_ratio = static_cast<float>(from.perspective.aspectRatio);
+      to.znear = static_cast<float>(from.perspective.znear);
+    }
+    scene_.cameras.push_back(to);
+  }
+
+  void add_light(const tinygltf::Node& node, const DMat4& world, const std::string& path) {
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end()) return;
+    const int index = extension->second.Get("light").GetNumberAsInt();
+    const tinygltf::Light& from = model_.lights[static_cast<std::size_t>(index)];
+    PunctualLight to;
+    to.intensity = color_of(from.color) * static_cast<float>(from.intensity);
+    if (!(std::isfinite(to.intensity.x) && std::isfinite(to.intensity.y) && std::isfinite(to.intensity.z))) {
+      document_.fail(path, "the light is too bright for single precision");
+    }
+    to.position = rounded(document_, world, path).translation;
+    to.range = static_cast<float>(from.range);
+    if (from.type != "point") to.direction = -frame_of(world, path).back;
+    if (from.type == "directional") to.kind = PunctualLight::Kind::kDirectional;
+    if (from.type == "spot") {
+      to.kind = PunctualLight::Kind::kSpot;
+      to.inner_cone_cos = static_cast<float>(std::cos(from.spot.innerConeAngle));
+      to.outer_cone_cos = static_cast<float>(std::cos(from.spot.outerConeAngle));
+    }
+    scene_.lights.push_back(to);
+  }
+
+  const GltfDocument& document_;
+  const tinygltf::Model& model_;
+  const AccessorTable& accessors_;
+  ImportBudget& budget_;
+  const MaterialId default_material_;
+  Scene& scene_;
+  std::vector<Mesh> spheres_;
+  std::map<std::pair<float, std::uint32_t>, std::uint32_t> sphere_ids_;  // by radius and material
+};
+
+std::vector<int> all_roots(const tinygltf::Model& model) {
+  std::vector<bool> is_child(model.nodes.size());
+  for (const tinygltf::Node& node : model.nodes) {
+    for (const int child : node.children) is_child[static_cast<std::size_t>(child)] = true;
+  }
+  std::vector<int> roots;
+  for (std::size_t i = 0; i < is_child.size(); ++i) {
+    if (!is_child[i]) roots.push_back(static_cast<int>(i));
+  }
+  return roots;
+}
+
+}  // namespace
+
+std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
+                             ImportBudget& budget, MaterialId default_material, Scene& scene) {
+  NodeReader reader(document, model, accessors, budget, default_material, scene);
+  if (model.scenes.empty()) {
+    reader.walk(all_roots(model));
+  } else {
+    const tinygltf::Scene& chosen = model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
+    scene.name = chosen.name;
+    reader.walk(chosen.nodes);
+  }
+  return reader.take_spheres();
+}
+
+}  // namespace carousel::scene

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/config.h"
+#include "core/types/ray.h"
+#include "core/types/vec.h"
+#include "scene/model/scene.h"
+#include "shading/lights/emissive_primitives.h"
+#include "shading/lights/light_choice.h"
+#include "shading/math/sampler.h"
+#include "shading/surface/triangle_geometry.h"
+
+namespace carousel::shading {
+
+/// A way to the light: what a shadow ray has to be asked before `radiance` may be counted.
+struct LightSample {
+  Vec3 direction{0};  ///< of the shadow ray, not normalised; origin is where sample() was asked from
+  float tmax = 0;     ///< just short of the light
+  Vec3 wi{0};         ///< unit direction
+  Vec3 radiance{0};   ///< arriving radiance (irradiance for punctual lights) over the density; 0: no light
+  float pdf = 0;      ///< density per solid angle; 0 for lights that no other ray can hit
+};
+
+/// Everything that next-event estimation chooses from: punctual lights and emissive triangles and spheres, in proportion
+/// to their flux. Immutable; any thread.
+class LightSet {
+ public:
+  /// Only what `punctual` and `primitives` let in is ever chosen.
+  explicit LightSet(const scene::Scene& scene, bool punctual = true, bool primitives = true);
+
+  bool empty() const { return choice_.empty(); }
+  /// Precondition: !empty().
+  LightSample sample(const LightDraw& draw, const Vec3& origin, SpawnOffset offset) const;
+
+  /// Density per solid angle with which sample() finds the point of an emissive primitive that a ray of unit direction
+  /// met, on its `front` or not, under |cosine| `cos_light`.
+  float primitive_pdf(const Hit& hit, const TriangleGeometry& geometry, bool front, float cos_light) const;
+
+ private:
+  LightSample sample_primitive(const EmissivePrimitive& light, float probability, const Vec2& u,
+                              const Vec3& origin, SpawnOffset offset) const;
+
+  const scene::Scene& scene_;
+  EmissivePrimitives primitives_;
+  LightChoice choice_;  // punctual lights first, then primitives
+};
+
+}  // namespace carousel::shading

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "core/types/vec.h"
+#include "shading/path/path_state.h"
+
+namespace carousel::shading {
+
+/// The path states of a frame, used over and over, with a slot a bounce for what each path's shadow ray would
+/// bring: that never enters the ring. There is room only for what the frame's effects need.
+class PathPool {
+ public:
+  /// `paths` paths are to be traced in all, at most `states` (at least 1) at a time.
+  /// `shadow_slots` are the bounces that may send a shadow ray, 0 if none does; `media`: whether paths go through
+  /// volumes that take light.
+  PathPool(std::size_t states, std::uint64_t paths, std::size_t shadow_slots, bool media);
+
+  /// Memory a state takes, for estimates.
+  static constexpr std::size_t bytes_per_state(std::size_t shadow_slots, bool media) {
+    return sizeof(PathState) + shadow_slots * sizeof(Vec3) + (media ? 2 : 1) * sizeof(std::uint32_t);
+  }
+
+  struct Admission {
+    std::uint64_t first = 0;  ///< ordinal of the first admitted path; the others follow
+    std::size_t count = 0;    ///< states appended to `indices`
+  };
+  /// Admits the next at most `max` paths, as far as states are free. Any thread; takes one lock.
+  Admission admit(std::size_t max, std::vector<std::uint32_t>& indices);
+  /// Gives states back. Any thread; takes one lock, or none for an empty list.
+  void release(std::span<const std::uint32_t> indices);
+
+  PathState& state(std::uint32_t index) { return states_[index]; }
+  Vec3& shadow_contribution(std::uint32_t index, std::size_t bounce) {
+    return shadow_[std::size_t{index} * shadow_slots_ + bounce];
+  }
+  /// The material whose volume the path is in, plus 1; 0 outside. Precondition: there are media.
+  std::uint32_t& medium(std::uint32_t index) { return media_[index]; }
+
+ private:
+  std::size_t shadow_slots_;
+  std::uint64_t paths_;
+  std::unique_ptr<PathState[]> states_;
+  std::unique_ptr<Vec3[]> shadow_;
+  std::unique_ptr<std::uint32_t[]> media_;
+  std::mutex mutex_;
+  std::vector<std::uint32_t> free_;  // guarded by mutex_
+  std::uint64_t admitted_ = 0;       // guarded by mutex_
+};
+
+}  // namespace carousel::shading

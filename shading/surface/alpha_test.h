@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/types/any_hit.h"
+#include "scene/model/scene.h"
+
+namespace carousel::shading {
+
+/// Whether rays pass the cut-outs and veils of a scene. A cut-out (alpha mode mask) stops rays where its alpha, that
+/// of the base colour's factor, texture and vertices multiplied, is at least its cutoff. A veil (blend) stops a ray
+/// with probability alpha, so that a pixel's samples blend on average and no order of veils matters: E. Enderton,
+/// E. Sintorn, P. Shirley, D. Luebke, "Stochastic transparency", I3D 2010. All else stops rays.
+class AlphaTest final : public AnyHit {
+ public:
+  /// Keeps a reference to `scene`, which must not change meanwhile. Any thread may ask.
+  explicit AlphaTest(const scene::Scene& scene) : scene_(scene) {}
+
+  bool stops(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const override;
+
+ private:
+  const scene::Scene& scene_;
+};
+
+/// Random number in [0, 1) of one ray at one triangle: a hash of the bits of its origin and direction.
+float veil_chance(const Ray& ray, std::uint32_t instance, std::uint32_t primitive);
+
+}  // namespace carousel::shading

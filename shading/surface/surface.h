@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/types/vec.h"
+#include "scene/model/scene.h"
+#include "shading/bsdf/bsdf.h"
+#include "shading/surface/texture_lookup.h"
+#include "shading/surface/triangle_geometry.h"
+
+namespace carousel::shading {
+
+/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours and no frame for
+/// normal maps; as texture coordinates it has its longitude (0 to 1 once around +y, from -z by way of -x) and its latitude
+/// (0 at +y, 1 at -y), in model space.
+struct TrianglePoint {
+  const scene::Mesh* mesh;
+  const scene::Material* material;
+  std::array<std::uint32_t, 3> vertices;  ///< indices into the mesh's arrays
+  std::array<float, 3> weights;           ///< barycentric; of a sphere: 1 and where on it (core/numeric/octahedral.h)
+};
+
+/// `u` weighs vertex 1 and `v` vertex 2.
+TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
+                             float u, float v);
+
+/// What the base colour texture, its factor and the vertex colour multiply to. For unlit materials all there
+/// is.
+Vec3 base_color(const scene::Scene& scene, const TrianglePoint& point);
+
+/// Base colour's alpha, of factor, texture and vertices; 0 to 1.
+float alpha(const scene::Scene& scene, const TrianglePoint& point);
+
+/// The share of rays that stop here: alpha for veils, 0 or 1 for cut-outs, else 1.
+float opacity(const scene::Scene& scene, const TrianglePoint& point);
+
+/// Base colour, metallic and roughness without textures and vertex colours.
+MaterialPoint material_factors(const scene::Material& material);
+
+/// Base colour, metallic and roughness.
+MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& point);
+
+/// Radiance of the emitting side. Which sides emit: emits().
+Vec3 emitted(const scene::Scene& scene, const TrianglePoint& point);
+
+/// True if the material gives off light by itself and takes part in lighting.
+bool is_emissive(const scene::Material& material);
+
+/// The front side emits, and the back if the material is double-sided.
+inline bool emits(const scene::Material& material, bool front) {
+  return front || material.double_sided;
+}
+
+/// The normal to shade with, in world space and on the side of `wo`: interpolated, bent by the normal map,
+/// and turned until `wo` is above its horizon. `facing` is the geometric normal on the side of `wo`.
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const TriangleGeometry& geometry,
+                    const Vec3& facing, bool front, const Vec3& wo);
+/// The same with another normal map, or none if `map` is null.
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const TriangleGeometry& geometry,
+                    const Vec3& facing, bool front, const Vec3& wo, const scene::TextureUse* map, float scale);
+
+/// Unit direction in which a texture's u grows, at right angles to the unit normal `n`; nothing without coordinates.
+std::optional<Vec3> texture_tangent(const TrianglePoint& point, const TriangleGeometry& geometry,
+                                    const scene::TextureUse& use, const Vec3& n);
+
+/// What a texture of the material says at the point.
+Vec3 texture_color(const scene::Scene& scene, const TrianglePoint& point, const scene::TextureUse& use,
+                   Encoding encoding);
+float texture_alpha(const scene::Scene& scene, const TrianglePoint& point, const scene::TextureUse& use);
+
+}  // namespace carousel::shading

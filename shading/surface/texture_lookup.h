@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/types/vec.h"
+#include "scene/model/scene.h"
+
+namespace carousel::shading {
+
+/// How the RGB channels of an image are encoded; its use decides.
+enum class Encoding : std::uint8_t { kLinear, kSrgb };
+
+/// KHR_texture_transform: offset + R(rotation) * (scale * uv).
+Vec2 transform_uv(const scene::TextureUse& use, const Vec2& uv);
+
+/// Filtered RGB at transformed texture coordinates; (0, 0) is the top left of the image. Bilinear or nearest
+/// by the texture's sampler, between texel centres, on linear values. An image without pixels is white;
+/// coordinates that are not finite read its first texel.
+Vec3 lookup(const scene::Scene& scene, TextureId texture, const Vec2& uv, Encoding encoding);
+
+/// The same of the alpha channel, which is linear in any image.
+float lookup_alpha(const scene::Scene& scene, TextureId texture, const Vec2& uv);
+
+}  // namespace carousel::shading

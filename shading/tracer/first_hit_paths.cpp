@@ -1,0 +1,63 @@
+// Paths that start at hits which a rasteriser found (shading/raster/first_hits.h).
+#include "shading/tracer/path_tracer-inl.h"
+#include "shading/raster/first_hits.h"
+
+namespace carousel::shading {
+
+void PathTracer::shade_first(const RayResult& result, Worker& worker, RayBatch& out) {
+  std::uint32_t children = 0;
+  const Hit& hit = result.hit;
+  if (hit.valid()) {
+    const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
+    const auto material = static_cast<std::size_t>(point.material - scene_.materials.data());
+    (this->*surfaces_[material].shade)(result, point, worker, out, children);
+  } else {
+    shade_miss(result, worker);
+  }
+  finish_ray(result.tag.path, children, worker);
+}
+
+Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size_t max_rays, RayBatch& out) {
+  Worker& worker = workers_[worker_id.value];
+  const std::size_t end = out.size() + max_rays;
+  while (!worker.held.empty() && out.size() < end) {
+    out.push_back(worker.held.back());
+    worker.held.pop_back();
+    // Acquire and release, as below: who reads 0 knows that this ray is in its batch.
+    held_.fetch_sub(1, std::memory_order_acq_rel);
+  }
+  std::size_t made = 0;
+  const std::size_t before = out.size();
+  std::uint64_t started = generated_.load(std::memory_order_acquire);
+  do {
+    // A first hit sends two rays at most; an odd one is held back.
+    worker.begun.clear();
+    worker.states.clear();
+    const PathPool::Admission admitted = pool_.admit((end - out.size() + 1) / 2, worker.begun);
+    made = admitted.count;
+    for (std::size_t i = 0; i < made; ++i) {
+      const std::uint32_t index = worker.begun[i];
+      const PixelSample at = begin_path(admitted.first + i, index);
+      const PathState& path = pool_.state(index);
+      const Ray ray = camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample));
+      const RayTag tag{index, RayKind::kCamera, 0, 0, 0};
+      if (const Hit* hit = first_hits_->at(path.pixel, path.sample)) {
+        shade_first({ray, *hit, tag}, worker, out);
+      } else {
+        emit(ray, tag, worker, out);
+      }
+    }
+    pool_.release(worker.states);
+    while (out.size() > end) {
+      worker.held.push_back(out.back());
+      out.pop_back();
+      held_.fetch_add(1, std::memory_order_acq_rel);
+    }
+    // After rays are held: who reads the full count here reads theirs too.
+    started = generated_.fetch_add(made, std::memory_order_acq_rel) + made;
+    // Paths that end where they begin make no ray; the engine would wait for one to come back.
+  } while (made > 0 && out.size() == before && out.size() < end);
+  return {out.size() - (end - max_rays), started == paths_ && held_.load(std::memory_order_acquire) == 0};
+}
+
+}  // namespace carousel::shading

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config/config.h"
+#include "core/numeric/digest.h"
+#include "core/types/workload.h"
+#include "scene/model/scene.h"
+#include "shading/camera/camera_rays.h"
+#include "shading/effects/effects_plan.h"
+#include "shading/camera/film.h"
+#include "shading/lights/light_set.h"
+#include "shading/path/path_pool.h"
+#include "shading/camera/pixel_order.h"
+#include "shading/raster/first_hits.h"
+#include "shading/tracer/ray_recorder.h"
+#include "shading/math/sampler.h"
+#include "shading/surface/surface.h"
+#include "shading/tracer/surface_class.h"
+#include "shading/surface/surface_layers.h"
+
+namespace carousel::shading {
+
+/// One frame by path tracing: camera rays, at each surface one shadow ray and one bounce ray, weighted by
+/// multiple importance sampling (E. Veach, L. Guibas, SIGGRAPH 1995, balance heuristic), Russian roulette
+/// from the fourth surface on. Image and hits digest are the same bits for any number of workers, any cutting
+/// of batches and any order. Each material is shaded by the least code that has all it calls for, chosen once
+/// (effects_plan.h). Shadow rays take what transmits for opaque: light gets through it by bounce rays alone, and at
+/// points of glass by shadow rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light from the sky,
+/// which only such rays find, is not seen there.
+class PathTracer : public Workload {
+ public:
+  /// Keeps a reference to `scene`, which has been through keep_effects() with config.shading.effects. At most `max_paths_in_flight` paths have rays out at a time, 1 if 0 is
+  /// given. Preconditions, which the config's ranges ensure: image.width, height and samples at least 1,
+  /// max_depth 1 to 255, width * height below 2^32.
+  /// Throws std::out_of_range if the scene has no camera `scene.camera`.
+  PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight,
+             std::size_t workers);
+  ~PathTracer() override;
+
+  /// Every completed ray is reported to `recorder`, which must outlive the tracing; null: none is. Call
+  /// before the first generate().
+  void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
+
+  /// Paths start at these hits, without camera rays where they know the hit; they must outlive the tracing. Null: all
+  /// start with a ray. Call before the first generate().
+  void set_first_hits(const FirstHits* hits) { first_hits_ = hits; }
+
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
+  std::uint32_t extra_effects(const RayResult& result) const override;
+
+  const EffectsPlan& plan() const { return plan_; }
+
+  // Results, for when the frame is done and the workers are joined.
+
+  struct Counts {
+    std::array<std::uint64_t, kRayKinds> emitted{};  ///< rays by RayKind
+    std::array<std::uint64_t, kRayKinds> completed{};
+    std::uint64_t saturated = 0;  ///< radiance values that were not finite or beyond fixed point's range
+    std::uint64_t paths = 0;      ///< committed to the film
+  };
+  Counts counts() const;
+  HitsDigest hits_digest() const;
+  /// Of linear_rgb().
+  std::string image_digest() const;
+  std::vector<float> linear_rgb() const { return film_.linear_rgb(); }
+  std::uint32_t width() const { return film_.width(); }
+  std::uint32_t height() const { return film_.height(); }
+
+ protected:
+  struct Worker;
+
+  /// Which code the whole frame shares: what its lights are, and whether volumes take light.
+  enum class Lights : std::uint8_t { kNone, kPunctual, kLamps, kLampsAndMedia };
+
+  /// shade() with `shade_hit` for what a ray hit: a call that is known when the program is built.
+  template <bool kMedia, class ShadeHit>
+  void shade_batch(WorkerId worker, const HitBatch& completed, RayBatch& out, const ShadeHit& shade_hit);
+  template <SurfaceClass kClass, Lights kLights>
+  void shade_surface(const RayResult& result, const TrianglePoint& point, Worker& worker, RayBatch& out,
+                     std::uint32_t& children);
+
+ private:
+  using ShadeSurface = void (PathTracer::*)(const RayResult&, const TrianglePoint&, Worker&, RayBatch&, std::uint32_t&);
+  /// How a material's hits are shaded.
+  struct Surface {
+    ShadeSurface shade = nullptr;
+    GlassTables glass;
+    Vec3 absorption{0};      ///< per scene unit, inside
+    bool absorbs = false;
+    std::uint32_t effects = 0;   ///< extra_effects()
+  };
+
+  static ShadeSurface shade_of(SurfaceClass surface, Lights lights);
+  template <Lights kLights>
+  static ShadeSurface shade_of(SurfaceClass surface);
+  void choose_surfaces();
+  template <SurfaceClass kClass, Lights kLights, class SomeBsdf>
+  void scatter(const RayResult& result, const TrianglePoint& point, const TriangleGeometry& geometry,
+               const Vec3& facing, bool front, const Frame& frame, const SomeBsdf& bsdf, Worker& worker,
+               RayBatch& out, std::uint32_t& children);
+  void absorb(const RayResult& result);
+  Vec3 passed(std::uint32_t medium, float distance) const;
+  void shade_miss(const RayResult& result, Worker& worker);
+  /// Starts path `ordinal` of the frame in state `index`.
+  PixelSample begin_path(std::uint64_t ordinal, std::uint32_t index);
+  Generated generate_from_hits(WorkerId worker, std::size_t max_rays, RayBatch& out);
+  /// What a camera ray's hit would do, had there been a ray.
+  void shade_first(const RayResult& result, Worker& worker, RayBatch& out);
+  void shade_shadow(const RayResult& result, Worker& worker);
+  void add_emission(PathState& path, const RayResult& result, const TriangleGeometry& geometry,
+                    const TrianglePoint& point, bool front, Worker& worker);
+  void add_radiance(PathState& path, const Vec3& radiance, Worker& worker);
+  void finish_ray(std::uint32_t path, std::uint32_t children, Worker& worker);
+  void emit(const Ray& ray, const RayTag& tag, Worker& worker, RayBatch& out);
+
+  const scene::Scene& scene_;
+  const EffectsPlan plan_;
+  const std::uint64_t paths_;
+  const std::uint32_t max_depth_;   // 1 if there is nothing for bounce rays to find
+  const SpawnOffset spawn_;
+  const std::array<std::uint8_t, kRayKinds> wishes_;
+  const Sampler sampler_;
+  const PixelOrder order_;
+  const CameraRays camera_;
+  const LightSet lights_;
+  const bool media_;
+  std::vector<Surface> surfaces_;   // by material
+  PathPool pool_;
+  Film film_;
+  std::unique_ptr<Worker[]> workers_;
+  std::size_t worker_count_;
+  std::atomic<std::uint64_t> generated_{0};  // camera rays that generate() calls have appended
+  std::atomic<std::uint64_t> held_{0};       // rays that workers hold back for their next generate()
+  RayRecorder* recorder_ = nullptr;
+  const FirstHits* first_hits_ = nullptr;
+};
+
+}  // namespace carousel::shading

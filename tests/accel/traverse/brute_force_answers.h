@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+
+#include "accel/traverse/brute_force.h"
+#include "accel/traverse/reference_tracer.h"
+#include "accel/traverse/verifying_workload.h"
+
+namespace carousel::accel {
+
+/// What every triangle tested in scalar code says of some rays, to compare structures with.
+class BruteForceAnswers {
+ public:
+  BruteForceAnswers(const scene::Scene& scene, const RayBatch& rays, const AccuracyConfig& accuracy = {},
+                    const AnyHit* any_hit = nullptr)
+      : rays_(rays) {
+    for (const RayRequest& ray : rays) expected_.push_back({ray.ray, brute_force(scene, ray, accuracy, any_hit), ray.tag});
+  }
+  /// How many answers of the structure are others, one ray after another and interleaved.
+  std::size_t differences(const Accel& accel) const {
+    std::size_t differences = 0;
+    for (auto* const tracer : {trace_depth_first, trace_depth_first_interleaved}) {
+      HitBatch got;
+      TestCounts counts;
+      tracer(accel, rays_, got, counts);
+      for (std::size_t i = 0; i < expected_.size(); ++i) differences += !same_result(expected_[i], got.at(i));
+    }
+    return differences;
+  }
+  std::size_t hits() const {
+    std::size_t hits = 0;
+    for (const RayResult& r : expected_) hits += r.hit.valid();
+    return hits;
+  }
+
+ private:
+  RayBatch rays_;
+  HitBatch expected_;
+};
+
+}  // namespace carousel::accel

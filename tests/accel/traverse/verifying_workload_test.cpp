@@ -1,0 +1,106 @@
+#include "accel/traverse/verifying_workload.h"
+
+#include <gtest/gtest.h>
+
+#include "accel/traverse/kernels.h"
+#include "core/system/error.h"
+#include "tests/accel/traverse/simd_guard.h"
+#include "tests/accel/traverse/test_rays.h"
+#include "tests/accel/structure/test_scenes.h"
+
+namespace carousel::accel {
+namespace {
+
+/// Gives out a list of rays once and counts what comes back.
+class ListWorkload final : public Workload {
+ public:
+  explicit ListWorkload(RayBatch rays) : rays_(std::move(rays)) {}
+  Generated generate(WorkerId, std::size_t max_rays, RayBatch& out) override {
+    std::size_t count = 0;
+    for (; count < max_rays && next_ < rays_.size(); ++count) out.push_back(rays_[next_++]);
+    return {count, next_ == rays_.size()};
+  }
+  void shade(WorkerId, const HitBatch& completed, RayBatch&) override { shaded_ += completed.size(); }
+  std::size_t shaded() const { return shaded_; }
+
+ private:
+  RayBatch rays_;
+  std::size_t next_ = 0, shaded_ = 0;
+};
+
+class VerifyingWorkloadTest : public testing::Test {
+ protected:
+  scene::Scene scene_ = icosphere_scene(2);
+  Accel accel_ = build_sequential(scene_);
+  RayBatch rays_ = mixed_rays(scene_, 500, 71);
+};
+
+TEST_F(VerifyingWorkloadTest, FindsNothingWhenAllIsRight) {
+  ListWorkload inner(rays_);
+  VerifyingWorkload verifying(inner, accel_);
+  const ReferenceRun run = run_reference(accel_, verifying, 64);
+  EXPECT_EQ(run.rays, rays_.size());
+  EXPECT_EQ(inner.shaded(), rays_.size());
+  EXPECT_EQ(verifying.compared(), rays_.size());
+  EXPECT_EQ(verifying.mismatches(), 0u);
+  EXPECT_FALSE(verifying.example());
+}
+
+TEST_F(VerifyingWorkloadTest, FindsEveryKindOfPlantedFault) {
+  const HitBatch right = trace(accel_, rays_);
+  const auto mismatches = [&](const RayResult& wrong) {
+    ListWorkload inner({});
+    VerifyingWorkload verifying(inner, accel_);
+    RayBatch out;
+    verifying.shade(WorkerId{0}, {wrong}, out);
+    EXPECT_EQ(verifying.example().has_value(), verifying.mismatches() == 1);
+    return verifying.mismatches();
+  };
+  std::size_t closest = 0, shadow = 0;
+  for (const RayResult& r : right) {
+    ASSERT_EQ(mismatches(r), 0u);
+    RayResult wrong = r;
+    wrong.hit.t = std::nextafter(r.hit.t, 0.0f);
+    if (r.tag.kind == RayKind::kShadow) {
+      EXPECT_EQ(mismatches(wrong), 0u);   // only occluded or visible is known
+      wrong.hit.instance = r.hit.valid() ? kNoInstance : 0;
+      EXPECT_EQ(mismatches(wrong), 1u);
+      ++shadow;
+      continue;
+    }
+    ++closest;
+    EXPECT_EQ(mismatches(wrong), 1u);
+    wrong = r;
+    wrong.hit.primitive ^= 1;
+    EXPECT_EQ(mismatches(wrong), 1u);
+    wrong = r;
+    wrong.hit.u = -r.hit.u;   // a sign bit, zeros included
+    EXPECT_EQ(mismatches(wrong), 1u);
+    wrong = r;
+    wrong.hit.v += 0.5f;
+    EXPECT_EQ(mismatches(wrong), 1u);
+    wrong = r;
+    wrong.hit = r.hit.valid() ? Hit{} : Hit{1, 0, 0, 0, 0};
+    EXPECT_EQ(mismatches(wrong), 1u);
+  }
+  EXPECT_GT(closest, 100u);
+  EXPECT_GT(shadow, 30u);
+}
+
+TEST(SimdTargets, UnknownOnesAreNamedInTheError) {
+  const SimdGuard guard;
+  for (const SimdTarget target :
+       {SimdTarget::kScalar, SimdTarget::kSsse3, SimdTarget::kSse4, SimdTarget::kAvx2, SimdTarget::kAvx3}) {
+    try {
+      select_simd_target(target);
+      EXPECT_EQ(simd_targets().size(), 1u);
+    } catch (const ConfigError& error) {
+      ASSERT_EQ(error.issues().size(), 1u);
+      EXPECT_EQ(error.issues()[0].key_path, "engine.simd");
+      EXPECT_NE(error.issues()[0].message.find(simd_targets()[0]), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace carousel::accel

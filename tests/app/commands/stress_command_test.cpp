@@ -1,0 +1,67 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "report/run/report_json.h"
+#include "tests/app/support/program.h"
+#include "tests/support/json_schema_check.h"
+
+namespace carousel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+TEST(StressCommand, TriesQueuesAndLeavesResults) {
+  const Program program;
+  const Outcome outcome = program.run({"stress", "--seconds", "0.5", "--messages", "2000", "--repetitions", "2", "--queue",
+                                       "spsc_ring,mpmc_ring,mutex", "--pattern", "stream,ping_pong,many_to_many"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("nothing lost, doubled, reordered or torn; nothing stuck"));
+  EXPECT_THAT(outcome.out, HasSubstr("ping_pong, 64 bytes, 2 threads, capacity 64"));
+  EXPECT_THAT(outcome.out, HasSubstr("files: out/stress/stress.json"));
+  const Json json = Json::parse(program.read("out/stress/stress.json"));
+  EXPECT_EQ(schema_problems(report::report_schema()["$defs"]["stress"], json), std::vector<std::string>{});
+  ASSERT_EQ(json["rows"].size(), 3u * 3 + 3 + 2);   // spsc_ring does not fit many_to_many; stream has three sizes
+  for (const Json& row : json["rows"]) {
+    EXPECT_GT(row["messages"].get<int>(), 0);
+    EXPECT_GT(row["rate_median"].get<double>(), 0);
+    EXPECT_EQ(row["found"], "");
+    EXPECT_EQ(row.contains("round_trip"), row["pattern"] == "ping_pong");
+    EXPECT_EQ(row.contains("transit"), row["pattern"] != "ping_pong");
+  }
+}
+
+TEST(StressCommand, TriesQueuesInsideTheRing) {
+  const Program program;
+  program.write("a.yaml", "scene: {builtin: cornell}\nimage: {width: 16, height: 16, samples: 1}\ntopology: {resources: 3, link: {depth: 4}}\n");
+  const Outcome outcome = program.run({"stress", "a.yaml", "--seconds", "0.1", "--messages", "500", "--repetitions", "2", "--queue",
+                                       "spsc_ring,mutex", "--pattern", "stream", "--depths", "1,4", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(schema_problems(report::report_schema()["$defs"]["stress"], json), std::vector<std::string>{});
+  ASSERT_EQ(json["ring"].size(), 4u);
+  for (const Json& row : json["ring"]) {
+    EXPECT_GT(row["rate_median"].get<double>(), 0);
+    EXPECT_EQ(row["same_digest"], true);
+    EXPECT_LE(row["occupancy_mean"].get<double>(), row["depth"].get<double>());
+  }
+  EXPECT_THAT(json["ring_verdict"].get<std::string>(), HasSubstr(" more; repetitions of one cell differ by up to "));
+}
+
+TEST(StressCommand, RefusesWhatThereIsNot) {
+  const Program program;
+  const auto error_of = [&](const std::vector<std::string>& arguments) {
+    const Outcome outcome = program.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(error_of({"stress", "--queue", "spsc"}), HasSubstr("found spsc"));
+  EXPECT_THAT(error_of({"stress", "--pattern", "streem"}), HasSubstr("did you mean stream?"));
+  EXPECT_THAT(error_of({"stress", "--bytes", "9"}), HasSubstr("expected 8, 64 or 256, found 9"));
+  EXPECT_THAT(error_of({"stress", "--queue", "boost_spsc", "--pattern", "many_to_many"}),
+              HasSubstr("boost_spsc is made for one producer at a time"));
+}
+
+}  // namespace
+}  // namespace carousel

@@ -1,0 +1,253 @@
+// One bad configuration a rule, with its message and position.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/core/config/config_issues.h"
+
+namespace carousel {
+namespace {
+
+struct BadConfig {
+  const char* name;
+  const char* text;
+  const char* message;
+
+  friend void PrintTo(const BadConfig& bad, std::ostream* out) { *out << bad.name; }
+};
+
+class ConfigBad : public testing::TestWithParam<BadConfig> {};
+
+TEST_P(ConfigBad, IsRefusedWithPositionAndExpectation) {
+  EXPECT_THAT(texts(issues_of(GetParam().text)), testing::ElementsAre(GetParam().message));
+}
+
+#define SCENE "scene: {builtin: cornell}\n"
+
+INSTANTIATE_TEST_SUITE_P(
+    Reading, ConfigBad,
+    testing::Values(
+        BadConfig{"UnknownKey", SCENE "image:\n  widht: 5\n",
+                  "test.yaml:3:3: image.widht: unknown key; did you mean 'width'?"},
+        BadConfig{"KeyOfAnotherSection", SCENE "placement: balanced\n",
+                  "test.yaml:2:1: placement: unknown key; did you mean 'rays.placement'?"},
+        BadConfig{"KeyLikeNothing", SCENE "camera: {zzzzzzzz: 1}\n",
+                  "test.yaml:2:10: camera.zzzzzzzz: unknown key; known here: aperture, focus_distance"},
+        BadConfig{"DuplicateKey", SCENE "image:\n  width: 5\n  width: 6\n",
+                  "test.yaml:4:3: image.width: duplicate key; first given at line 3, column 3"},
+        BadConfig{"DuplicateSection", "scene: {builtin: cornell}\nscene: {builtin: sliver}\n",
+                  "test.yaml:2:1: scene: duplicate key; first given at line 1, column 1"},
+        BadConfig{"SecondDocument", SCENE "---\n" SCENE,
+                  "test.yaml:2:1: a second document; a configuration is one YAML document"},
+        BadConfig{"Syntax", SCENE "image: {width: 5\n", "test.yaml:3:1: end of map flow not found"},
+        BadConfig{"NotAMap", "- 1\n- 2\n", "test.yaml:1:1: expected a map, found a list"},
+        BadConfig{"SchemaVersion", "schema_version: 2\n" SCENE,
+                  "test.yaml:1:17: schema_version: expected 1, found 2"},
+        BadConfig{"SectionIsText", SCENE "image: big\n", "test.yaml:2:8: image: expected a map, found 'big'"},
+        BadConfig{"SectionIsEmpty", SCENE "image:\n", "test.yaml:2:1: image: expected a map, found nothing"},
+        BadConfig{"FractionForInteger", SCENE "image: {width: 2.5}\n",
+                  "test.yaml:2:16: image.width: expected an integer from 1 to 16384 (pixels), found 2.5"},
+        BadConfig{"QuotedNumber", SCENE "image: {width: '25'}\n",
+                  "test.yaml:2:16: image.width: expected an integer from 1 to 16384 (pixels), found '25'"},
+        BadConfig{"HugeNumber", SCENE "image: {width: 99999999999999999999999}\n",
+                  "test.yaml:2:16: image.width: expected an integer from 1 to 16384 (pixels), found "
+                  "99999999999999999999999"},
+        BadConfig{"Negative", SCENE "image: {seed: -1}\n",
+                  "test.yaml:2:15: image.seed: expected an integer from 0 to 9223372036854775807, found -1"},
+        BadConfig{"RealOutOfRange", SCENE "camera: {focus_distance: 0}\n",
+                  "test.yaml:2:26: camera.focus_distance: expected a number above 0 to 1e+09 (scene units), "
+                  "found 0"},
+        BadConfig{"RasterWithALens", SCENE "primary: raster\ncamera: {aperture: 0.5}\n",
+                  "test.yaml:3:20: camera.aperture: primary: raster needs a pinhole; expected 0, or primary: rays, found "
+                  "0.5"},
+        BadConfig{"RasterWithoutACamera", SCENE "primary: raster\nworkload: {rays_from: a.csv}\n",
+                  "test.yaml:2:10: primary: this workload has no camera; expected rays, found raster"},
+        BadConfig{
+            "NotANumber", SCENE "camera: {aperture: .nan}\n",
+            "test.yaml:2:20: camera.aperture: expected a number from 0 to 1e+06 (scene units), found nan"},
+        BadConfig{
+            "Infinite", SCENE "camera: {aperture: .inf}\n",
+            "test.yaml:2:20: camera.aperture: expected a number from 0 to 1e+06 (scene units), found inf"},
+        BadConfig{"OldStyleSwitch", SCENE "cull_planes: {shared_normals: yes}\n",
+                  "test.yaml:2:31: cull_planes.shared_normals: expected true or false, found 'yes'"},
+        BadConfig{
+            "EnumName", SCENE "topology: {shape: rign}\n",
+            "test.yaml:2:19: topology.shape: expected one of ring, bidirectional, multi_ring, hierarchical, "
+            "point_to_point, bus, central, independent, found 'rign'; did you mean 'ring'?"},
+        BadConfig{"Threads", SCENE "engine: {threads: many}\n",
+                  "test.yaml:2:19: engine.threads: expected auto or an integer from 1 to 1024 (threads), "
+                  "found 'many'"},
+        BadConfig{"ColorOfTwo", "scene: {builtin: cornell, sky: {color: [1, 2]}}\n",
+                  "test.yaml:1:40: scene.sky.color: expected a list of 3 numbers, found a list"},
+        BadConfig{
+            "ColorNegative", "scene: {builtin: cornell, sky: {color: [1, 2, -3]}}\n",
+            "test.yaml:1:47: scene.sky.color: expected a number from 0 to 1e+06 (linear RGB), found -3"},
+        BadConfig{
+            "BareUnits", SCENE "testers: {triangle: 0}\n",
+            "test.yaml:2:21: testers.triangle: expected a map or an integer from 1 to 1024 (units), found 0"},
+        BadConfig{"OverrideWithoutResource", SCENE "topology: {overrides: [{testers: {box: 2}}]}\n",
+                  "test.yaml:2:24: topology.overrides.0: expected the key 'resource'"},
+        BadConfig{"OverridesIsMap", SCENE "topology: {overrides: {resource: 1}}\n",
+                  "test.yaml:2:23: topology.overrides: expected a list, found a map"},
+        BadConfig{"EmptyFileName", "scene: {file: ''}\n",
+                  "test.yaml:1:15: scene.file: expected a text that is not empty, found ''"},
+        BadConfig{
+            "WorkloadName", SCENE "workload: ray\n",
+            "test.yaml:2:11: workload: expected rays, {rays_from: FILE} or {traffic: {...}}, found 'ray'"},
+        BadConfig{"WorkloadBoth", SCENE "workload: {rays_from: a.csv, traffic: {}}\n",
+                  "test.yaml:2:11: workload: expected rays, {rays_from: FILE} or {traffic: {...}}"},
+        BadConfig{"WorkloadKey", SCENE "workload: {ray_from: a.csv, rays_from: b.csv}\n",
+                  "test.yaml:2:12: workload.ray_from: unknown key; did you mean 'rays_from'?"},
+        BadConfig{"Effects", SCENE "shading: {effects: 3}\n",
+                  "test.yaml:2:20: shading.effects: expected auto, all or a list of effects, found 3"},
+        BadConfig{"Tag", SCENE "image: !!set {width: 5}\n",
+                  "test.yaml:2:8: tag 'tag:yaml.org,2002:set' has no meaning here"},
+        BadConfig{"ListAsKey", SCENE "? [a, b]\n: 1\n",
+                  "test.yaml:2:3: expected a name as the key, found a list (or is a bracket not "
+                  "closed?)"},
+        BadConfig{"AliasOfItself", SCENE "image: &i {width: *i}\n",
+                  "test.yaml:2:19: an alias inside of what it stands for"},
+        BadConfig{"NotUtf8", "scene: {file: \"\xff\"}\n", "test.yaml:1:16: not UTF-8 text"}),
+    [](const auto& bad) { return bad.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Rules, ConfigBad,
+    testing::Values(
+        BadConfig{"NoScene", "image: {width: 4}\n",
+                  "test.yaml: scene: expected a scene: file, or builtin (cornell, spheres, terrain, "
+                  "instances, sliver)"},
+        BadConfig{"EmptyScene", "image: {width: 4}\nscene: {seed: 3}\n",
+                  "test.yaml:2:8: scene: expected a scene: file, or builtin (cornell, spheres, terrain, "
+                  "instances, sliver)"},
+        BadConfig{"TwoScenes", "scene: {file: a.glb, builtin: cornell}\n",
+                  "test.yaml:1:31: scene.builtin: expected either file or builtin, found both"},
+        BadConfig{"CyclePlacement", SCENE "engine: {kind: cycle}\nrays: {placement: addressed}\n",
+                  "test.yaml:3:19: rays.placement: the cycle engine has no addressed; expected balanced or "
+                  "round_robin"},
+        BadConfig{
+            "Shape", SCENE "topology: {shape: bus}\n",
+            "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
+            "point_to_point"},
+        BadConfig{
+            "CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
+            "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
+            "multi_ring, hierarchical, point_to_point, bus or independent"},
+        BadConfig{"InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\n",
+                  "test.yaml:2:27: accuracy.instance_data: transform: two_step subtracts the translation first; expected "
+                  "forward or rt, found inverse"},
+        BadConfig{"TwoStepsForOneMatrix", SCENE "accuracy: {transform: inverse_matrix, instance_data: rt}\n",
+                  "test.yaml:2:54: accuracy.instance_data: transform: inverse_matrix has the translation multiplied in; "
+                  "expected forward or inverse, found rt"},
+        BadConfig{"ForwardInvertedAtBuild", SCENE "accuracy: {instance_data: forward, invert: build}\n",
+                  "test.yaml:2:44: accuracy.invert: instance_data: forward stores nothing inverted; expected visit, found "
+                  "build"},
+        BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\n",
+                  "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
+        BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
+                  "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
+        BadConfig{"CullPlaneOrder", SCENE "cull_planes: {order: planes}\n",
+                  "test.yaml:2:22: cull_planes.order: expected one of box_first, planes_first, found 'planes'"},
+        BadConfig{"TopPlanesOfInverseMatrices", SCENE "cull_planes: {count: 2, levels: tlas}\naccuracy: {transform: inverse_matrix}\n",
+                  "test.yaml:3:23: accuracy.transform: cull planes above the instances could lose hits of inverse_matrix; "
+                  "expected two_step, two_step_double or transpose_if_rotation, or cull_planes.levels: blas"},
+        BadConfig{"CullPlanesOfFastTriangles", SCENE "cull_planes: {count: 2}\naccuracy: {triangle: fast}\n",
+                  "test.yaml:3:22: accuracy.triangle: cull planes could lose hits of fast; expected watertight or "
+                  "exact, or cull_planes.count: 0"},
+        BadConfig{"CullPlanesOfPlainBoxes", SCENE "cull_planes: {count: 2}\naccuracy: {box: plain}\n",
+                  "test.yaml:3:17: accuracy.box: cull planes go with conservative boxes; expected conservative, found "
+                  "plain, or cull_planes.count: 0"},
+        BadConfig{"BundleOfOne", SCENE "bundles: {size: 1}\n",
+                  "test.yaml:2:17: bundles.size: expected 2 rays or more, or 0 for none; found 1"},
+        BadConfig{"BundlesLargerThanTheStore", SCENE "bundles: {size: 16}\nrays: {slots_per_resource: 8}\n",
+                  "test.yaml:2:17: bundles.size: a bundle's rays live in one resource; expected at most "
+                  "rays.slots_per_resource = 8, found 16"},
+        BadConfig{"BundlesInOrder", SCENE "bundles: {size: 16}\ncollections: {traversal: ordered}\n",
+                  "test.yaml:3:26: collections.traversal: rays of a bundle go several ways at once; expected spread or "
+                  "treelet, found ordered, or bundles.size: 0"},
+        BadConfig{"BundlesShapeByShape", SCENE "bundles: {size: 16}\npackets: {shapes: single}\n",
+                  "test.yaml:3:19: packets.shapes: a bundle is tested against a whole strip; expected strip, found "
+                  "single, or bundles.size: 0"},
+        BadConfig{"BundlesLookForSlots", SCENE "bundles: {size: 16}\nrays: {placement: addressed}\n",
+                  "test.yaml:3:19: rays.placement: bundles are made before their rays have slots; expected balanced or "
+                  "round_robin, found addressed, or bundles.size: 0"},
+        BadConfig{"BundlesOnIndependentResources",
+                  SCENE "bundles: {size: 16}\ntopology: {shape: independent}\nengine: {kind: cycle}\n",
+                  "test.yaml:3:19: topology.shape: independent resources trace single rays; expected a ring or another "
+                  "network, found independent, or bundles.size: 0"},
+        BadConfig{"BundlesStrictlyAnyHit", SCENE "bundles: {size: 16, order: any_hit_only, strict: true}\n",
+                  "test.yaml:2:50: bundles.strict: any_hit_only takes bundles along where only some of their rays hit; "
+                  "expected false, found true"},
+        BadConfig{"BundleSimilarity", SCENE "bundles: {builder: {similarity: originbox}}\n",
+                  "test.yaml:2:33: bundles.builder.similarity: expected one of growth, solid_angle, component_range, "
+                  "origin_box, found 'originbox'; did you mean 'origin_box'?"},
+        BadConfig{"Carry", SCENE "packets: {carry: data}\n",
+                  "test.yaml:2:18: packets.carry: data is not built yet; expected reference"},
+        BadConfig{"Results", SCENE "packets: {results: message}\n",
+                  "test.yaml:2:20: packets.results: message is not built yet; expected mask"},
+        BadConfig{"AnyHit", SCENE "testers: {any_hit: shader}\n",
+                  "test.yaml:2:20: testers.any_hit: shader is not built yet; expected inline"},
+        BadConfig{"EffectsList", SCENE "shading: {effects: [sky, shadow_ray]}\n",
+                  "test.yaml:2:26: shading.effects.1: expected the name of an effect, found 'shadow_ray'; did you mean "
+                  "'shadow_rays'?"},
+        BadConfig{"IdleResourcesShade", SCENE "shading: {idle_resources_shade: true}\n",
+                  "test.yaml:2:33: shading.idle_resources_shade: true is not built yet; expected false"},
+        BadConfig{"TrafficNative", "workload: {traffic: {rate: 0.5}}\nengine: {kind: native}\n",
+                  "test.yaml:2:16: engine.kind: workload: traffic runs in virtual time; expected cycle, found native"},
+        BadConfig{"TrafficRate", "engine: {kind: cycle}\nworkload: {traffic: {rate: 0}}\n",
+                  "test.yaml:2:28: workload.traffic.rate: expected a number above 0 to 1 (packets per resource and cycle), "
+                  "found 0"},
+        BadConfig{"TrafficHotspot",
+                  "engine: {kind: cycle}\nworkload: {traffic: {pattern: hotspot, hotspot: 8}}\n",
+                  "test.yaml:2:49: workload.traffic.hotspot: expected a resource from 0 to 7, found 8"},
+        BadConfig{"TrafficBurst", "engine: {kind: cycle}\nworkload: {traffic: {pattern: bursty, rate: 0.9}}\n",
+                  "test.yaml:2:45: workload.traffic.rate: bursts of 8 packets make at most 0.8889 packets per cycle, "
+                  "found 0.9"},
+        BadConfig{"TrafficWithoutLinks",
+                  "engine: {kind: cycle}\ntopology: {shape: independent}\nworkload: {traffic: {rate: 0.5}}\n",
+                  "test.yaml:2:19: topology.shape: there is no traffic on independent; expected ring, bidirectional, "
+                  "multi_ring or point_to_point"},
+        BadConfig{"FlowNone", SCENE "topology: {flow: none}\n",
+                  "test.yaml:2:18: topology.flow: none lets the links fill up and stop; expected credits or "
+                  "bubble, or "
+                  "--force"},
+        BadConfig{"BubbleDepth", SCENE "topology: {flow: bubble, link: {depth: 1}}\n",
+                  "test.yaml:2:40: topology.link.depth: flow: bubble keeps one place of a link free; "
+                  "expected at least 2, "
+                  "found 1"},
+        BadConfig{"OrderedSingle", SCENE "collections: {traversal: ordered}\npackets: {shapes: single}\n",
+                  "test.yaml:3:19: packets.shapes: traversal: ordered sorts the hits of a whole strip; "
+                  "expected strip, "
+                  "found single"},
+        BadConfig{"HashReserve", SCENE "collections: {home: hash}\n",
+                  "test.yaml:2:14: collections.when_full: home: hash can fill one resource with another's "
+                  "collections and "
+                  "stop; expected spill, found reserve"},
+        BadConfig{"OverrideOutside", SCENE "topology: {resources: 2, overrides: [{resource: 2}]}\n",
+                  "test.yaml:2:49: topology.overrides.0.resource: expected a resource from 0 to 1, found 2"},
+        BadConfig{"FaultOutside", SCENE "topology: {resources: 2}\nfaults: {resource: {kind: pause, number: 2}}\n",
+                  "test.yaml:3:42: faults.resource.number: expected a resource from 0 to 1, found 2"},
+        BadConfig{"StopAlone", SCENE "topology: {resources: 1}\nfaults: {resource: {kind: stop}}\n",
+                  "test.yaml:2:23: topology.resources: where one stops another has to go on; expected at least 2, found 1"},
+        BadConfig{"FaultsComparedOnTheWallClock", SCENE "faults: {compare: true, links: {drop: 0.1}}\n",
+                  "test.yaml:2:19: faults.compare: on the wall clock two runs differ by more than faults cost; expected false, or "
+                  "engine.kind: cycle"},
+        BadConfig{"OverrideTwice", SCENE "topology: {overrides: [{resource: 2}, {resource: 2}]}\n",
+                  "test.yaml:2:50: topology.overrides.1.resource: resource 2 has an override already"},
+        BadConfig{
+            "VaryUnknown", SCENE "vary: {packets.ray: [1, 2]}\n",
+            "test.yaml:2:21: vary.packets.ray: unknown key 'packets.ray'; did you mean 'packets.rays'?"}),
+    [](const auto& bad) { return bad.param.name; });
+
+TEST(ConfigRules, FlowNoneIsPermittedByForce) {
+  const auto config = parse_config(SCENE "topology: {flow: none}\n", "test.yaml", {}, {.force = true});
+  EXPECT_EQ(config.topology.flow, Flow::kNone);
+}
+
+TEST(ConfigRules, AFieldThatCannotBeReadIsNotJudgedByItsDefault) {
+  EXPECT_THAT(
+      texts(issues_of("scene: {builtin: 5}\n")),
+      testing::ElementsAre("test.yaml:1:18: scene.builtin: expected one of cornell, spheres, terrain, "
+                           "instances, sliver, found 5"));
+}
+
+}  // namespace
+}  // namespace carousel

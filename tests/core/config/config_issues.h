@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/config/load.h"
+
+namespace carousel {
+
+/// The problems that parse_config finds; none when it accepts the text.
+inline std::vector<ConfigIssue> issues_of(const std::string& text, const std::vector<std::string>& sets = {},
+                                          const std::string& name = "test.yaml") {
+  try {
+    parse_config(text, name, sets);
+  } catch (const ConfigError& error) {
+    return error.issues();
+  }
+  return {};
+}
+
+inline std::vector<std::string> texts(const std::vector<ConfigIssue>& issues) {
+  std::vector<std::string> out;
+  for (const ConfigIssue& issue : issues) out.push_back(issue.text());
+  return out;
+}
+
+}  // namespace carousel

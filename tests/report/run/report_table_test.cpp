@@ -1,0 +1,80 @@
+#include "report/run/report_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "report/text/number_text.h"
+#include "tests/report/run/sample_report.h"
+
+namespace carousel::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(ReportTable, SaysWhatHappened) {
+  const std::string table = report_table(sample_report());
+  EXPECT_THAT(
+      table,
+      HasSubstr("scene        cornell: 1,234,567 triangles, 5 instances   64 x 32 pixels, 4 samples\n"));
+  EXPECT_THAT(table, HasSubstr("engine       native: 2 resources, ring on 4 threads, 2 shader workers\n"));
+  EXPECT_THAT(table, HasSubstr("rays         1,000 emitted   990 completed   10 lost\n"));
+  EXPECT_THAT(table, HasSubstr("raster       9 triangles seen 8 times by tiles   5 hits   3 left to rays   250.0 ms\n"));
+  EXPECT_THAT(table, HasSubstr("tests        per ray: box 8.50   triangle 2.25   transform 1.00\n"));
+  EXPECT_THAT(table, HasSubstr("cull planes  640 planes, 42.5 bytes a node, found in 125.0 ms   300 of 790 children culled\n"));
+  EXPECT_THAT(table, HasSubstr("spared: 85 nodes   180 leaves of 605 triangles   35 transforms   30 boxes\n"));
+  EXPECT_THAT(table, HasSubstr("25.0 % of them local where seen"));
+  EXPECT_THAT(table, HasSubstr("link 7   slots 0"));
+  EXPECT_THAT(table, HasSubstr("occupancy 2.0 mean, 11 most   7 refused"));
+  EXPECT_THAT(table, HasSubstr("verify       990 rays traced again, 1 mismatches; pixel 3\n"));
+  EXPECT_THAT(table, HasSubstr("digest       hits 0123   image 4567\n"));
+  EXPECT_THAT(table, Not(HasSubstr("INCOMPLETE")));
+}
+
+TEST(ReportTable, SaysWhatFaultsCost) {
+  Report report = sample_report();
+  report.rays.restarted = 1234;
+  report.rays.paths_restarted = 500;
+  report.faults.emplace().stop = Stop{1, 3, 100, 200, 5100};
+  report.faults->cycles_without = 90'000;
+  report.faults->cycles_lost = 7000;
+  report.faults->same_hits = true;
+  const std::string table = report_table(report);
+  EXPECT_THAT(table, HasSubstr("10 lost   1,234 restarted of 500 paths, 5,000 cycles after a resource stopped\n"));
+  EXPECT_THAT(table, HasSubstr("faults       cost 7000 cycles: 90,000 without them, the same hits and picture\n"));
+  report.faults->same_hits = false;
+  EXPECT_THAT(report_table(report), HasSubstr("OTHER HITS OR ANOTHER PICTURE"));
+}
+
+TEST(ReportTable, StandsWithTheLeastThereIs) {
+  Report report;
+  report.incomplete = true;
+  const std::string table = report_table(report);
+  EXPECT_THAT(table, HasSubstr("INCOMPLETE"));
+  EXPECT_THAT(table, Not(HasSubstr("nan")));
+}
+
+TEST(NumberText, ReadsWell) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(1000), "1,000");
+  EXPECT_EQ(grouped(1234567890), "1,234,567,890");
+  EXPECT_EQ(bytes_text(512), "512 B");
+  EXPECT_EQ(bytes_text(1536), "1.5 KiB");
+  EXPECT_EQ(bytes_text(64ull << 30), "64 GiB");
+  EXPECT_EQ(seconds_text(0.0123), "12.3 ms");
+  EXPECT_EQ(seconds_text(185), "3 min 5 s");
+  EXPECT_EQ(scaled(950), "950");
+  EXPECT_EQ(scaled(1234567), "1.23 M");
+  EXPECT_EQ(percent(0.125), "12.5 %");
+}
+
+TEST(NumberText, FloatsReadBackToTheSameBits) {
+  EXPECT_EQ(float_text(0.1f), "0.1");
+  EXPECT_EQ(float_text(-0.0f), "-0");
+  EXPECT_EQ(float_text(std::numeric_limits<float>::infinity()), "inf");
+  EXPECT_EQ(float_text(-std::numeric_limits<float>::quiet_NaN()), "nan");
+}
+
+}  // namespace
+}  // namespace carousel::report

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "report/run/report.h"
+
+namespace carousel::report {
+
+/// A report with every optional part present and no two counts alike.
+inline Report sample_report() {
+  Report r;
+  r.carousel = {"1.2.3", "abc", "GNU 12", "Release", true};
+  r.config = {{"image", {{"width", 64}, {"height", 32}, {"samples", 4}}},
+              {"topology", {{"resources", 2}, {"shape", "ring"}}}};
+  r.scene = {"cornell", 1234567, 1300000, 3, 5, 7, 0, 1, 1, {{-1, -2, -3}, {1, 2, 3}}, {}};
+  r.engine.kind = "native";
+  r.engine.reason = "threads";
+  r.rays = {1000, 990, 10, 0, 0, {500, 300, 200}};
+  r.raster = {9, 8, 7, 6, 5, 4, 3};
+  r.throughput = {0.5, 2.5, 17.25};
+  r.tests = {{8000, 8.5}, {0, 0}, {2000, 2.25}, {0, 0}, {990, 1}};
+  r.cull_planes = {640, 10240, 42.5, {{"bottom", 3, 700, 1500, 260, 30, 80, 180, 605, 0}, {"top", 0, 90, 100, 40, 0, 5, 0, 0, 35}}};
+  r.packets = {500, 499, 1200, 30.5, 0.25, 0.125};
+  r.collections = {77, 13, 0.75, 4096, 0};
+  Resource a, b;
+  a.resource = 0;
+  a.rays_completed = 400;
+  a.stalls.link = 3;
+  b.resource = 1;
+  b.rays_completed = 590;
+  b.stalls.link = 4;
+  r.resources = {a, b};
+  r.links = {{0, 1, 16, 600, 1.5, 9, 7}, {1, 0, 16, 600, 2.5, 11, 0}};
+  r.traffic = {1000, 1000, 4, 100, 5000, 900, 0.1, 0.09, 3.5, 16, {17.5, 16, 20, 31, 47}, {0.3, 0.6}, 12000};
+  r.shading = {2, 990, 0, std::nullopt, {{"shadow", true, "one light"}}};
+  r.verify = {990, 1, "pixel 3"};
+  r.digest = {"0123", "4567"};
+  r.host = {4, 2.0, 495, 0.01, 0.2, 1 << 20, 64 << 20, "avx2", {"cpu", "linux", 4, 1ull << 34}};
+  r.host.plane_seconds = 0.125;
+  r.host.raster_seconds = 0.25;
+  return r;
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,77 @@
+// What bundles take of a resource's clock: bundle units, the port of the ray store, and what waits for them.
+#include <gtest/gtest.h>
+
+#include "ringbus/cycle/testers/tester.h"
+
+namespace carousel::ringbus::cycle {
+namespace {
+
+constexpr auto kOrder = CullPlanesConfig::Order::kBoxFirst;
+
+TestersConfig bundle_testers() {
+  TestersConfig c;
+  c.box = {8, 1, 4};
+  c.bundle = {1, 1, 3};
+  c.triangle = {2, 1, 5};
+  return c;
+}
+
+TestCounts counts(std::uint64_t box, std::uint64_t bundle) {
+  TestCounts c;
+  c.box = box;
+  c.bundle = bundle;
+  return c;
+}
+
+TEST(BundleUnits, OnePassAfterTheOther) {
+  Tester tester(bundle_testers());
+  EXPECT_EQ(tester.strip(0, counts(0, 8), 1, 8), 7u + 3u);
+  EXPECT_EQ(tester.bundle.busy(), 8u);
+  EXPECT_EQ(tester.box.busy(), 0u);
+}
+
+TEST(BundleUnits, EdgesOfASilhouetteArePasses) {
+  Tester tester(bundle_testers());
+  EXPECT_EQ(tester.strip(0, counts(0, 8), 1, 40), 39u + 3u);
+}
+
+TEST(BundleUnits, RaysThatLeaveABundleAreTestedAfterIt) {
+  Tester tester(bundle_testers());
+  EXPECT_EQ(tester.strip(10, counts(32, 8), 33, 8), 10u + 7u + 3u + 4u);   // the last to leave, the last to be tested
+  Tester many(bundle_testers());
+  EXPECT_EQ(many.strip(10, counts(256, 2), 33, 2), 10u + 3u + 31u + 4u);   // 32 cycles of boxes from the first answer on
+}
+
+TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
+  Tester wide(bundle_testers()), narrow(bundle_testers(), kOrder, 2);
+  EXPECT_EQ(wide.strip(0, counts(8, 0), 10), 4u);
+  EXPECT_EQ(narrow.strip(0, counts(8, 0), 10), 5u + 4u);   // five cycles of reading, the last record a cycle after the fifth
+  EXPECT_EQ(narrow.store.busy(), 5u);
+  EXPECT_EQ(wide.store.busy(), 0u);
+  EXPECT_EQ(narrow.strip(8, counts(8, 0), 2), 8u + 1u + 4u);
+}
+
+TEST(BundleUnits, ABundleReadsOneRecordWhereItsRaysReadAllOfTheirs) {
+  Tester as_bundle(bundle_testers(), kOrder, 1), as_rays(bundle_testers(), kOrder, 1);
+  EXPECT_EQ(as_bundle.strip(0, counts(0, 8), 1, 8), 1u + 7u + 3u);
+  EXPECT_EQ(as_rays.strip(0, counts(256, 0), 32), 32u + 4u);
+}
+
+TEST(BundleUnits, AWalkThroughASubtreeReadsItsRaysOnce) {
+  Tester tester(bundle_testers(), kOrder, 1);
+  EXPECT_EQ(tester.walk(5, counts(8, 0), 3, 32), 5u + 32u);
+  EXPECT_EQ(tester.walk(100, counts(8, 0), 50, 32), 150u);
+}
+
+// Rays that need no test any more are read all the same, and the visit lasts as long as that: busy cycles beyond the
+// resource's time in test would leave its ledger with less than nothing.
+TEST(BundleUnits, AVisitLastsAsLongAsItsReading) {
+  Tester strip(bundle_testers(), kOrder, 1), walk(bundle_testers(), kOrder, 1);
+  const Cycle strip_done = strip.strip(10, counts(0, 0), 6), walk_done = walk.walk(10, counts(0, 0), 0, 6);
+  EXPECT_EQ(strip.store.busy(), 6u);
+  EXPECT_EQ(strip_done, 10u + strip.store.busy());
+  EXPECT_EQ(walk_done, 10u + walk.store.busy());
+}
+
+}  // namespace
+}  // namespace carousel::ringbus::cycle

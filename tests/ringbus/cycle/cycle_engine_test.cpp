@@ -1,0 +1,191 @@
+// The cycle engine: the same hits as everybody, and the same cycles for any number of threads.
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "tests/ringbus/identity/identity_cells.h"
+
+namespace carousel::ringbus {
+namespace {
+
+TEST(CycleIdentity, Cornell) {
+  TestScene scene(builtin_scene(BuiltinScene::kCornell, 0, 0), 400, 3);
+  expect_one_digest(scene, cycle_factors(), 11, 15);
+}
+
+TEST(CycleIdentity, Terrain) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 400, 3);
+  expect_one_digest(scene, cycle_factors(), 12, 15);
+}
+
+TEST(CycleIdentity, ThousandsOfInstancesFromFarAway) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 3000), 800, 3, 100.0f);
+  expect_one_digest(scene, cycle_factors(), 13, 15);
+}
+
+/// Machines of the random cells of `seed`.
+Cell random_cell(std::uint32_t seed) {
+  const std::vector<Factor> factors = cycle_factors();
+  std::mt19937 random(seed);
+  std::vector<int> row(factors.size());
+  Cell cell;
+  do {
+    for (std::size_t f = 0; f < row.size(); ++f) row[f] = static_cast<int>(random() % factors[f].levels.size());
+    cell = cell_of(factors, row);
+  } while (!possible(cell.config));
+  return cell;
+}
+
+TEST(CycleEngine, TakesTheSameCyclesOnAnyNumberOfThreads) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 300, 2);
+  for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(6)); ++seed) {
+    Cell cell = random_cell(seed);
+    cell.config.topology.link.latency_cycles = std::max<std::int64_t>(4, cell.config.topology.link.latency_cycles);
+    cell.threads = 1;
+    const Outcome alone = run_cell(scene, cell);
+    ASSERT_EQ(alone.fault, "") << "seed " << seed << ": " << cell.text();
+    ASSERT_GT(alone.result.cycle->cycles, 0u);
+    for (const std::size_t threads : {2, 3, 8}) {
+      cell.threads = threads;
+      const Outcome together = run_cell(scene, cell);
+      ASSERT_EQ(together.fault, "") << "seed " << seed << ": " << cell.text();
+      EXPECT_EQ(together.result.threads, std::min<std::size_t>(threads, static_cast<std::size_t>(cell.config.topology.resources)));
+      EXPECT_TRUE(*together.result.cycle == *alone.result.cycle) << "seed " << seed << ": " << cell.text();
+      EXPECT_TRUE(together.result.resources == alone.result.resources) << "seed " << seed << ": " << cell.text();
+    }
+  }
+}
+
+TEST(CycleEngine, LedgersAddUp) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
+  std::uint64_t transforms = 0, jobs = 0, waited = 0;
+  const auto count = static_cast<std::uint32_t>(cell_count(40));
+  const auto go_on = [&](std::uint32_t done) { return done < count || ((jobs == 0 || transforms == 0) && done < 20 * count); };
+  for (std::uint32_t seed = run_seed(); go_on(seed - run_seed()); ++seed) {
+    const Cell cell = random_cell(seed + 1000);
+    const Outcome out = run_cell(scene, cell);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
+    ASSERT_EQ(out.fault, "");
+    const cycle::CycleResult& c = *out.result.cycle;
+    for (std::size_t r = 0; r < c.tiles.size(); ++r) {
+      const cycle::TileResult& tile = c.tiles[r];
+      cycle::Cycle sum = 0;
+      for (const cycle::Cycle state : tile.states) sum += state;
+      EXPECT_EQ(sum, c.cycles);
+      const cycle::Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
+      for (const cycle::UnitLedger& bank : {tile.box, tile.triangle, tile.transform}) EXPECT_LE(bank.busy, testing);
+      EXPECT_LE(tile.handler.busy, c.cycles);
+      // Little's law: packets under way = rate times time, over a whole run without an error.
+      EXPECT_EQ(tile.round_trips.count(), out.result.resources[r].packets_issued);
+      EXPECT_EQ(tile.packet_cycles, tile.round_trips.sum());
+      // Jobs are shaded whole.
+      const cycle::Cycle shaded = tile.states[static_cast<std::size_t>(cycle::TileState::kShading)];
+      const cycle::Cycle job = static_cast<cycle::Cycle>(cell.config.shading.cycles_per_shade);
+      EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
+      jobs += job == 0 ? 0 : shaded / job;
+      // What the banks did is what the resource counted, rounded up a packet at a time.
+      const TesterUnits& box = cell.config.testers.box;
+      EXPECT_GE(tile.box.busy * static_cast<std::uint64_t>(box.units), out.result.resources[r].tests.box);
+      transforms += tile.transform.busy;
+    }
+    std::uint64_t hops = 0;
+    for (std::size_t l = 0; l < c.links.size(); ++l) {
+      EXPECT_LE(c.links[l].use.busy + c.links[l].use.stalled, c.cycles);
+      EXPECT_LE(c.links[l].queue.most, static_cast<std::uint64_t>(cell.config.topology.link.depth));
+      EXPECT_LE(c.links[l].queue.packet_cycles, c.links[l].queue.most * c.cycles);
+      waited += c.links[l].queue.packet_cycles;
+      hops += out.result.links[l].statistics.packets;
+    }
+    EXPECT_EQ(hops, c.hops);
+    std::uint64_t misses = 0;
+    for (const cycle::CacheResult& cache : c.caches) {
+      EXPECT_EQ(cache.lines, cache.hits + cache.merged + cache.misses);
+      misses += cache.misses;
+    }
+    EXPECT_EQ(misses, c.memory_lines);
+    EXPECT_LE(c.memory_busy, c.cycles);
+    EXPECT_LE(c.shading_busy, c.cycles * static_cast<std::uint64_t>(cell.config.shading.workers));
+  }
+  EXPECT_GT(transforms, 0u);
+  EXPECT_GT(jobs, 0u);
+  EXPECT_GT(waited, 0u);
+}
+
+/// Follows a whole run: every ray that is given a slot joins a collection, is handed over and is shaded, in this
+/// order, and no more are under way than there are slots; a packet is out at most once, with one set of rays.
+class Conservation {
+ public:
+  explicit Conservation(std::uint64_t slots) : slots_(slots) {}
+
+  void follow(const cycle::Step& step) {
+    switch (step.kind) {
+      case cycle::StepKind::kPlace: placed_ += step.rays; break;
+      case cycle::StepKind::kNewRays: joined_ += step.rays; break;
+      case cycle::StepKind::kComplete: completed_ += step.rays; break;
+      case cycle::StepKind::kShade: shaded_ += step.rays; break;
+      case cycle::StepKind::kTestedRay: break;
+      case cycle::StepKind::kIssue:
+        ASSERT_TRUE(out_.emplace(step.packet, step.rays).second) << cycle::step_text(step);
+        break;
+      default: {
+        const auto packet = out_.find(step.packet);
+        ASSERT_TRUE(packet != out_.end()) << cycle::step_text(step);
+        if (step.rays == 0) packet->second = 0;   // it carried memberships, and has been to their home
+        ASSERT_EQ(packet->second, step.rays) << cycle::step_text(step);
+        if (step.kind == cycle::StepKind::kRetire) out_.erase(packet);
+      }
+    }
+    ASSERT_TRUE(shaded_ <= completed_ && completed_ <= joined_ && joined_ <= placed_ && placed_ - completed_ <= slots_)
+        << cycle::step_text(step) << ": " << placed_ << " placed, " << joined_ << " joined, " << completed_
+        << " completed, " << shaded_ << " shaded, " << slots_ << " slots";
+  }
+  void expect_all(std::uint64_t rays) const {
+    EXPECT_TRUE(out_.empty());
+    for (const std::uint64_t count : {placed_, joined_, completed_, shaded_}) EXPECT_EQ(count, rays);
+  }
+
+ private:
+  std::uint64_t slots_, placed_ = 0, joined_ = 0, completed_ = 0, shaded_ = 0;
+  std::map<std::uint32_t, std::uint32_t> out_;   // rays by packet
+};
+
+TEST(CycleEngine, ConservesRaysAndPacketsAtEveryStep) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 300, 3);
+  const auto machines = static_cast<std::uint32_t>(cell_count(12));
+  std::size_t epochs = 0;
+  for (std::uint32_t seed = run_seed(); seed < run_seed() + machines; ++seed) {
+    Cell cell = random_cell(seed + 3000);
+    cell.trace = {0, cycle::kNever};
+    const Outcome out = run_cell(scene, cell);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
+    ASSERT_EQ(out.fault, "");
+    Conservation conservation(static_cast<std::uint64_t>(cell.config.rays.slots_per_resource * cell.config.topology.resources));
+    for (const cycle::Step& step : out.result.cycle->steps) ASSERT_NO_FATAL_FAILURE(conservation.follow(step));
+    conservation.expect_all(scene.rays());
+    epochs += out.result.cycle->epochs.digests.size();
+  }
+  EXPECT_GT(epochs, machines);
+}
+
+// Without flow control a small ring fills up. The run must end and say who waits for whom.
+TEST(CycleEngine, StuckRingNamesTheCircle) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 2000, 1);
+  Cell cell;
+  Config& c = cell.config;
+  c.engine.kind = EngineKind::kCycle;
+  c.topology.resources = 4;
+  c.topology.flow = Flow::kNone;
+  c.topology.link.depth = 1;
+  c.packets.rays = c.collections.ready = 4;
+  c.collections.when_full = WhenFull::kSpill;
+  c.memory.fetch_ahead = 16;
+  const std::string fault = run_cell(scene, cell).fault;
+  EXPECT_NE(fault.find("nothing moves any more"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("a circle of waits: resource "), std::string::npos) << fault;
+  EXPECT_NE(fault.find("(first ray "), std::string::npos) << fault;
+  c.topology.flow = Flow::kCredits;
+  EXPECT_EQ(run_cell(scene, cell).fault, "");
+}
+
+}  // namespace
+}  // namespace carousel::ringbus

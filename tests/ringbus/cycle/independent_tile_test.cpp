@@ -1,0 +1,184 @@
+// The conventional machine: latencies to the cycle with a mock cache, memory hidden by other rays, and the work of
+// ordered traversal.
+#include "ringbus/cycle/tile/independent_tile.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/ringbus/support/test_machine.h"
+
+namespace carousel::ringbus::cycle {
+namespace {
+
+/// One independent resource, with a cache that answers every request after the same time.
+class LoneTile {
+ public:
+  LoneTile(TestScene& scene, const Config& config)
+      : config_(config), machine_(config_, scene.accel(config_.bvh), scene.size()), scene_(scene),
+        tile_(ResourceId(0), machine_, true, TraceWindow{}, {&new_rays_, &completed_, &fetch_, &fetched_}) {}
+
+  /// Loads the scene's rays [first, first + count), at cycle 0; `copies` times each.
+  void load(std::size_t first, std::size_t count, int copies = 1) {
+    RayBatch all, rays;
+    scene_.new_workload()->generate(WorkerId(0), first + count, all);
+    for (int i = 0; i < copies; ++i) rays.insert(rays.end(), all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
+    machine_.control.submit(rays);
+    std::vector<RayGroup> groups;
+    machine_.control.collect(ResourceId(0), groups);
+    for (RayGroup& group : groups) new_rays_.send(0, {std::move(group.ids)});
+  }
+
+  void run(Cycle answer) {
+    for (Cycle now; (now = std::min(tile_.next(), fetch_.next())) != kNever;) {
+      while (fetch_.next() <= now) {
+        const Cycle at = fetch_.next();
+        fetched_.send(at + answer, {fetch_.take().tag});
+        ++fetches;
+      }
+      tile_.run(now + 1);
+    }
+    while (completed_.next() != kNever) {
+      last_completed = completed_.next();
+      completed += completed_.take().rays.size();
+    }
+    EXPECT_EQ(tile_.describe(), "");
+    tile_.close(last_completed);
+  }
+
+  TileResult result() const { return tile_.result(); }
+  ResourceStatistics statistics() const { return tile_.statistics(); }
+
+  std::uint64_t fetches = 0, completed = 0;
+  Cycle last_completed = 0;
+
+ private:
+  Config config_;
+  CycleMachine machine_;
+  TestScene& scene_;
+  Channel<NewRays> new_rays_;
+  Channel<CompletedRays> completed_;
+  Channel<FetchRequest> fetch_;
+  Channel<FetchAnswer> fetched_;
+  IndependentTile tile_;
+};
+
+Config independent_machine() {
+  Config c;
+  c.engine.kind = EngineKind::kCycle;
+  c.topology.shape = TopologyShape::kIndependent;
+  c.topology.resources = 1;
+  c.topology.link.latency_cycles = 5;
+  c.topology.link.bytes_per_cycle = 16;
+  c.testers.box = {8, 1, 7};
+  c.testers.triangle = {16, 1, 11};
+  c.testers.transform = {1, 1, 13};
+  c.memory.l2_latency_cycles = 34;
+  return c;
+}
+
+Cycle in_state(const TileResult& tile, TileState state) { return tile.states[static_cast<std::size_t>(state)]; }
+
+TEST(IndependentTile, OneRayTakesTheSumOfItsLatencies) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 50, 1);
+  std::uint64_t transforms = 0;
+  for (std::size_t ray = 0; ray < 20; ++ray) {
+    LoneTile lone(scene, independent_machine());
+    lone.load(ray, 1);
+    lone.run(100);
+    const TileResult tile = lone.result();
+    // Units enough for a strip at once, so a bank is busy for a cycle a strip.
+    const Cycle memory = lone.fetches * (34 / 2 + 100);
+    const Cycle tests = 7 * tile.box.busy + 11 * tile.triangle.busy + 13 * tile.transform.busy;
+    const Cycle record = sizeof(RayRecord) / 16, wire = 5;
+    EXPECT_EQ(lone.completed, 1u);
+    EXPECT_EQ(lone.last_completed, memory + tests + record + wire);
+    EXPECT_EQ(in_state(tile, TileState::kMemory), memory);
+    EXPECT_EQ(in_state(tile, TileState::kTesting), tests);
+    EXPECT_EQ(in_state(tile, TileState::kIdle), record + wire);
+    EXPECT_EQ(lone.statistics().tests.transforms, tile.transform.busy);
+    transforms += tile.transform.busy;
+  }
+  EXPECT_GT(transforms, 0u);
+}
+
+TEST(IndependentTile, AsksForAStripOnceHoweverManyWantIt) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 50, 1);
+  LoneTile one(scene, independent_machine()), ten(scene, independent_machine());
+  one.load(0, 1);
+  one.run(100);
+  ten.load(0, 1, 10);
+  ten.run(100);
+  EXPECT_EQ(ten.completed, 10u);
+  EXPECT_EQ(ten.fetches, one.fetches);
+  EXPECT_EQ(ten.statistics().tests.box, 10 * one.statistics().tests.box);
+  EXPECT_GE(ten.last_completed, one.last_completed);   // nobody has a strip before it is there
+  // The ten take turns in the units: at each strip the last begins nine cycles after the first at most.
+  const Cycle strips = one.result().box.busy + one.result().triangle.busy;
+  EXPECT_LE(ten.last_completed, one.last_completed + 9 * strips + 9 * sizeof(RayRecord) / 16);
+}
+
+TEST(IndependentTile, FewTestsOfSeveralRaysShareACycle) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 50, 1);
+  Config wide = independent_machine();
+  wide.testers.box.units = 80;
+  LoneTile one(scene, wide), ten(scene, wide);
+  one.load(0, 1);
+  one.run(100);
+  ten.load(0, 1, 10);   // all at the same strips at the same time, eight boxes each
+  ten.run(100);
+  EXPECT_EQ(ten.statistics().tests.box, 10 * one.statistics().tests.box);
+  EXPECT_EQ(ten.result().box.busy, one.result().box.busy);
+}
+
+TEST(IndependentTile, OtherRaysHideTheWaitForMemory) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 400, 2);
+  const auto cycles = [&](std::int64_t slots) {
+    Cell cell;
+    cell.config = independent_machine();
+    cell.config.rays.slots_per_resource = slots;
+    cell.config.packets.rays = 1;
+    cell.config.memory.shape_buffer_kib = 1;
+    cell.config.memory.l2_latency_cycles = 300;
+    cell.config.shading.cycles_per_shade = 1;
+    const Outcome out = run_cell(scene, cell);
+    EXPECT_EQ(out.fault, "");
+    return out.result.cycle->cycles;
+  };
+  EXPECT_LT(cycles(64) * 16, cycles(1));
+}
+
+TEST(IndependentTile, TestsWhatOrderedTraversalTests) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
+  Cell cell;
+  cell.config = independent_machine();
+  cell.config.topology.resources = 4;
+  const Outcome independent = run_cell(scene, cell);
+  cell.config.topology.shape = TopologyShape::kRing;
+  cell.config.collections.traversal = Traversal::kOrdered;
+  const Outcome ring = run_cell(scene, cell);
+  ASSERT_EQ(independent.fault + ring.fault, "");
+  EXPECT_EQ(independent.sum.tests.box, ring.sum.tests.box);
+  EXPECT_EQ(independent.sum.tests.triangle, ring.sum.tests.triangle);
+  EXPECT_LE(independent.sum.tests.transforms, ring.sum.tests.transforms);
+  EXPECT_EQ(independent.sum.local_rays, ring.sum.local_rays);
+  EXPECT_EQ(independent.sum.packets_issued + independent.sum.visits + independent.sum.hops, 0u);
+  EXPECT_TRUE(independent.result.links.empty());
+}
+
+TEST(IndependentTile, StackLedgersAddUp) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 600, 0);   // closest hits only
+  Cell cell;
+  cell.config = independent_machine();
+  cell.config.topology.resources = 3;
+  const Outcome out = run_cell(scene, cell);
+  ASSERT_EQ(out.fault, "");
+  for (const TileResult& tile : out.result.cycle->tiles) {
+    EXPECT_GT(tile.stack.pushed_bytes, 0u);
+    EXPECT_EQ(tile.stack.popped_bytes, tile.stack.pushed_bytes);   // no ray leaves before its stack is empty
+    EXPECT_GE(tile.stack.ray_peak_bytes, 4u);
+    EXPECT_GT(tile.stack.peak_bytes, tile.stack.ray_peak_bytes);
+    EXPECT_LE(tile.stack.peak_bytes, tile.stack.pushed_bytes);
+  }
+}
+
+}  // namespace
+}  // namespace carousel::ringbus::cycle

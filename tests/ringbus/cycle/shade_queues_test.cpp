@@ -1,0 +1,97 @@
+// Which worker gets a completed ray.
+#include "ringbus/cycle/shading/shade_queues.h"
+
+#include <gtest/gtest.h>
+
+namespace carousel::ringbus::cycle {
+namespace {
+
+using Distribute = ShadingConfig::Distribute;
+
+RayResult ray_of_path(std::uint32_t path) {
+  RayResult r;
+  r.tag.path = path;
+  return r;
+}
+
+ShadeQueues queues(Distribute distribute, std::int64_t workers) {
+  ShadingConfig config;
+  config.distribute = distribute;
+  config.workers = workers;
+  return ShadeQueues(config, 7);
+}
+
+std::vector<std::uint32_t> paths_of(ShadeQueues& queues, std::uint32_t worker) {
+  std::vector<std::uint32_t> paths;
+  while (const std::optional<RayResult> next = queues.take(worker)) paths.push_back(next->tag.path);
+  return paths;
+}
+
+TEST(ShadeQueues, FifoFillGivesTheOldestToWhoeverAsks) {
+  ShadeQueues q = queues(Distribute::kFifoFill, 3);
+  for (std::uint32_t path = 0; path < 5; ++path) q.push(ray_of_path(path));
+  EXPECT_EQ(q.take(2)->tag.path, 0u);
+  EXPECT_EQ(q.take(0)->tag.path, 1u);
+  EXPECT_EQ(q.take_any()->tag.path, 2u);
+  EXPECT_EQ(q.size(), 2u);
+  EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{3, 4}));
+  EXPECT_TRUE(q.empty());
+  EXPECT_FALSE(q.take_any());
+}
+
+TEST(ShadeQueues, RoundRobinTakesTurns) {
+  ShadeQueues q = queues(Distribute::kRoundRobin, 3);
+  for (std::uint32_t path = 0; path < 7; ++path) q.push(ray_of_path(path));
+  EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{1, 4}));
+  EXPECT_EQ(paths_of(q, 0), (std::vector<std::uint32_t>{0, 3, 6}));
+  EXPECT_EQ(paths_of(q, 0), (std::vector<std::uint32_t>{}));   // not of others
+  EXPECT_EQ(paths_of(q, 2), (std::vector<std::uint32_t>{2, 5}));
+}
+
+TEST(ShadeQueues, LoadCountsWhatIsInHand) {
+  ShadeQueues q = queues(Distribute::kLoad, 3);
+  q.hold(0, 1);
+  q.hold(1, 3);
+  for (std::uint32_t path = 0; path < 5; ++path) q.push(ray_of_path(path));   // 2, then 0 or 2, the first first
+  EXPECT_EQ(paths_of(q, 2), (std::vector<std::uint32_t>{0, 2, 4}));
+  EXPECT_EQ(paths_of(q, 0), (std::vector<std::uint32_t>{1, 3}));
+  EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{}));
+  q.hold(1, 0);
+  q.push(ray_of_path(9));
+  EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{9}));
+}
+
+TEST(ShadeQueues, RandomDependsOnTheRayAlone) {
+  ShadeQueues forward = queues(Distribute::kRandom, 4), backward = queues(Distribute::kRandom, 4);
+  for (std::uint32_t path = 0; path < 4000; ++path) forward.push(ray_of_path(path));
+  for (std::uint32_t path = 4000; path-- > 0;) backward.push(ray_of_path(path));
+  for (std::uint32_t worker = 0; worker < 4; ++worker) {
+    const std::vector<std::uint32_t> paths = paths_of(forward, worker);
+    std::vector<std::uint32_t> others = paths_of(backward, worker);
+    std::reverse(others.begin(), others.end());
+    EXPECT_EQ(paths, others);
+    EXPECT_NEAR(static_cast<double>(paths.size()), 1000, 100);
+  }
+  ShadeQueues kinds = queues(Distribute::kRandom, 4);
+  RayResult shadow = ray_of_path(0);
+  shadow.tag.kind = RayKind::kShadow;
+  for (std::uint8_t bounce = 0; bounce < 100; ++bounce) {
+    shadow.tag.bounce = bounce;
+    kinds.push(shadow);
+  }
+  for (std::uint32_t worker = 0; worker < 4; ++worker) EXPECT_GT(paths_of(kinds, worker).size(), 5u);
+}
+
+TEST(ShadeQueues, HelpersTakeFromTheLongest) {
+  ShadeQueues q = queues(Distribute::kLoad, 2);
+  q.hold(0, 100);
+  for (std::uint32_t path = 0; path < 3; ++path) q.push(ray_of_path(path));
+  q.hold(0, 0);
+  q.push(ray_of_path(3));   // to worker 0, which has none waiting
+  EXPECT_EQ(q.take_any()->tag.path, 0u);
+  EXPECT_EQ(q.take_any()->tag.path, 1u);
+  EXPECT_EQ(q.size(), 2u);
+}
+
+}  // namespace
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,106 @@
+// Agents on several threads: what one thread decides ends all of them.
+#include "ringbus/cycle/time/windows.h"
+
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace carousel::ringbus::cycle {
+namespace {
+
+/// Has something to do in every cycle, and fails in one of them.
+class Ticker final : public Agent {
+ public:
+  explicit Ticker(Cycle fails_at = kNever) : fails_at_(fails_at) {}
+
+  Cycle next() const override { return now_ + 1; }
+  void run(Cycle end) override {
+    while (now_ + 1 < end)
+      if (++now_ == fails_at_) throw std::runtime_error("as planned");
+  }
+  std::string describe() const override { return ""; }
+
+ private:
+  Cycle now_ = 0, fails_at_;
+};
+
+/// One agent a thread, the last of which fails.
+std::vector<std::vector<Agent*>> parts_of(std::vector<std::unique_ptr<Ticker>>& agents, std::size_t threads, Cycle fails_at) {
+  std::vector<std::vector<Agent*>> parts(threads);
+  for (std::size_t t = 0; t < threads; ++t)
+    parts[t].push_back(agents.emplace_back(std::make_unique<Ticker>(t + 1 == threads ? fails_at : kNever)).get());
+  return parts;
+}
+
+// A thread that is told in the middle of a window must not leave before the others, who would wait for it for ever.
+TEST(Windows, AnErrorInOneThreadEndsAllOfThem) {
+  for (const std::size_t threads : {1, 2, 3, 5}) {
+    for (Cycle fails_at = 1; fails_at < 60; ++fails_at) {
+      std::vector<std::unique_ptr<Ticker>> agents;
+      const std::vector<std::vector<Agent*>> parts = parts_of(agents, threads, fails_at);
+      WakeBoard board(parts);
+      EXPECT_THROW(run_windows(parts, board, 1, [](Cycle) { return true; }), std::runtime_error);
+    }
+  }
+}
+
+TEST(Windows, AStopEndsAllThreads) {
+  for (const std::size_t threads : {1, 2, 3, 5}) {
+    for (int i = 0; i < 30; ++i) {
+      std::vector<std::unique_ptr<Ticker>> agents;
+      const std::vector<std::vector<Agent*>> parts = parts_of(agents, threads, kNever);
+      WakeBoard board(parts);
+      EXPECT_LT(run_windows(parts, board, 1, [](Cycle) { return false; }), 10u);
+    }
+  }
+}
+
+/// Sends to another; runs only when it is told.
+class Listener final : public Agent {
+ public:
+  Listener(Channel<int>& in, Channel<int>& out, Cycle latency, bool starts) : in_(in), out_(out), latency_(latency), starts_(starts) {}
+
+  Cycle next() const override { return starts_ ? 1 : in_.next(); }
+  bool polled() const override { return false; }
+  void run(Cycle end) override {
+    for (Cycle now; (now = next()) < end;) {
+      const int value = starts_ ? 0 : in_.take() + 1;
+      starts_ = false;
+      heard_.push_back(now);
+      if (value < 1000) out_.send(now + latency_, value);
+    }
+  }
+  std::string describe() const override { return ""; }
+  const std::vector<Cycle>& heard() const { return heard_; }
+
+ private:
+  Channel<int>& in_;
+  Channel<int>& out_;
+  Cycle latency_;
+  bool starts_;
+  std::vector<Cycle> heard_;
+};
+
+TEST(Windows, WhoIsNotAskedIsWokenInTime) {
+  for (const std::size_t threads : {1, 2}) {
+    Channel<int> there, back;
+    Listener a(back, there, 3, true), b(there, back, 7, false);
+    std::vector<std::vector<Agent*>> parts(threads);
+    parts.front().push_back(&a);
+    parts.back().push_back(&b);
+    WakeBoard board(parts);
+    board.connect(there, a, b);
+    board.connect(back, b, a);
+    run_windows(parts, board, 3, [](Cycle) { return true; });
+    ASSERT_EQ(a.heard().size() + b.heard().size(), 1001u);
+    for (std::size_t i = 0; i < b.heard().size(); ++i) {
+      EXPECT_EQ(a.heard()[i], 1 + 10 * i);
+      EXPECT_EQ(b.heard()[i], 4 + 10 * i);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace carousel::ringbus::cycle

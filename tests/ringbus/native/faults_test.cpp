@@ -1,0 +1,184 @@
+// Faults in a whole machine: they cost time and change no hit.
+#include <gtest/gtest.h>
+
+#include "tests/accel/structure/passing_scenes.h"
+#include "tests/ringbus/identity/factors.h"
+
+namespace carousel::ringbus {
+namespace {
+
+using Kind = FaultsConfig::Resource::Kind;
+
+// Hits and picture do not notice, on either engine, whatever fails.
+TEST(FaultIdentity, FaultsCostTimeAndChangeNoHit) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 200, 2);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
+    for (int fault = 0; fault < 4; ++fault) {
+      SCOPED_TRACE(testing::Message() << "engine " << static_cast<int>(engine) << " fault " << fault);
+      Cell cell;
+      Config& c = cell.config;
+      c.engine.kind = engine;
+      // On a busy machine two threads lose a time slice a loss on a link, or a window: RandomFaults has some of these.
+      cell.threads = engine == EngineKind::kNative && fault >= 2 ? 2 : 1;
+      c.topology.resources = 3;
+      c.topology.link.depth = 4;
+      c.rays.slots_per_resource = 64;
+      if (fault == 0) c.faults.links = {0.02, 0.02, 0.02, 0.02, 0.02, 30};
+      if (fault == 1) c.faults.links.drop = 0.3;
+      if (fault == 2) c.faults.resource = {Kind::kPause, 1, 20, 50'000, 4};
+      if (fault == 3) c.faults.resource = {Kind::kSlow, 2, 0, 1, 20};
+      const auto outcome = run_cell(scene, cell);
+      EXPECT_EQ(outcome.fault, "");
+    }
+}
+
+/// A machine of which one resource stops after some rays.
+Cell with_a_stop(EngineKind engine, std::int64_t resources, std::int64_t number, std::int64_t after) {
+  Cell cell;
+  Config& c = cell.config;
+  c.engine.kind = engine;
+  cell.threads = engine == EngineKind::kNative ? 2 : 1;
+  c.topology.resources = resources;
+  c.topology.link.depth = 4;
+  c.rays.slots_per_resource = 64;
+  c.faults.resource.kind = Kind::kStop;
+  c.faults.resource.number = number;
+  c.faults.resource.after_rays = after;
+  return cell;
+}
+
+/// As run_cell(), and with the machine's own way to begin again having been taken.
+void expect_recovery(TestScene& scene, const Cell& cell) {
+  const Outcome out = run_cell(scene, cell);
+  EXPECT_EQ(out.fault, "");
+  EXPECT_GT(out.result.rays_restarted, 0u);
+  EXPECT_GT(out.result.paths_restarted, 0u);
+  if (cell.config.engine.kind == EngineKind::kNative) {
+    EXPECT_GT(out.result.recovery_seconds, 0);
+    return;
+  }
+  if (out.fault != "") return;
+  ASSERT_TRUE(out.result.cycle->stop.has_value());
+  const cycle::StopLedger& stop = *out.result.cycle->stop;
+  EXPECT_EQ(stop.resource, cell.config.faults.resource.number);
+  // Word of it, the silence, and at least the way to the resources and back.
+  const auto latency = static_cast<cycle::Cycle>(cell.config.topology.link.latency_cycles);
+  EXPECT_EQ(stop.noticed, stop.stopped + latency + static_cast<cycle::Cycle>(cell.config.faults.resource.silence_cycles));
+  EXPECT_GE(stop.restarted, stop.noticed + 2 * latency);
+  EXPECT_LT(stop.restarted, out.result.cycle->cycles);
+}
+
+TEST(StoppedResource, ItsRaysBeginAgainElsewhereAndNothingChanges) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 400, 2);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
+    for (const Traversal traversal : {Traversal::kSpread, Traversal::kOrdered, Traversal::kTreelet})
+      for (const TopologyShape shape : {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint,
+                                        TopologyShape::kMultiRing, TopologyShape::kHierarchical, TopologyShape::kBus}) {
+        // The native engine waits a tenth of a second each time.
+        if (engine == EngineKind::kNative && (shape > TopologyShape::kBidirectional || traversal == Traversal::kTreelet)) continue;
+        Cell cell = with_a_stop(engine, shape == TopologyShape::kRing ? 2 : 4, 1, 30);
+        cell.config.collections.traversal = traversal;
+        cell.config.topology.shape = shape;
+        SCOPED_TRACE(cell.text());
+        expect_recovery(scene, cell);
+      }
+}
+
+TEST(StoppedResource, WithBundlesHashedHomesAndTravellingRays) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 300, 2);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
+    for (int what = 0; what < 6; ++what) {
+      const std::int64_t resources = what == 2 ? 2 : 3;
+      Cell cell = with_a_stop(engine, resources, resources - 1, 20);
+      Config& c = cell.config;
+      if (what == 0) {
+        c.bundles.size = 4;
+      } else if (what == 1 || what == 2) {
+        c.collections.home = Home::kHash;
+        c.collections.when_full = WhenFull::kSpill;
+      } else if (what == 3) {
+        c.collections.home = Home::kLocal;
+      } else {
+        if (engine == EngineKind::kCycle) continue;   // rays do not travel there
+        c.rays.placement = what == 4 ? Placement::kFirstTaker : Placement::kAddressed;
+      }
+      SCOPED_TRACE(cell.text());
+      expect_recovery(scene, cell);
+    }
+}
+
+TEST(StoppedResource, OverFailingLinksToo) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 200, 2);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle}) {
+    Cell cell = with_a_stop(engine, 3, 0, 10);
+    cell.config.faults.links.drop = 0.1;
+    cell.config.rays.placement = Placement::kRoundRobin;
+    expect_recovery(scene, cell);
+  }
+}
+
+TEST(StoppedResource, MayHaveBeenShadingOrWaitingForOpacity) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 400, 2);
+  Cell cell = with_a_stop(EngineKind::kCycle, 3, 1, 10);
+  cell.config.shading.idle_resources_shade = true;
+  cell.config.shading.cycles_per_shade = 3000;   // so that all help
+  cell.config.shading.workers = 1;
+  cell.config.faults.resource.silence_cycles = 500;
+  expect_recovery(scene, cell);
+}
+
+// Where few workers answer slowly, many rays wait for an answer at any time, those of the one that stops among them.
+TEST(StoppedResource, MayHaveQuestionsOpen) {
+  const accel::HashedStop stop(0.4);
+  TestScene scene(accel::passing_scene(BuiltinScene::kSpheres, 20, run_seed()), 200, 3, 0.5f, {}, &stop);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
+    for (const std::int64_t after : {5, 20, 60}) {
+      SCOPED_TRACE(testing::Message() << "CAROUSEL_SEED=" << run_seed() << " engine " << static_cast<int>(engine) << " after " << after);
+      Cell cell = with_a_stop(engine, 3, 1, after);
+      cell.config.testers.any_hit = TestersConfig::AnyHit::kShader;
+      cell.config.shading.workers = 1;
+      cell.config.shading.cycles_per_any_hit = 200;
+      cell.config.faults.resource.silence_cycles = 500;
+      expect_recovery(scene, cell);
+    }
+}
+
+// The same whatever the host's threads do.
+TEST(StoppedResource, UnderVirtualTimeIsTheSameForAnyNumberOfThreads) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 400, 2);
+  Cell cell = with_a_stop(EngineKind::kCycle, 4, 2, 25);
+  cell.threads = 1;
+  const Outcome one = run_cell(scene, cell);
+  cell.threads = 3;
+  const Outcome three = run_cell(scene, cell);
+  EXPECT_EQ(one.fault + three.fault, "");
+  EXPECT_EQ(one.result.cycle, three.result.cycle);
+  EXPECT_EQ(one.result.rays_restarted, three.result.rays_restarted);
+  EXPECT_EQ(one.result.packets_discarded, three.result.packets_discarded);
+}
+
+TEST(StoppedResource, WhenAllIsDoneIsNotWaitedFor) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 50, 1);
+  Cell cell = with_a_stop(EngineKind::kCycle, 2, 1, 1'000'000'000);
+  const Outcome never = run_cell(scene, cell);
+  ASSERT_EQ(never.fault, "");
+  // Once it has completed its last ray.
+  cell.config.faults.resource.after_rays = static_cast<std::int64_t>(never.result.resources[1].rays_completed);
+  const Outcome late = run_cell(scene, cell);
+  EXPECT_EQ(late.fault, "");
+  EXPECT_LT(late.result.cycle->cycles, never.result.cycle->cycles + 1000);
+}
+
+TEST(StoppedResource, WithoutRecoveryTheRunSaysWhatIsMissing) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 200, 1);
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle}) {
+    Cell cell = with_a_stop(engine, 3, 2, 10);
+    cell.config.faults.resource.recover = false;
+    const Outcome out = run_cell(scene, cell);
+    EXPECT_NE(out.fault.find("resource 2 stopped and faults.resource.recover is off: "), std::string::npos) << out.fault;
+    EXPECT_NE(out.fault.find(" rays are missing, of paths "), std::string::npos) << out.fault;
+  }
+}
+
+}  // namespace
+}  // namespace carousel::ringbus

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "core/config/config.h"
+
+namespace carousel::ringbus {
+
+/// The queues a test may use. ThreadSanitizer reports Debian's TBB, whose inside it cannot see, and moodycamel's
+/// queue, whose atomic fences it does not model.
+inline std::vector<QueueKind> queue_kinds() {
+#ifdef __SANITIZE_THREAD__
+  return {QueueKind::kSpscRing, QueueKind::kMpmcRing, QueueKind::kAtomicQueue, QueueKind::kBoostSpsc, QueueKind::kMutex};
+#else
+  return {QueueKind::kSpscRing, QueueKind::kMpmcRing, QueueKind::kTbbBounded, QueueKind::kMoodycamel,
+          QueueKind::kAtomicQueue, QueueKind::kBoostSpsc, QueueKind::kMutex};
+#endif
+}
+
+}  // namespace carousel::ringbus

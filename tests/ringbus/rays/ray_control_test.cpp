@@ -1,0 +1,193 @@
+#include "ringbus/rays/ray_control.h"
+
+#include <map>
+#include <random>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace carousel::ringbus {
+namespace {
+
+struct Bench {
+  Config config;
+  std::vector<std::unique_ptr<RayStore>> stores;
+  std::unique_ptr<RayControl> control;
+
+  Bench(Placement placement, Home home, std::int64_t resources, std::int64_t slots, std::int64_t packet_rays) {
+    config.rays.placement = placement;
+    config.collections.home = home;
+    config.topology.resources = resources;
+    config.rays.slots_per_resource = slots;
+    config.packets.rays = packet_rays;
+    for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(resources); ++r)
+      stores.push_back(std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(slots)));
+    control = std::make_unique<RayControl>(config, stores, 1, 1.0f);
+  }
+  std::vector<RayGroup> collect(std::uint32_t resource) {
+    std::vector<RayGroup> groups;
+    control->collect(ResourceId(resource), groups);
+    return groups;
+  }
+  ResourceId owner(RayId id) const { return stores[0]->layout().owner(id); }
+  std::uint32_t path(RayId id) const {
+    RayStore& store = *stores[owner(id).value];
+    return store.record(store.slot(id)).tag.path;
+  }
+  /// All groups of all resources: (issuer, group).
+  std::vector<std::pair<std::uint32_t, RayGroup>> collect_all() {
+    std::vector<std::pair<std::uint32_t, RayGroup>> out;
+    for (std::uint32_t r = 0; r < stores.size(); ++r)
+      for (RayGroup& group : collect(r)) out.emplace_back(r, std::move(group));
+    return out;
+  }
+};
+
+RayBatch rays(std::uint32_t count, std::uint32_t first = 0) {
+  RayBatch batch(count);
+  for (std::uint32_t i = 0; i < count; ++i) batch[i].tag.path = first + i;
+  return batch;
+}
+
+TEST(RayControl, BalancedSpreadsEachGroupInEqualRuns) {
+  Bench bench(Placement::kBalanced, Home::kIssuer, 4, 64, 32);
+  bench.control->submit(rays(64));
+  std::map<std::uint32_t, int> at;
+  const auto groups = bench.collect_all();
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_NE(groups[0].first, groups[1].first);   // issued by different resources
+  for (const auto& [issuer, group] : groups) {
+    ASSERT_EQ(group.ids.size(), 32u);
+    std::map<std::uint32_t, std::vector<std::uint32_t>> paths;
+    for (const RayId id : group.ids) paths[bench.owner(id).value].push_back(bench.path(id));
+    ASSERT_EQ(paths.size(), 4u);
+    for (const auto& [owner, run] : paths) {
+      ASSERT_EQ(run.size(), 8u);
+      EXPECT_EQ(run.back() - run.front(), 7u);   // neighbours stay together
+    }
+  }
+}
+
+TEST(RayControl, RoundRobinDealsRaysOneByOne) {
+  Bench bench(Placement::kRoundRobin, Home::kIssuer, 3, 64, 6);
+  bench.control->submit(rays(6));
+  const auto groups = bench.collect_all();
+  ASSERT_EQ(groups.size(), 1u);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_EQ(bench.owner(groups[0].second.ids[i]).value, (bench.owner(groups[0].second.ids[0]).value + i) % 3);
+}
+
+TEST(RayControl, LocalHomeKeepsAGroupWhereItIsIssued) {
+  for (const Placement placement : {Placement::kBalanced, Placement::kRoundRobin}) {
+    Bench bench(placement, Home::kLocal, 4, 64, 16);
+    bench.control->submit(rays(128));
+    std::map<std::uint32_t, int> at;
+    for (const auto& [issuer, group] : bench.collect_all()) {
+      for (const RayId id : group.ids) EXPECT_EQ(bench.owner(id).value, issuer);
+      ++at[issuer];
+    }
+    for (std::uint32_t r = 0; r < 4; ++r) EXPECT_EQ(at[r], 2);
+  }
+}
+
+TEST(RayControl, FirstTakerAndAddressedSendTheRaysThemselves) {
+  for (const Placement placement : {Placement::kFirstTaker, Placement::kAddressed}) {
+    Bench bench(placement, Home::kIssuer, 4, 64, 16);
+    EXPECT_TRUE(bench.control->rays_travel());
+    bench.control->submit(rays(32));
+    std::size_t total = 0;
+    for (const auto& [issuer, group] : bench.collect_all()) {
+      EXPECT_TRUE(group.ids.empty());
+      total += group.rays.size();
+      EXPECT_EQ(group.addresses.size(), placement == Placement::kAddressed ? group.rays.size() : 0u);
+      std::map<std::uint32_t, int> addressed;
+      for (const ResourceId r : group.addresses) ++addressed[r.value];
+      for (const auto& [resource, count] : addressed) EXPECT_EQ(count, 4);
+    }
+    EXPECT_EQ(total, 32u);
+    EXPECT_EQ(bench.control->free_slots(), 4 * 64u);
+  }
+}
+
+TEST(RayControl, GivesEverySlotOnceUntilItIsFreed) {
+  Bench bench(Placement::kFirstTaker, Home::kIssuer, 2, 5, 4);
+  for (int round = 0; round < 3; ++round) {
+    std::set<std::uint32_t> slots;
+    while (const auto id = bench.control->load(ResourceId(1), RayRequest{}))
+      EXPECT_TRUE(slots.insert(bench.stores[1]->slot(*id)).second);
+    EXPECT_EQ(slots.size(), 5u);
+    EXPECT_EQ(bench.control->free_slots(ResourceId(1)), 0u);
+    EXPECT_EQ(bench.control->free_slots(ResourceId(0)), 5u);
+    const std::vector<std::uint32_t> freed(slots.begin(), slots.end());
+    for (const std::uint32_t slot : freed) bench.stores[1]->retire(slot);
+    bench.control->free(ResourceId(1), freed);
+  }
+  EXPECT_EQ(bench.control->slots_used(), 15u);
+}
+
+TEST(RayControl, RaysWaitForSlotsInTheirOrder) {
+  Bench bench(Placement::kBalanced, Home::kIssuer, 2, 2, 4);
+  bench.control->submit(rays(10));
+  bench.control->submit(rays(3, 10));   // behind those that wait
+  std::vector<std::uint32_t> order;
+  for (int round = 0; round < 20; ++round) {
+    for (const auto& [issuer, group] : bench.collect_all()) {
+      for (const RayId id : group.ids) {
+        order.push_back(bench.path(id));
+        RayStore& store = *bench.stores[bench.owner(id).value];
+        const std::uint32_t slot = store.slot(id);
+        store.retire(slot);
+        bench.control->free(bench.owner(id), {&slot, 1});
+      }
+    }
+    bench.control->place_waiting();
+  }
+  ASSERT_EQ(order.size(), 13u);
+  for (std::uint32_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i);
+  EXPECT_GT(bench.control->slot_waits(), 0u);
+  EXPECT_FALSE(bench.control->place_waiting());
+}
+
+// Every ray that is submitted comes out once, in a slot nobody else has, whatever is freed when.
+TEST(RayControl, LosesAndDoublesNothingUnderRandomCalls) {
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::minstd_rand random(seed);
+    Bench bench(static_cast<Placement>(seed % 2), static_cast<Home>(seed / 2 % 3), 1 + random() % 6, 1 + random() % 20,
+                1 + random() % 9);
+    std::uint32_t submitted = 0;
+    std::set<std::uint32_t> seen;
+    std::set<std::pair<std::uint32_t, std::uint32_t>> in_use;
+    for (int i = 0; i < 500 || seen.size() < submitted; ++i) {
+      ASSERT_LT(i, 20000) << "rays wait for ever";
+      if (i < 400 && random() % 3 == 0) {
+        const std::uint32_t n = random() % 30;
+        bench.control->submit(rays(n, submitted));
+        submitted += n;
+      }
+      bench.control->place_waiting();
+      for (const auto& [issuer, group] : bench.collect_all()) {
+        EXPECT_LE(group.ids.size(), static_cast<std::size_t>(bench.config.packets.rays));
+        for (const RayId id : group.ids) {
+          ASSERT_TRUE(seen.insert(bench.path(id)).second);
+          ASSERT_TRUE(in_use.insert({bench.owner(id).value, bench.stores[0]->layout().slot(id)}).second);
+        }
+      }
+      for (auto it = in_use.begin(); it != in_use.end();) {
+        if (random() % 3) {
+          ++it;
+          continue;
+        }
+        bench.stores[it->first]->retire(it->second);
+        bench.control->free(ResourceId(it->first), {&it->second, 1});
+        it = in_use.erase(it);
+      }
+      ASSERT_EQ(bench.control->free_slots() + in_use.size(),
+                static_cast<std::size_t>(bench.config.topology.resources * bench.config.rays.slots_per_resource));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace carousel::ringbus

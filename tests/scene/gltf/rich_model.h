@@ -1,0 +1,17 @@
+#pragma once
+
+#include "tests/scene/gltf/model_files.h"
+
+namespace carousel::scene {
+
+/// A small file that uses every feature of the importer.
+GltfBuilder every_feature();
+
+/// The same with some hundred triangles more, in two buffers and an image of their own beside the .gltf, with
+/// instances by the dozen and what is read for its indices only: skins, animations, morph targets.
+ModelFiles rich_model();
+
+/// The Khronos sample in tests/data: what a modelling program leaves.
+ModelFiles sample_model();
+
+}  // namespace carousel::scene
