@@ -3,15 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/structure/bounding_spheres.h"
+#include "accel/structure/node_spheres.h"
 #include "accel/structure/cull_plane.h"
 #include "accel/structure/node.h"
 #include "accel/transform/transform.h"
 #include "core/types/aabb.h"
 #include "core/types/any_hit.h"
 #include "core/config/config.h"
-#include "core/system/executor.h"
-#include "scene/model/scene.h"
 
 namespace carousel::accel {
 
@@ -63,10 +61,5 @@ struct Accel {
   /// Triangles below `key`.
   std::uint32_t triangles_below(NodeKey key) const;
 };
-
-/// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
-/// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
-Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
-            const AccuracyConfig& accuracy = {}, const CullPlanesConfig& planes = {});
 
 }  // namespace carousel::accel

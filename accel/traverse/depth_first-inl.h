@@ -101,7 +101,7 @@ template <class Registers>
 HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Vec3& origin, const Vec3& direction,
                                        const Registers& ray, float tmin, float tmax, float* entry, std::uint64_t& tested) {
   const Node& node = accel.nodes[ref.node()];
-  std::uint32_t met = meet_spheres(accel.spheres[ref.node()], node.count, origin, direction, tmin, tmax, entry);
+  std::uint32_t met = intersect_spheres(accel.spheres[ref.node()], node.count, origin, direction, tmin, tmax, entry);
   if (!node.above_instances || met == 0) return met;
   std::uint32_t instances = 0;
   for (int lane = 0; lane < node.count; ++lane) instances |= std::uint32_t{node.child[lane].is_instance()} << lane;

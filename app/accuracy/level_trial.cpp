@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "accel/build/build.h"
 #include "app/accuracy/exact_answers.h"
 #include "app/run/ray_list_workload.h"
 #include "core/config/validate.h"

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "accel/build/build.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/reference_tracer.h"
 #include "bench/fewer_tests/fewer_tests.h"

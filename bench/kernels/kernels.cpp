@@ -8,6 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "accel/build/build.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/ray_check.h"
 #include "accel/box/slab.h"

@@ -6,6 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "accel/build/build.h"
 #include "bench/queues/queue_benchmarks.h"
 #include "bench/common/ring_runner.h"
 #include "bench/common/scenes.h"

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "accel/build/build.h"
 #include "bench/rays/build_times.h"
 #include "bench/rays/contestants.h"
 #include "bench/common/machine_info.h"

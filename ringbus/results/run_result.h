@@ -9,7 +9,10 @@
 
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/cycle_result.h"
-#include "ringbus/native/link.h"
+#include "ringbus/faults/link_fault_counts.h"
+#include "ringbus/results/link_statistics.h"
+#include "ringbus/results/occupancy_series.h"
+#include "core/types/ids.h"
 #include "ringbus/packets/statistics_sink.h"
 
 namespace carousel::ringbus {

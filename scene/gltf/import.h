@@ -2,18 +2,14 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <span>
-#include <vector>
 #include <string>
 
+#include "scene/model/image_choice.h"
 #include "scene/model/scene.h"
 #include "scene/model/warnings.h"
 
 namespace carousel::scene {
-
-/// Which images of a scene are worth decoding, one entry an image, asked when all but their pixels is there.
-using ImageChoice = std::function<std::vector<bool>(const Scene&)>;
 
 /// Reads a glTF 2.0 file (.gltf or .glb, told apart by content). The scene's sky is black; the caller sets
 /// it. Images that `images` does not want are not even looked for; without it all that a material names are decoded.

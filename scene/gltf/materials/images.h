@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "scene/gltf/buffers/buffers.h"
-#include "scene/gltf/import.h"
 #include "scene/gltf/buffers/model.h"
+#include "scene/model/image_choice.h"
 #include "scene/model/scene.h"
 
 namespace carousel::scene {

@@ -1,4 +1,5 @@
 // What the finished two-level structure promises to whoever walks it.
+#include "accel/build/build.h"
 #include "accel/structure/accel.h"
 
 #include <cstring>

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "accel/build/build.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {

@@ -2,6 +2,7 @@
 // wherever it is asked.
 #include <gtest/gtest.h>
 
+#include "accel/build/build.h"
 #include "accel/traverse/brute_force.h"
 #include "tests/accel/structure/passing_scenes.h"
 #include "tests/ringbus/identity/factors.h"

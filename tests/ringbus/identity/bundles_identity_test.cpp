@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "accel/build/build.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/ringbus/identity/factors.h"
 #include "tests/ringbus/identity/identity_cells.h"

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "accel/build/build.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/exact_reference.h"
 #include "accel/traverse/reference_tracer.h"

@@ -1,6 +1,7 @@
 // The same with real shading: one hits digest and one image digest a scene, whatever the machine.
 #include <gtest/gtest.h>
 
+#include "accel/build/build.h"
 #include "shading/tracer/path_tracer.h"
 #include "tests/ringbus/identity/factors.h"
 

@@ -1,4 +1,5 @@
 // How a run ends: to its end, early, stuck, or with somebody's exception.
+#include "accel/build/build.h"
 #include "ringbus/native/native_engine.h"
 
 #include <stdexcept>

@@ -1,4 +1,5 @@
 // What the transform unit is charged with: never a bit of a hit, but tests, cycles and bytes.
+#include "accel/build/build.h"
 #include "ringbus/resource/transform_account.h"
 
 #include <gtest/gtest.h>

@@ -1,15 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "accel/structure/node.h"
-#include "core/system/executor.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
-
-struct Accel;
 
 /// Spheres around what stands below the lanes of a node, instead of its boxes (`bvh.elements: spheres`).
 struct alignas(64) NodeSpheres {
@@ -17,10 +13,6 @@ struct alignas(64) NodeSpheres {
   float radius[kMaxWidth];
 };
 static_assert(sizeof(NodeSpheres) == 128);
-
-/// One a node: around the middle of a child's box, as small as goes with the boxes of all primitives below it (of all
-/// instances, above these).
-std::vector<NodeSpheres> bounding_spheres(const Accel& accel, Executor& executor);
 
 /// Bit l when the ray may meet something below lane l before `tmax`; entries of these lanes are stored, not below tmin,
 /// and no hit below is nearer.
@@ -30,7 +22,7 @@ std::vector<NodeSpheres> bounding_spheres(const Accel& accel, Executor& executor
 /// lies between the origin and the box's far end along each axis. So a sphere around the box, its radius moved out by
 /// 2^-18 of the way to its own far side, is met by the exact line, and entered no later. The arithmetic is double, whose
 /// rounding is nothing beside that. `direction` may have any length. Any thread.
-std::uint32_t meet_spheres(const NodeSpheres& spheres, int count, const Vec3& origin, const Vec3& direction, float tmin,
+std::uint32_t intersect_spheres(const NodeSpheres& spheres, int count, const Vec3& origin, const Vec3& direction, float tmin,
                            float tmax, float* entry);
 
 }  // namespace carousel::accel

@@ -1,0 +1,215 @@
+#include "accel/build/build.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "accel/build/blas.h"
+#include "accel/build/bounding_spheres.h"
+#include "accel/planes/cull_planes.h"
+#include "accel/build/sah_build.h"
+#include "core/system/error.h"
+#include "scene/model/opacity.h"
+
+namespace carousel::accel {
+
+namespace {
+
+/// A BLAS and where its arrays start in the joint ones.
+struct PlacedBlas {
+  Blas blas;
+  std::uint32_t first_node = 0, first_block = 0;
+
+  NodeRef place(NodeRef ref) const {
+    if (ref.is_inner()) return NodeRef::inner(ref.node() + first_node);
+    const std::uint32_t block = ref.first_block() + first_block;
+    return ref.is_procedural() ? NodeRef::procedural(block, ref.triangles()) : NodeRef::leaf(block, ref.triangles());
+  }
+};
+
+/// The mesh as its instance stands in the world, for transforms that have no inverse.
+scene::Mesh bake(const scene::Mesh& mesh, const scene::Affine& m) {
+  scene::Mesh out;
+  out.indices = mesh.indices;
+  out.triangle_materials = mesh.triangle_materials;
+  out.colors = mesh.colors;
+  out.positions.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) out.positions.push_back(m.linear * p + m.translation);
+  return out;
+}
+
+class AccelBuilder {
+ public:
+  AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
+               const CullPlanesConfig& planes)
+      : scene_(scene), config_(config), executor_(executor), planes_(planes) {
+    accel_.width = static_cast<int>(config.width);
+    accel_.accuracy = accuracy;
+  }
+
+  Accel run() {
+    place_instances();
+    build_blases();
+    join_blases();
+    const std::size_t first_of_top = accel_.nodes.size();
+    build_tlas();
+    for (std::size_t i = first_of_top; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
+    for (const TriangleBlock& block : accel_.blocks)
+      for (const std::uint32_t primitive : block.primitive)
+        accel_.may_pass |= primitive != kNoPrimitive && (primitive & kAskBit) != 0;
+    for (const scene::Instance& instance : scene_.instances)
+      accel_.procedural_primitives |= !scene_.meshes[instance.mesh.value].spheres.empty();
+    mix_nodes();
+    if (config_.elements == BvhConfig::Elements::kSpheres) accel_.spheres = bounding_spheres(accel_, executor_);
+    add_cull_planes(accel_, scene_, planes_, executor_);
+    return std::move(accel_);
+  }
+
+ private:
+  // Which BLAS each instance uses: its mesh's, or one of its own when it must be baked.
+  void place_instances() {
+    accel_.instances.resize(scene_.instances.size());
+    blas_of_.resize(scene_.instances.size());
+    std::vector<std::optional<std::uint32_t>> blas_of_mesh(scene_.meshes.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+      const scene::Instance& instance = scene_.instances[i];
+      const scene::Mesh& mesh = scene_.meshes[instance.mesh.value];
+      if (make_transform(instance.world_from_model, accel_.instances[i].transform, accel_.accuracy.transform)) {
+        auto& shared = blas_of_mesh[instance.mesh.value];
+        if (!shared) {
+          shared = static_cast<std::uint32_t>(sources_.size());
+          sources_.push_back(&mesh);
+        }
+        blas_of_[i] = *shared;
+      } else {
+        if (!mesh.spheres.empty())
+          throw SceneError(scene_.name, "", "instance " + std::to_string(i) + " flattens a sphere: its transform has no inverse");
+        accel_.instances[i].transform = InstanceTransform{};
+        baked_.push_back(std::make_unique<scene::Mesh>(bake(mesh, instance.world_from_model)));
+        blas_of_[i] = static_cast<std::uint32_t>(sources_.size());
+        sources_.push_back(baked_.back().get());
+        ++accel_.baked_instances;
+      }
+    }
+  }
+
+  void build_blases() {
+    const scene::Opacity opacity(scene_);
+    blases_.resize(sources_.size());
+    executor_.parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) blases_[i].blas = build_blas(*sources_[i], opacity, config_, executor_);
+    });
+  }
+
+  void join_blases() {
+    std::size_t nodes = 0, blocks = 0;
+    for (PlacedBlas& placed : blases_) {
+      placed.first_node = static_cast<std::uint32_t>(nodes);
+      placed.first_block = static_cast<std::uint32_t>(blocks);
+      nodes += placed.blas.nodes.size();
+      blocks += placed.blas.blocks.size();
+      if (nodes + 2 * scene_.instances.size() >= kMaxNodes || blocks >= kMaxBlocks)
+        throw SceneError(scene_.name, "", "has more triangles than the acceleration structure can name");
+    }
+    if (blases_.size() == 1) {
+      accel_.nodes = std::move(blases_[0].blas.nodes);
+      accel_.blocks = std::move(blases_[0].blas.blocks);
+      return;
+    }
+    accel_.nodes.reserve(nodes);
+    accel_.blocks.reserve(blocks);
+    for (PlacedBlas& placed : blases_) {
+      for (Node& node : placed.blas.nodes) {
+        for (int lane = 0; lane < node.count; ++lane) node.child[lane] = placed.place(node.child[lane]);
+        accel_.nodes.push_back(node);
+      }
+      accel_.blocks.insert(accel_.blocks.end(), placed.blas.blocks.begin(), placed.blas.blocks.end());
+      placed.blas.nodes = {};
+      placed.blas.blocks = {};
+    }
+  }
+
+  void build_tlas() {
+    std::vector<BuildPrimitive> primitives;
+    int blas_depth = 0;
+    for (std::size_t i = 0; i < accel_.instances.size(); ++i) {
+      const PlacedBlas& placed = blases_[blas_of_[i]];
+      if (placed.blas.tree.triangles == 0) continue;
+      InstanceNode& node = accel_.instances[i];
+      node.root = placed.place(placed.blas.tree.root);
+      node.strip_size = placed.blas.tree.root_strip_size;
+      node.triangles = placed.blas.tree.triangles;
+      const bool baked = sources_[blas_of_[i]] != &scene_.meshes[scene_.instances[i].mesh.value];
+      node.world = baked ? placed.blas.box
+                         : world_box(scene_.instances[i].world_from_model, placed.blas.box, accel_.accuracy.transform);
+      blas_depth = std::max(blas_depth, placed.blas.tree.depth);
+      BuildPrimitive p;
+      p.lo = node.world.lo;
+      p.hi = node.world.hi;
+      p.index = static_cast<std::uint32_t>(i);
+      primitives.push_back(p);
+    }
+    int tlas_depth = 1;
+    if (primitives.size() <= 1) {
+      accel_.root = {kNoInstance, NodeRef::inner(static_cast<std::uint32_t>(accel_.nodes.size()))};
+      accel_.nodes.emplace_back();
+      if (!primitives.empty()) add_only_child(accel_.nodes.back(), primitives[0].index);
+    } else {
+      const std::vector<BinaryNode> binary = build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1},
+                                                       executor_);
+      const auto make_leaf = [&](const BinaryNode& leaf) {
+        const std::uint32_t index = primitives[leaf.first].index;
+        const InstanceNode& node = accel_.instances[index];
+        return WideLeaf{NodeRef::instance(index), node.strip_size, node.triangles};
+      };
+      const WideTree tree = collapse(binary, accel_.width, make_leaf, accel_.nodes);
+      accel_.root = {kNoInstance, tree.root};
+      tlas_depth = tree.depth;
+    }
+    accel_.max_depth = tlas_depth + blas_depth;
+  }
+
+  // Small leaves are tested where their boxes would be.
+  void mix_nodes() {
+    const auto most = static_cast<std::uint32_t>(config_.mixed_triangles);
+    for (Node& node : accel_.nodes)
+      for (int lane = 0; lane < node.count; ++lane)
+        if (const NodeRef child = node.child[lane]; !child.is_inner() && !child.is_instance() && child.triangles() <= most)
+          node.direct |= static_cast<std::uint8_t>(1u << lane);
+  }
+
+  void add_only_child(Node& root, std::uint32_t instance) {
+    const InstanceNode& node = accel_.instances[instance];
+    // Without a transform the world box is the union of the boxes below it: passing one of those implies it, no
+    // earlier entered, so it decides nothing and rays may start below it.
+    if (node.transform.identity) accel_.root = {instance, node.root};
+    root.count = 1;
+    root.triangles = node.triangles;
+    root.child[0] = NodeRef::instance(instance);
+    root.strip_size[0] = node.strip_size;
+    for (int axis = 0; axis < 3; ++axis) {
+      root.plane[axis][0] = node.world.lo[axis];
+      root.plane[axis + 3][0] = node.world.hi[axis];
+    }
+  }
+
+  const scene::Scene& scene_;
+  const BvhConfig& config_;
+  Executor& executor_;
+  const CullPlanesConfig& planes_;
+  Accel accel_;
+  std::vector<const scene::Mesh*> sources_;   // one a BLAS
+  std::vector<std::unique_ptr<scene::Mesh>> baked_;
+  std::vector<std::uint32_t> blas_of_;        // one an instance
+  std::vector<PlacedBlas> blases_;
+};
+
+}  // namespace
+
+Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
+            const CullPlanesConfig& planes) {
+  return AccelBuilder(scene, config, executor, accuracy, planes).run();
+}
+
+}  // namespace carousel::accel

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "core/system/executor.h"
+#include "scene/model/scene.h"
+
+namespace carousel::accel {
+
+/// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
+/// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
+Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
+            const AccuracyConfig& accuracy = {}, const CullPlanesConfig& planes = {});
+
+}  // namespace carousel::accel
