@@ -17,14 +17,13 @@ std::filesystem::path find_file(const std::string& name, const std::filesystem::
   const std::filesystem::path beside = config_dir / name;
   if (std::filesystem::is_regular_file(beside, ignored)) return beside;
   if (std::filesystem::is_regular_file(name, ignored)) return name;
-  throw SceneError(name, "",
-                   "no such file; looked in '" + config_dir.string() + "' and in the working directory");
+  throw SceneError(name, "", "no such file; looked in '" + config_dir.string() + "' and in the working directory");
 }
 
 }  // namespace
 
-Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir,
-                 const WarningSink& warn, const ImageChoice& images) {
+Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn,
+                 const ImageChoice& images) {
   if (config.file.empty() == !config.builtin.has_value()) {
     throw ConfigError({{{}, "scene", "expected exactly one of file and builtin"}});
   }
@@ -37,8 +36,8 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
   if (config.camera < 0 || config.camera >= cameras) {
     throw ConfigError({{{},
                         "scene.camera",
-                        "expected 0 to " + std::to_string(cameras - 1) +
-                            " (the cameras of this scene), found " + std::to_string(config.camera)}});
+                        "expected 0 to " + std::to_string(cameras - 1) + " (the cameras of this scene), found " +
+                            std::to_string(config.camera)}});
   }
   if (!config.builtin && !config.sky && !has_light(scene)) {
     scene.lights.push_back(key_light(scene.cameras[static_cast<std::size_t>(config.camera)]));

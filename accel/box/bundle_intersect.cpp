@@ -136,7 +136,8 @@ Verdicts verdicts(Form& form, const Node& node, int first, std::uint32_t lanes, 
       const std::uint32_t all = hit_among(lanes);
       return {all, lanes & ~all};
     }
-    case Order::kAnyHitOnly: return {possible_among(lanes), 0};
+    case Order::kAnyHitOnly:
+      return {possible_among(lanes), 0};
   }
   return {0, lanes};
 }
@@ -153,7 +154,7 @@ BundleAnswer answer(Form form, const Node& node, std::uint32_t lanes, BundlesCon
     out.undecided |= static_cast<std::uint8_t>(found.undecided << first);
     if (found.all != 0) form.entries(node, first, found.all, out.entry + first);
   }
-  out.edges = static_cast<std::uint8_t>(form.edges());   // twelve a lane at most
+  out.edges = static_cast<std::uint8_t>(form.edges());  // twelve a lane at most
   return out;
 }
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "accel/structure/accel.h"
 #include "accel/box/bundle.h"
+#include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/types/intersection_counts.h"
 
@@ -11,9 +11,9 @@ namespace carousel::accel {
 
 /// What a bundle's tests say of the children of a node, a bit a lane. A lane in neither is missed by every ray.
 struct BundleAnswer {
-  std::uint8_t all = 0;        ///< every ray hits the box, as far as is known: the bundle goes down whole
-  std::uint8_t undecided = 0;  ///< some may hit and some may miss: the bundle is split for this lane
-  std::uint8_t edges = 0;      ///< of silhouettes, tested; 0 where the interval form stood in
+  std::uint8_t all = 0;         ///< every ray hits the box, as far as is known: the bundle goes down whole
+  std::uint8_t undecided = 0;   ///< some may hit and some may miss: the bundle is split for this lane
+  std::uint8_t edges = 0;       ///< of silhouettes, tested; 0 where the interval form stood in
   float entry[kMaxWidth] = {};  ///< a lower bound of the rays' entries, of lanes in `all`
 };
 

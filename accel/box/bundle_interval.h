@@ -1,6 +1,6 @@
 // The slab test of all rays of a bundle at once (US 11308683: AnyHit, AllHit), evaluated on the ranges of their origins
-// and of their rounded reciprocals with the very operations of accel/box/slab.h. Rounding is monotone, so what is computed
-// here bounds what is computed for each ray, with no slack to be proven.
+// and of their rounded reciprocals with the very operations of accel/box/slab.h. Rounding is monotone, so what is
+// computed here bounds what is computed for each ray, with no slack to be proven.
 //
 // Along an axis the rays are taken in two halves by the sign bit of their directions, as the slab test chooses its
 // planes. Where there are both, directions between may be next to zero, or zero, so that a half says only who is beside
@@ -77,8 +77,8 @@ class BundleInterval {
   /// without widening: of floats, its distances are off by less than 2^-51 and never overflow. (One is infinite only
   /// where a direction may be zero, and then a finite exit along another axis contradicts it.)
   template <class V>
-    requires std::is_same_v<Real, double>
-  Mask<V> all_hit_exactly(const BoxPlanes<V>& box) const {
+  requires std::is_same_v<Real, double> Mask<V> all_hit_exactly(const BoxPlanes<V>& box)
+  const {
     const Crossings<V> crossings = narrowest(box);
     V near[3];
     for (int axis = 0; axis < 3; ++axis) near[axis] = crossings.near[axis] * (1 + 0x1p-49);
@@ -97,11 +97,17 @@ class BundleInterval {
   static constexpr Real kEndless = std::numeric_limits<Real>::infinity();
 
   template <class V>
-  static V all(Real x) { return V{} + x; }
+  static V all(Real x) {
+    return V{} + x;
+  }
   template <class V>
-  static V lesser(V a, V b) { return a < b ? a : b; }
+  static V lesser(V a, V b) {
+    return a < b ? a : b;
+  }
   template <class V>
-  static V greater(V a, V b) { return a > b ? a : b; }
+  static V greater(V a, V b) {
+    return a > b ? a : b;
+  }
 
   /// Sizes of the reciprocals of a direction; by default those of a zero.
   struct Pace {
@@ -112,17 +118,25 @@ class BundleInterval {
   struct Half {
     int axis;
     bool backwards;
-    Real hindmost, foremost;   ///< origins, along the direction
+    Real hindmost, foremost;  ///< origins, along the direction
     Pace fastest, slowest;
 
     template <class V>
-    V earliest_entry(const BoxPlanes<V>& box) const { return entry(to_near(box, foremost), fastest.near); }
+    V earliest_entry(const BoxPlanes<V>& box) const {
+      return entry(to_near(box, foremost), fastest.near);
+    }
     template <class V>
-    V latest_entry(const BoxPlanes<V>& box) const { return entry(to_near(box, hindmost), slowest.near); }
+    V latest_entry(const BoxPlanes<V>& box) const {
+      return entry(to_near(box, hindmost), slowest.near);
+    }
     template <class V>
-    V latest_exit(const BoxPlanes<V>& box) const { return exit(to_far(box, hindmost), slowest.far, fastest.far); }
+    V latest_exit(const BoxPlanes<V>& box) const {
+      return exit(to_far(box, hindmost), slowest.far, fastest.far);
+    }
     template <class V>
-    V earliest_exit(const BoxPlanes<V>& box) const { return exit(to_far(box, foremost), fastest.far, slowest.far); }
+    V earliest_exit(const BoxPlanes<V>& box) const {
+      return exit(to_far(box, foremost), fastest.far, slowest.far);
+    }
 
    private:
     template <class V>
@@ -135,7 +149,9 @@ class BundleInterval {
     }
     // Before the start is as good as at the start.
     template <class V>
-    static V entry(V way, Real pace) { return way > 0 ? way * pace : V{}; }
+    static V entry(V way, Real pace) {
+      return way > 0 ? way * pace : V{};
+    }
     // 0 * inf, on a plane and along it, bounds nothing.
     template <class V>
     static V exit(V way, Real ahead, Real behind) {
@@ -158,7 +174,7 @@ class BundleInterval {
       for (; i < count_ && halves_[i].axis == axis; ++i) {
         const V exit = halves_[i].latest_exit(box), entry = halves_[i].earliest_entry(box);
         const V nobody = all<V>(kEndless);
-        near = lesser<V>(exit < 0 ? nobody : entry, near);   // the box may be behind all of this half
+        near = lesser<V>(exit < 0 ? nobody : entry, near);  // the box may be behind all of this half
         far = greater<V>(exit, far);
       }
       reach.near = greater<V>(near, reach.near);
@@ -192,7 +208,7 @@ class BundleInterval {
     return crossings;
   }
 
-  Half halves_[6];   // by axis
+  Half halves_[6];  // by axis
   int count_ = 0;
   Real tmax_;
 };

@@ -27,7 +27,9 @@ constexpr double kSlow = 0x1p-100, kFast = 0x1p100;
 constexpr double kFloatRounding = 1 + 8 * 0x1p-24, kDoubleRounding = 1 + 0x1p-48;
 
 // No distance over such a way at this pace or a faster one overflows, nor does its reciprocal.
-bool in_float_range(double way, double slowest) { return slowest >= kSlow && way <= kFast * std::min(1.0, slowest); }
+bool in_float_range(double way, double slowest) {
+  return slowest >= kSlow && way <= kFast * std::min(1.0, slowest);
+}
 
 }  // namespace
 
@@ -59,7 +61,7 @@ BundleSilhouette::BundleSilhouette(const BundleRecord& bundle, BoxLevel level, B
 
 BundleSilhouette::Ways BundleSilhouette::ways(const Aabb& box) const {
   Ways w;
-  int seen = 0;   // faces, from where the hindmost rays start
+  int seen = 0;  // faces, from where the hindmost rays start
   for (int i = 0; i < 3; ++i) {
     const Axis& axis = axes_[i];
     const double lo = box.lo[i], hi = box.hi[i];
@@ -83,7 +85,7 @@ bool BundleSilhouette::all_miss(const Aabb& box, unsigned& edges) const {
   unsigned tested = 0;
   bool missed = false;
   for (int i = 0; i < 3; ++i) {
-    if (!(w.to_near_most[i] > 0)) continue;   // its near plane is behind them: no edge of it decides
+    if (!(w.to_near_most[i] > 0)) continue;  // its near plane is behind them: no edge of it decides
     const bool measurable = w.to_near_least[i] > 0 && w.to_near_least[i] > kSlow * axes_[i].fastest;
     for (int j = 0; j < 3; ++j) {
       if (j == i) continue;

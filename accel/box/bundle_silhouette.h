@@ -1,8 +1,8 @@
 #pragma once
 
 #include "accel/box/bundle.h"
-#include "core/types/aabb.h"
 #include "core/config/config.h"
+#include "core/types/aabb.h"
 
 namespace carousel::accel {
 
@@ -27,19 +27,19 @@ class BundleSilhouette {
   /// The rays along one axis; all that follows is along their direction.
   struct Axis {
     bool backwards;
-    double hindmost, foremost;   ///< origins
-    double slowest, fastest;     ///< sizes of directions
+    double hindmost, foremost;  ///< origins
+    double slowest, fastest;    ///< sizes of directions
   };
   /// Of a box and an axis, from an origin to a plane.
   struct Ways {
     double to_near_least[3], to_near_most[3], to_far_least[3], to_far_most[3];
-    unsigned edges;   ///< of the silhouette
+    unsigned edges;  ///< of the silhouette
   };
   Ways ways(const Aabb& box) const;
 
   Axis axes_[3];
   double tmax_;
-  double rounding_, missed_by_, hit_by_;   // factors
+  double rounding_, missed_by_, hit_by_;  // factors
   bool one_after_another_;
 };
 

@@ -11,8 +11,8 @@
 #include <hwy/highway.h>
 
 #include "accel/box/double_slab.h"
-#include "accel/structure/node.h"
 #include "accel/box/slab-inl.h"
+#include "accel/structure/node.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -37,7 +37,9 @@ struct DoubleSlabLanes {
     }
   }
 };
-HWY_INLINE DoubleSlabLanes in_registers(const DoubleSlabRay& ray) { return DoubleSlabLanes(ray); }
+HWY_INLINE DoubleSlabLanes in_registers(const DoubleSlabRay& ray) {
+  return DoubleSlabLanes(ray);
+}
 
 /// As slab_node() for a SlabLanes, but the entries of lanes that are not hit are left alone.
 HWY_INLINE std::uint32_t slab_node(const Node& node, const DoubleSlabLanes& ray, float tmax, float* HWY_RESTRICT entry,

@@ -23,8 +23,8 @@ namespace carousel::accel {
 struct DoubleSlabRay {
   double origin[3];
   double inverse_near[3];
-  double inverse_far[3];       ///< widened
-  std::uint32_t near_row[3];   ///< byte offsets of rows of Node::plane, as in SlabRay
+  double inverse_far[3];      ///< widened
+  std::uint32_t near_row[3];  ///< byte offsets of rows of Node::plane, as in SlabRay
   std::uint32_t far_row[3];
   float tmin;
 

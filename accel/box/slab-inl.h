@@ -12,8 +12,8 @@
 
 #include <hwy/highway.h>
 
-#include "accel/structure/node.h"
 #include "accel/box/slab.h"
+#include "accel/structure/node.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -60,7 +60,9 @@ struct SlabLanes {
   }
 };
 
-HWY_INLINE SlabLanes in_registers(const SlabRay& ray) { return SlabLanes(ray); }
+HWY_INLINE SlabLanes in_registers(const SlabRay& ray) {
+  return SlabLanes(ray);
+}
 
 /// One ray against the eight boxes of a node: bit l of the result when lane l is entered before tmax; all
 /// eight entries (never below tmin) are stored. `nearest`, unless null, is lowered to the entries of lanes hit.
@@ -69,9 +71,8 @@ HWY_INLINE std::uint32_t slab_node(const Node& node, const SlabLanes& ray, float
   const SlabLanes::Tag d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   const char* const planes = reinterpret_cast<const char*>(&node.plane[0][0]);
-  const auto plane = [&](std::uint32_t row, std::size_t i) HWY_ATTR {
-    return hn::Load(d, reinterpret_cast<const float*>(planes + row) + i);
-  };
+  const auto plane = [&](std::uint32_t row, std::size_t i)
+                         HWY_ATTR { return hn::Load(d, reinterpret_cast<const float*>(planes + row) + i); };
   std::uint32_t mask = 0;
   for (std::size_t i = 0; i < kMaxWidth; i += kLanes) {
     auto near = ray.tmin;

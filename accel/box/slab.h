@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "accel/structure/node.h"
-#include "core/types/aabb.h"
 #include "core/config/config.h"
+#include "core/types/aabb.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -16,11 +16,13 @@ namespace carousel::accel {
 /// 6 units of rounding u = 2^-24 (Ize 2013); the watertight kernel's own rounding moves a hit sideways by up to
 /// about 5 u more of the distance travelled along an axis, and near and far are each off by 3. A box that is
 /// right for the exact ray may disagree with the rounded triangle test, which opens leaks.
-inline constexpr float kFarWidening = 1.0f + 0x1p-20f;   // 16 u
+inline constexpr float kFarWidening = 1.0f + 0x1p-20f;  // 16 u
 
 /// The widening that a level asks for. In double the slab's own rounding needs next to none of it, but the float
 /// triangle kernels move their hits as far as ever.
-constexpr float far_widening(BoxLevel level) { return level == BoxLevel::kPlain ? 1.0f : kFarWidening; }
+constexpr float far_widening(BoxLevel level) {
+  return level == BoxLevel::kPlain ? 1.0f : kFarWidening;
+}
 
 /// A ray as the slab test wants it. A box hit by it is hit by every box around it, entered no later: each
 /// operation is monotone in the plane. The arrays are written a register at a time (x, y, z, unused).
@@ -29,8 +31,8 @@ struct SlabRay {
 
   alignas(16) float origin[4];
   alignas(16) float inverse_near[4];
-  alignas(16) float inverse_far[4];   ///< widened
-  std::uint32_t near_row[3];          ///< byte offsets of rows of Node::plane: row axis, or axis + 3
+  alignas(16) float inverse_far[4];  ///< widened
+  std::uint32_t near_row[3];         ///< byte offsets of rows of Node::plane: row axis, or axis + 3
   std::uint32_t far_row[3];
   float tmin;
 

@@ -92,7 +92,7 @@ Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bv
   struct Fill {
     std::uint32_t first, count;
   };
-  std::vector<Fill> fills;   // one a block
+  std::vector<Fill> fills;  // one a block
   fills.reserve(primitives.size() / 2);
   const auto make_leaf = [&](const BinaryNode& leaf) {
     const std::uint32_t first_block = static_cast<std::uint32_t>(fills.size());

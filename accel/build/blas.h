@@ -2,11 +2,11 @@
 
 #include <vector>
 
-#include "accel/structure/node.h"
 #include "accel/build/wide_collapse.h"
-#include "core/types/aabb.h"
+#include "accel/structure/node.h"
 #include "core/config/config.h"
 #include "core/system/executor.h"
+#include "core/types/aabb.h"
 #include "scene/model/opacity.h"
 #include "scene/model/scene.h"
 
@@ -16,7 +16,7 @@ namespace carousel::accel {
 struct Blas {
   NodeArray nodes;
   BlockArray blocks;
-  WideTree tree;    ///< meaningless when the mesh is empty
+  WideTree tree;  ///< meaningless when the mesh is empty
   Aabb box;
 };
 

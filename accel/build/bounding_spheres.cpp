@@ -5,9 +5,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "accel/planes/plane_candidates.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/cull_plane.h"
-#include "accel/planes/plane_candidates.h"
 #include "accel/structure/sphere.h"
 
 namespace carousel::accel {

@@ -7,8 +7,8 @@
 
 #include "accel/build/blas.h"
 #include "accel/build/bounding_spheres.h"
-#include "accel/planes/cull_planes.h"
 #include "accel/build/sah_build.h"
+#include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
 #include "scene/model/opacity.h"
 
@@ -84,7 +84,8 @@ class AccelBuilder {
         blas_of_[i] = *shared;
       } else {
         if (!mesh.spheres.empty())
-          throw SceneError(scene_.name, "", "instance " + std::to_string(i) + " flattens a sphere: its transform has no inverse");
+          throw SceneError(scene_.name, "",
+                           "instance " + std::to_string(i) + " flattens a sphere: its transform has no inverse");
         accel_.instances[i].transform = InstanceTransform{};
         baked_.push_back(std::make_unique<scene::Mesh>(bake(mesh, instance.world_from_model)));
         blas_of_[i] = static_cast<std::uint32_t>(sources_.size());
@@ -156,8 +157,8 @@ class AccelBuilder {
       accel_.nodes.emplace_back();
       if (!primitives.empty()) add_only_child(accel_.nodes.back(), primitives[0].index);
     } else {
-      const std::vector<BinaryNode> binary = build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1},
-                                                       executor_);
+      const std::vector<BinaryNode> binary =
+          build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor_);
       const auto make_leaf = [&](const BinaryNode& leaf) {
         const std::uint32_t index = primitives[leaf.first].index;
         const InstanceNode& node = accel_.instances[index];
@@ -175,7 +176,8 @@ class AccelBuilder {
     const auto most = static_cast<std::uint32_t>(config_.mixed_triangles);
     for (Node& node : accel_.nodes)
       for (int lane = 0; lane < node.count; ++lane)
-        if (const NodeRef child = node.child[lane]; !child.is_inner() && !child.is_instance() && child.triangles() <= most)
+        if (const NodeRef child = node.child[lane];
+            !child.is_inner() && !child.is_instance() && child.triangles() <= most)
           node.direct |= static_cast<std::uint8_t>(1u << lane);
   }
 
@@ -199,9 +201,9 @@ class AccelBuilder {
   Executor& executor_;
   const CullPlanesConfig& planes_;
   Accel accel_;
-  std::vector<const scene::Mesh*> sources_;   // one a BLAS
+  std::vector<const scene::Mesh*> sources_;  // one a BLAS
   std::vector<std::unique_ptr<scene::Mesh>> baked_;
-  std::vector<std::uint32_t> blas_of_;        // one an instance
+  std::vector<std::uint32_t> blas_of_;  // one an instance
   std::vector<PlacedBlas> blases_;
 };
 

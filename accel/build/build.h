@@ -9,7 +9,7 @@ namespace carousel::accel {
 
 /// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
 /// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
-Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor,
-            const AccuracyConfig& accuracy = {}, const CullPlanesConfig& planes = {});
+Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy = {},
+            const CullPlanesConfig& planes = {});
 
 }  // namespace carousel::accel

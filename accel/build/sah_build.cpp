@@ -11,7 +11,7 @@ namespace carousel::accel {
 namespace {
 
 constexpr int kBins = 16;
-constexpr std::size_t kParallelNode = 1 << 15;   // below this a node is one task
+constexpr std::size_t kParallelNode = 1 << 15;  // below this a node is one task
 constexpr std::size_t kBinningChunk = 1 << 15;
 // A stack entry is spent per level and the traversal stack is fixed; below this depth splits are by halves.
 constexpr int kSahDepth = 40;
@@ -24,11 +24,21 @@ Float4 load4(const BuildPrimitive& p, int offset) {
   std::memcpy(&out, reinterpret_cast<const char*>(&p) + offset, sizeof(out));
   return out;
 }
-Float4 low(const BuildPrimitive& p) { return load4(p, 0); }
-Float4 high(const BuildPrimitive& p) { return load4(p, 16); }
-Float4 min4(Float4 a, Float4 b) { return a < b ? a : b; }
-Float4 max4(Float4 a, Float4 b) { return a > b ? a : b; }
-Float4 splat(float x) { return Float4{x, x, x, x}; }
+Float4 low(const BuildPrimitive& p) {
+  return load4(p, 0);
+}
+Float4 high(const BuildPrimitive& p) {
+  return load4(p, 16);
+}
+Float4 min4(Float4 a, Float4 b) {
+  return a < b ? a : b;
+}
+Float4 max4(Float4 a, Float4 b) {
+  return a > b ? a : b;
+}
+Float4 splat(float x) {
+  return Float4{x, x, x, x};
+}
 float half_area(Float4 lo, Float4 hi) {
   const Float4 e = hi - lo;
   return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
@@ -46,7 +56,7 @@ struct Box4 {
 };
 
 struct Bounds {
-  Box4 box, centroids;   // centroids are doubled: lo + hi
+  Box4 box, centroids;  // centroids are doubled: lo + hi
   void extend(const BuildPrimitive& p) {
     const Float4 lo = low(p), hi = high(p), c = lo + hi;
     box.extend(lo, hi);
@@ -72,7 +82,7 @@ struct Binning {
   }
   int bin(Float4 centroid, int axis) const {
     const float b = (centroid[axis] - origin[axis]) * scale[axis];
-    return b > 0 ? (b < kBins ? static_cast<int>(b) : kBins - 1) : 0;   // NaN (sums that overflowed): bin 0
+    return b > 0 ? (b < kBins ? static_cast<int>(b) : kBins - 1) : 0;  // NaN (sums that overflowed): bin 0
   }
 };
 
@@ -100,9 +110,9 @@ struct Bins {
 };
 
 struct Split {
-  float cost = std::numeric_limits<float>::infinity();   // sum of half area times blocks
+  float cost = std::numeric_limits<float>::infinity();  // sum of half area times blocks
   int axis = -1;
-  int bin = 0;   // left holds bins below this one
+  int bin = 0;  // left holds bins below this one
 };
 
 class Builder {
@@ -193,17 +203,15 @@ class Builder {
     const Binning binning(bounds.centroids);
     const Split split = depth < kSahDepth ? best_split(bins_of(begin, end, binning)) : Split{};
     const float area = half_area(bounds.box.lo, bounds.box.hi);
-    if (count <= settings_.leaf_primitives &&
-        !(split.cost + settings_.traversal_cost * area < area * blocks(count))) {
+    if (count <= settings_.leaf_primitives && !(split.cost + settings_.traversal_cost * area < area * blocks(count))) {
       return make_leaf(node, begin, end);
     }
     std::size_t middle = begin + count / 2;
     if (split.axis >= 0) {
-      const auto it = std::partition(primitives_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                     primitives_.begin() + static_cast<std::ptrdiff_t>(end),
-                                     [&](const BuildPrimitive& p) {
-                                       return binning.bin(low(p) + high(p), split.axis) < split.bin;
-                                     });
+      const auto it = std::partition(
+          primitives_.begin() + static_cast<std::ptrdiff_t>(begin),
+          primitives_.begin() + static_cast<std::ptrdiff_t>(end),
+          [&](const BuildPrimitive& p) { return binning.bin(low(p) + high(p), split.axis) < split.bin; });
       middle = static_cast<std::size_t>(it - primitives_.begin());
     }
     // A subtree over n primitives takes at most 2n - 1 places: the left one starts right behind its parent.

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/types/aabb.h"
 #include "core/system/executor.h"
+#include "core/types/aabb.h"
 
 namespace carousel::accel {
 

@@ -37,7 +37,7 @@ class Collapse {
   Prices price(std::uint32_t at) {
     Prices prices{};
     const BinaryNode& node = binary_[at];
-    if (node.count > 0) return prices;   // a leaf costs the same wherever it hangs
+    if (node.count > 0) return prices;  // a leaf costs the same wherever it hangs
     const Prices left = price(node.first), right = price(node.right);
     Shares& shares = shares_[at];
     const std::size_t width = static_cast<std::size_t>(width_);
@@ -70,7 +70,8 @@ class Collapse {
 
   /// Appends what stands in the `places` places that `at` has been given.
   void place(std::uint32_t at, int places, Children& out) const {
-    const bool whole = places == 1 || binary_[at].count > 0 || shares_[at][static_cast<std::size_t>(places - 1)] == kWhole;
+    const bool whole =
+        places == 1 || binary_[at].count > 0 || shares_[at][static_cast<std::size_t>(places - 1)] == kWhole;
     if (whole)
       out.nodes[static_cast<std::size_t>(out.count++)] = at;
     else
@@ -96,7 +97,7 @@ class Collapse {
     for (int lane = 0; lane < children.count; ++lane) {
       const std::uint32_t below = children.nodes[static_cast<std::size_t>(lane)];
       const WideTree child = emit(below);
-      Node& node = nodes_[index];   // emit() may have moved the array
+      Node& node = nodes_[index];  // emit() may have moved the array
       const Aabb& box = binary_[below].box;
       for (int axis = 0; axis < 3; ++axis) {
         node.plane[axis][lane] = box.lo[axis];
@@ -115,7 +116,7 @@ class Collapse {
   int width_;
   const std::function<WideLeaf(const BinaryNode&)>& make_leaf_;
   NodeArray& nodes_;
-  std::unique_ptr<Shares[]> shares_;   // by binary node
+  std::unique_ptr<Shares[]> shares_;  // by binary node
 };
 
 }  // namespace

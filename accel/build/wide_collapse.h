@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "accel/structure/node.h"
 #include "accel/build/sah_build.h"
+#include "accel/structure/node.h"
 
 namespace carousel::accel {
 
@@ -19,7 +19,7 @@ struct WideTree {
   NodeRef root;
   std::uint8_t root_strip_size = 0;
   std::uint32_t triangles = 0;
-  int depth = 0;   ///< strips on the longest way down, a triangle leaf counted as one
+  int depth = 0;  ///< strips on the longest way down, a triangle leaf counted as one
 };
 
 /// Turns a binary tree into nodes of up to `width` children, appended to `nodes` depth-first, so that the areas of

@@ -34,7 +34,9 @@ float wild(Random& random) {
 
 template <class Random>
 Vec3 grid_point(Random& random, int reach) {
-  const auto whole = [&] { return static_cast<float>(static_cast<int>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach); };
+  const auto whole = [&] {
+    return static_cast<float>(static_cast<int>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach);
+  };
   return {whole(), whole(), whole()};
 }
 

@@ -28,7 +28,9 @@ BoxCase box_case(Random& random, int reach, int pace) {
   Vec3 aim;
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint32_t where = random.below(3);
-    aim[axis] = where == 0 ? c.box.lo[axis] : where == 1 ? c.box.hi[axis] : random.uniform(c.box.lo[axis], c.box.hi[axis]);
+    aim[axis] = where == 0   ? c.box.lo[axis]
+                : where == 1 ? c.box.hi[axis]
+                             : random.uniform(c.box.lo[axis], c.box.hi[axis]);
     if (random.below(8) == 0) c.ray.origin[axis] = aim[axis];
   }
   c.ray.direction = aim - c.ray.origin;

@@ -19,8 +19,8 @@ bool usable(const Ray& ray, const Aabb& box) {
   return valid(ray) && std::isfinite(ray.tmin) && !box.empty();
 }
 
-/// Where conservative promises something: no difference overflows, and no distance is so small, no reciprocal so near to
-/// the denormals, that a relative widening need not widen.
+/// Where conservative promises something: no difference overflows, and no distance is so small, no reciprocal so near
+/// to the denormals, that a relative widening need not widen.
 bool in_range_of_floats(const Ray& ray, const Aabb& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const float d = std::fabs(ray.direction[axis]);
@@ -56,7 +56,8 @@ CaseValues make_box(CaseRandom& random) {
   return CaseWriter().add(c.ray).add(c.box).take();
 }
 
-void judge_box(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out, CaseStory* story) {
+void judge_box(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
+               CaseStory* story) {
   CaseReader read(values);
   const Ray ray = read.ray();
   const Aabb box = read.box();
@@ -78,18 +79,20 @@ CaseValues make_nested(CaseRandom& random) {
   const Vec3 size = c.box.extent();
   for (int axis = 0; axis < 3; ++axis) {
     for (int side = 0; side < 2; ++side) {
-      const std::uint32_t how = random.below(4);   // the same face, a few floats away, or anywhere
+      const std::uint32_t how = random.below(4);  // the same face, a few floats away, or anywhere
       if (how == 0) continue;
       float& plane = side ? outer.hi[axis] : outer.lo[axis];
       const float away = how == 1 ? size[axis] : how == 2 ? std::fabs(plane) * 0x1p-10f : 0.0f;
       plane += (side ? away : -away) * random.uniform();
-      for (std::uint32_t ulps = random.below(3); ulps > 0; --ulps) plane = std::nextafter(plane, side ? kInfinity : -kInfinity);
+      for (std::uint32_t ulps = random.below(3); ulps > 0; --ulps)
+        plane = std::nextafter(plane, side ? kInfinity : -kInfinity);
     }
   }
   return CaseWriter().add(c.ray).add(c.box).add(outer).take();
 }
 
-void judge_nested(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out, CaseStory* story) {
+void judge_nested(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
+                  CaseStory* story) {
   CaseReader read(values);
   const Ray ray = read.ray();
   const Aabb boxes[2] = {read.box(), read.box()};
@@ -102,21 +105,35 @@ void judge_nested(const CaseValues& values, std::span<const AccuracyConfig> leve
     out[i].broken = answers[0].hit && !(answers[1].hit && answers[1].entry <= answers[0].entry);
     if (story != nullptr)
       *story = {"inner box " + described(answers[0]) + "; outer box " + described(answers[1]),
-                "inner box " + described(ExactBox(ray, boxes[0], ray.tmax)) + "; outer box " + described(ExactBox(ray, boxes[1], ray.tmax))};
+                "inner box " + described(ExactBox(ray, boxes[0], ray.tmax)) + "; outer box " +
+                    described(ExactBox(ray, boxes[1], ray.tmax))};
   }
 }
 
 }  // namespace
 
 Property box_property() {
-  return {"box", 1, "a box that the exact ray meets is hit", "", {AccuracyKey::kBox}, ray_and({{"lo", 3}, {"hi", 3}}),
-          [](const AccuracyConfig& level) { return level.box != BoxLevel::kPlain; }, make_box, judge_box};
+  return {"box",
+          1,
+          "a box that the exact ray meets is hit",
+          "",
+          {AccuracyKey::kBox},
+          ray_and({{"lo", 3}, {"hi", 3}}),
+          [](const AccuracyConfig& level) { return level.box != BoxLevel::kPlain; },
+          make_box,
+          judge_box};
 }
 
 Property nested_boxes_property() {
-  return {"nested_boxes", 2, "a box around a box that is hit is hit, and entered no later", "", {AccuracyKey::kBox},
-          ray_and({{"lo", 3}, {"hi", 3}, {"outer_lo", 3}, {"outer_hi", 3}}), [](const AccuracyConfig&) { return true; },
-          make_nested, judge_nested};
+  return {"nested_boxes",
+          2,
+          "a box around a box that is hit is hit, and entered no later",
+          "",
+          {AccuracyKey::kBox},
+          ray_and({{"lo", 3}, {"hi", 3}, {"outer_lo", 3}, {"outer_hi", 3}}),
+          [](const AccuracyConfig&) { return true; },
+          make_nested,
+          judge_nested};
 }
 
 }  // namespace carousel::accel

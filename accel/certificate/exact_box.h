@@ -32,15 +32,13 @@ class ExactBox {
 
   bool hit() const { return !beside_ && (endless_ || !less(far_, near_)); }
   /// The exact entry, rounded; never below tmin.
-  double entry() const {
-    return std::ldexp(big_quotient(near_.top, near_.bottom), -kScale);
-  }
+  double entry() const { return std::ldexp(big_quotient(near_.top, near_.bottom), -kScale); }
   /// Sign of the exact entry - x.
   int compare_entry(float x) const { return Int(near_.top - integer(x) * near_.bottom).sign(); }
 
  private:
   using Int = boost::multiprecision::cpp_int;
-  struct Fraction {   // times 2^kScale; bottom > 0
+  struct Fraction {  // times 2^kScale; bottom > 0
     Int top, bottom;
   };
   static constexpr int kScale = 149;
@@ -48,7 +46,7 @@ class ExactBox {
   static Int integer(float x) { return Int(std::ldexp(double{x}, kScale)); }
   static bool less(const Fraction& a, const Fraction& b) { return a.top * b.bottom < b.top * a.bottom; }
 
-  bool endless_;   // far_ says nothing yet
+  bool endless_;  // far_ says nothing yet
   bool beside_ = false;
   Fraction near_, far_;
 };

@@ -33,7 +33,7 @@ std::array<BoxAnswer, kMaxWidth> box_answers(BoxLevel level, const Ray& ray, std
 }
 
 OneLeaf::OneLeaf(std::span<const Corners> triangles) {
-  accel_.instances.resize(1);   // placed where it is
+  accel_.instances.resize(1);  // placed where it is
   accel_.root = {0, NodeRef::leaf(0, static_cast<std::uint32_t>(triangles.size()))};
   accel_.blocks.resize(accel_.root.ref.blocks());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
@@ -63,8 +63,12 @@ Hit OneLeaf::hit(const Ray& ray, const AccuracyConfig& accuracy) {
   return record.hit.valid() ? record.hit : Hit{};
 }
 
-std::string text(float x) { return fmt::format("{:a} ({:.9g})", x, x); }
-std::string text(const Vec3& v) { return fmt::format("({:a}, {:a}, {:a}) ({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z, v.x, v.y, v.z); }
+std::string text(float x) {
+  return fmt::format("{:a} ({:.9g})", x, x);
+}
+std::string text(const Vec3& v) {
+  return fmt::format("({:a}, {:a}, {:a}) ({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z, v.x, v.y, v.z);
+}
 
 std::string text(const Hit& hit) {
   if (!hit.valid()) return "missed";

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "accel/structure/accel.h"
-#include "core/types/aabb.h"
 #include "core/config/config.h"
+#include "core/types/aabb.h"
 #include "core/types/ray.h"
 #include "scene/model/scene.h"
 
@@ -14,7 +14,7 @@ namespace carousel::accel {
 
 struct BoxAnswer {
   bool hit = false;
-  float entry = 0;   ///< valid with `hit`
+  float entry = 0;  ///< valid with `hit`
 };
 
 /// What the node kernel says of up to eight boxes.

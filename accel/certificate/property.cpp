@@ -10,10 +10,14 @@ namespace {
 template <class Body>
 void with_key(AccuracyKey key, AccuracyConfig& level, const Body& body) {
   switch (key) {
-    case AccuracyKey::kTriangle: return body(level.triangle);
-    case AccuracyKey::kBox: return body(level.box);
-    case AccuracyKey::kTransform: return body(level.transform);
-    case AccuracyKey::kSpawn: return body(level.spawn);
+    case AccuracyKey::kTriangle:
+      return body(level.triangle);
+    case AccuracyKey::kBox:
+      return body(level.box);
+    case AccuracyKey::kTransform:
+      return body(level.transform);
+    case AccuracyKey::kSpawn:
+      return body(level.spawn);
   }
 }
 
@@ -39,9 +43,7 @@ std::string level_name(const Property& property, const AccuracyConfig& level) {
   std::string text;
   AccuracyConfig copy = level;
   for (const AccuracyKey key : property.keys)
-    with_key(key, copy, [&](const auto& value) {
-      text += (text.empty() ? "" : "/") + std::string(enum_name(value));
-    });
+    with_key(key, copy, [&](const auto& value) { text += (text.empty() ? "" : "/") + std::string(enum_name(value)); });
   return text;
 }
 

@@ -19,7 +19,7 @@ enum class AccuracyKey { kTriangle, kBox, kTransform, kSpawn };
 struct CaseField {
   std::string_view name;
   std::size_t count;
-  std::size_t most = count;   ///< only of the last field; whole vectors between `count` and this
+  std::size_t most = count;  ///< only of the last field; whole vectors between `count` and this
 };
 
 /// All numbers of a case, field after field.
@@ -27,15 +27,15 @@ using CaseValues = std::vector<float>;
 
 /// What came of a case at one level.
 struct Judgement {
-  bool asked = false;    ///< the property says something about this case; if not, nothing else here counts
+  bool asked = false;  ///< the property says something about this case; if not, nothing else here counts
   bool broken = false;
-  double error = 0;      ///< in the property's unit
+  double error = 0;  ///< in the property's unit
 };
 
 /// The same in words.
 struct CaseStory {
-  std::string kernel;   ///< what the level's own arithmetic answered
-  std::string exact;    ///< what exact arithmetic says
+  std::string kernel;  ///< what the level's own arithmetic answered
+  std::string exact;   ///< what exact arithmetic says
 };
 
 /// Something that the levels of accuracy promise, or that is only counted of them, with the cases that try it.

@@ -29,9 +29,7 @@ class QuadInverse {
   /// The same with every term positive: what a relative error bound multiplies.
   Vec terms(const Vec3& p) const { return sum(p, true); }
 
-  static double norm(const Vec& v) {
-    return static_cast<double>(Quad(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])));
-  }
+  static double norm(const Vec& v) { return static_cast<double>(Quad(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]))); }
   static double distance(const Vec3& a, const Vec& b) { return norm({a.x - b[0], a.y - b[1], a.z - b[2]}); }
 
  private:

@@ -16,15 +16,15 @@ struct TriangleCase {
 
 enum class TriangleCaseKind {
   kRandom,
-  kEdgeAimed,       ///< at a point of an edge, some ulps off
+  kEdgeAimed,  ///< at a point of an edge, some ulps off
   kCornerAimed,
-  kGrid,            ///< small whole numbers: on edges, in planes, without area
-  kScaledGrid,      ///< the same times powers of two, one an axis
-  kWildExponents,   ///< anything from 2^-149 to 2^128
+  kGrid,           ///< small whole numbers: on edges, in planes, without area
+  kScaledGrid,     ///< the same times powers of two, one an axis
+  kWildExponents,  ///< anything from 2^-149 to 2^128
   kSliver,
-  kDegenerate,      ///< corners that coincide or stand on a line
-  kEdgeOn,          ///< in the triangle's plane, some ulps off
-  kOnSurface,       ///< starts on the triangle
+  kDegenerate,  ///< corners that coincide or stand on a line
+  kEdgeOn,      ///< in the triangle's plane, some ulps off
+  kOnSurface,   ///< starts on the triangle
 };
 inline constexpr int kTriangleCaseKinds = 10;
 
@@ -37,9 +37,14 @@ TriangleCase triangle_case(TriangleCaseKind kind, Random& random) {
   const float s = random.uniform();
   Vec3 aim = p[0] + s * (p[1] - p[0]);
   switch (kind) {
-    case TriangleCaseKind::kRandom: aim = random.in_box(Vec3{-1}, Vec3{1}); break;
-    case TriangleCaseKind::kEdgeAimed: break;
-    case TriangleCaseKind::kCornerAimed: aim = p[random.below(3)]; break;
+    case TriangleCaseKind::kRandom:
+      aim = random.in_box(Vec3{-1}, Vec3{1});
+      break;
+    case TriangleCaseKind::kEdgeAimed:
+      break;
+    case TriangleCaseKind::kCornerAimed:
+      aim = p[random.below(3)];
+      break;
     case TriangleCaseKind::kGrid:
     case TriangleCaseKind::kScaledGrid: {
       for (Vec3& corner : p) corner = grid_point(random, 3);
@@ -58,7 +63,8 @@ TriangleCase triangle_case(TriangleCaseKind kind, Random& random) {
       const float u = random.uniform(), v = random.uniform() * (1 - u);
       c.ray.origin = random.below(3) ? Vec3{wild(random), wild(random), wild(random)} * 0.25f : Vec3{0};
       c.ray.direction = (p[0] * (1 - u - v) + p[1] * u + p[2] * v) - c.ray.origin;
-      if (random.below(4) == 0) c.ray.direction = c.ray.direction * std::ldexp(1.0f, -static_cast<int>(random.below(140)));
+      if (random.below(4) == 0)
+        c.ray.direction = c.ray.direction * std::ldexp(1.0f, -static_cast<int>(random.below(140)));
       if (random.below(8) == 0) p[random.below(3)][static_cast<int>(random.below(3))] = wild(random);
       return c;
     }
@@ -76,7 +82,8 @@ TriangleCase triangle_case(TriangleCaseKind kind, Random& random) {
     case TriangleCaseKind::kEdgeOn: {
       // On a grid fine enough for the sums to be exact.
       for (Vec3& corner : p) corner = grid_point(random, 1000) * 0x1p-10f;
-      const float a = static_cast<float>(static_cast<int>(random.below(9)) - 4), b = static_cast<float>(static_cast<int>(random.below(9)) - 4);
+      const float a = static_cast<float>(static_cast<int>(random.below(9)) - 4),
+                  b = static_cast<float>(static_cast<int>(random.below(9)) - 4);
       c.ray.origin = p[0] + a * (p[1] - p[0]) + b * (p[2] - p[0]);
       c.ray.direction = p[random.below(3)] - c.ray.origin;
       if (random.below(4)) c.ray.direction = nudged(c.ray.direction, 1, random);
@@ -84,7 +91,7 @@ TriangleCase triangle_case(TriangleCaseKind kind, Random& random) {
       return c;
     }
     case TriangleCaseKind::kOnSurface: {
-      const float u = random.below(2) ? random.uniform() : 0.0f;   // or on an edge
+      const float u = random.below(2) ? random.uniform() : 0.0f;  // or on an edge
       c.ray.origin = nudged(p[0] + s * (1 - u) * (p[1] - p[0]) + u * (p[2] - p[0]), 1, random);
       c.ray.direction = random.in_box(Vec3{-1}, Vec3{1});
       return c;

@@ -24,7 +24,9 @@ class TriangleOracle {
     int least = 1000;
     for (const Vec3* v : {&ray.origin, &ray.direction, &p[0], &p[1], &p[2]})
       for (int a = 0; a < 3; ++a) least = std::min(least, lowest_bit((*v)[a]));
-    const auto vector = [least](const Vec3& v) { return IVec{integer(v.x, least), integer(v.y, least), integer(v.z, least)}; };
+    const auto vector = [least](const Vec3& v) {
+      return IVec{integer(v.x, least), integer(v.y, least), integer(v.z, least)};
+    };
     const IVec corner = vector(p[0]), e1 = sub(vector(p[1]), corner), e2 = sub(vector(p[2]), corner);
     const IVec d = vector(ray.direction), to_corner = sub(corner, vector(ray.origin)), n = cross(e1, e2);
     depth_ = dot(n, to_corner);
@@ -61,7 +63,7 @@ class TriangleOracle {
     const auto bits = static_cast<std::uint32_t>(std::ldexp(std::fabs(std::frexp(x, &exponent)), 24));
     return exponent - 24 + std::countr_zero(bits);
   }
-  static Int integer(double x, int least) {   // x / 2^least, which is whole
+  static Int integer(double x, int least) {  // x / 2^least, which is whole
     if (x == 0) return 0;
     int exponent;
     const double mantissa = std::frexp(x, &exponent);
@@ -78,7 +80,7 @@ class TriangleOracle {
   /// Whether no float is nearer to n / d than x, and of two x is the even one.
   static bool is_nearest(float x, Int n, Int d) {
     if (d < 0) n = -n, d = -d;
-    const double kBeyond = 0x1p128;   // where infinity stands when it comes to rounding
+    const double kBeyond = 0x1p128;  // where infinity stands when it comes to rounding
     const auto value = [&](float f) { return std::isinf(f) ? std::copysign(kBeyond, double{f}) : double{f}; };
     const double here = value(x);
     n <<= 151;

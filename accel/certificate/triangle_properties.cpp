@@ -22,11 +22,13 @@ constexpr float kLargest = std::numeric_limits<float>::max();
 
 /// Of a crossing that the oracle knows: where it lies in the ray's range.
 struct Range {
-  bool inside, at_an_end;   ///< at_an_end: outside by so little that the nearest float is the end, and either answer is right
+  bool inside,
+      at_an_end;  ///< at_an_end: outside by so little that the nearest float is the end, and either answer is right
 
   Range(const TriangleOracle& oracle, const Ray& ray) {
     const float last = std::min(ray.tmax, kLargest);
-    const bool early = oracle.hit() && oracle.compare_t(ray.tmin) < 0, late = oracle.hit() && oracle.compare_t(last) > 0;
+    const bool early = oracle.hit() && oracle.compare_t(ray.tmin) < 0,
+               late = oracle.hit() && oracle.compare_t(last) > 0;
     inside = oracle.hit() && !early && !late;
     at_an_end = (early && oracle.t_is_nearest(ray.tmin)) || (late && oracle.t_is_nearest(last));
   }
@@ -47,7 +49,8 @@ CaseValues make_triangle(CaseRandom& random) {
   return CaseWriter().add(c.ray).add(c.corners[0]).add(c.corners[1]).add(c.corners[2]).take();
 }
 
-void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out, CaseStory* story) {
+void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
+                    CaseStory* story) {
   CaseReader read(values);
   const Ray ray = read.ray();
   const bool finite = read.rest_is_finite();
@@ -71,7 +74,8 @@ void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> le
     const bool crossed = exact_triangle(ray, corners, crossing);
     judgement.broken |= crossed != oracle.hit();
     if (crossed && oracle.hit())
-      judgement.broken |= !oracle.t_is_nearest(crossing.t) || !oracle.u_is_nearest(crossing.u) || !oracle.v_is_nearest(crossing.v);
+      judgement.broken |=
+          !oracle.t_is_nearest(crossing.t) || !oracle.u_is_nearest(crossing.u) || !oracle.v_is_nearest(crossing.v);
     if (hit.valid() && crossed) judgement.broken |= hit.t < crossing.t || hit.u != crossing.u || hit.v != crossing.v;
     if (story != nullptr && crossed)
       story->kernel += fmt::format("; by itself crossed at t = {}, u = {}, v = {}", text(crossing.t), text(crossing.u),
@@ -95,7 +99,8 @@ constexpr std::size_t kLeastRing = 3, kMostRing = 8;
 CaseValues make_closed_mesh(CaseRandom& random) {
   const std::size_t sides = kLeastRing + random.below(kMostRing - kLeastRing + 1);
   // Flattened and moved away, but never so far that the corners' rounding could turn it inside out.
-  const int flat = static_cast<int>(random.below(12)), away = random.below(2) ? static_cast<int>(random.below(static_cast<std::uint32_t>(16 - flat))) : -100;
+  const int flat = static_cast<int>(random.below(12)),
+            away = random.below(2) ? static_cast<int>(random.below(static_cast<std::uint32_t>(16 - flat))) : -100;
   DVec3 scale(1);
   if (random.below(2)) scale[static_cast<int>(random.below(3))] = std::ldexp(1.0, -flat);
   const double size = std::ldexp(1.0, static_cast<int>(random.below(60)) - 30);
@@ -105,12 +110,14 @@ CaseValues make_closed_mesh(CaseRandom& random) {
 
   std::vector<Vec3> corners{world({0, 0, random.uniform(0.5f, 1)}), world({0, 0, -random.uniform(0.5f, 1)})};
   for (std::size_t i = 0; i < sides; ++i) {
-    const double angle = 2 * std::numbers::pi * (static_cast<double>(i) + random.uniform(-0.25f, 0.25f)) / static_cast<double>(sides);
+    const double angle =
+        2 * std::numbers::pi * (static_cast<double>(i) + random.uniform(-0.25f, 0.25f)) / static_cast<double>(sides);
     const double radius = random.uniform(0.7f, 1.4f);
     corners.push_back(world({radius * std::cos(angle), radius * std::sin(angle), random.uniform(-0.2f, 0.2f)}));
   }
   // An edge: from an apex to the base, or along the base.
-  const auto first = random.below(static_cast<std::uint32_t>(corners.size())), side = random.below(static_cast<std::uint32_t>(sides));
+  const auto first = random.below(static_cast<std::uint32_t>(corners.size())),
+             side = random.below(static_cast<std::uint32_t>(sides));
   const Vec3 a = corners[first], b = corners[2 + (first < 2 ? side : (first - 1) % sides)];
   const std::uint32_t how = random.below(4);
   const Vec3 at = how == 0 ? a : how == 1 ? 0.5f * (a + b) : a + random.uniform() * (b - a);
@@ -123,7 +130,8 @@ CaseValues make_closed_mesh(CaseRandom& random) {
   return out.take();
 }
 
-void judge_closed_mesh(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out, CaseStory* story) {
+void judge_closed_mesh(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
+                       CaseStory* story) {
   CaseReader read(values);
   const Ray ray = read.ray();
   const bool finite = read.rest_is_finite();
@@ -153,16 +161,29 @@ void judge_closed_mesh(const CaseValues& values, std::span<const AccuracyConfig>
 }  // namespace
 
 Property triangle_property() {
-  return {"triangle", 3, "a triangle is hit where the exact ray crosses it; exact: t, u and v are the nearest floats",
-          "ulp of t", {AccuracyKey::kTriangle}, ray_and({{"a", 3}, {"b", 3}, {"c", 3}}),
-          [](const AccuracyConfig& level) { return level.triangle == TriangleLevel::kExact; }, make_triangle, judge_triangle};
+  return {"triangle",
+          3,
+          "a triangle is hit where the exact ray crosses it; exact: t, u and v are the nearest floats",
+          "ulp of t",
+          {AccuracyKey::kTriangle},
+          ray_and({{"a", 3}, {"b", 3}, {"c", 3}}),
+          [](const AccuracyConfig& level) { return level.triangle == TriangleLevel::kExact; },
+          make_triangle,
+          judge_triangle};
 }
 
 Property closed_mesh_property() {
-  return {"closed_mesh", 4, "from inside a closed mesh something is hit", "", {AccuracyKey::kTriangle, AccuracyKey::kBox},
+  return {"closed_mesh",
+          4,
+          "from inside a closed mesh something is hit",
+          "",
+          {AccuracyKey::kTriangle, AccuracyKey::kBox},
           ray_and({{"apex", 3}, {"nadir", 3}, {"ring", 3 * kLeastRing, 3 * kMostRing}}),
-          [](const AccuracyConfig& level) { return level.triangle != TriangleLevel::kFast && level.box != BoxLevel::kPlain; },
-          make_closed_mesh, judge_closed_mesh};
+          [](const AccuracyConfig& level) {
+            return level.triangle != TriangleLevel::kFast && level.box != BoxLevel::kPlain;
+          },
+          make_closed_mesh,
+          judge_closed_mesh};
 }
 
 }  // namespace carousel::accel

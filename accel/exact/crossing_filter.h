@@ -13,7 +13,7 @@ namespace carousel::accel {
 /// stage).
 struct FilteredCrossing {
   enum class Verdict { kMiss, kHit, kUnsure } verdict = Verdict::kUnsure;
-  double t_lo = 0, t_hi = 0;   ///< kHit: the exact t lies between, both ends included
+  double t_lo = 0, t_hi = 0;  ///< kHit: the exact t lies between, both ends included
 };
 
 /// The crossing of exact_crossing(), where doubles are sure of it.

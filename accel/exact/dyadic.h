@@ -64,7 +64,7 @@ Real rounded_ratio(const Dyadic& numerator, const Dyadic& denominator) {
   divide_qr(Int(n << shift), d, quotient, rest);
   if (rest != 0) quotient = (quotient << 1) | 1;
   const int exponent = numerator.exponent() - denominator.exponent() - shift - (rest != 0);
-  constexpr int kLeast = Limits::min_exponent - Limits::digits;   // exponent of the least denormal
+  constexpr int kLeast = Limits::min_exponent - Limits::digits;  // exponent of the least denormal
   const int top = static_cast<int>(msb(quotient));
   const int drop = std::max(top + 1 - Limits::digits, kLeast - exponent);
   if (drop > top + 1) return negative ? -Real(0) : Real(0);

@@ -4,20 +4,23 @@ namespace carousel::accel {
 
 namespace {
 
-DyadicVec exact(const Vec3& v) { return {Dyadic(v.x), Dyadic(v.y), Dyadic(v.z)}; }
+DyadicVec exact(const Vec3& v) {
+  return {Dyadic(v.x), Dyadic(v.y), Dyadic(v.z)};
+}
 
 DyadicVec cross(const DyadicVec& a, const DyadicVec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Dyadic dot(const DyadicVec& a, const DyadicVec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Dyadic dot(const DyadicVec& a, const DyadicVec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 }  // namespace
 
-std::optional<ExactCrossing> exact_crossing(const Ray& ray, const std::array<Vec3, 3>& model,
-                                            const scene::Affine& m) {
+std::optional<ExactCrossing> exact_crossing(const Ray& ray, const std::array<Vec3, 3>& model, const scene::Affine& m) {
   const DyadicVec direction = exact(ray.direction);
-  std::array<DyadicVec, 3> p;   // vertices seen from the origin
+  std::array<DyadicVec, 3> p;  // vertices seen from the origin
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t row = 0; row < 3; ++row) {
       const int r = static_cast<int>(row);

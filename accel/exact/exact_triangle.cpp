@@ -22,7 +22,7 @@ struct Offset {
     for (int axis = 0; axis < 3; ++axis) {
       const double a = corner[axis], b = origin[axis], difference = a - b, back = a - difference;
       nearest[axis] = difference;
-      rest[axis] = (a - (difference + back)) + (back - b);   // Two-Diff, figure 5 of Shewchuk
+      rest[axis] = (a - (difference + back)) + (back - b);  // Two-Diff, figure 5 of Shewchuk
     }
   }
 };
@@ -33,7 +33,9 @@ struct Bounded {
 
   bool sign_is_certain() const { return error == 0 || std::fabs(value) > error; }
 };
-int sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+int sign(double x) {
+  return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
 
 /// Of the sum of the magnitudes of its terms, what a volume in double may be wrong by: eight roundings (one a factor,
 /// two products, a difference, two sums), with room for those of the sum itself.
@@ -68,7 +70,7 @@ void add_volume(const double* a, const double* a_rest, const Offset& b, const Of
 /// The float nearest to all numbers within `error` of q, if it is the same for all of them.
 bool only_nearest(double q, double error, float& out) {
   const float low = static_cast<float>(q - error), high = static_cast<float>(q + error);
-  out = low + 0.0f;   // no -0
+  out = low + 0.0f;  // no -0
   return low == high;
 }
 
@@ -85,7 +87,8 @@ float nearest_quotient(const Expansion& n, const Expansion& d) {
   float nearest;
   if (only_nearest(q, std::fabs(q) * 0x1p-48, nearest)) return nearest;
   // Between two neighbours: which side of their middle? Infinity is as far as one more binade would be.
-  const float low = static_cast<float>(q - std::fabs(q) * 0x1p-48), high = static_cast<float>(q + std::fabs(q) * 0x1p-48);
+  const float low = static_cast<float>(q - std::fabs(q) * 0x1p-48),
+              high = static_cast<float>(q + std::fabs(q) * 0x1p-48);
   const double from = std::isinf(low) ? -0x1p128 : low, to = std::isinf(high) ? 0x1p128 : high;
   Expansion beyond = n;
   beyond.add_product(d, -(from + (to - from) / 2));
@@ -94,7 +97,9 @@ float nearest_quotient(const Expansion& n, const Expansion& d) {
   return (side > 0 || (side == 0 && !low_is_even) ? high : low) + 0.0f;
 }
 
-bool finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool finite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace carousel::accel {
 /// always +0; t is infinite when no float is near.
 struct NearestCrossing {
   float t;
-  float u, v;   ///< weights of the second and third corner
+  float u, v;  ///< weights of the second and third corner
 };
 
 /// Decides by exact arithmetic on the very floats it is given whether the line of `ray` (both ways, its range

@@ -16,14 +16,14 @@ class Expansion {
   static constexpr std::size_t kCapacity = 576;
 
   // What comes first is never read before it is written.
-  Expansion() {}   // NOLINT(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init)
+  Expansion() {}  // NOLINT(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init)
 
   /// Grow-Expansion, figure 6 there, with zeros left out.
   void add(double b) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const double e = part_[i], sum = b + e;
-      const double rounded = sum - b, lost = (b - (sum - rounded)) + (e - rounded);   // Two-Sum, figure 4
+      const double rounded = sum - b, lost = (b - (sum - rounded)) + (e - rounded);  // Two-Sum, figure 4
       b = sum;
       if (lost != 0) part_[kept++] = lost;
     }
@@ -57,7 +57,7 @@ class Expansion {
 
  private:
   static double high_half(double a) {
-    const double c = 0x8000001p0 * a;   // 2^27 + 1
+    const double c = 0x8000001p0 * a;  // 2^27 + 1
     return c - (c - a);
   }
 

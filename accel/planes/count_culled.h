@@ -8,7 +8,9 @@ namespace carousel::accel {
 /// Counts a child whose box was hit and which was culled.
 inline void count_culled(const Accel& accel, NodeRef child, CullLevel& level) {
   switch (child.kind()) {
-    case NodeRef::Kind::kInner: ++level.nodes; break;
+    case NodeRef::Kind::kInner:
+      ++level.nodes;
+      break;
     case NodeRef::Kind::kLeaf:
       ++level.leaves;
       level.triangles += child.triangles();

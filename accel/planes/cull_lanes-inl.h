@@ -1,9 +1,9 @@
 // Which children of a node their cull planes take away, all at once, in either order of planes and box. Why nothing is
 // taken that the triangle kernel hits: accel/planes/cull_plane_clip.h.
 //
-// What is left of the line is cut by the planes and by the box in both orders, so the same children are culled: the last
-// bounds are the same. With planes first a child that the planes alone cull needs no box test; of the others the box
-// test goes on with what the planes have left.
+// What is left of the line is cut by the planes and by the box in both orders, so the same children are culled: the
+// last bounds are the same. With planes first a child that the planes alone cull needs no box test; of the others the
+// box test goes on with what the planes have left.
 //
 // Each lane is one child. Operations are the same for every width of registers, none of them contracted, so the answers
 // are. Comparisons are false for NaN, which cuts nothing off.
@@ -21,11 +21,11 @@
 
 #include <hwy/highway.h>
 
-#include "accel/structure/accel.h"
-#include "accel/planes/count_culled.h"
-#include "accel/structure/cull_plane.h"
-#include "accel/planes/cull_plane_clip.h"
 #include "accel/box/slab-inl.h"
+#include "accel/planes/count_culled.h"
+#include "accel/planes/cull_plane_clip.h"
+#include "accel/structure/accel.h"
+#include "accel/structure/cull_plane.h"
 #include "core/types/cull_counts.h"
 #include "core/types/intersection_counts.h"
 
@@ -41,7 +41,7 @@ struct LanePlaneCounts {
     bytes = (bytes | bytes << 16) & 0x0000ffff0000ffffull;
     bytes = (bytes | bytes << 8) & 0x00ff00ff00ff00ffull;
     bytes = (bytes | bytes << 4) & 0x0f0f0f0f0f0f0f0full;
-    const std::uint64_t sums = bytes * 0x0101010101010100ull;   // at most 56
+    const std::uint64_t sums = bytes * 0x0101010101010100ull;  // at most 56
     std::memcpy(own, &bytes, sizeof(own));
     std::memcpy(before, &sums, sizeof(before));
   }
@@ -78,9 +78,12 @@ struct PlaneLanes {
     const auto row = [&](std::size_t lane) HWY_ATTR { return load_halves(d, at(lane), at(lane + kHigh)); };
     const auto a = row(0), b = row(1), c = row(2), e = row(3);
     const hn::RepartitionToWide<Tag> wide;
-    const auto xy_ab = hn::BitCast(wide, hn::InterleaveLower(d, a, b)), zd_ab = hn::BitCast(wide, hn::InterleaveUpper(d, a, b));
-    const auto xy_ce = hn::BitCast(wide, hn::InterleaveLower(d, c, e)), zd_ce = hn::BitCast(wide, hn::InterleaveUpper(d, c, e));
-    x = hn::BitCast(d, hn::InterleaveLower(wide, xy_ab, xy_ce)), y = hn::BitCast(d, hn::InterleaveUpper(wide, xy_ab, xy_ce));
+    const auto xy_ab = hn::BitCast(wide, hn::InterleaveLower(d, a, b)),
+               zd_ab = hn::BitCast(wide, hn::InterleaveUpper(d, a, b));
+    const auto xy_ce = hn::BitCast(wide, hn::InterleaveLower(d, c, e)),
+               zd_ce = hn::BitCast(wide, hn::InterleaveUpper(d, c, e));
+    x = hn::BitCast(d, hn::InterleaveLower(wide, xy_ab, xy_ce)),
+    y = hn::BitCast(d, hn::InterleaveUpper(wide, xy_ab, xy_ce));
     z = hn::BitCast(d, hn::InterleaveLower(wide, zd_ab, zd_ce));
     distance = hn::BitCast(d, hn::InterleaveUpper(wide, zd_ab, zd_ce));
 #endif
@@ -107,11 +110,12 @@ class CutLines {
       const V origin = hn::Set(d, ray.origin[axis]);
       *lo[axis] = hn::Sub(l, origin);
       *hi[axis] = hn::Sub(h, origin);
-      *from[axis] = hn::Sub(origin, hn::Add(hn::Mul(half, l), hn::Mul(half, h)));   // plane_centre()
+      *from[axis] = hn::Sub(origin, hn::Add(hn::Mul(half, l), hn::Mul(half, h)));  // plane_centre()
       reach = keep_max(hn::Abs(*lo[axis]), reach);
       reach = keep_max(hn::Abs(*hi[axis]), reach);
     }
-    margin_ = hn::Mul(hn::Set(d, margins), hn::Add(hn::Mul(hn::Set(d, node.margin_per_reach), reach), hn::Set(d, node.least_margin)));
+    margin_ = hn::Mul(hn::Set(d, margins),
+                      hn::Add(hn::Mul(hn::Set(d, node.margin_per_reach), reach), hn::Set(d, node.least_margin)));
     entry_ = hn::Set(d, -kInfinity);
     exit_ = hn::Set(d, kInfinity);
   }
@@ -126,8 +130,9 @@ class CutLines {
   /// By a plane of each lane in `lanes`; other lanes' planes have no meaning.
   HWY_INLINE void cut_by_plane(M lanes, const PlaneLanes& p, const Vec3& direction) {
     const Tag d;
-    const V height = hn::Sub(hn::Add(hn::Add(hn::Mul(p.x, from_x_), hn::Mul(p.y, from_y_)), hn::Mul(p.z, from_z_)), p.distance);
-    const V outside = hn::Sub(height, margin_);   // of the origin
+    const V height =
+        hn::Sub(hn::Add(hn::Add(hn::Mul(p.x, from_x_), hn::Mul(p.y, from_y_)), hn::Mul(p.z, from_z_)), p.distance);
+    const V outside = hn::Sub(height, margin_);  // of the origin
     const V along = hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, direction.x)), hn::Mul(p.y, hn::Set(d, direction.y))),
                             hn::Mul(p.z, hn::Set(d, direction.z)));
     const V zero = hn::Zero(d), at = hn::Div(outside, hn::Neg(along));
@@ -174,7 +179,7 @@ HWY_INLINE std::uint64_t cut_by_planes(CutLines& lines, const LanePlaneCounts& c
     tested += hn::CountTrue(d, active);
     const PlaneLanes turn([&](std::size_t lane) HWY_ATTR -> const CullPlane& {
       const int before = counts.before[first + lane];
-      return planes[k < counts.own[first + lane] ? before + k : 0];   // a lane without another: any
+      return planes[k < counts.own[first + lane] ? before + k : 0];  // a lane without another: any
     });
     lines.cut_by_plane(active, turn, direction);
   }

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "accel/planes/plane_candidates.h"
-#include "accel/structure/sphere.h"
 #include "accel/planes/top_planes.h"
+#include "accel/structure/sphere.h"
 
 namespace carousel::accel {
 
@@ -24,7 +24,8 @@ class PlaneBuilder {
 
   void run() {
     using Levels = CullPlanesConfig::Levels;
-    const auto first_of_top = std::find_if(accel_.nodes.begin(), accel_.nodes.end(), [](const Node& n) { return n.above_instances; });
+    const auto first_of_top =
+        std::find_if(accel_.nodes.begin(), accel_.nodes.end(), [](const Node& n) { return n.above_instances; });
     const std::size_t below = static_cast<std::size_t>(first_of_top - accel_.nodes.begin());
     if (config_.levels != Levels::kTlas) find(0, below);
     if (config_.levels != Levels::kBlas) {
@@ -52,12 +53,13 @@ class PlaneBuilder {
 
   /// What planes are fitted to.
   struct Corners {
-    std::vector<Vec3> points;   // of triangles, three by three, or of boxes
+    std::vector<Vec3> points;  // of triangles, three by three, or of boxes
     std::vector<BlockSphere> spheres;
 
     float distance_along(const CullPlane& plane, const Aabb& box) const {
       float most = accel::distance_along(plane, box, points);
-      for (const BlockSphere& sphere : spheres) most = std::max(most, accel::distance_along(plane, box, sphere.centre, sphere.radius));
+      for (const BlockSphere& sphere : spheres)
+        most = std::max(most, accel::distance_along(plane, box, sphere.centre, sphere.radius));
       return most;
     }
   };
@@ -148,15 +150,16 @@ class PlaneBuilder {
         continue;
       }
       for (const auto& vertex : block.vertex)
-        out.points.push_back({vertex[0][i % kBlockTriangles], vertex[1][i % kBlockTriangles], vertex[2][i % kBlockTriangles]});
+        out.points.push_back(
+            {vertex[0][i % kBlockTriangles], vertex[1][i % kBlockTriangles], vertex[2][i % kBlockTriangles]});
     }
   }
   static void append_box_corners(const Node& node, std::vector<Vec3>& out) {
     for (int lane = 0; lane < node.count; ++lane) {
       const Aabb box = child_box(node, lane);
       for (int corner = 0; corner < 8; ++corner)
-        out.push_back({corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                       corner & 4 ? box.hi.z : box.lo.z});
+        out.push_back(
+            {corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z});
     }
   }
 
@@ -206,9 +209,9 @@ class PlaneBuilder {
   const scene::Scene& scene_;
   const CullPlanesConfig& config_;
   Executor& executor_;
-  int most_;   // planes a lane to begin with
-  std::vector<LanePlanes> found_;   // by node and lane
-  std::optional<TopPlanes> top_;    // where the top level gets any
+  int most_;                       // planes a lane to begin with
+  std::vector<LanePlanes> found_;  // by node and lane
+  std::optional<TopPlanes> top_;   // where the top level gets any
 };
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace carousel::accel {
 
 /// Gives children of nodes up to config.count planes each (US 20250259373): below the instances, above them or both;
-/// leaves, which above are instances, inner children or all. Once a structure, which was built of `scene` without planes.
-/// Deterministic for any executor. Without planes (count 0) nothing changes.
+/// leaves, which above are instances, inner children or all. Once a structure, which was built of `scene` without
+/// planes. Deterministic for any executor. Without planes (count 0) nothing changes.
 void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor);
 
 /// The same structure with nothing but boxes: what rays are traced through to find out what planes and bounding spheres

@@ -42,7 +42,8 @@ void raise(const Accel& accel, NodeRef ref, const DVec3& direction, double& most
   const std::size_t count = node.count;
   for (std::size_t lane = 0; lane < count; ++lane)
     children[lane] = {farthest_corner(child_box(node, static_cast<int>(lane)), direction), node.child[lane]};
-  std::sort(children.begin(), children.begin() + count, [](const Child& a, const Child& b) { return a.bound > b.bound; });
+  std::sort(children.begin(), children.begin() + count,
+            [](const Child& a, const Child& b) { return a.bound > b.bound; });
   for (std::size_t i = 0; i < count && children[i].bound > most; ++i) raise(accel, children[i].ref, direction, most);
 }
 
@@ -55,7 +56,8 @@ double farthest_along(const Accel& accel, NodeRef root, const DVec3& direction, 
     return most;
   }
   const Node& node = accel.nodes[root.node()];
-  for (int lane = 0; lane < node.count; ++lane) most = std::max(most, farthest_corner(child_box(node, lane), direction));
+  for (int lane = 0; lane < node.count; ++lane)
+    most = std::max(most, farthest_corner(child_box(node, lane), direction));
   return most;
 }
 

@@ -1,17 +1,19 @@
-// What the kernel reports lies beside the ray's line; accel/planes/cull_plane_clip.h has how far in the space of the ray that
-// the kernel gets: e <= 6 u g' along any axis, g' the largest distance along an axis from its origin to a vertex.
+// What the kernel reports lies beside the ray's line; accel/planes/cull_plane_clip.h has how far in the space of the
+// ray that the kernel gets: e <= 6 u g' along any axis, g' the largest distance along an axis from its origin to a
+// vertex.
 //
 // Seen from the world that ray is rounded. With R, T the instance's matrix and translation, M the inverse that is used,
-// o and d the ray's origin and direction, o' = M (o - T) + eo and d' = M d + ed, the triangle's point p = o' + t* d' + e
-// stands in the world at P = R p + T, exactly, which nobody computes, so that nothing of it is rounded, and
+// o and d the ray's origin and direction, o' = M (o - T) + eo and d' = M d + ed, the triangle's point p = o' + t* d' +
+// e stands in the world at P = R p + T, exactly, which nobody computes, so that nothing of it is rounded, and
 //
 //   P - o - t* d = (R M - I)(o - T + t* d) + R (eo + t* ed + e).
 //
-// A float difference, product and two sums make |eo| <= gamma(4) |M||o - T| and |ed| <= gamma(3) |M||d|; in double all is
-// exact to 2^-50 but for one rounding to float. What the inverse is off by (its own rounding, or that of a transpose)
-// stands in R M - I, which is computed here. With g the reach in the world, h >= |R p| and a vertex's size s >= |p|:
-// |t* d| <= g + what is sought, |o - T| <= g + h, and g' <= |M| g + |M R - I| s + |eo|. Collected, what P is off the line
-// is a g + b along any axis: a in distances along an axis, as for the kernel, and b in lengths, which does not depend on T.
+// A float difference, product and two sums make |eo| <= gamma(4) |M||o - T| and |ed| <= gamma(3) |M||d|; in double all
+// is exact to 2^-50 but for one rounding to float. What the inverse is off by (its own rounding, or that of a
+// transpose) stands in R M - I, which is computed here. With g the reach in the world, h >= |R p| and a vertex's size s
+// >= |p|: |t* d| <= g + what is sought, |o - T| <= g + h, and g' <= |M| g + |M R - I| s + |eo|. Collected, what P is
+// off the line is a g + b along any axis: a in distances along an axis, as for the kernel, and b in lengths, which does
+// not depend on T.
 #include "accel/planes/line_margin.h"
 
 #include <algorithm>
@@ -35,7 +37,9 @@ constexpr double kSecondOrder = 1.01, kMost = 0x1p-8;
 /// Of rows of R and M: within it, ray directions that CullRay takes in the world are such as it takes below.
 constexpr double kLargest = 0x1p30;
 
-double largest(const DVec3& v) { return std::max({v.x, v.y, v.z}); }
+double largest(const DVec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
 
 /// Of a and b above.
 LineMargin margin(double a, double b, double least) {
@@ -43,13 +47,19 @@ LineMargin margin(double a, double b, double least) {
 }
 
 /// |product - I|, with what the product itself may be off by in double.
-DMat3 rest_of(const DMat3& a, const DMat3& b) { return magnitudes(a * b - DMat3(1)) + 0x1p-50 * (magnitudes(a) * magnitudes(b)); }
+DMat3 rest_of(const DMat3& a, const DMat3& b) {
+  return magnitudes(a * b - DMat3(1)) + 0x1p-50 * (magnitudes(a) * magnitudes(b));
+}
 
 }  // namespace
 
-DMat3 magnitudes(const DMat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+DMat3 magnitudes(const DMat3& m) {
+  return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
+}
 
-LineMargin margin_below() { return {kMarginPerReach, kLeastMargin}; }
+LineMargin margin_below() {
+  return {kMarginPerReach, kLeastMargin};
+}
 
 std::optional<LineMargin> margin_in_world(const scene::Affine& world_from_model, const InstanceTransform& transform,
                                           const Aabb& model) {
@@ -60,10 +70,12 @@ std::optional<LineMargin> margin_in_world(const scene::Affine& world_from_model,
   const DVec3 ones(1), size = glm::max(glm::abs(DVec3(model.lo)), glm::abs(DVec3(model.hi))), h = abs_r * size;
   const double origin = in_double ? gamma(1) : gamma(4), direction = in_double ? gamma(1) : gamma(3);
   const double m_rows = largest(abs_m * ones), r_rows = largest(abs_r * ones);
-  const double a = kSecondOrder * largest(abs_r * ((origin + direction) * (abs_m * ones) + kKernelRounding * m_rows * ones) +
-                                          2.0 * (world_rest * ones));
+  const double a =
+      kSecondOrder * largest(abs_r * ((origin + direction) * (abs_m * ones) + kKernelRounding * m_rows * ones) +
+                             2.0 * (world_rest * ones));
   const double beside = largest(model_rest * size + origin * (abs_m * h));
-  const double b = kSecondOrder * largest(abs_r * (origin * (abs_m * h) + kKernelRounding * beside * ones) + world_rest * h);
+  const double b =
+      kSecondOrder * largest(abs_r * (origin * (abs_m * h) + kKernelRounding * beside * ones) + world_rest * h);
   // Negated comparisons also turn NaN away.
   if (!(a <= kMost && m_rows <= kLargest && r_rows <= kLargest && std::isfinite(b))) return std::nullopt;
   return margin(a, b, kLeastMargin * std::max(1.0, r_rows));

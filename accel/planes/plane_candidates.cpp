@@ -36,7 +36,8 @@ float rounded_up(double x) {
 
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points) {
   const float* const n = plane.normal;
-  const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y), plane_centre(box.lo.z, box.hi.z));
+  const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y),
+                     plane_centre(box.lo.z, box.hi.z));
   double most = -std::numeric_limits<double>::infinity(), error = 0;
   for (const Vec3& p : points) {
     const double x = n[0] * (p.x - centre.x), y = n[1] * (p.y - centre.y), z = n[2] * (p.z - centre.z);
@@ -49,7 +50,8 @@ float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<
 
 float distance_along(const CullPlane& plane, const Aabb& box, const Vec3& sphere, float radius) {
   const DVec3 n(plane.normal[0], plane.normal[1], plane.normal[2]);
-  const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y), plane_centre(box.lo.z, box.hi.z));
+  const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y),
+                     plane_centre(box.lo.z, box.hi.z));
   const DVec3 terms = n * (DVec3(sphere) - centre);
   const double reach = radius * glm::length(n);
   const double error = std::fabs(terms.x) + std::fabs(terms.y) + std::fabs(terms.z) + reach;
@@ -64,9 +66,9 @@ double empty_part(const CullPlane& plane, const Aabb& box) {
     side[static_cast<std::size_t>(axis)] = std::fabs(plane.normal[axis]) * (double(box.hi[axis]) - box.lo[axis]);
     whole += side[static_cast<std::size_t>(axis)];
   }
-  const double depth = whole / 2 - plane.distance;   // from the corner that is farthest along the normal
+  const double depth = whole / 2 - plane.distance;  // from the corner that is farthest along the normal
   if (!(depth > 0)) return 0;
-  for (double& s : side) s = std::fmax(s, 1e-4 * whole);   // nearly parallel to an axis: the sum below would cancel
+  for (double& s : side) s = std::fmax(s, 1e-4 * whole);  // nearly parallel to an axis: the sum below would cancel
   double volume = 0;
   for (unsigned corner = 0; corner < 8; ++corner) {
     double left = depth;
@@ -84,10 +86,11 @@ void OctantBest::offer(const CullPlane& plane, double worth) {
 
 std::vector<CullPlane> OctantBest::best(int most, double least) const {
   std::array<Candidate, 8> sorted = octants_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.worth > b.worth; });
   std::vector<CullPlane> planes;
   for (const Candidate& candidate : sorted) {
-    const bool again = !planes.empty() && planes.back() == candidate.plane;   // the best of several octants
+    const bool again = !planes.empty() && planes.back() == candidate.plane;  // the best of several octants
     if (static_cast<int>(planes.size()) < most && candidate.worth > least && !again) planes.push_back(candidate.plane);
   }
   return planes;
@@ -104,7 +107,7 @@ void PlaneChoice::offer_octants() {
   DVec3 direction;
   for (int axis = 0; axis < 3; ++axis) {
     const double extent = double(child_.box.hi[axis]) - child_.box.lo[axis];
-    if (!(extent > 0)) return;   // flat: nothing to cut off
+    if (!(extent > 0)) return;  // flat: nothing to cut off
     direction[axis] = 1 / extent;
   }
   for (int signs = 0; signs < 8; ++signs)
@@ -112,7 +115,9 @@ void PlaneChoice::offer_octants() {
            signs & 4 ? -direction.z : direction.z});
 }
 
-std::vector<CullPlane> PlaneChoice::best(int most) const { return best_.best(most, kLeastEmptyPart); }
+std::vector<CullPlane> PlaneChoice::best(int most) const {
+  return best_.best(most, kLeastEmptyPart);
+}
 
 std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedShape>& siblings,
                                                   const std::vector<CullPlane>& candidates, int most) {
@@ -123,7 +128,7 @@ std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedShape>&
       plane.distance = child.distance(plane);
       worth += child.box.half_area() * empty_part(plane, child.box);
     }
-    plane.distance = 0;   // equal directions are equal planes
+    plane.distance = 0;  // equal directions are equal planes
     choice.offer(plane, worth);
   }
   const std::vector<CullPlane> directions = choice.best(most, 0);

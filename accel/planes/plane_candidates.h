@@ -13,14 +13,14 @@ namespace carousel::accel {
 /// A child: its box, and how far along a plane's normal what stands in it reaches, from the box's plane_centre().
 struct BoxedShape {
   Aabb box;
-  std::function<float(const CullPlane&)> distance;   ///< rounded up
+  std::function<float(const CullPlane&)> distance;  ///< rounded up
 };
 
 /// The least float that is not below `x`.
 float rounded_up(double x);
 
-/// How far `n` points along the farthest of the points, from a box's plane_centre(): rounded up, so that with a plane at
-/// this distance no point is cut off. Infinite when there is no such float.
+/// How far `n` points along the farthest of the points, from a box's plane_centre(): rounded up, so that with a plane
+/// at this distance no point is cut off. Infinite when there is no such float.
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points);
 
 /// The same for a sphere.
@@ -67,8 +67,8 @@ class PlaneChoice {
 };
 
 /// Planes for siblings that share their normals: of the candidates' directions those that cut most off all boxes
-/// together, a box counting by its area, as rays meet it. As many for each sibling, in the same order; none for one that
-/// has nothing to cut off.
+/// together, a box counting by its area, as rays meet it. As many for each sibling, in the same order; none for one
+/// that has nothing to cut off.
 std::vector<std::vector<CullPlane>> shared_planes(const std::vector<BoxedShape>& siblings,
                                                   const std::vector<CullPlane>& candidates, int most);
 

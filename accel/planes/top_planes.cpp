@@ -13,7 +13,9 @@ namespace carousel::accel {
 
 namespace {
 
-DVec3 size_of(const Aabb& box) { return glm::max(glm::abs(DVec3(box.lo)), glm::abs(DVec3(box.hi))); }
+DVec3 size_of(const Aabb& box) {
+  return glm::max(glm::abs(DVec3(box.lo)), glm::abs(DVec3(box.hi)));
+}
 
 }  // namespace
 
@@ -24,9 +26,10 @@ TopPlanes::TopPlanes(const Accel& accel, const scene::Scene& scene, CullPlanesCo
     const InstanceNode& instance = accel.instances[i];
     const bool empty = instance.triangles == 0;
     model_boxes_.push_back(empty ? Aabb{} : model_box(accel, instance.root));
-    instance_margins_.push_back(empty ? std::nullopt : margin_in_world(placement(i), instance.transform, model_boxes_[i]));
+    instance_margins_.push_back(empty ? std::nullopt
+                                      : margin_in_world(placement(i), instance.transform, model_boxes_[i]));
   }
-  for (std::size_t i = accel.nodes.size(); i-- > 0 && accel.nodes[i].above_instances;) {   // children after parents
+  for (std::size_t i = accel.nodes.size(); i-- > 0 && accel.nodes[i].above_instances;) {  // children after parents
     node_margins_[i] = margin_below();
     for (int lane = 0; lane < accel.nodes[i].count; ++lane) {
       const std::optional<LineMargin>& child = margin(accel.nodes[i].child[lane]);
@@ -67,7 +70,8 @@ double TopPlanes::farthest(NodeRef child, const DVec3& normal, const DVec3& cent
     const DMat3 linear(m.linear);
     const DVec3 offset = DVec3(m.translation) - centre;
     // Products of floats are exact in double; all sums together err by less than this.
-    const double error = 0x1p-48 * (glm::dot(along, magnitudes(linear) * size_of(model_boxes_[i])) + glm::dot(along, glm::abs(offset)));
+    const double error =
+        0x1p-48 * (glm::dot(along, magnitudes(linear) * size_of(model_boxes_[i])) + glm::dot(along, glm::abs(offset)));
     const double model = farthest_along(accel_, accel_.instances[i].root, glm::transpose(linear) * normal, fit_);
     return std::max(most, model + glm::dot(normal, offset) + error);
   }
@@ -83,8 +87,9 @@ double TopPlanes::farthest(NodeRef child, const DVec3& normal, const DVec3& cent
   return most;
 }
 
-// What stands turned in its box: the faces of its own box, planes through an edge of it and along an axis, its corners cut
-// off, and what is known of the shape from the planes and triangles at its root. Normals turn by the inverse's transpose.
+// What stands turned in its box: the faces of its own box, planes through an edge of it and along an axis, its corners
+// cut off, and what is known of the shape from the planes and triangles at its root. Normals turn by the inverse's
+// transpose.
 void TopPlanes::offer(NodeRef child, PlaneChoice& choice) const {
   const std::uint32_t instance = child.instance_index();
   const DMat3 linear(placement(instance).linear), normals = glm::transpose(glm::inverse(linear));

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "accel/structure/accel.h"
 #include "accel/planes/line_margin.h"
 #include "accel/planes/plane_candidates.h"
+#include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "scene/model/scene.h"
 
@@ -19,7 +19,8 @@ using LanePlanes = std::array<std::vector<CullPlane>, kMaxWidth>;
 class TopPlanes {
  public:
   /// Keeps references. `found` has the planes of nodes below the instances, if there are any, by node.
-  TopPlanes(const Accel& accel, const scene::Scene& scene, CullPlanesConfig::Fit fit, const std::vector<LanePlanes>& found);
+  TopPlanes(const Accel& accel, const scene::Scene& scene, CullPlanesConfig::Fit fit,
+            const std::vector<LanePlanes>& found);
 
   /// What stands below a child of a node of the top level.
   BoxedShape shape(const Node& node, int lane) const;
@@ -36,8 +37,8 @@ class TopPlanes {
   const scene::Scene& scene_;
   CullPlanesConfig::Fit fit_;
   const std::vector<LanePlanes>& found_;
-  std::vector<std::optional<LineMargin>> instance_margins_, node_margins_;   // of the top level, by node
-  std::vector<Aabb> model_boxes_;   // by instance
+  std::vector<std::optional<LineMargin>> instance_margins_, node_margins_;  // of the top level, by node
+  std::vector<Aabb> model_boxes_;                                           // by instance
 };
 
 }  // namespace carousel::accel

@@ -2,15 +2,17 @@
 
 #include <array>
 
-#include "accel/structure/accel.h"
 #include "accel/exact/exact_triangle.h"
 #include "accel/primitive/local_ray.h"
+#include "accel/structure/accel.h"
 
 namespace carousel::accel {
 
 /// Whether a hit there is to stand in the place of `hit`: ties go to the smallest (t, instance, primitive).
-[[gnu::always_inline]] inline bool comes_before(float t, std::uint32_t instance, std::uint32_t primitive, const Hit& hit) {
-  return t < hit.t || (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
+[[gnu::always_inline]] inline bool comes_before(float t, std::uint32_t instance, std::uint32_t primitive,
+                                                const Hit& hit) {
+  return t < hit.t ||
+         (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
 }
 
 /// Whether the ray stops at a primitive that is to be asked, found in front of all that has stopped it so far.
@@ -21,8 +23,8 @@ template <class Slab>
   return accel.any_hit->stops(ray.record->ray, found.instance, found.primitive, found.u, found.v);
 }
 
-/// The same of a triangle, given in the frame's space, that may have to be asked, or show the wrong side. glTF turns the
-/// winding of instances that mirror, which makes the front what it is in model space.
+/// The same of a triangle, given in the frame's space, that may have to be asked, or show the wrong side. glTF turns
+/// the winding of instances that mirror, which makes the front what it is in model space.
 template <class Slab>
 [[gnu::noinline]] bool stopped_by_triangle(const Accel& accel, bool asks, const std::array<Vec3, 3>& triangle,
                                            const FrameRay<Slab>& ray, const Hit& found) {

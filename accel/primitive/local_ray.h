@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <new>
 
-#include "accel/structure/accel.h"
 #include "accel/box/double_slab.h"
 #include "accel/box/slab.h"
 #include "accel/primitive/watertight.h"
+#include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "core/types/ray.h"
 #include "core/types/intersection_counts.h"
+#include "core/types/ray.h"
 
 namespace carousel::accel {
 
@@ -17,7 +17,7 @@ namespace carousel::accel {
 union TriangleRay {
   WatertightRay<float> watertight;
   WatertightRay<double> watertight_double;
-  Ray line;   ///< fast and exact: as it is
+  Ray line;  ///< fast and exact: as it is
 
   [[gnu::always_inline]] TriangleRay(const Ray& ray, TriangleLevel level) {
     if (level == TriangleLevel::kWatertight) [[likely]]
@@ -37,10 +37,10 @@ struct FrameRay {
   Slab slab;
   TriangleRay triangle;
   std::uint32_t instance;
-  float instance_entry;   ///< of the ray into the instance's world box
+  float instance_entry;  ///< of the ray into the instance's world box
   // For tests that few configurations have: planes, procedural primitives, what lets rays through.
   Vec3 origin, direction;
-  const RayRecord* record;   ///< the ray in world space, and what it wants
+  const RayRecord* record;  ///< the ray in world space, and what it wants
   TestCounts* counts;
 
   [[gnu::always_inline]] FrameRay(const AccuracyConfig& accuracy, const Ray& ray, std::uint32_t i, float entry,

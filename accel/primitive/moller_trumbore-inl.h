@@ -37,9 +37,7 @@ HWY_INLINE std::uint32_t moller_trumbore_lanes(D d, const TriangleBlock& block, 
                                                float* HWY_RESTRICT t, float* HWY_RESTRICT second,
                                                float* HWY_RESTRICT third) {
   using V = hn::Vec<D>;
-  const auto set = [&](const Vec3& p) HWY_ATTR {
-    return Lanes3<V>{hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
-  };
+  const auto set = [&](const Vec3& p) HWY_ATTR { return Lanes3<V>{hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)}; };
   const auto load = [&](int vertex) HWY_ATTR {
     const auto& p = block.vertex[vertex];
     return Lanes3<V>{hn::Load(d, p[0] + i), hn::Load(d, p[1] + i), hn::Load(d, p[2] + i)};

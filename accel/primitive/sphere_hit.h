@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <limits>
 
-#include "accel/structure/accel.h"
-#include "accel/primitive/local_ray.h"
 #include "accel/primitive/has_non_opaque.h"
+#include "accel/primitive/local_ray.h"
+#include "accel/structure/accel.h"
 #include "accel/structure/sphere.h"
 #include "core/numeric/octahedral.h"
 
 namespace carousel::accel {
 
 /// Lowers `hit` to where the ray meets the sphere in a lane of `block`, if that is nearer: a hit as one of a triangle,
-/// with the sphere's own box, and for u and v where on the sphere (core/numeric/octahedral.h). The way in is its front, the way
-/// out its back.
+/// with the sphere's own box, and for u and v where on the sphere (core/numeric/octahedral.h). The way in is its front,
+/// the way out its back.
 template <class Slab>
 [[gnu::noinline]] bool lower_by_sphere(const Accel& accel, const TriangleBlock& block, std::size_t lane,
                                        const FrameRay<Slab>& ray, Hit& hit) {

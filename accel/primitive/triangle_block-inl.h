@@ -14,12 +14,12 @@
 #include <hwy/highway.h>
 
 #include "accel/exact/exact_triangle.h"
+#include "accel/primitive/has_non_opaque.h"
 #include "accel/primitive/local_ray.h"
 #include "accel/primitive/moller_trumbore-inl.h"
-#include "accel/structure/node.h"
-#include "accel/primitive/has_non_opaque.h"
 #include "accel/primitive/sphere_hit.h"
 #include "accel/primitive/watertight-inl.h"
+#include "accel/structure/node.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -61,8 +61,8 @@ HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const 
     distance = ray.instance_entry > distance ? ray.instance_entry : distance;
     const std::uint32_t primitive = block.primitive[l] & kPrimitiveMask;
     if (!comes_before(distance, ray.instance, primitive, hit)) continue;
-    const Hit found{distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]), ray.instance,
-                    primitive};
+    const Hit found{distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]),
+                    ray.instance, primitive};
     const std::uint32_t asks = block.primitive[l] & kAskBit;
     if (HWY_UNLIKELY((asks | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
         !stopped_by_triangle(accel, asks != 0, corners(block, l), ray, found))
@@ -76,8 +76,8 @@ HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const 
 // Each tests the triangles of `block` that `lanes` selects: lower_hit() of what its kernel says.
 
 template <class T, class Slab>
-HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, const WatertightRay<T>& watertight, std::uint32_t lanes,
-                                 const FrameRay<Slab>& ray, Hit& hit) {
+HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, const WatertightRay<T>& watertight,
+                                 std::uint32_t lanes, const FrameRay<Slab>& ray, Hit& hit) {
   const hn::CappedTag<T, kBlockTriangles> d;
   Crossings<T> c;
   for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
@@ -126,12 +126,13 @@ HWY_INLINE bool each_block(const Accel& accel, NodeRef leaf, std::uint32_t lanes
 
 /// The spheres of a leaf likewise.
 template <class Slab>
-HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray, Hit& hit) {
+HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
+                             Hit& hit) {
   bool changed = false;
   for (std::uint32_t i = 0; i < leaf.triangles(); ++i)
     if (lanes >> i & 1)
-      changed |= lower_by_sphere(accel, accel.blocks[leaf.first_block() + i / kBlockTriangles],
-                                 i % kBlockTriangles, ray, hit);
+      changed |=
+          lower_by_sphere(accel, accel.blocks[leaf.first_block() + i / kBlockTriangles], i % kBlockTriangles, ray, hit);
   return changed;
 }
 
@@ -143,24 +144,23 @@ HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uin
   const auto each = [&](const auto& test) HWY_ATTR { return each_block(accel, leaf, lanes, test); };
   switch (accel.accuracy.triangle) {
     case TriangleLevel::kFast:
-      return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-        return moller_trumbore_block(accel, block, some, ray, hit);
-      });
+      return each([&](const TriangleBlock& block, std::uint32_t some)
+                      HWY_ATTR { return moller_trumbore_block(accel, block, some, ray, hit); });
     case TriangleLevel::kDouble:
       return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
         return watertight_block(accel, block, ray.triangle.watertight_double, some, ray, hit);
       });
     case TriangleLevel::kExact:
-      return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-        return exact_block(accel, block, some, ray, hit);
-      });
-    case TriangleLevel::kWatertight: break;
+      return each([&](const TriangleBlock& block, std::uint32_t some)
+                      HWY_ATTR { return exact_block(accel, block, some, ray, hit); });
+    case TriangleLevel::kWatertight:
+      break;
   }
   return false;
 }
 
-/// Tests the triangles, or procedural primitives, of `leaf` that `lanes` selects and lowers `hit`; true when it changed.
-/// Not inlined: its registers would push the traversal's own into memory.
+/// Tests the triangles, or procedural primitives, of `leaf` that `lanes` selects and lowers `hit`; true when it
+/// changed. Not inlined: its registers would push the traversal's own into memory.
 template <class Slab>
 HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
                             Hit& hit) {

@@ -12,8 +12,8 @@
 
 #include <hwy/highway.h>
 
-#include "accel/structure/node.h"
 #include "accel/primitive/watertight.h"
+#include "accel/structure/node.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -75,8 +75,8 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
   const auto outside = hn::Or(hn::And(any_negative, any_positive), hn::Eq(det, zero));
   if (hn::AllTrue(d, outside)) return 0;
 
-  const auto scaled_t = hn::Add(hn::Mul(u, hn::Mul(sz, akz)),
-                                hn::Add(hn::Mul(v, hn::Mul(sz, bkz)), hn::Mul(w, hn::Mul(sz, ckz))));
+  const auto scaled_t =
+      hn::Add(hn::Mul(u, hn::Mul(sz, akz)), hn::Add(hn::Mul(v, hn::Mul(sz, bkz)), hn::Mul(w, hn::Mul(sz, ckz))));
   const auto inverse_det = hn::Div(hn::Set(d, T{1}), det);
   hn::Store(hn::Mul(scaled_t, inverse_det), d, t);
   hn::Store(hn::Mul(v, inverse_det), d, second);

@@ -22,7 +22,7 @@ struct WatertightRay {
     const int larger = ay >= ax ? 1 : 0;
     kz = az >= (larger ? ay : ax) ? 2 : larger;
     static constexpr int kAfter[2][3][2] = {{{1, 2}, {2, 0}, {0, 1}}, {{2, 1}, {0, 2}, {1, 0}}};
-    const int* const after = kAfter[d[kz] < 0.0f][kz];   // swapped when the ray runs backwards: keeps the winding
+    const int* const after = kAfter[d[kz] < 0.0f][kz];  // swapped when the ray runs backwards: keeps the winding
     kx = after[0];
     ky = after[1];
     // One division for all three.

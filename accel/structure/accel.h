@@ -3,22 +3,22 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/structure/node_spheres.h"
 #include "accel/structure/cull_plane.h"
 #include "accel/structure/node.h"
+#include "accel/structure/node_spheres.h"
 #include "accel/transform/transform.h"
+#include "core/config/config.h"
 #include "core/types/aabb.h"
 #include "core/types/any_hit.h"
-#include "core/config/config.h"
 
 namespace carousel::accel {
 
 /// One placement of a bottom-level structure.
 struct InstanceNode {
-  NodeRef root;                  ///< inner node or leaf of the mesh's BLAS
+  NodeRef root;  ///< inner node or leaf of the mesh's BLAS
   InstanceTransform transform;
-  Aabb world;                    ///< part of what a hit is (DESIGN.md section 3)
-  std::uint8_t strip_size = 0;   ///< shapes below the root
+  Aabb world;                   ///< part of what a hit is (DESIGN.md section 3)
+  std::uint8_t strip_size = 0;  ///< shapes below the root
   std::uint32_t triangles = 0;
 };
 
@@ -28,25 +28,25 @@ struct InstanceNode {
 struct Accel {
   NodeArray nodes;
   BlockArray blocks;
-  std::vector<CullPlane> planes;         ///< in order of the nodes; empty without cull_planes
-  std::vector<NodeSpheres> spheres;      ///< by node, tested instead of its boxes; empty with bvh.elements: boxes
-  bool shared_normals = false;           ///< of siblings; `planes` repeats them
-  bool planes_first = false;             ///< a child's planes are tested before its box
-  std::uint64_t plane_bytes = 0;         ///< of the planes, normals that are shared counted once
-  std::vector<InstanceNode> instances;   ///< indexed as Scene::instances
-  NodeKey root;                          ///< as root_key()
-  const AnyHit* any_hit = nullptr;       ///< who knows what lets rays through, set before tracing; null: nothing does
-  AccuracyConfig accuracy;               ///< arithmetic of the tests on it
-  bool procedural_primitives = false;    ///< there are some
-  bool may_pass = false;                 ///< some primitives have kAskBit
-  int width = kMaxWidth;                 ///< children a node at most
-  int max_depth = 0;                     ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
-  std::size_t baked_instances = 0;       ///< singular transforms, stored as world-space triangles
+  std::vector<CullPlane> planes;        ///< in order of the nodes; empty without cull_planes
+  std::vector<NodeSpheres> spheres;     ///< by node, tested instead of its boxes; empty with bvh.elements: boxes
+  bool shared_normals = false;          ///< of siblings; `planes` repeats them
+  bool planes_first = false;            ///< a child's planes are tested before its box
+  std::uint64_t plane_bytes = 0;        ///< of the planes, normals that are shared counted once
+  std::vector<InstanceNode> instances;  ///< indexed as Scene::instances
+  NodeKey root;                         ///< as root_key()
+  const AnyHit* any_hit = nullptr;      ///< who knows what lets rays through, set before tracing; null: nothing does
+  AccuracyConfig accuracy;              ///< arithmetic of the tests on it
+  bool procedural_primitives = false;   ///< there are some
+  bool may_pass = false;                ///< some primitives have kAskBit
+  int width = kMaxWidth;                ///< children a node at most
+  int max_depth = 0;                    ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
+  std::size_t baked_instances = 0;      ///< singular transforms, stored as world-space triangles
 
   bool asks() const { return may_pass && any_hit != nullptr; }
   std::size_t size_bytes() const {
-    return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) +
-           spheres.size() * sizeof(NodeSpheres) + plane_bytes + instances.size() * sizeof(InstanceNode);
+    return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
+           plane_bytes + instances.size() * sizeof(InstanceNode);
   }
   /// Where every ray starts: the top level's root, or the root of the only instance.
   NodeKey root_key() const { return root; }

@@ -19,7 +19,9 @@ static_assert(sizeof(CullPlane) == 16);
 inline constexpr int kMaxCullPlanes = 8;
 
 /// What the distances of a box's planes are measured from: the same float wherever it is computed.
-[[gnu::always_inline]] inline float plane_centre(float lo, float hi) { return 0.5f * lo + 0.5f * hi; }
+[[gnu::always_inline]] inline float plane_centre(float lo, float hi) {
+  return 0.5f * lo + 0.5f * hi;
+}
 
 /// Planes of a node's child lane, which follow those of the lanes before it.
 [[gnu::always_inline]] inline int plane_count(const Node& node, int lane) {

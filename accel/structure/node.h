@@ -71,14 +71,14 @@ struct NodeKey {
 struct alignas(64) Node {
   float plane[6][kMaxWidth];
   NodeRef child[kMaxWidth];
-  std::uint8_t strip_size[kMaxWidth];   ///< shapes below each child: its children, or its triangles
-  std::uint8_t count = 0;               ///< children, in lanes 0..count-1
-  std::uint8_t depth = 0;               ///< below the root of its structure, 255 at most; set with cull planes
-  bool above_instances = false;         ///< part of the top level
-  std::uint8_t direct = 0;              ///< a bit a lane: a leaf whose primitives are tested with the node's boxes, without its own
-  std::uint32_t triangles = 0;          ///< below this node, instances counted each time; saturates
-  std::uint32_t first_plane = 0;        ///< in Accel::planes: lane by lane, where there are any
-  std::uint32_t plane_counts = 0;       ///< cull planes of each child, four bits a lane
+  std::uint8_t strip_size[kMaxWidth];  ///< shapes below each child: its children, or its triangles
+  std::uint8_t count = 0;              ///< children, in lanes 0..count-1
+  std::uint8_t depth = 0;              ///< below the root of its structure, 255 at most; set with cull planes
+  bool above_instances = false;        ///< part of the top level
+  std::uint8_t direct = 0;  ///< a bit a lane: a leaf whose primitives are tested with the node's boxes, without its own
+  std::uint32_t triangles = 0;     ///< below this node, instances counted each time; saturates
+  std::uint32_t first_plane = 0;   ///< in Accel::planes: lane by lane, where there are any
+  std::uint32_t plane_counts = 0;  ///< cull planes of each child, four bits a lane
   /// How far its planes and boxes are moved out when lines are cut by them: by the first for each distance along an
   /// axis from the ray's origin to the far side of the box, and by the second in any case.
   float margin_per_reach = 0, least_margin = 0;
@@ -96,11 +96,11 @@ struct alignas(64) Node {
 static_assert(sizeof(Node) == 256);
 
 /// Four triangles, vertex by vertex, axis by axis. Unused lanes hold NaN positions, which no ray can hit.
-/// A block of spheres, the procedural primitives there are, has their centres for first vertices and their radii where a
-/// second vertex has its x; the rest stays unused.
+/// A block of spheres, the procedural primitives there are, has their centres for first vertices and their radii where
+/// a second vertex has its x; the rest stays unused.
 struct alignas(16) TriangleBlock {
-  float vertex[3][3][kBlockTriangles];   ///< [vertex][axis][lane]
-  std::uint32_t primitive[kBlockTriangles];   ///< with kAskBit
+  float vertex[3][3][kBlockTriangles];       ///< [vertex][axis][lane]
+  std::uint32_t primitive[kBlockTriangles];  ///< with kAskBit
 
   TriangleBlock() {
     for (auto& v : vertex)

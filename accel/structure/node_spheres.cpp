@@ -18,8 +18,8 @@ float rounded_down(double x) {
 
 }  // namespace
 
-std::uint32_t intersect_spheres(const NodeSpheres& spheres, int count, const Vec3& origin, const Vec3& direction, float tmin,
-                           float tmax, float* entry) {
+std::uint32_t intersect_spheres(const NodeSpheres& spheres, int count, const Vec3& origin, const Vec3& direction,
+                                float tmin, float tmax, float* entry) {
   const DVec3 o(origin), d(direction);
   const double a = glm::dot(d, d);
   std::uint32_t mask = 0;

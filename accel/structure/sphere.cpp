@@ -11,7 +11,7 @@ bool cross_sphere(const Vec3& origin, const Vec3& direction, const Vec3& centre,
   const DVec3 from = DVec3(origin) - DVec3(centre), d(direction);
   const double r = radius, a = glm::dot(d, d), b = -glm::dot(from, d);
   if (!(a > 0) || !(r > 0)) return false;
-  const DVec3 nearest = from + (b / a) * d;   // to the centre, of the line's points
+  const DVec3 nearest = from + (b / a) * d;  // to the centre, of the line's points
   const double half_chord2 = r * r - glm::dot(nearest, nearest);
   if (!(half_chord2 >= 0)) return false;
   const double root = std::sqrt(a * half_chord2), q = b + std::copysign(root, b);

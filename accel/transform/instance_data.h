@@ -17,8 +17,8 @@ inline AccuracyConfig::InstanceData stored_instance_data(const AccuracyConfig& c
 
 /// Its bytes: twelve floats of 3 x 4 entries; nine of them in fp64 where the inverse is stored and used in fp64.
 inline std::uint32_t instance_bytes(const AccuracyConfig& c) {
-  const bool fp64 = c.transform == TransformLevel::kTwoStepDouble &&
-                    stored_instance_data(c) == AccuracyConfig::InstanceData::kRt;
+  const bool fp64 =
+      c.transform == TransformLevel::kTwoStepDouble && stored_instance_data(c) == AccuracyConfig::InstanceData::kRt;
   return fp64 ? 9 * 8 + 3 * 4 : 12 * 4;
 }
 

@@ -30,8 +30,8 @@ inline Vec3 folded_translation(const DMat3& inverse, const Vec3& translation) {
 inline Vec3 inverse_matrix_fma(const Mat3& inverse, const Vec3& folded, const Vec3& p) {
   Vec3 out;
   for (int row = 0; row < 3; ++row)
-    out[row] = std::fma(inverse[2][row], p.z,
-                        std::fma(inverse[1][row], p.y, std::fma(inverse[0][row], p.x, folded[row])));
+    out[row] =
+        std::fma(inverse[2][row], p.z, std::fma(inverse[1][row], p.y, std::fma(inverse[0][row], p.x, folded[row])));
   return out;
 }
 

@@ -18,9 +18,13 @@ bool finite(const Mat3& m) {
   return true;
 }
 
-bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
-DMat3 magnitudes(const DMat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+DMat3 magnitudes(const DMat3& m) {
+  return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
+}
 
 /// How far a level's transform may move a ray that starts in the instance's world box from a point that is as large as
 /// `size` in the model, beyond the roundings of R x + T itself: an error e of the model's point is |R| e in the world.
@@ -28,12 +32,12 @@ DMat3 magnitudes(const DMat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::
 /// difference is rounded as well, and from there to the point it is at most twice the size of the box.
 DVec3 transform_error(const scene::Affine& m, const DVec3& size, TransformLevel level) {
   const DMat3 linear = magnitudes(DMat3(m.linear)), inverse = magnitudes(glm::inverse(DMat3(m.linear)));
-  const DVec3 back = inverse * (linear * size);   // of any point of the world box
+  const DVec3 back = inverse * (linear * size);  // of any point of the world box
   if (level == TransformLevel::kTwoStepDouble) return linear * (gamma(1 + 2 * 1) * back);
   DVec3 error = gamma(5 + 2 * 4) * back;
   if (level == TransformLevel::kTransposeIfRotation)
-    error += 4 * kUnitRoundoff * DVec3(size.x + size.y + size.z);   // (R^T R - I) x
-  if (level == TransformLevel::kInverseMatrix)   // R^-1 p and R^-1 T before they cancel: a third sum
+    error += 4 * kUnitRoundoff * DVec3(size.x + size.y + size.z);  // (R^T R - I) x
+  if (level == TransformLevel::kInverseMatrix)                     // R^-1 p and R^-1 T before they cancel: a third sum
     error += gamma(2 * 5) * (inverse * glm::abs(DVec3(m.translation)));
   return linear * error;
 }

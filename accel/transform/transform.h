@@ -4,8 +4,8 @@
 
 #include "accel/transform/inverse_matrix.h"
 #include "accel/transform/two_step.h"
-#include "core/types/aabb.h"
 #include "core/config/config.h"
+#include "core/types/aabb.h"
 #include "core/types/ray.h"
 #include "core/types/vec.h"
 #include "scene/model/scene.h"
@@ -18,12 +18,12 @@ struct InstanceTransform {
   /// What a ray goes through. transpose_if_rotation is kTwoStep with another matrix.
   enum class Form : std::uint8_t { kTwoStep, kTwoStepDouble, kInverseMatrix };
 
-  Mat3 inverse_linear{1.0f};   ///< computed in double and rounded once; or the transpose of a rotation
-  Vec3 translation{0};         ///< T, to be subtracted; for kInverseMatrix -R^-1 T, to be added
-  bool identity = true;        ///< no arithmetic at all
+  Mat3 inverse_linear{1.0f};  ///< computed in double and rounded once; or the transpose of a rotation
+  Vec3 translation{0};        ///< T, to be subtracted; for kInverseMatrix -R^-1 T, to be added
+  bool identity = true;       ///< no arithmetic at all
   Form form = Form::kTwoStep;
-  bool transposed = false;     ///< inverse_linear is a transpose
-  Mat3 inverse_rest{0.0f};     ///< kTwoStepDouble: what rounding took from inverse_linear
+  bool transposed = false;  ///< inverse_linear is a transpose
+  Mat3 inverse_rest{0.0f};  ///< kTwoStepDouble: what rounding took from inverse_linear
 
   [[gnu::always_inline]] Ray to_model(const Ray& world) const {
     if (identity) return world;

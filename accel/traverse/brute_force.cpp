@@ -7,11 +7,11 @@
 #include <type_traits>
 
 #include "accel/box/double_slab.h"
-#include "accel/exact/exact_triangle.h"
-#include "accel/traverse/ray_check.h"
 #include "accel/box/slab.h"
+#include "accel/exact/exact_triangle.h"
 #include "accel/structure/sphere.h"
 #include "accel/transform/transform.h"
+#include "accel/traverse/ray_check.h"
 #include "core/numeric/octahedral.h"
 #include "scene/model/opacity.h"
 
@@ -72,10 +72,14 @@ bool moller_trumbore_scalar(const Ray& ray, const Corners& p, Crossing& out) {
 
 bool crosses(TriangleLevel level, const Ray& ray, const Corners& p, Crossing& out) {
   switch (level) {
-    case TriangleLevel::kFast: return moller_trumbore_scalar(ray, p, out);
-    case TriangleLevel::kWatertight: return watertight_scalar<float>(ray, p, out);
-    case TriangleLevel::kDouble: return watertight_scalar<double>(ray, p, out);
-    case TriangleLevel::kExact: break;
+    case TriangleLevel::kFast:
+      return moller_trumbore_scalar(ray, p, out);
+    case TriangleLevel::kWatertight:
+      return watertight_scalar<float>(ray, p, out);
+    case TriangleLevel::kDouble:
+      return watertight_scalar<double>(ray, p, out);
+    case TriangleLevel::kExact:
+      break;
   }
   NearestCrossing crossing;
   if (!exact_triangle(ray, p, crossing)) return false;
@@ -119,8 +123,9 @@ Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const 
     if (baked) transform = InstanceTransform{};
     const auto stops = [&](std::uint32_t primitive, bool front, float u, float v) {
       if ((request.tag.flags & (front ? kRayCullFront : kRayCullBack)) != 0) return false;
-      const bool asks = primitive < mesh.triangle_count() ? opacity.may_let_through(mesh, primitive)
-                                                          : opacity.may_let_through(mesh.spheres[primitive - mesh.triangle_count()]);
+      const bool asks = primitive < mesh.triangle_count()
+                            ? opacity.may_let_through(mesh, primitive)
+                            : opacity.may_let_through(mesh.spheres[primitive - mesh.triangle_count()]);
       return !asks || any_hit == nullptr || (request.tag.flags & kRayForceOpaque) != 0 ||
              any_hit->stops(request.ray, i, primitive, u, v);
     };

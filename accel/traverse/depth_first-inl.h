@@ -10,27 +10,27 @@
 
 #include <hwy/highway.h>
 
-#include "accel/structure/accel.h"
-#include "accel/planes/cull_lanes-inl.h"
 #include "accel/box/double_slab-inl.h"
-#include "accel/primitive/local_ray.h"
-#include "accel/traverse/kernels.h"
 #include "accel/box/slab-inl.h"
+#include "accel/planes/cull_lanes-inl.h"
+#include "accel/primitive/local_ray.h"
 #include "accel/primitive/triangle_block-inl.h"
+#include "accel/structure/accel.h"
+#include "accel/traverse/kernels.h"
 #include "core/types/intersection_counts.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/build/sah_build.cpp), above the instances and again
-/// below one that is entered in passing; a level leaves at most seven siblings behind.
+/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/build/sah_build.cpp), above the instances and
+/// again below one that is entered in passing; a level leaves at most seven siblings behind.
 inline constexpr int kStackCapacity = 1024;
 
 /// Nodes that wait for their turn, a node's nearest child on top.
 struct DepthFirstStack {
   struct Entry {
     float entry;
-    std::uint32_t ref;   // bits of a NodeRef, which would be initialised: 1024 times a call for nothing
+    std::uint32_t ref;  // bits of a NodeRef, which would be initialised: 1024 times a call for nothing
   };
   Entry entries[kStackCapacity];
 };
@@ -45,7 +45,7 @@ HWY_INLINE void prefetch(const Accel& accel, NodeRef ref) {
   if (ref.is_inner())
     prefetch_lines(accel.nodes.data() + ref.node());
   else
-    prefetch_lines(accel.blocks.data() + ref.first_block());   // an instance: some block, which does no harm
+    prefetch_lines(accel.blocks.data() + ref.first_block());  // an instance: some block, which does no harm
 }
 
 /// The nearest of the children in `mask`, which is not empty; the others are pushed, the nearest of them on top.
@@ -76,7 +76,7 @@ HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint
 
 /// What a traversal counts.
 struct TraversalCounts : TestCounts {
-  CullCounts* culls;   ///< RayMembers::culls
+  CullCounts* culls;  ///< RayMembers::culls
   explicit TraversalCounts(CullCounts* by_depth) : culls(by_depth) {}
 };
 
@@ -85,7 +85,7 @@ struct TraversalCounts : TestCounts {
 template <class Slab>
 HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& slab, const Vec3& direction,
                               std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
-  if constexpr (std::is_same_v<Slab, SlabRay>)   // planes need accuracy.box: conservative
+  if constexpr (std::is_same_v<Slab, SlabRay>)  // planes need accuracy.box: conservative
     if (HWY_UNLIKELY(node.plane_counts != 0) && (mask != 0 || accel.planes_first))
       return cull_lanes(accel, node, slab, direction, lanes, mask, counts, culls);
   return mask;
@@ -99,7 +99,8 @@ HWY_INLINE void count_leaf(NodeRef leaf, TestCounts& counts) {
 /// that is tested where its sphere is met, and counted.
 template <class Registers>
 HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Vec3& origin, const Vec3& direction,
-                                       const Registers& ray, float tmin, float tmax, float* entry, std::uint64_t& tested) {
+                                       const Registers& ray, float tmin, float tmax, float* entry,
+                                       std::uint64_t& tested) {
   const Node& node = accel.nodes[ref.node()];
   std::uint32_t met = intersect_spheres(accel.spheres[ref.node()], node.count, origin, direction, tmin, tmax, entry);
   if (!node.above_instances || met == 0) return met;
@@ -111,8 +112,8 @@ HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Ve
   return met;
 }
 
-/// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node holds
-/// itself are not among them, nor counted.
+/// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node
+/// holds itself are not among them, nor counted.
 template <class Slab, class Registers>
 HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const FrameRay<Slab>& frame,
                                       const Registers& ray, float tmax, float* entry, std::uint64_t& tested) {
@@ -191,8 +192,8 @@ template <class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord& record, TraceStacks& stacks,
                                  TraversalCounts& counts);
 
-/// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform are
-/// entered in passing; `level` is 0 there and 1 below an instance with one.
+/// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform
+/// are entered in passing; `level` is 0 there and 1 below an instance with one.
 template <class Slab>
 HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, FrameRay<Slab>& frame,
                               TraceStacks& stacks, int level, TraversalCounts& counts) {

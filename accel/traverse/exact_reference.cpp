@@ -47,7 +47,7 @@ class Placement {
         reach += std::fabs(linear_[row][c]) * half[c];
         terms += std::fabs(linear_[row][c]) * (std::fabs(centre[c]) + half[c]);
       }
-      reach += 16 * kEps * terms + margin_;   // about ten roundings
+      reach += 16 * kEps * terms + margin_;  // about ten roundings
       box.lo[row] = at - reach;
       box.hi[row] = at + reach;
     }
@@ -89,7 +89,7 @@ ExactReference::ExactReference(const scene::Scene& scene, const Accel& accel)
       for (int row = 0; row < 3; ++row) {
         double terms = std::fabs(m.translation[row]);
         for (int c = 0; c < 3; ++c) terms += std::fabs(double(m.linear[c][row]) * p[c]);
-        baked_off_[i] = std::max(baked_off_[i], 0x1p-21 * terms + 0x1p-140);   // four roundings to float, or underflow
+        baked_off_[i] = std::max(baked_off_[i], 0x1p-21 * terms + 0x1p-140);  // four roundings to float, or underflow
       }
   }
 }
@@ -125,7 +125,7 @@ class ExactReference::Search {
     std::uint32_t instance = kNoInstance, primitive = 0;
     double t_lo = 0, t_hi = 0;
     bool tie = false;
-    std::optional<ExactCrossing> crossing;   // when it has been asked for
+    std::optional<ExactCrossing> crossing;  // when it has been asked for
   };
 
   std::array<Vec3, 3> vertices(std::uint32_t instance, std::uint32_t primitive) const {
@@ -140,7 +140,7 @@ class ExactReference::Search {
       placed_for_ = key.instance;
       if (key.instance == kNoInstance)
         placed_ = Placement();
-      else if (accel_.instances[key.instance].transform.identity)   // baked, or placed nowhere
+      else if (accel_.instances[key.instance].transform.identity)  // baked, or placed nowhere
         placed_ = Placement(scene::Affine{}, baked_off_[key.instance]);
       else
         placed_ = Placement(placement(key.instance), 0);

@@ -11,14 +11,15 @@ namespace carousel::accel {
 /// What a ray meets first in the scene as it is: each float of ray, matrix and mesh taken as the real number it stands
 /// for, and no rounding anywhere.
 struct ExactHit {
-  Hit hit;              ///< t, u and v rounded once to the nearest float; a miss as every miss
-  double t = kInfinity; ///< rounded once to the nearest double
-  bool tie = false;     ///< another triangle is met at exactly this t; `hit` is the first by (instance, primitive)
+  Hit hit;               ///< t, u and v rounded once to the nearest float; a miss as every miss
+  double t = kInfinity;  ///< rounded once to the nearest double
+  bool tie = false;      ///< another triangle is met at exactly this t; `hit` is the first by (instance, primitive)
 };
 
 /// The exact closest hit of world-space rays, to hold every level of accuracy against. A hit is geometry and no
 /// kernel's verdict: edges and vertices belong to their triangles, both sides are hit, a ray in a triangle's plane
-/// passes it, nothing else lets rays through, procedural primitives are not there, and no box has a say. Instances are taken as R x + T with their exact vertices, singular ones too.
+/// passes it, nothing else lets rays through, procedural primitives are not there, and no box has a say. Instances are
+/// taken as R x + T with their exact vertices, singular ones too.
 ///
 /// Candidates come from the nodes of a built structure, whose boxes are widened by more than double arithmetic can be
 /// off. Each is decided in double with an error bound where that suffices (accel/exact/crossing_filter.h) and by exact
@@ -36,7 +37,7 @@ class ExactReference {
 
   const scene::Scene& scene_;
   const Accel& accel_;
-  std::vector<double> baked_off_;   // by instance: how far rounding moved vertices that were baked into world space
+  std::vector<double> baked_off_;  // by instance: how far rounding moved vertices that were baked into world space
 };
 
 }  // namespace carousel::accel

@@ -21,8 +21,8 @@ struct Walker {
   RayRecord* record;
   FrameStorage<Slab> frame;
   bool any_hit;
-  NodeRef ref;               ///< the inner node to be visited next
-  std::uint32_t mask;        ///< which of its children are hit
+  NodeRef ref;         ///< the inner node to be visited next
+  std::uint32_t mask;  ///< which of its children are hit
   DepthFirstStack::Entry* top;
   alignas(64) float entry[kMaxWidth];
   DepthFirstStack stack;

@@ -4,14 +4,13 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "accel/traverse/kernels.cpp"
-#include <hwy/foreach_target.h>   // IWYU pragma: keep
-
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-#include "accel/traverse/depth_first-inl.h"
 #include "accel/box/double_slab-inl.h"
-#include "accel/traverse/interleaved-inl.h"
 #include "accel/box/slab-inl.h"
+#include "accel/traverse/depth_first-inl.h"
+#include "accel/traverse/interleaved-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -31,8 +30,8 @@ HWY_INLINE void settle(RayRecord& record) {
 
 /// Tests the primitives of the node's own leaves among `lanes`; true when the hit changed.
 template <class Slab>
-HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, const FrameRay<Slab>& frame, Hit& hit,
-                              TestCounts& counts) {
+HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, const FrameRay<Slab>& frame,
+                              Hit& hit, TestCounts& counts) {
   bool changed = false;
   for (std::uint32_t left = node.direct & lanes; left != 0; left &= left - 1) {
     const NodeRef leaf = node.child[std::countr_zero(left)];
@@ -49,7 +48,7 @@ HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key,
   TestCounts own;
   FrameStorage<Slab> frame;
   enter_frame(accel, key.instance, record, &frame.ray, own);
-  own.transforms = 0;   // counted with the boxes
+  own.transforms = 0;  // counted with the boxes
   test_direct(accel, node, lanes, frame.ray, record.hit, own);
   settle(record);
   if (asked != nullptr) *asked = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, own.asked));
@@ -58,11 +57,10 @@ HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key,
 
 // Slab: SlabRay, or DoubleSlabRay for accuracy.box: double.
 template <class Slab>
-void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-               const StripHits& hits, TestCounts& counts) {
+void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
+                TestCounts& counts) {
   const Node& node = accel.nodes[key.ref.node()];
-  const InstanceTransform* transform =
-      key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
+  const InstanceTransform* transform = key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
   lanes &= (1u << node.count) - 1;
   const std::uint32_t direct = node.direct & lanes, held = ~std::uint32_t{node.direct};
   const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes & held));
@@ -86,15 +84,16 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
       mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes & held;
     } else {
       mask = accel.spheres.empty() ? slab_node(node, in_registers(ray), record.hit.t, entry)
-                                   : met_spheres(accel, key.ref, model.origin, model.direction, in_registers(ray), model.tmin,
-                                                 record.hit.t, entry, counts.box);
+                                   : met_spheres(accel, key.ref, model.origin, model.direction, in_registers(ray),
+                                                 model.tmin, record.hit.t, entry, counts.box);
       mask &= lanes & held;
       mask = cull(accel, node, ray, model.direction, lanes, mask, counts, members.culls);
       for (int lane = 0; lane < kMaxWidth; ++lane)
         if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
     }
     if (HWY_UNLIKELY(direct != 0))
-      test_direct<Slab>(accel, node, key, direct, record, members.asked == nullptr ? nullptr : members.asked + i, counts);
+      test_direct<Slab>(accel, node, key, direct, record, members.asked == nullptr ? nullptr : members.asked + i,
+                        counts);
     hits.masks[i] = static_cast<std::uint8_t>(mask);
     if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
   }
@@ -104,7 +103,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
 
 template <class Slab>
 void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-                   TestCounts& counts) {
+                    TestCounts& counts) {
   lanes &= (1u << key.ref.triangles()) - 1;
   const std::uint64_t tested = static_cast<std::uint64_t>(std::popcount(lanes));
   std::uint64_t& tests = key.ref.is_procedural() ? counts.procedural : counts.triangle;
@@ -116,14 +115,14 @@ void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const 
     FrameStorage<Slab> frame;
     enter_frame(accel, key.instance, record, &frame.ray, counts);
     test_leaf(accel, key.ref, lanes, frame.ray, record.hit);
-    if (members.asked != nullptr) members.asked[i] = static_cast<std::uint8_t>(counts.asked - asked);   // 32 at most
+    if (members.asked != nullptr) members.asked[i] = static_cast<std::uint8_t>(counts.asked - asked);  // 32 at most
     settle(record);
   }
 }
 
 template <class Slab>
-void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-                 const StripHits& hits, TestCounts& counts) {
+void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
+                 TestCounts& counts) {
   if (key.ref.is_inner())
     test_boxes<Slab>(accel, key, lanes, members, hits, counts);
   else
@@ -147,7 +146,7 @@ void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members
 
 template <class Slab>
 void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
-  constexpr std::size_t kWalkers = 4;   // two gain half as much, six nothing more
+  constexpr std::size_t kWalkers = 4;  // two gain half as much, six nothing more
   const Node* const nodes = accel.nodes.data();
   TraceStacks stacks;
   TraversalCounts counts(members.culls);
@@ -178,7 +177,8 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
       walker.mask = met_children(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t, walker.entry,
                                  counts.box);
       walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
-      if (HWY_UNLIKELY(node.direct != 0) && test_direct(accel, node, ~0u, frame, walker.record->hit, counts) && walker.any_hit) {
+      if (HWY_UNLIKELY(node.direct != 0) && test_direct(accel, node, ~0u, frame, walker.record->hit, counts) &&
+          walker.any_hit) {
         walker.mask = 0;
         walker.top = walker.stack.entries;
       }
@@ -201,8 +201,8 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
   total += counts;
 }
 
-void TestStrip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-               const StripHits& hits, TestCounts& counts) {
+void TestStrip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
+               TestCounts& counts) {
   const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
   (in_double ? test_shapes<DoubleSlabRay> : test_shapes<SlabRay>)(accel, key, lanes, members, hits, counts);
 }
@@ -231,8 +231,8 @@ HWY_EXPORT(TestStrip);
 HWY_EXPORT(TraceSubtree);
 HWY_EXPORT(TraceInterleaved);
 
-void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-                const StripHits& hits, TestCounts& counts) {
+void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
+                TestCounts& counts) {
   HWY_DYNAMIC_DISPATCH(TestStrip)(accel, key, lanes, members, hits, counts);
 }
 
@@ -257,11 +257,21 @@ void select_simd_target(SimdTarget target) {
       hwy::SetSupportedTargetsForTest(0);
       hwy::GetChosenTarget().DeInit();
       return;
-    case SimdTarget::kScalar: wanted = HWY_SCALAR; break;
-    case SimdTarget::kSsse3: wanted = HWY_SSSE3; break;
-    case SimdTarget::kSse4: wanted = HWY_SSE4; break;
-    case SimdTarget::kAvx2: wanted = HWY_AVX2; break;
-    case SimdTarget::kAvx3: wanted = HWY_AVX3; break;
+    case SimdTarget::kScalar:
+      wanted = HWY_SCALAR;
+      break;
+    case SimdTarget::kSsse3:
+      wanted = HWY_SSSE3;
+      break;
+    case SimdTarget::kSse4:
+      wanted = HWY_SSE4;
+      break;
+    case SimdTarget::kAvx2:
+      wanted = HWY_AVX2;
+      break;
+    case SimdTarget::kAvx3:
+      wanted = HWY_AVX3;
+      break;
   }
   hwy::SetSupportedTargetsForTest(0);
   const std::vector<std::int64_t> available = hwy::SupportedAndGeneratedTargets();

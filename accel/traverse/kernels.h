@@ -8,8 +8,8 @@
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/types/cull_counts.h"
-#include "core/types/ray.h"
 #include "core/types/intersection_counts.h"
+#include "core/types/ray.h"
 
 namespace carousel::accel {
 
@@ -18,22 +18,22 @@ struct RayMembers {
   RayRecord* records = nullptr;
   const std::uint32_t* slots = nullptr;
   std::size_t count = 0;
-  CullCounts* culls = nullptr;   ///< where cull planes are counted by depth; null: nowhere
-  std::uint8_t* asked = nullptr; ///< null, or one a member: how often test_strip() on a leaf asked whether it passes
+  CullCounts* culls = nullptr;    ///< where cull planes are counted by depth; null: nowhere
+  std::uint8_t* asked = nullptr;  ///< null, or one a member: how often test_strip() on a leaf asked whether it passes
 };
 
 /// What a strip of boxes answers. Untouched for strips of triangles, whose answer is in the rays' hits.
 struct StripHits {
-  std::uint8_t* masks = nullptr;   ///< one a member: bit l set when child lane l is hit
-  float* nearest = nullptr;        ///< one a lane (8): lowered to the nearest entry of any member
-  float* entries = nullptr;        ///< null, or 8 a member: the entry of each lane (valid where the mask is set)
+  std::uint8_t* masks = nullptr;  ///< one a member: bit l set when child lane l is hit
+  float* nearest = nullptr;       ///< one a lane (8): lowered to the nearest entry of any member
+  float* entries = nullptr;       ///< null, or 8 a member: the entry of each lane (valid where the mask is set)
 };
 
 /// Tests each member against the shapes of `key` that `lanes` selects (boxes below an inner node; of a leaf's
 /// triangles, bit i is triangle i in block order). Members that are done are skipped, with an empty mask.
 /// Rays are brought to model space when the key is below an instance. SIMD target dispatched once a call.
-void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-                const StripHits& hits, TestCounts& counts);
+void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
+                TestCounts& counts);
 
 /// Traces each member through everything below `key`, depth-first and nearest first, one ray after another.
 void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts);

@@ -12,7 +12,7 @@ namespace {
 /// `trace` is one of the kernels that trace whatever is below a node.
 void trace_batch(decltype(trace_subtree)& trace, const Accel& accel, const RayBatch& rays, HitBatch& out,
                  TestCounts& counts) {
-  constexpr std::size_t kChunk = 64;   // records that stay in the first-level cache
+  constexpr std::size_t kChunk = 64;  // records that stay in the first-level cache
   std::array<RayRecord, kChunk> records;
   for (std::size_t begin = 0; begin < rays.size(); begin += kChunk) {
     const std::size_t count = std::min(kChunk, rays.size() - begin);

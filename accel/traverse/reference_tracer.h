@@ -12,7 +12,8 @@ namespace carousel::accel {
 /// Appends one result a request. Rays must be valid (accel/traverse/ray_check.h).
 void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts);
 
-/// The same with several rays under way at a time (accel/traverse/kernels.h, trace_interleaved), as the ring traces treelets.
+/// The same with several rays under way at a time (accel/traverse/kernels.h, trace_interleaved), as the ring traces
+/// treelets.
 void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts);
 
 struct ReferenceRun {

@@ -42,43 +42,51 @@ class CaseLine {
   std::size_t at_ = 0;
 };
 
-std::string found(const std::string& word) { return word.empty() ? "the end" : "\"" + word + "\""; }
+std::string found(const std::string& word) {
+  return word.empty() ? "the end" : "\"" + word + "\"";
+}
 
 /// One of `known`, by its index.
-std::size_t choose(const CaseLine& line, const CaseLine::Word& word, const std::string& what, const std::vector<std::string>& known) {
+std::size_t choose(const CaseLine& line, const CaseLine::Word& word, const std::string& what,
+                   const std::vector<std::string>& known) {
   for (std::size_t i = 0; i < known.size(); ++i)
     if (known[i] == word.text) return i;
   const auto near = nearest_name(word.text, known);
-  line.refuse(word.at, "", fmt::format("expected {} ({}), found {}{}", what, fmt::join(known, ", "), found(word.text),
-                                       near ? "; did you mean " + *near + "?" : ""));
+  line.refuse(word.at, "",
+              fmt::format("expected {} ({}), found {}{}", what, fmt::join(known, ", "), found(word.text),
+                          near ? "; did you mean " + *near + "?" : ""));
 }
 
 std::optional<float> number(const std::string& text) {
   if (text.empty() || std::isspace(static_cast<unsigned char>(text[0]))) return std::nullopt;
   char* end = nullptr;
   const float x = std::strtof(text.c_str(), &end);
-  const bool named = text.find_first_of("iI") != std::string::npos;   // an infinity that is meant, and no overflow
+  const bool named = text.find_first_of("iI") != std::string::npos;  // an infinity that is meant, and no overflow
   if (*end != '\0' || (std::isinf(x) && !named)) return std::nullopt;
   return x;
 }
 
-void read_field(const CaseLine& line, const CaseLine::Word& word, const accel::CaseField& field, accel::CaseValues& out) {
+void read_field(const CaseLine& line, const CaseLine::Word& word, const accel::CaseField& field,
+                accel::CaseValues& out) {
   const std::string name(field.name), start = name + "=";
-  if (!word.text.starts_with(start)) line.refuse(word.at, "", fmt::format("expected {}NUMBER,..., found {}", start, found(word.text)));
+  if (!word.text.starts_with(start))
+    line.refuse(word.at, "", fmt::format("expected {}NUMBER,..., found {}", start, found(word.text)));
   std::size_t count = 0, begin = start.size();
   for (;; ++count) {
     const std::size_t comma = word.text.find(',', begin), end = std::min(comma, word.text.size());
     const std::string digits = word.text.substr(begin, end - begin);
     const std::optional<float> x = number(digits);
-    if (!x) line.refuse(word.at + begin, name, fmt::format("expected a float such as 0x1.8p+1, found {}", found(digits)));
+    if (!x)
+      line.refuse(word.at + begin, name, fmt::format("expected a float such as 0x1.8p+1, found {}", found(digits)));
     out.push_back(*x);
     if (comma == std::string::npos) break;
     begin = comma + 1;
   }
   ++count;
   if (count >= field.count && count <= field.most && (count - field.count) % 3 == 0) return;
-  const std::string wanted = field.count == field.most ? fmt::format("{} number{}", field.count, field.count == 1 ? "" : "s")
-                                                       : fmt::format("{} to {} numbers, three a point", field.count, field.most);
+  const std::string wanted = field.count == field.most
+                                 ? fmt::format("{} number{}", field.count, field.count == 1 ? "" : "s")
+                                 : fmt::format("{} to {} numbers, three a point", field.count, field.most);
   line.refuse(word.at, name, fmt::format("expected {}, found {}", wanted, count));
 }
 
@@ -96,7 +104,8 @@ std::string case_text(const accel::Property& property, const AccuracyConfig& lev
   return text;
 }
 
-CertificateCase parse_case(std::string_view text, std::span<const accel::Property> properties, const SourcePosition& place) {
+CertificateCase parse_case(std::string_view text, std::span<const accel::Property> properties,
+                           const SourcePosition& place) {
   CaseLine line(text, place);
   std::vector<std::string> names;
   for (const accel::Property& property : properties) names.emplace_back(property.name);

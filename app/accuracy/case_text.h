@@ -22,6 +22,7 @@ std::string case_text(const accel::Property& property, const AccuracyConfig& lev
 
 /// Numbers in decimal are read as well, and rounded. `place` is where the text starts. Throws a ConfigError that says
 /// where what was expected. The result points into `properties`.
-CertificateCase parse_case(std::string_view text, std::span<const accel::Property> properties, const SourcePosition& place);
+CertificateCase parse_case(std::string_view text, std::span<const accel::Property> properties,
+                           const SourcePosition& place);
 
 }  // namespace carousel::app

@@ -10,13 +10,13 @@ namespace carousel::app {
 
 namespace {
 
-constexpr std::size_t kRound = 2048;   ///< cases of a property before the next has its turn
+constexpr std::size_t kRound = 2048;  ///< cases of a property before the next has its turn
 constexpr std::size_t kPart = 64;     ///< of them one task
 
 void add(LevelResult& sum, const accel::Judgement& judgement, std::uint64_t number) {
   if (!judgement.asked) return;
   ++sum.asked;
-  if (judgement.error > sum.worst_error) sum.worst_error = judgement.error;   // an error of NaN is none
+  if (judgement.error > sum.worst_error) sum.worst_error = judgement.error;  // an error of NaN is none
   if (!judgement.broken) return;
   ++sum.broken;
   if (!sum.first_broken) sum.first_broken = number;
@@ -52,9 +52,13 @@ void try_cases(PropertyResult& result, std::uint64_t seed, std::uint64_t first, 
 }  // namespace
 
 const std::vector<accel::Property>& certified_properties() {
-  static const std::vector<accel::Property> properties{
-      accel::box_property(),       accel::nested_boxes_property(), accel::triangle_property(), accel::closed_mesh_property(),
-      accel::transform_property(), accel::world_box_property(),    spawn_property()};
+  static const std::vector<accel::Property> properties{accel::box_property(),
+                                                       accel::nested_boxes_property(),
+                                                       accel::triangle_property(),
+                                                       accel::closed_mesh_property(),
+                                                       accel::transform_property(),
+                                                       accel::world_box_property(),
+                                                       spawn_property()};
   return properties;
 }
 

@@ -17,11 +17,11 @@ const std::vector<accel::Property>& certified_properties();
 /// What came of one property at one level.
 struct LevelResult {
   AccuracyConfig level;
-  bool promised = false;      ///< what breaks it is a violation, and not only counted
-  std::uint64_t asked = 0;    ///< cases that the property says something about
+  bool promised = false;    ///< what breaks it is a violation, and not only counted
+  std::uint64_t asked = 0;  ///< cases that the property says something about
   std::uint64_t broken = 0;
-  double worst_error = 0;     ///< in the property's unit
-  std::optional<std::uint64_t> first_broken;   ///< number of the case
+  double worst_error = 0;                     ///< in the property's unit
+  std::optional<std::uint64_t> first_broken;  ///< number of the case
 };
 
 struct PropertyResult {
@@ -31,16 +31,16 @@ struct PropertyResult {
 
 struct Certificate {
   std::uint64_t seed = 0;
-  std::uint64_t cases = 0;    ///< of each property
+  std::uint64_t cases = 0;  ///< of each property
   double seconds = 0;
   std::vector<PropertyResult> properties;
-  bool incomplete = false;    ///< stopped before its end
+  bool incomplete = false;  ///< stopped before its end
 
   std::uint64_t violations() const;
 };
 
 struct CertificateLimits {
-  std::optional<std::uint64_t> cases;   ///< of each property; if absent, `seconds` count
+  std::optional<std::uint64_t> cases;  ///< of each property; if absent, `seconds` count
   double seconds = 10;
 };
 

@@ -18,7 +18,7 @@ nlohmann::json certificate_json(const Certificate& certificate);
 struct Replay {
   explicit Replay(const CertificateCase& one);
 
-  const CertificateCase& tried;   ///< must outlive this
+  const CertificateCase& tried;  ///< must outlive this
   accel::Judgement judgement;
   accel::CaseStory story;
 };

@@ -49,7 +49,9 @@ scene::Mesh ball() {
   return mesh;
 }
 
-DVec3 world(const scene::Affine& m, const DVec3& p) { return DMat3(m.linear) * p + DVec3(m.translation); }
+DVec3 world(const scene::Affine& m, const DVec3& p) {
+  return DMat3(m.linear) * p + DVec3(m.translation);
+}
 
 DVec3 vertex(const scene::Mesh& mesh, std::size_t triangle, std::size_t k) {
   return DVec3(mesh.positions[mesh.indices[3 * triangle + k % 3]]);
@@ -62,7 +64,9 @@ Ray aimed(const DVec3& from, const DVec3& at) {
   return ray;
 }
 
-RayRequest numbered(const Ray& ray, std::size_t index) { return {ray, {static_cast<std::uint32_t>(index), RayKind::kBounce, 0, 0, 0}}; }
+RayRequest numbered(const Ray& ray, std::size_t index) {
+  return {ray, {static_cast<std::uint32_t>(index), RayKind::kBounce, 0, 0, 0}};
+}
 
 /// From within a ball at a point of an edge, or at a vertex: the exact ray hits one of the triangles around it.
 RayBatch at_edges_from_inside(const scene::Scene& scene, std::size_t count, Numbers& random) {
@@ -86,7 +90,8 @@ RayBatch at_triangles(const scene::Scene& scene, double distance, std::size_t co
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t triangle = random.below(mesh.triangle_count());
     const double a = random(0.1, 0.45), b = random(0.1, 0.45);
-    const DVec3 target = vertex(mesh, triangle, 0) * (1 - a - b) + vertex(mesh, triangle, 1) * a + vertex(mesh, triangle, 2) * b;
+    const DVec3 target =
+        vertex(mesh, triangle, 0) * (1 - a - b) + vertex(mesh, triangle, 1) * a + vertex(mesh, triangle, 2) * b;
     const DVec3 at = world(m, target);
     rays.push_back(numbered(aimed(at + random.direction() * (distance * random(1, 3)), at), i));
   }
@@ -126,11 +131,13 @@ std::vector<HardScene> hard_scenes(std::size_t rays, std::uint64_t seed) {
   add_ball("squashed", "the same, scaled by 0.001 in one axis and turned",
            {turned(40, {1, 2, 3}) * Mat3(1, 0, 0, 0, 1e-3f, 0, 0, 0, 1), {}});
   add_ball("far ball", "the same, turned, 100,000 from the origin", {turned(70, {3, -1, 2}), {1e5f, -2e4f, 3e4f}});
-  HardScene& thin = out.emplace_back(HardScene{{"slivers", "triangles a million times as long as wide", false},
-                                               one_mesh(slivers(random), {}), {}});
+  HardScene& thin = out.emplace_back(
+      HardScene{{"slivers", "triangles a million times as long as wide", false}, one_mesh(slivers(random), {}), {}});
   thin.rays = at_triangles(thin.scene, 1, rays, random);
-  HardScene& far = out.emplace_back(HardScene{{"far mesh", "a ball of radius 1, a million from the origin, at its triangles", false},
-                                              one_mesh(ball(), {turned(25, {-1, 1, 4}), {1e6f, 5e5f, -2e5f}}), {}});
+  HardScene& far =
+      out.emplace_back(HardScene{{"far mesh", "a ball of radius 1, a million from the origin, at its triangles", false},
+                                 one_mesh(ball(), {turned(25, {-1, 1, 4}), {1e6f, 5e5f, -2e5f}}),
+                                 {}});
   far.rays = at_triangles(far.scene, 4, rays, random);
   return out;
 }

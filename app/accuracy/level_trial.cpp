@@ -32,8 +32,8 @@ const accel::Accel& LevelledAccel::at(const AccuracyConfig& levels) {
   return place->second;
 }
 
-std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels, const RayBatch& rays,
-                                        int repetitions, const std::function<bool()>& stopped) {
+std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels,
+                                        const RayBatch& rays, int repetitions, const std::function<bool()>& stopped) {
   std::vector<std::vector<double>> times(levels.size());
   for (std::size_t round = 0; round < static_cast<std::size_t>(repetitions) && !stopped(); ++round) {
     for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -52,7 +52,8 @@ std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<
   return out;
 }
 
-std::optional<report::ModelledCost> modelled_cost(const Config& config, const accel::Accel& accel, float scene_size, const RayBatch& rays) {
+std::optional<report::ModelledCost> modelled_cost(const Config& config, const accel::Accel& accel, float scene_size,
+                                                  const RayBatch& rays) {
   Config machine = config;
   machine.engine.kind = EngineKind::kCycle;
   machine.accuracy = accel.accuracy;
@@ -60,7 +61,8 @@ std::optional<report::ModelledCost> modelled_cost(const Config& config, const ac
   RayListWorkload workload(rays, static_cast<std::size_t>(machine.shading.workers));
   const ringbus::RunResult result = ringbus::run_cycle(machine, accel, scene_size, workload, {});
   std::uint64_t busy = 0;
-  for (const ringbus::cycle::TileResult& tile : result.cycle->tiles) busy += tile.box.busy + tile.triangle.busy + tile.transform.busy;
+  for (const ringbus::cycle::TileResult& tile : result.cycle->tiles)
+    busy += tile.box.busy + tile.triangle.busy + tile.transform.busy;
   return report::ModelledCost{report::ratio(result.cycle->cycles, rays.size()), report::ratio(busy, rays.size())};
 }
 

@@ -26,10 +26,11 @@ class LevelledAccel {
 
 /// CPU time a ray, nanoseconds on one thread, of each of `levels`: all of them in turn, `repetitions` times, each round
 /// starting with another one, so that whatever else the machine does meets all alike. `stopped` is asked in between.
-std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels, const RayBatch& rays,
-                                        int repetitions, const std::function<bool()>& stopped);
+std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels,
+                                        const RayBatch& rays, int repetitions, const std::function<bool()>& stopped);
 
 /// None if the cycle engine has not the configured machine.
-std::optional<report::ModelledCost> modelled_cost(const Config& config, const accel::Accel& accel, float scene_size, const RayBatch& rays);
+std::optional<report::ModelledCost> modelled_cost(const Config& config, const accel::Accel& accel, float scene_size,
+                                                  const RayBatch& rays);
 
 }  // namespace carousel::app

@@ -11,7 +11,8 @@
 
 namespace carousel::app {
 
-Picture render(const scene::Scene& scene, const Config& config, const accel::Accel& accel, std::vector<report::HitRow>* rows) {
+Picture render(const scene::Scene& scene, const Config& config, const accel::Accel& accel,
+               std::vector<report::HitRow>* rows) {
   shading::PathTracer tracer(scene, config, paths_in_flight(config), 1);
   HitRecorder recorder(1);
   if (rows != nullptr) tracer.set_recorder(&recorder);
@@ -70,7 +71,7 @@ double noise(const Picture& picture, const Picture& truth) {
 
 SelfHits count_self_hits(std::vector<report::HitRow> rows) {
   std::erase_if(rows, [](const report::HitRow& row) { return row.result.tag.kind == RayKind::kShadow; });
-  report::sort_rows(rows);   // the rays of a path one after the other
+  report::sort_rows(rows);  // the rays of a path one after the other
   SelfHits out;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const report::HitRow &from = rows[i - 1], &to = rows[i];

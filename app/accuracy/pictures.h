@@ -16,7 +16,8 @@ namespace carousel::app {
 using Picture = std::vector<float>;
 
 /// A path-traced frame with the structure's levels, depth-first. Appends every ray to `rows` unless it is null.
-Picture render(const scene::Scene& scene, const Config& config, const accel::Accel& accel, std::vector<report::HitRow>* rows = nullptr);
+Picture render(const scene::Scene& scene, const Config& config, const accel::Accel& accel,
+               std::vector<report::HitRow>* rows = nullptr);
 
 /// The same with exact hits. Rays leave surfaces as `config` says.
 Picture render_exact(const scene::Scene& scene, const Config& config, const accel::ExactReference& reference);

@@ -20,12 +20,18 @@ namespace {
 using accel::Dyadic;
 using DyadicVec = std::array<Dyadic, 3>;
 
-DyadicVec exact(const Vec3& v) { return {Dyadic(v.x), Dyadic(v.y), Dyadic(v.z)}; }
-DyadicVec minus(const DyadicVec& a, const DyadicVec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+DyadicVec exact(const Vec3& v) {
+  return {Dyadic(v.x), Dyadic(v.y), Dyadic(v.z)};
+}
+DyadicVec minus(const DyadicVec& a, const DyadicVec& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
 DyadicVec cross(const DyadicVec& a, const DyadicVec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Dyadic dot(const DyadicVec& a, const DyadicVec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Dyadic dot(const DyadicVec& a, const DyadicVec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 DyadicVec world(const scene::Affine& m, const Vec3& p) {
   DyadicVec out = exact(m.translation);
   for (int c = 0; c < 3; ++c)
@@ -42,7 +48,7 @@ accel::CaseValues make_spawn(accel::CaseRandom& random) {
   for (Vec3& corner : corners) corner = base + Vec3(size * accel::random_direction(random));
   float u = random.uniform(), v = random.uniform();
   if (u + v > 1) u = 1 - u, v = 1 - v;
-  const std::uint32_t where = random.below(6);   // on an edge, at a vertex, inside
+  const std::uint32_t where = random.below(6);  // on an edge, at a vertex, inside
   if (where < 2) (where == 0 ? u : v) = 0;
   if (where == 2) u = v = 0;
   accel::CaseWriter out;
@@ -50,8 +56,8 @@ accel::CaseValues make_spawn(accel::CaseRandom& random) {
   return out.add(Vec3(accel::random_direction(random))).take();
 }
 
-void judge_spawn(const accel::CaseValues& values, std::span<const AccuracyConfig> levels, std::span<accel::Judgement> out,
-                 accel::CaseStory* story) {
+void judge_spawn(const accel::CaseValues& values, std::span<const AccuracyConfig> levels,
+                 std::span<accel::Judgement> out, accel::CaseStory* story) {
   accel::CaseReader read(values);
   const bool finite = read.rest_is_finite();
   const scene::Affine m = read.placement();
@@ -59,11 +65,12 @@ void judge_spawn(const accel::CaseValues& values, std::span<const AccuracyConfig
   const float u = read.number(), v = read.number();
   const Vec3 direction = read.vector();
   if (!finite || u < 0 || v < 0 || u + v > 1) return;
-  const DyadicVec a = world(m, corners[0]), normal = cross(minus(world(m, corners[1]), a), minus(world(m, corners[2]), a));
+  const DyadicVec a = world(m, corners[0]),
+                  normal = cross(minus(world(m, corners[1]), a), minus(world(m, corners[2]), a));
   const DyadicVec columns[3] = {exact(m.linear[0]), exact(m.linear[1]), exact(m.linear[2])};
   const int mirrored = dot(columns[0], cross(columns[1], columns[2])).sign();
   const int facing = dot(normal, exact(direction)).sign() * mirrored;
-  if (facing == 0) return;   // along the surface, or none
+  if (facing == 0) return;  // along the surface, or none
 
   scene::Scene scene;
   scene::Mesh& mesh = scene.meshes.emplace_back();
@@ -85,8 +92,9 @@ void judge_spawn(const accel::CaseValues& values, std::span<const AccuracyConfig
     const double moved = glm::dot(DVec3(ray.origin) - geometry.position, geometry.normal) * facing;
     out[i].error = std::max(0.0, moved);
     if (story != nullptr)
-      *story = {fmt::format("starts at {}, {:.3g} above the surface; {}", accel::text(ray.origin), moved, accel::text(hit)),
-                fmt::format("the ray leaves to the {}, and a plane is met once", facing > 0 ? "front" : "back")};
+      *story = {
+          fmt::format("starts at {}, {:.3g} above the surface; {}", accel::text(ray.origin), moved, accel::text(hit)),
+          fmt::format("the ray leaves to the {}, and a plane is met once", facing > 0 ? "front" : "back")};
   }
 }
 
@@ -94,13 +102,17 @@ void judge_spawn(const accel::CaseValues& values, std::span<const AccuracyConfig
 
 accel::Property spawn_property() {
   using accel::AccuracyKey;
-  return {"spawn", 7, "a ray that leaves a triangle does not meet it", "moved off the surface",
+  return {"spawn",
+          7,
+          "a ray that leaves a triangle does not meet it",
+          "moved off the surface",
           {AccuracyKey::kSpawn, AccuracyKey::kTransform},
           {{"linear", 9}, {"translation", 3}, {"a", 3}, {"b", 3}, {"c", 3}, {"u", 1}, {"v", 1}, {"direction", 3}},
           [](const AccuracyConfig& level) {
             return level.spawn == SpawnOffset::kBound && level.transform != TransformLevel::kInverseMatrix;
           },
-          make_spawn, judge_spawn};
+          make_spawn,
+          judge_spawn};
 }
 
 }  // namespace carousel::app

@@ -43,13 +43,19 @@ report::SceneSummary summary(const Prepared& p) {
 
 report::Tests tests(const TestCounts& counts, std::uint64_t rays) {
   const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
-  return {kind(counts.box), kind(counts.plane), kind(counts.triangle), kind(counts.bundle),
+  return {kind(counts.box),        kind(counts.plane),      kind(counts.triangle), kind(counts.bundle),
           kind(counts.transforms), kind(counts.inversions), kind(counts.culled)};
 }
 
 report::BundleTests bundle_tests(const ringbus::BundleCounts& c, std::size_t depth) {
-  const auto difference = [](std::uint64_t a, std::uint64_t b) { return static_cast<std::int64_t>(a) - static_cast<std::int64_t>(b); };
-  return {depth, c.all, c.none, c.split, c.lane_rays - c.split_rays,
+  const auto difference = [](std::uint64_t a, std::uint64_t b) {
+    return static_cast<std::int64_t>(a) - static_cast<std::int64_t>(b);
+  };
+  return {depth,
+          c.all,
+          c.none,
+          c.split,
+          c.lane_rays - c.split_rays,
           difference(c.visit_rays, c.visits + c.touched + c.taken_apart)};
 }
 
@@ -109,7 +115,8 @@ report::Resource resource(std::size_t number, const ringbus::ResourceStatistics&
 }
 
 /// The parts that come from the resources' event counts.
-void add_ring(report::Report& r, const ringbus::RunResult& result, const PacketsConfig& config, const accel::Accel& accel) {
+void add_ring(report::Report& r, const ringbus::RunResult& result, const PacketsConfig& config,
+              const accel::Accel& accel) {
   const std::uint64_t rays = result.rays_completed;
   ringbus::ResourceStatistics sum;
   report::Collections collections;
@@ -123,8 +130,7 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
     collections.spilled += c.spilled;
     r.resources->push_back(resource(i, result.resources[i], c));
   }
-  collections.fullness_mean =
-      ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.rays));
+  collections.fullness_mean = ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.rays));
   r.tests = tests(sum.tests, rays);
   const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
   if (accel.procedural_primitives) r.tests->procedural = kind(sum.tests.procedural);
@@ -139,21 +145,22 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
                               ratio(sum.local_rays, sum.seen_rays),
                               ratio(sum.bubbles, sum.visits)};
   r.collections = collections;
-  const std::uint64_t done = sum.tests.box + sum.tests.plane + sum.tests.triangle + sum.tests.procedural + sum.tests.bundle;
-  r.throughput =
-      report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(done, rays)};
+  const std::uint64_t done =
+      sum.tests.box + sum.tests.plane + sum.tests.triangle + sum.tests.procedural + sum.tests.bundle;
+  r.throughput = report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(done, rays)};
 }
 
 void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
   for (const ringbus::LinkResult& link : result.links) {
     const ringbus::LinkStatistics& s = link.statistics;
-    r.links->push_back({link.from.value, link.to.value, link.depth, s.packets,
-                        ratio(s.occupancy_sum, s.samples), s.occupancy_max, s.refusals});
+    r.links->push_back({link.from.value, link.to.value, link.depth, s.packets, ratio(s.occupancy_sum, s.samples),
+                        s.occupancy_max, s.refusals});
     report::Link& out = r.links->back();
     if (config.faults.links.any()) {
       const ringbus::LinkFaultCounts& f = link.faults;
-      out.faults = report::LinkFaults{f.dropped, f.duplicated, f.corrupted, f.reordered, f.delayed, f.resent, f.discarded};
+      out.faults =
+          report::LinkFaults{f.dropped, f.duplicated, f.corrupted, f.reordered, f.delayed, f.resent, f.discarded};
     }
     if (config.engine.kind == EngineKind::kCycle) continue;
     out.queue = enum_name(config.topology.link.queue);
@@ -163,7 +170,8 @@ void add_links(report::Report& r, const ringbus::RunResult& result, const Config
     out.empty_stalls = s.empty_stalls;
     out.occupancy.emplace();
     for (const ringbus::OccupancySeries::Entry& entry : link.series.entries())
-      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(), ratio(entry.sum, entry.samples), entry.most});
+      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(),
+                                ratio(entry.sum, entry.samples), entry.most});
   }
 }
 
@@ -177,10 +185,14 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
   using ringbus::cycle::TileState;
   const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
   const auto bank = [&](const ringbus::cycle::UnitLedger& ledger) {
-    return report::UnitCycles{ledger.busy,          in(TileState::kTesting) - ledger.busy,
-                              in(TileState::kMemory),  in(TileState::kLink),
-                              in(TileState::kCredits), in(TileState::kStorage),
-                              in(TileState::kShading), in(TileState::kIdle)};
+    return report::UnitCycles{ledger.busy,
+                              in(TileState::kTesting)-ledger.busy,
+                              in(TileState::kMemory),
+                              in(TileState::kLink),
+                              in(TileState::kCredits),
+                              in(TileState::kStorage),
+                              in(TileState::kShading),
+                              in(TileState::kIdle)};
   };
   report::Units out{bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.handler.busy,
                     cycles - tile.handler.busy};
@@ -227,11 +239,12 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   LatencyHistogram trips;
   for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
   if (r.packets && trips.count() > 0)
-    r.packets->latency = report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
+    r.packets->latency =
+        report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
   report::Memory& memory = r.memory.emplace();
   for (const ringbus::cycle::CacheResult& cache : c.caches)
-    memory.caches.push_back({cache.requests, cache.lines, cache.hits, cache.merged, cache.misses,
-                             ratio(cache.hits, cache.lines)});
+    memory.caches.push_back(
+        {cache.requests, cache.lines, cache.hits, cache.merged, cache.misses, ratio(cache.hits, cache.lines)});
   memory.dram_lines = c.memory_lines;
   memory.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.memory.line_bytes);
   memory.dram_busy_cycles = c.memory_busy;
@@ -249,7 +262,7 @@ report::Host host(const Prepared& p, const ringbus::RunResult& result) {
   if (p.config().cull_planes.count > 0) out.plane_seconds = p.plane_seconds;
   out.accel_bytes = p.accel.size_bytes();
   out.peak_memory_bytes = peak_memory_bytes();
-  out.simd = accel::simd_targets().front();   // only the chosen one is left after a choice
+  out.simd = accel::simd_targets().front();  // only the chosen one is left after a choice
   out.machine = machine_info();
   return out;
 }
@@ -258,10 +271,10 @@ report::Verify verify(const accel::VerifyingWorkload& verifying) {
   report::Verify out{verifying.compared(), verifying.mismatches(), ""};
   if (const auto& example = verifying.example()) {
     const Hit &got = example->got.hit, &expected = example->expected.hit;
-    out.example = fmt::format(
-        "path {} bounce {}: instance {} primitive {} t {}, expected instance {} primitive {} t {}",
-        example->got.tag.path, example->got.tag.bounce, got.instance, got.primitive, got.t, expected.instance,
-        expected.primitive, expected.t);
+    out.example =
+        fmt::format("path {} bounce {}: instance {} primitive {} t {}, expected instance {} primitive {} t {}",
+                    example->got.tag.path, example->got.tag.bounce, got.instance, got.primitive, got.t,
+                    expected.instance, expected.primitive, expected.t);
   }
   return out;
 }
@@ -283,24 +296,27 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   const bool alone = r.host.threads == 1;
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.deterministic = alone || result.cycle.has_value();
-  r.engine.reason =
-      result.cycle ? "virtual time: nothing depends on the host's threads"
-      : alone ? "one thread steps everything in a fixed order"
-            : "threads run on the wall clock: counts of packets and tests depend on their timing; rays, "
-              "hits and picture do not";
+  r.engine.reason = result.cycle ? "virtual time: nothing depends on the host's threads"
+                    : alone
+                        ? "one thread steps everything in a fixed order"
+                        : "threads run on the wall clock: counts of packets and tests depend on their timing; rays, "
+                          "hits and picture do not";
   const auto emitted = frame.emitted();
-  r.rays = {result.rays_emitted,
-            result.rays_completed,
-            result.rays_emitted - result.rays_completed,
-            result.rays_restarted,
-            result.paths_restarted,
-            {emitted[0], emitted[1], emitted[2]}};
+  r.rays = {result.rays_emitted,   result.rays_completed,  result.rays_emitted - result.rays_completed,
+            result.rays_restarted, result.paths_restarted, {emitted[0], emitted[1], emitted[2]}};
   if (!result.resources.empty()) {
     add_ring(r, result, config.packets, prepared.accel);
     add_links(r, result, config);
   }
-  r.shading = {static_cast<std::uint64_t>(config.shading.workers), result.rays_completed, frame.saturated(),
-               std::nullopt, {}, {}, 0, {}, {}};
+  r.shading = {static_cast<std::uint64_t>(config.shading.workers),
+               result.rays_completed,
+               frame.saturated(),
+               std::nullopt,
+               {},
+               {},
+               0,
+               {},
+               {}};
   add_effects(r.shading, prepared.scene, config);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
   if (const FaultsConfig::Resource& fault = config.faults.resource;

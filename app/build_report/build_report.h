@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "accel/traverse/verifying_workload.h"
-#include "app/run/render_job.h"
 #include "app/run/prepare.h"
+#include "app/run/render_job.h"
 #include "report/run/report.h"
 #include "ringbus/native/native_engine.h"
 

@@ -24,7 +24,11 @@ std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan) {
   std::vector<report::Effect> out;
   for (std::size_t i = 0; i < kEffects; ++i) {
     const shading::PlannedEffect& e = plan.effects[i];
-    out.push_back({std::string(kEffectNames[i]), e.on, e.called_for, e.callers, e.why,
+    out.push_back({std::string(kEffectNames[i]),
+                   e.on,
+                   e.called_for,
+                   e.callers,
+                   e.why,
                    {e.cost.rays_per_path, e.cost.texture_reads, e.cost.path_state_bytes, e.cost.cycles_per_hit,
                     e.cost.cycles_per_path}});
   }

@@ -15,8 +15,8 @@
 #include "app/host/interrupt.h"
 #include "app/host/machine_info.h"
 #include "app/host/output.h"
-#include "core/system/atomic_file.h"
 #include "core/config/enum_names.h"
+#include "core/system/atomic_file.h"
 #include "report/accuracy/accuracy_plot.h"
 #include "report/accuracy/accuracy_table.h"
 #include "report/text/progress_line.h"
@@ -54,7 +54,11 @@ RayBatch choose_rays(const std::vector<report::HitRow>& rows, std::size_t wanted
 class Trial {
  public:
   Trial(const Prepared& prepared, const AccuracyArguments& arguments, const InterruptScope& interrupt)
-      : p_(prepared), arguments_(arguments), interrupt_(interrupt), small_(prepared.config()), accel_(p_.scene, small_.bvh),
+      : p_(prepared),
+        arguments_(arguments),
+        interrupt_(interrupt),
+        small_(prepared.config()),
+        accel_(p_.scene, small_.bvh),
         exact_(p_.scene, p_.accel) {
     if (!arguments.quiet) progress_.emplace(stderr);
     small_.image.samples = std::min<std::int64_t>(small_.image.samples, 4);
@@ -119,7 +123,8 @@ class Trial {
     for (std::size_t i = 0; i < levels_.size() && !stopped(); ++i) {
       const AccuracyConfig& levels = levels_[i];
       report::AccuracyRow& row = out_.rows.emplace_back();
-      row.triangle = enum_name(levels.triangle), row.box = enum_name(levels.box), row.transform = enum_name(levels.transform);
+      row.triangle = enum_name(levels.triangle), row.box = enum_name(levels.box),
+      row.transform = enum_name(levels.transform);
       row.ns_per_ray = times[i];
       const accel::Accel& accel = accel_.at(levels);
       row.scene = compare(rays_, trace(accel, rays_), exact);
@@ -161,7 +166,8 @@ class Trial {
     const Picture truth = render(p_.scene, config, accel);
     for (std::int64_t samples = 1; samples <= 64 && !stopped(); samples *= 2) {
       config.image.samples = samples;
-      report::SamplingRow& row = out_.sampling.emplace_back(report::SamplingRow{static_cast<std::uint64_t>(samples), 0, 0});
+      report::SamplingRow& row =
+          out_.sampling.emplace_back(report::SamplingRow{static_cast<std::uint64_t>(samples), 0, 0});
       for (int seed = 0; seed < kSamplingSeeds; ++seed) {
         config.image.seed = small_.image.seed + seed;
         const auto start = std::chrono::steady_clock::now();
@@ -184,7 +190,7 @@ class Trial {
   std::vector<AccuracyConfig> levels_;
   RayBatch rays_;
   std::vector<HardScene> hard_;
-  std::deque<LevelledAccel> hard_accels_;   // by hard_, whose scenes they refer to
+  std::deque<LevelledAccel> hard_accels_;  // by hard_, whose scenes they refer to
   std::vector<std::vector<accel::ExactHit>> hard_exact_;
   std::optional<report::ProgressLine> progress_;
   std::size_t step_ = 0, steps_ = 1;
@@ -202,7 +208,8 @@ int accuracy_command(const AccuracyArguments& arguments) {
   const report::Accuracy accuracy = Trial(p, arguments, interrupt).run();
   std::filesystem::path folder = arguments.out;
   if (folder.empty())
-    folder = std::filesystem::path("out") / (arguments.config.empty() ? "accuracy" : std::filesystem::path(arguments.config).stem());
+    folder = std::filesystem::path("out") /
+             (arguments.config.empty() ? "accuracy" : std::filesystem::path(arguments.config).stem());
   const std::string json = report::accuracy_json(accuracy).dump(2) + "\n";
   write_file(folder / "accuracy.json", json);
   write_file(folder / "accuracy.svg", report::accuracy_plot(accuracy));

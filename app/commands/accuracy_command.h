@@ -9,15 +9,15 @@
 
 namespace carousel::app {
 
-struct AccuracyArguments : ConfigArguments {   // without a configuration: the built-in instances
+struct AccuracyArguments : ConfigArguments {  // without a configuration: the built-in instances
   std::filesystem::path out;
   bool json = false, quiet = false;
   std::size_t rays = 50000;       ///< of the scene, at most
   std::size_t hard_rays = 20000;  ///< of each hard case
   int repetitions = 5;
   std::uint64_t seed = 1;
-  bool certify = false;           ///< certify_command() instead
-  std::string reproduce;          ///< reproduce_command() instead, unless empty
+  bool certify = false;   ///< certify_command() instead
+  std::string reproduce;  ///< reproduce_command() instead, unless empty
   std::optional<std::uint64_t> cases;
   double seconds = 10;
 };

@@ -23,8 +23,9 @@ namespace {
 /// None without a configuration: all levels.
 std::optional<AccuracyConfig> configured_level(const AccuracyArguments& arguments) {
   if (arguments.config.empty() && arguments.sets.empty()) return std::nullopt;
-  const LocatedConfig located = arguments.config.empty() ? parse_located_config(kBuiltInConfig, "built-in", arguments.sets)
-                                                         : load_located_config(arguments.config, arguments.sets);
+  const LocatedConfig located = arguments.config.empty()
+                                    ? parse_located_config(kBuiltInConfig, "built-in", arguments.sets)
+                                    : load_located_config(arguments.config, arguments.sets);
   accel::select_simd_target(located.config.engine.simd);
   return located.config.accuracy;
 }
@@ -33,7 +34,8 @@ std::optional<AccuracyConfig> configured_level(const AccuracyArguments& argument
 std::vector<CertificateCase> read_cases(const std::string& text_or_file) {
   const std::vector<accel::Property>& properties = certified_properties();
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(text_or_file, ignored)) return {parse_case(text_or_file, properties, {"--reproduce", 1, 1})};
+  if (!std::filesystem::is_regular_file(text_or_file, ignored))
+    return {parse_case(text_or_file, properties, {"--reproduce", 1, 1})};
   std::vector<CertificateCase> cases;
   std::ifstream file(text_or_file);
   std::string line;

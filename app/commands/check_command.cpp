@@ -7,8 +7,8 @@
 
 #include "app/host/exit_status.h"
 #include "app/host/machine_info.h"
-#include "app/run/memory_need.h"
 #include "app/host/output.h"
+#include "app/run/memory_need.h"
 #include "core/config/write.h"
 #include "ringbus/protocol/deadlock.h"
 

@@ -15,12 +15,12 @@
 #include "app/commands/certify_command.h"
 #include "app/commands/check_command.h"
 #include "app/commands/compare_command.h"
-#include "app/host/exit_status.h"
 #include "app/commands/inspect_command.h"
-#include "app/host/output.h"
 #include "app/commands/run_command.h"
 #include "app/commands/schema_command.h"
 #include "app/commands/stress_command.h"
+#include "app/host/exit_status.h"
+#include "app/host/output.h"
 #include "app/host/version_text.h"
 #include "core/config/edit_distance.h"
 #include "core/system/error.h"
@@ -77,8 +77,7 @@ struct Arguments {
 
 void add_config_options(CLI::App& command, ConfigArguments& arguments, bool required = true) {
   command.add_option("config", arguments.config, "configuration, YAML or JSON")->required(required);
-  command
-      .add_option("--set", arguments.sets, "key.path=value: set a key of the configuration; may be repeated")
+  command.add_option("--set", arguments.sets, "key.path=value: set a key of the configuration; may be repeated")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
 }
@@ -90,35 +89,46 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   CLI::App* run = program.add_subcommand("run", "one simulation");
   RunArguments& r = arguments.run;
   add_config_options(*run, r);
-  run->add_option("--out", r.out, "folder for report and picture (default out/<config name>)")
-      ->type_name("DIR");
+  run->add_option("--out", r.out, "folder for report and picture (default out/<config name>)")->type_name("DIR");
   run->add_flag("--hits", r.hits, "write hits.csv, one row a ray");
-  run->add_option("--dump-rays", r.dump_rays,
-                  "write all rays as CSV, to be read by workload: {rays_from: FILE}")
+  run->add_option("--dump-rays", r.dump_rays, "write all rays as CSV, to be read by workload: {rays_from: FILE}")
       ->type_name("FILE");
   run->add_flag("--json", r.json, "print the report as JSON instead of the table");
   run->add_flag("--quiet", r.quiet, "print nothing but errors (and the report with --json)");
   run->add_flag("--force", r.force, "run although the topology can deadlock");
 
-  CLI::App* check =
-      program.add_subcommand("check", "validate, print the resolved config, say whether it can deadlock");
+  CLI::App* check = program.add_subcommand("check", "validate, print the resolved config, say whether it can deadlock");
   add_config_options(*check, arguments.check);
 
   CLI::App* stress = program.add_subcommand("stress", "queue designs under load: loss, order, throughput, latency");
   StressArguments& s = arguments.stress;
   add_config_options(*stress, s, false);
-  stress->add_option("--queue", s.queues, "kinds to try, as topology.link.queue (default all)")->delimiter(',')->type_name("KIND");
+  stress->add_option("--queue", s.queues, "kinds to try, as topology.link.queue (default all)")
+      ->delimiter(',')
+      ->type_name("KIND");
   stress->add_option("--pattern", s.patterns, "patterns to try (default all)")->delimiter(',')->type_name("PATTERN");
-  stress->add_option("--bytes", s.bytes, "size of a message: 8, 64, 256 (default what each pattern wants)")->delimiter(',');
-  stress->add_option("--depths", s.depths, "with a configuration: depths of links to try (default 1, its own, four times its own)")
+  stress->add_option("--bytes", s.bytes, "size of a message: 8, 64, 256 (default what each pattern wants)")
+      ->delimiter(',');
+  stress
+      ->add_option("--depths", s.depths,
+                   "with a configuration: depths of links to try (default 1, its own, four times its own)")
       ->delimiter(',')
       ->check(CLI::Range(1, 1'000'000));
-  stress->add_option("--seconds", s.seconds, "for the queues by themselves, in all")->check(CLI::PositiveNumber)->capture_default_str();
-  stress->add_option("--messages", s.messages, "of one trial, at most")->check(CLI::Range(1u, 100'000'000u))->capture_default_str();
-  stress->add_option("--repetitions", s.repetitions, "of each trial, in turn")->check(CLI::Range(1, 1000))->capture_default_str();
-  stress->add_option("--capacity", s.capacity, "of a queue by itself")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  stress->add_option("--seconds", s.seconds, "for the queues by themselves, in all")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  stress->add_option("--messages", s.messages, "of one trial, at most")
+      ->check(CLI::Range(1u, 100'000'000u))
+      ->capture_default_str();
+  stress->add_option("--repetitions", s.repetitions, "of each trial, in turn")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  stress->add_option("--capacity", s.capacity, "of a queue by itself")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   stress->add_option("--seed", s.seed, "of pauses")->capture_default_str();
-  stress->add_option("--out", s.out, "folder for stress.json (default out/stress, or out/<config name>)")->type_name("DIR");
+  stress->add_option("--out", s.out, "folder for stress.json (default out/stress, or out/<config name>)")
+      ->type_name("DIR");
   stress->add_flag("--json", s.json, "print JSON instead of the table");
   stress->add_flag("--quiet", s.quiet, "print nothing but errors (and the results with --json)");
 
@@ -126,16 +136,21 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   AccuracyArguments& a = arguments.accuracy;
   add_config_options(*accuracy, a, false);
   accuracy->add_option("--out", a.out, "folder for table and picture (default out/<config name>)")->type_name("DIR");
-  accuracy->add_option("--rays", a.rays, "rays of the scene to compare, at most")->check(CLI::Range(1u, 10'000'000u))->capture_default_str();
+  accuracy->add_option("--rays", a.rays, "rays of the scene to compare, at most")
+      ->check(CLI::Range(1u, 10'000'000u))
+      ->capture_default_str();
   accuracy->add_option("--hard-rays", a.hard_rays, "rays of each built-in hard case")
       ->check(CLI::Range(1u, 10'000'000u))
       ->capture_default_str();
-  accuracy->add_option("--repetitions", a.repetitions, "of each timing, in turn")->check(CLI::Range(1, 1000))->capture_default_str();
+  accuracy->add_option("--repetitions", a.repetitions, "of each timing, in turn")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   accuracy->add_option("--seed", a.seed, "of the hard cases")->capture_default_str();
   accuracy->add_flag("--json", a.json, "print JSON instead of the table");
   accuracy->add_flag("--quiet", a.quiet, "print nothing but errors (and the results with --json)");
 
-  CLI::Option* certify = accuracy->add_flag("--certify", a.certify, "try hard cases of what the levels promise instead; a configuration chooses one level");
+  CLI::Option* certify = accuracy->add_flag(
+      "--certify", a.certify, "try hard cases of what the levels promise instead; a configuration chooses one level");
   CLI::Option* cases = accuracy->add_option("--cases", a.cases, "with --certify: of each property")->needs(certify);
   accuracy->add_option("--seconds", a.seconds, "with --certify: until then")
       ->check(CLI::PositiveNumber)
@@ -168,8 +183,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
 }
 
 int run_command_line(int argc, const char* const* argv) {
-  CLI::App program{"Carousel simulates ray-tracing hardware in which rays stay put and shapes travel.",
-                   "carousel"};
+  CLI::App program{"Carousel simulates ray-tracing hardware in which rays stay put and shapes travel.", "carousel"};
   Arguments arguments;
   add_commands(program, arguments);
   try {

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "app/host/exit_status.h"
-#include "app/run/render_job.h"
 #include "app/host/output.h"
 #include "app/run/prepare.h"
+#include "app/run/render_job.h"
 #include "core/system/error.h"
 #include "report/run/report_difference.h"
 #include "ringbus/cycle/cycle_engine.h"

@@ -5,7 +5,7 @@
 namespace carousel::app {
 
 struct CompareArguments {
-  std::string a, b;             ///< report.json files, or folders that hold one
+  std::string a, b;  ///< report.json files, or folders that hold one
   bool expect_identical = false;
 };
 

@@ -45,20 +45,40 @@ Json json_of(const scene::Scene& s, const report::Shading& shading) {
   const Holdings h = holdings(s);
   Json effects = Json::array(), classes = Json::array();
   for (const report::Effect& e : shading.effects) {
-    effects.push_back({{"name", e.name}, {"on", e.on}, {"called_for", e.called_for}, {"callers", e.callers}, {"why", e.why},
-                       {"cost", {{"rays", e.cost.rays}, {"texture_reads", e.cost.texture_reads},
-                                 {"path_state_bytes", e.cost.path_state_bytes}, {"cycles_per_hit", e.cost.cycles_per_hit},
-                                 {"cycles_per_path", e.cost.cycles_per_path}}}});
+    effects.push_back({{"name", e.name},
+                       {"on", e.on},
+                       {"called_for", e.called_for},
+                       {"callers", e.callers},
+                       {"why", e.why},
+                       {"cost",
+                        {{"rays", e.cost.rays},
+                         {"texture_reads", e.cost.texture_reads},
+                         {"path_state_bytes", e.cost.path_state_bytes},
+                         {"cycles_per_hit", e.cost.cycles_per_hit},
+                         {"cycles_per_path", e.cost.cycles_per_path}}}});
   }
-  for (const report::ShaderClass& c : shading.classes) classes.push_back({{"name", c.name}, {"materials", c.materials}});
-  return {{"scene", {{"name", s.name}, {"triangles", h.triangles}, {"instanced_triangles", h.instanced},
-                     {"spheres", h.spheres}, {"meshes", s.meshes.size()}, {"instances", s.instances.size()},
-                     {"materials", s.materials.size()}, {"textures", s.textures.size()}, {"images", s.images.size()},
-                     {"image_bytes", h.image_bytes}, {"lights", s.lights.size()}, {"cameras", s.cameras.size()}}},
-          {"effects_choice", shading.effects_choice}, {"effects", effects}, {"classes", classes},
+  for (const report::ShaderClass& c : shading.classes)
+    classes.push_back({{"name", c.name}, {"materials", c.materials}});
+  return {{"scene",
+           {{"name", s.name},
+            {"triangles", h.triangles},
+            {"instanced_triangles", h.instanced},
+            {"spheres", h.spheres},
+            {"meshes", s.meshes.size()},
+            {"instances", s.instances.size()},
+            {"materials", s.materials.size()},
+            {"textures", s.textures.size()},
+            {"images", s.images.size()},
+            {"image_bytes", h.image_bytes},
+            {"lights", s.lights.size()},
+            {"cameras", s.cameras.size()}}},
+          {"effects_choice", shading.effects_choice},
+          {"effects", effects},
+          {"classes", classes},
           {"path_state_bytes", shading.path_state_bytes},
-          {"saved", {{"path_state_bytes", shading.saved.path_state_bytes},
-                     {"images_not_decoded", shading.saved.images_not_decoded}}}};
+          {"saved",
+           {{"path_state_bytes", shading.saved.path_state_bytes},
+            {"images_not_decoded", shading.saved.images_not_decoded}}}};
 }
 
 std::string cost_text(const report::EffectCost& cost) {
@@ -99,8 +119,9 @@ std::string table_of(const scene::Scene& s, const report::Shading& shading) {
 int inspect_command(const InspectArguments& arguments) {
   const LocatedConfig located = config_for(arguments);
   const ShadingConfig::Effects& choice = located.config.shading.effects;
-  scene::Scene scene = scene::load_scene(located.config.scene, {}, [](const std::string& w) { spdlog::warn("{}", w); },
-                                         [&](const scene::Scene& s) { return shading::images_read(s, choice); });
+  scene::Scene scene = scene::load_scene(
+      located.config.scene, {}, [](const std::string& w) { spdlog::warn("{}", w); },
+      [&](const scene::Scene& s) { return shading::images_read(s, choice); });
   shading::keep_effects(scene, choice);
   report::Shading shading;
   add_effects(shading, scene, located.config);

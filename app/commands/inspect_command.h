@@ -6,8 +6,8 @@
 namespace carousel::app {
 
 struct InspectArguments {
-  std::string scene;               ///< a file, or builtin:<name>
-  std::vector<std::string> sets;   ///< keys of the configuration it would be run with
+  std::string scene;              ///< a file, or builtin:<name>
+  std::vector<std::string> sets;  ///< keys of the configuration it would be run with
   bool json = false;
 };
 

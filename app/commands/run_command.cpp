@@ -8,27 +8,27 @@
 
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/verifying_workload.h"
-#include "app/run/bottleneck.h"
 #include "app/build_report/build_report.h"
+#include "app/build_report/traffic_report.h"
+#include "app/build_report/verdict.h"
+#include "app/host/interrupt.h"
+#include "app/host/output.h"
+#include "app/run/bottleneck.h"
 #include "app/run/counting_workload.h"
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
-#include "app/run/render_job.h"
 #include "app/run/hit_recorder.h"
-#include "app/host/interrupt.h"
-#include "app/host/output.h"
-#include "app/build_report/traffic_report.h"
-#include "app/build_report/verdict.h"
-#include "core/system/atomic_file.h"
+#include "app/run/render_job.h"
 #include "core/config/write.h"
-#include "report/text/progress_line.h"
-#include "report/text/ratio.h"
+#include "core/system/atomic_file.h"
 #include "report/run/report_json.h"
 #include "report/run/report_table.h"
 #include "report/run/traffic_table.h"
+#include "report/text/progress_line.h"
+#include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/native/native_engine.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
+#include "ringbus/native/native_engine.h"
 
 namespace carousel::app {
 
@@ -39,8 +39,8 @@ std::filesystem::path out_folder(const RunArguments& arguments) {
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
 }
 
-ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& workload,
-                            const InterruptScope& interrupt, bool quiet) {
+ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& workload, const InterruptScope& interrupt,
+                            bool quiet) {
   CountingWorkload counting(workload);
   std::optional<report::ProgressLine> line;
   if (!quiet) line.emplace(stderr);
@@ -108,7 +108,7 @@ int run_command(const RunArguments& arguments) {
   std::optional<HitRecorder> recorder;
   if (keep_hits) frame.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
   std::optional<accel::VerifyingWorkload> verifying;
-  std::optional<accel::Accel> plain;   // planes and spheres are verified, too
+  std::optional<accel::Accel> plain;  // planes and spheres are verified, too
   if (p.config().verify == Verify::kReference) {
     if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
     verifying.emplace(frame.workload(), plain ? *plain : p.accel);

@@ -15,14 +15,14 @@
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
 #include "app/stress/ring_queues.h"
-#include "core/system/atomic_file.h"
-#include "core/config/enum_names.h"
 #include "core/config/edit_distance.h"
+#include "core/config/enum_names.h"
+#include "core/system/atomic_file.h"
 #include "core/system/error.h"
-#include "report/text/progress_line.h"
-#include "report/text/ratio.h"
 #include "report/run/report_json.h"
 #include "report/stress/stress_table.h"
+#include "report/text/progress_line.h"
+#include "report/text/ratio.h"
 #include "ringbus/native/link.h"
 #include "ringbus/stress/stress_run.h"
 
@@ -44,8 +44,10 @@ std::vector<Value> chosen(const std::vector<std::string>& names, const char* opt
     const auto at = std::find(spellings.begin(), spellings.end(), name);
     if (at == spellings.end()) {
       const auto near = nearest_name(name, spellings);
-      throw ConfigError({{{}, option, fmt::format("expected one of {}, found {}{}", fmt::join(spellings, ", "), name,
-                                                  near ? "; did you mean " + *near + "?" : "")}});
+      throw ConfigError({{{},
+                          option,
+                          fmt::format("expected one of {}, found {}{}", fmt::join(spellings, ", "), name,
+                                      near ? "; did you mean " + *near + "?" : "")}});
     }
     const auto& entry = *(std::begin(known) + (at - spellings.begin()));
     const auto& [value, spelling] = entry;
@@ -66,7 +68,9 @@ report::StressRow row_of(const stress::StressRow& row, const stress::QueueUnderT
   out.queue = queue.name;
   out.pattern = stress::pattern_name(row.pattern);
   out.message_bytes = row.message_bytes;
-  out.capacity = row.pattern == stress::Pattern::kCapacity1 ? 1 : row.pattern == stress::Pattern::kCapacity2 ? 2 : capacity;
+  out.capacity = row.pattern == stress::Pattern::kCapacity1   ? 1
+                 : row.pattern == stress::Pattern::kCapacity2 ? 2
+                                                              : capacity;
   out.threads = sum.threads;
   out.messages = sum.messages;
   out.rate_median = row.median();
@@ -87,12 +91,16 @@ report::StressRow row_of(const stress::StressRow& row, const stress::QueueUnderT
 void require_sizes(const std::vector<std::size_t>& sizes) {
   for (const std::size_t bytes : sizes)
     if (bytes != stress::kSmall && bytes != stress::kLine && bytes != stress::kPacket)
-      throw ConfigError({{{}, "--bytes", fmt::format("expected {}, {} or {}, found {}", stress::kSmall, stress::kLine, stress::kPacket, bytes)}});
+      throw ConfigError(
+          {{{},
+            "--bytes",
+            fmt::format("expected {}, {} or {}, found {}", stress::kSmall, stress::kLine, stress::kPacket, bytes)}});
 }
 
 /// Shallow, as configured, deep.
 std::vector<std::int64_t> depths_about(const TopologyConfig& topology) {
-  std::vector<std::int64_t> depths{topology.flow == Flow::kBubble ? 2 : 1, topology.link.depth, 4 * topology.link.depth};
+  std::vector<std::int64_t> depths{topology.flow == Flow::kBubble ? 2 : 1, topology.link.depth,
+                                   4 * topology.link.depth};
   std::sort(depths.begin(), depths.end());
   depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
   return depths;
@@ -109,14 +117,16 @@ int stress_command(const StressArguments& arguments) {
   std::vector<stress::QueueUnderTest> queues;
   for (const QueueKind kind : kinds) queues.push_back(stress::built_in_queue(kind));
   for (const stress::Pattern pattern : patterns)
-    if (std::none_of(queues.begin(), queues.end(), [&](const auto& queue) { return stress::pattern_fits(queue, pattern); }) &&
+    if (std::none_of(queues.begin(), queues.end(),
+                     [&](const auto& queue) { return stress::pattern_fits(queue, pattern); }) &&
         !arguments.patterns.empty())
       ringbus::require_parties(kinds[0], "--queue", ringbus::Parties::kMany, ringbus::Parties::kMany);
   std::unique_ptr<const Prepared> prepared;
   if (!arguments.config.empty()) {
     prepared.reset(new Prepared(prepare(arguments, {}, false)));
     if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic)
-      throw ConfigError({{prepared->located.positions.find("workload"), "workload", "stress tries queues with rays; expected rays"}});
+      throw ConfigError(
+          {{prepared->located.positions.find("workload"), "workload", "stress tries queues with rays; expected rays"}});
   }
 
   std::optional<report::ProgressLine> line;
@@ -143,8 +153,9 @@ int stress_command(const StressArguments& arguments) {
   if (prepared && !interrupt.interrupted()) {
     const std::vector<std::int64_t> depths =
         arguments.depths.empty() ? depths_about(prepared->config().topology) : arguments.depths;
-    out.ring = try_in_ring(*prepared, kinds, depths, arguments.repetitions, interrupt.token(),
-                           [&](double part) { if (line) line->update(0.5 + part / 2, 0); });
+    out.ring = try_in_ring(*prepared, kinds, depths, arguments.repetitions, interrupt.token(), [&](double part) {
+      if (line) line->update(0.5 + part / 2, 0);
+    });
     out.ring_verdict = ring_verdict(out.ring);
   }
   line.reset();
@@ -153,7 +164,8 @@ int stress_command(const StressArguments& arguments) {
 
   std::filesystem::path folder = arguments.out;
   if (folder.empty())
-    folder = std::filesystem::path("out") / (arguments.config.empty() ? "stress" : std::filesystem::path(arguments.config).stem());
+    folder = std::filesystem::path("out") /
+             (arguments.config.empty() ? "stress" : std::filesystem::path(arguments.config).stem());
   const std::string json = report::stress_json(out).dump(2) + "\n";
   write_file(folder / "stress.json", json);
   if (arguments.json)
@@ -161,9 +173,10 @@ int stress_command(const StressArguments& arguments) {
   else if (!arguments.quiet)
     print_result(report::stress_table(out) + "files: " + (folder / "stress.json").string() + "\n");
   if (out.broken()) {
-    std::string last;   // the table has the rest
+    std::string last;  // the table has the rest
     for (const report::StressRow& row : out.rows)
-      if (!row.found.empty() && std::exchange(last, row.queue) != row.queue) spdlog::error("{} under {}: {} ({})", row.queue, row.pattern, row.found, row.detail);
+      if (!row.found.empty() && std::exchange(last, row.queue) != row.queue)
+        spdlog::error("{} under {}: {} ({})", row.queue, row.pattern, row.found, row.detail);
     return kBroken;
   }
   return out.incomplete ? kInterrupted : kDone;

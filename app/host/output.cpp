@@ -10,8 +10,7 @@
 namespace carousel::app {
 
 void print_result(std::string_view text) {
-  const bool written =
-      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!written) throw FileError("cannot write to the standard output: " + std::string(std::strerror(errno)));
 }
 

@@ -19,7 +19,9 @@ class FrameWorkload final : public Workload {
  public:
   FrameWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits)
       : frame_(prepared, config, first_hits) {}
-  std::uint32_t extra_effects(const RayResult& result) const override { return frame_.workload().extra_effects(result); }
+  std::uint32_t extra_effects(const RayResult& result) const override {
+    return frame_.workload().extra_effects(result);
+  }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return frame_.workload().generate(worker, max_rays, out);
   }
@@ -31,7 +33,9 @@ class FrameWorkload final : public Workload {
   Frame frame_;
 };
 
-std::string percent_text(double fraction) { return fmt::format("{:+.1f} %", 100 * fraction); }
+std::string percent_text(double fraction) {
+  return fmt::format("{:+.1f} %", 100 * fraction);
+}
 
 std::string verdict(const report::Bottleneck& b) {
   if (b.gains.empty()) return "not found out: the run was interrupted";
@@ -40,8 +44,7 @@ std::string verdict(const report::Bottleneck& b) {
     return fmt::format("no class of parts limits it alone: the best lift, {}, gains {}", first.action,
                        percent_text(first.gain));
   std::string text = fmt::format("{}: {} gains {}", first.name, first.action, percent_text(first.gain));
-  if (b.gains.size() > 1)
-    text += fmt::format(", next is {} with {}", b.gains[1].name, percent_text(b.gains[1].gain));
+  if (b.gains.size() > 1) text += fmt::format(", next is {} with {}", b.gains[1].name, percent_text(b.gains[1].gain));
   return text;
 }
 
@@ -76,7 +79,8 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     if (busy <= 0 || parts <= 0) return;
     out.classes.push_back({name, 1000 * rays * parts / busy});
   };
-  double box = 0, triangle = 0, plane = 0, bundle = 0, reads = 0, transform = 0, procedural = 0, any_hit = 0, handler = 0, link = 0;
+  double box = 0, triangle = 0, plane = 0, bundle = 0, reads = 0, transform = 0, procedural = 0, any_hit = 0,
+         handler = 0, link = 0;
   for (const ringbus::cycle::TileResult& tile : c.tiles) {
     box += static_cast<double>(tile.box.busy);
     triangle += static_cast<double>(tile.triangle.busy);

@@ -2,8 +2,8 @@
 
 #include <stop_token>
 
-#include "app/run/render_job.h"
 #include "app/run/prepare.h"
+#include "app/run/render_job.h"
 #include "report/run/report.h"
 #include "ringbus/results/run_result.h"
 

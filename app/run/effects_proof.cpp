@@ -19,7 +19,9 @@ std::uint64_t tests_of(const report::Report& report) {
   return t.box.count + t.triangle.count + (t.procedural ? t.procedural->count : 0) + t.plane.count + t.bundle.count;
 }
 
-std::int64_t difference(std::uint64_t a, std::uint64_t b) { return static_cast<std::int64_t>(a) - static_cast<std::int64_t>(b); }
+std::int64_t difference(std::uint64_t a, std::uint64_t b) {
+  return static_cast<std::int64_t>(a) - static_cast<std::int64_t>(b);
+}
 
 }  // namespace
 
@@ -40,7 +42,8 @@ void prove_effects(const ConfigArguments& arguments, const InterruptScope& inter
   proof.same_image = frame.image_digest() == report.digest.image;
   proof.rays_spared = difference(result.rays_completed, report.rays.completed);
   proof.tests_spared = difference(tests_of(result), tests_of(report));
-  if (result.cycle && report.engine.cycles) proof.cycles_spared = difference(result.cycle->cycles, *report.engine.cycles);
+  if (result.cycle && report.engine.cycles)
+    proof.cycles_spared = difference(result.cycle->cycles, *report.engine.cycles);
   report.host.all_effects_seconds = result.wall_seconds;
 }
 

@@ -7,8 +7,8 @@
 
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
-#include "report/text/number_text.h"
 #include "report/csv/ray_csv.h"
+#include "report/text/number_text.h"
 #include "shading/effects/effects_plan.h"
 #include "shading/path/path_state.h"
 
@@ -22,8 +22,7 @@ namespace {
 constexpr std::uint64_t kSceneBytesPerTriangle = 55;
 constexpr std::uint64_t kAccelBytesPerTriangle = 180;
 constexpr std::uint64_t kBytesPerInstance = 512;
-constexpr int kAssumedDepth =
-    24;  // of the structure; 8 wide, that is far more than 100 million triangles need
+constexpr int kAssumedDepth = 24;  // of the structure; 8 wide, that is far more than 100 million triangles need
 
 std::uint64_t frame_paths(const Config& config) {
   return static_cast<std::uint64_t>(config.image.width) * static_cast<std::uint64_t>(config.image.height) *
@@ -34,8 +33,7 @@ MemoryNeed frame_need(const Config& config, bool keep_hits) {
   MemoryNeed need;
   if (config.workload.kind != WorkloadConfig::Kind::kRays) return need;
   const auto depth = static_cast<std::uint64_t>(config.image.max_depth);
-  need.paths =
-      paths_in_flight(config) * (sizeof(shading::PathState) + depth * sizeof(Vec3) + sizeof(std::uint32_t));
+  need.paths = paths_in_flight(config) * (sizeof(shading::PathState) + depth * sizeof(Vec3) + sizeof(std::uint32_t));
   // Three sums of 8 bytes, the linear picture of 12, the display picture of 3.
   need.film = frame_paths(config) / static_cast<std::uint64_t>(config.image.samples) * (24 + 12 + 3);
   if (config.primary == Primary::kRaster) need.film += frame_paths(config) * sizeof(Hit);
@@ -49,8 +47,7 @@ std::uint64_t scene_bytes(const scene::Scene& scene) {
   for (const scene::Mesh& mesh : scene.meshes) {
     bytes += mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3);
     bytes += (mesh.uv0.size() + mesh.uv1.size()) * sizeof(Vec2) + mesh.colors.size() * sizeof(Vec4);
-    bytes +=
-        mesh.indices.size() * sizeof(std::uint32_t) + mesh.triangle_materials.size() * sizeof(MaterialId);
+    bytes += mesh.indices.size() * sizeof(std::uint32_t) + mesh.triangle_materials.size() * sizeof(MaterialId);
   }
   return bytes;
 }
@@ -74,20 +71,19 @@ MemoryNeed estimate_before_scene(const Config& config, bool keep_hits) {
   return need;
 }
 
-MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& scene,
-                    const accel::Accel& accel) {
+MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& scene, const accel::Accel& accel) {
   MemoryNeed need = frame_need(config, keep_hits);
   need.scene = scene_bytes(scene);
   if (need.paths > 0) need.paths = paths_in_flight(config) * shading::plan_effects(scene, config).path_state_bytes();
   need.accel = accel.size_bytes();
-  if (config.verify == Verify::kReference && !accel::is_plain(accel)) need.accel += accel.size_bytes();   // plain_copy()
+  if (config.verify == Verify::kReference && !accel::is_plain(accel)) need.accel += accel.size_bytes();  // plain_copy()
   need.ring = ringbus::estimate_memory(config, accel.max_depth);
   return need;
 }
 
 std::string memory_text(const MemoryNeed& need, std::uint64_t usable_bytes) {
-  std::string out = fmt::format("memory: about {} of {}\n", report::bytes_text(need.total()),
-                                report::bytes_text(usable_bytes));
+  std::string out =
+      fmt::format("memory: about {} of {}\n", report::bytes_text(need.total()), report::bytes_text(usable_bytes));
   const std::array<std::pair<const char*, std::uint64_t>, 9> parts{{
       {"scene", need.scene},
       {"acceleration structure", need.accel},
@@ -108,18 +104,16 @@ void require_fit(const MemoryNeed& need, std::uint64_t usable_bytes, const KeyPo
   if (usable_bytes == 0 || need.total() <= usable_bytes) return;
   const std::array<std::pair<const char*, std::uint64_t>, 4> keys{{
       {"scene", need.scene + need.accel},
-      {"rays.slots_per_resource",
-       need.ring.ray_store + need.ring.ray_stacks + need.ring.rays_waiting + need.paths},
+      {"rays.slots_per_resource", need.ring.ray_store + need.ring.ray_stacks + need.ring.rays_waiting + need.paths},
       {"collections.capacity", need.ring.collections},
       {"image", need.film + need.hits},
   }};
-  const auto most = std::max_element(keys.begin(), keys.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
-  throw ConfigError(
-      {{positions.find(most->first), most->first,
-        fmt::format("expected what fits into the machine's {}, found a need of about {}, {} of it here",
-                    report::bytes_text(usable_bytes), report::bytes_text(need.total()),
-                    report::bytes_text(most->second))}});
+  const auto most =
+      std::max_element(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  throw ConfigError({{positions.find(most->first), most->first,
+                      fmt::format("expected what fits into the machine's {}, found a need of about {}, {} of it here",
+                                  report::bytes_text(usable_bytes), report::bytes_text(need.total()),
+                                  report::bytes_text(most->second))}});
 }
 
 }  // namespace carousel::app

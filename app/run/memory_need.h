@@ -27,8 +27,7 @@ struct MemoryNeed {
 /// Before the scene is there: a built-in scene's size is known from the configuration, a file's is not.
 MemoryNeed estimate_before_scene(const Config& config, bool keep_hits);
 /// With the scene and its structure.
-MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& scene,
-                    const accel::Accel& accel);
+MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& scene, const accel::Accel& accel);
 
 /// Paths that have rays in flight at a time: one for each slot.
 std::uint64_t paths_in_flight(const Config& config);

@@ -36,9 +36,7 @@ auto with_positions(const KeyPositions& positions, const Body& body) {
 
 class Stopwatch {
  public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -46,10 +44,13 @@ class Stopwatch {
 
 void load_scene(Prepared& p) {
   const Stopwatch watch;
-  p.scene = scene::load_scene(p.config().scene, p.config_folder, [&](const std::string& warning) {
-    spdlog::warn("{}", warning);
-    p.warnings.push_back(warning);
-  }, [&](const scene::Scene& s) { return shading::images_read(s, p.config().shading.effects); });
+  p.scene = scene::load_scene(
+      p.config().scene, p.config_folder,
+      [&](const std::string& warning) {
+        spdlog::warn("{}", warning);
+        p.warnings.push_back(warning);
+      },
+      [&](const scene::Scene& s) { return shading::images_read(s, p.config().shading.effects); });
   shading::keep_effects(p.scene, p.config().shading.effects);
   p.scene_seconds = watch.seconds();
 }
@@ -77,7 +78,7 @@ void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
-  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;   // meets no scene
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // meets no scene
   const KeyPositions& positions = p.located.positions;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {

@@ -25,10 +25,10 @@ struct Prepared {
   std::filesystem::path config_folder;
   std::size_t threads = 1;  ///< engine.threads, or the machine's cores
   std::unique_ptr<scene::Scene> scene_storage = std::make_unique<scene::Scene>();
-  scene::Scene& scene = *scene_storage;   ///< stays where it is when this is moved: others refer to it
-  std::vector<std::string> warnings;  ///< of the import
+  scene::Scene& scene = *scene_storage;  ///< stays where it is when this is moved: others refer to it
+  std::vector<std::string> warnings;     ///< of the import
   accel::Accel accel;
-  std::unique_ptr<shading::AlphaTest> alpha_test;   ///< whom `accel` asks; null where nothing lets rays through
+  std::unique_ptr<shading::AlphaTest> alpha_test;  ///< whom `accel` asks; null where nothing lets rays through
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }

@@ -10,8 +10,8 @@
 #include "app/run/prepare.h"
 #include "app/run/ray_list_workload.h"
 #include "report/run/report.h"
-#include "shading/tracer/path_tracer.h"
 #include "shading/raster/first_hits.h"
+#include "shading/tracer/path_tracer.h"
 
 namespace carousel::app {
 

@@ -99,15 +99,17 @@ std::string ring_verdict(const std::vector<report::StressRingRow>& rows) {
   if (rows.empty()) return "";
   const auto slower = [](const auto& a, const auto& b) { return a.rate_median < b.rate_median; };
   const auto [worst, best] = std::minmax_element(rows.begin(), rows.end(), slower);
-  double spread = 0;   // between repetitions of one cell
+  double spread = 0;  // between repetitions of one cell
   for (const report::StressRingRow& row : rows)
     spread = std::max(spread, report::ratio(row.rate_most - row.rate_least, row.rate_median));
-  const auto named = [](const report::StressRingRow& row) { return fmt::format("{} of depth {}", row.queue, row.depth); };
+  const auto named = [](const report::StressRingRow& row) {
+    return fmt::format("{} of depth {}", row.queue, row.depth);
+  };
   const double gain = report::ratio(best->rate_median, worst->rate_median) - 1;
   // Apart when not even the worst cell's best repetition reaches the best cell's worst.
   const bool sure = worst->rate_most < best->rate_least;
-  std::string text = fmt::format("{} traces {} rays/s, {} {}: {} more", named(*best), report::scaled(best->rate_median), named(*worst),
-                                 report::scaled(worst->rate_median), report::percent(gain));
+  std::string text = fmt::format("{} traces {} rays/s, {} {}: {} more", named(*best), report::scaled(best->rate_median),
+                                 named(*worst), report::scaled(worst->rate_median), report::percent(gain));
   text += fmt::format("; repetitions of one cell differ by up to {}, so this is {}", report::percent(spread),
                       sure ? "no accident" : "not sure");
   return text;

@@ -18,8 +18,8 @@ namespace {
 
 RTCGeometry triangles(RTCDevice device, const scene::Mesh& mesh, const scene::Affine& place) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh.positions.size()));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Vec3 p = place.linear * mesh.positions[i] + place.translation;
     for (std::size_t axis = 0; axis < 3; ++axis) vertices[3 * i + axis] = p[static_cast<int>(axis)];
@@ -85,8 +85,7 @@ class EmbreePeer::Impl {
     device_ = rtcNewDevice(("set_affinity=0,threads=" + std::to_string(settings.build_threads) +
                             ",frequency_level=" + settings.frequency_level)
                                .c_str());
-    if (device_ == nullptr)
-      throw std::runtime_error("Embree gives no device for " + settings.frequency_level);
+    if (device_ == nullptr) throw std::runtime_error("Embree gives no device for " + settings.frequency_level);
     rtcSetDeviceMemoryMonitorFunction(device_, &Impl::count_bytes, this);
     std::vector<int> uses(scene.meshes.size());
     for (const scene::Instance& instance : scene.instances) ++uses[instance.mesh.value];
@@ -102,8 +101,7 @@ class EmbreePeer::Impl {
       }
       const scene::Affine& place = scene.instances[i].world_from_model;
       attach(scene_,
-             uses[mesh] > 1 ? instance_of(device_, shared[mesh], place)
-                            : triangles(device_, scene.meshes[mesh], place),
+             uses[mesh] > 1 ? instance_of(device_, shared[mesh], place) : triangles(device_, scene.meshes[mesh], place),
              static_cast<unsigned>(i));
     }
     commit(scene_);
@@ -122,8 +120,7 @@ class EmbreePeer::Impl {
   RTCIntersectContext context(const RaySet& rays) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags =
-        rays.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags = rays.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
   }
 
@@ -202,10 +199,10 @@ void EmbreePeer::trace_sixteen(const RaySet& rays, int threads, HitList& hits) c
           rtcIntersect16(valid, impl_->scene_, &context, &rh);
         }
         for (std::size_t l = 0; l < 16 && valid[l]; ++l)
-          hits[batch[first + l].tag.path] =
-              rays.any_hit ? occlusion(rh.ray.tfar[l])
-                           : finish(rh.ray.tfar[l], rh.hit.u[l], rh.hit.v[l], rh.hit.geomID[l],
-                                    rh.hit.instID[0][l], rh.hit.primID[l]);
+          hits[batch[first + l].tag.path] = rays.any_hit
+                                                ? occlusion(rh.ray.tfar[l])
+                                                : finish(rh.ray.tfar[l], rh.hit.u[l], rh.hit.v[l], rh.hit.geomID[l],
+                                                         rh.hit.instID[0][l], rh.hit.primID[l]);
       }
     };
   });

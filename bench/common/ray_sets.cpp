@@ -42,8 +42,7 @@ RaySet primary_rays(const scene::Scene& scene, std::uint32_t side) {
   return set;
 }
 
-std::vector<SurfacePoint> surface_points(const scene::Scene& scene, const accel::Accel& accel,
-                                         const RaySet& rays) {
+std::vector<SurfacePoint> surface_points(const scene::Scene& scene, const accel::Accel& accel, const RaySet& rays) {
   std::vector<SurfacePoint> points;
   HitBatch hits;
   TestCounts counts;
@@ -52,12 +51,12 @@ std::vector<SurfacePoint> surface_points(const scene::Scene& scene, const accel:
     accel::trace_depth_first(accel, batch, hits, counts);
     for (const RayResult& result : hits) {
       if (!result.hit.valid()) continue;
-      const shading::TriangleGeometry geometry = shading::triangle_geometry(
-          scene, result.hit.instance, result.hit.primitive, result.hit.u, result.hit.v);
+      const shading::TriangleGeometry geometry =
+          shading::triangle_geometry(scene, result.hit.instance, result.hit.primitive, result.hit.u, result.hit.v);
       const bool front = glm::dot(geometry.normal, DVec3(result.ray.direction)) < 0;
-      points.push_back({shading::spawn_point(geometry, front ? shading::Side::kFront : shading::Side::kBack,
-                                             SpawnOffset::kBound),
-                        Vec3(front ? geometry.normal : -geometry.normal)});
+      points.push_back(
+          {shading::spawn_point(geometry, front ? shading::Side::kFront : shading::Side::kBack, SpawnOffset::kBound),
+           Vec3(front ? geometry.normal : -geometry.normal)});
     }
   }
   return points;
@@ -71,8 +70,8 @@ Ray shadow_ray(const scene::Scene& scene, const Aabb& bounds, const SurfacePoint
     ray.direction = -scene.lights[0].direction;
     return ray;
   }
-  const Vec3 light = scene.lights.empty() ? Vec3{bounds.centre().x, bounds.hi.y, bounds.centre().z}
-                                          : scene.lights[0].position;
+  const Vec3 light =
+      scene.lights.empty() ? Vec3{bounds.centre().x, bounds.hi.y, bounds.centre().z} : scene.lights[0].position;
   ray.direction = light - point.position;
   ray.tmax = 1;
   if (glm::dot(ray.direction, ray.direction) == 0) ray.direction = point.normal;
@@ -105,8 +104,8 @@ std::vector<std::uint32_t> random_order(std::size_t count, std::uint64_t seed) {
 
 }  // namespace
 
-std::vector<RaySet> make_ray_sets(const scene::Scene& scene, const accel::Accel& accel,
-                                  std::uint32_t image_side, std::uint64_t seed) {
+std::vector<RaySet> make_ray_sets(const scene::Scene& scene, const accel::Accel& accel, std::uint32_t image_side,
+                                  std::uint64_t seed) {
   RaySet primary = primary_rays(scene, image_side);
   const std::vector<SurfacePoint> points = surface_points(scene, accel, primary);
   const Aabb bounds = scene.bounds();

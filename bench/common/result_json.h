@@ -9,11 +9,13 @@ namespace carousel::bench {
 
 // What the JSON of every benchmark says in the same words.
 
-inline nlohmann::ordered_json json_of(const Spread& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}}; }
+inline nlohmann::ordered_json json_of(const Spread& s) {
+  return {{"median", s.median}, {"min", s.min}, {"max", s.max}};
+}
 
 inline nlohmann::ordered_json json_of(const MachineInfo& m) {
-  return {{"cpu", m.cpu},           {"threads", m.threads},   {"caches", m.caches},         {"commit", m.commit},
-          {"compiler", m.compiler}, {"build_type", m.build_type}, {"simd", m.simd}, {"date", m.date}};
+  return {{"cpu", m.cpu},           {"threads", m.threads},       {"caches", m.caches}, {"commit", m.commit},
+          {"compiler", m.compiler}, {"build_type", m.build_type}, {"simd", m.simd},     {"date", m.date}};
 }
 
 }  // namespace carousel::bench

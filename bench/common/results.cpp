@@ -9,10 +9,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Work, box_tests, triangle_tests, memberships,
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Measurement, contestant, threads, wall, cpu, work, hits, disagreements)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SetResult, name, any_hit, rays, hits, digest, measurements)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BuildResult, builder, threads, mtris, bytes_per_triangle)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SceneResult, name, triangles, instances, builds, to_first_packet_seconds,
-                                   sets)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MachineInfo, cpu, threads, caches, commit, compiler, build_type, simd,
-                                   embree, date)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SceneResult, name, triangles, instances, builds, to_first_packet_seconds, sets)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MachineInfo, cpu, threads, caches, commit, compiler, build_type, simd, embree, date)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BenchResult, machine, settings, repetitions, scenes)
 
 std::string to_json_text(const BenchResult& result) {

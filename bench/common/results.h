@@ -27,8 +27,7 @@ struct Measurement {
   Spread cpu{};   ///< million rays a second of CPU time
   Work work{};
   std::uint64_t hits = 0;
-  std::uint64_t disagreements =
-      0;  ///< rays on whose hit the reference differs (Embree: on whether there is one)
+  std::uint64_t disagreements = 0;  ///< rays on whose hit the reference differs (Embree: on whether there is one)
 };
 
 struct SetResult {

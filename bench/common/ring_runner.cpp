@@ -88,8 +88,8 @@ Config ring_config(const RingSettings& settings, const RingForm& form, int threa
   return config;
 }
 
-RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings& settings,
-                 const RingForm& form, const RaySet& rays, int threads, HitList& hits, double limit_seconds) {
+RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings& settings, const RingForm& form,
+                 const RaySet& rays, int threads, HitList& hits, double limit_seconds) {
   const Config config = ring_config(settings, form, threads);
   ringbus::RunOptions options;
   options.threads = static_cast<std::size_t>(threads);

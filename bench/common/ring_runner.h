@@ -12,10 +12,10 @@ namespace carousel::bench {
 
 /// What all ring contestants have in common.
 struct RingSettings {
-  std::int64_t slots = 65536;       ///< rays.slots_per_resource
-  std::int64_t packet_rays = 512;   ///< packets.rays
-  std::int64_t ready = 512;         ///< collections.ready
-  std::int64_t capacity = 1 << 24;  ///< collections.capacity, ray IDs; a collection takes whole packets of it
+  std::int64_t slots = 65536;              ///< rays.slots_per_resource
+  std::int64_t packet_rays = 512;          ///< packets.rays
+  std::int64_t ready = 512;                ///< collections.ready
+  std::int64_t capacity = 1 << 24;         ///< collections.capacity, ray IDs; a collection takes whole packets of it
   std::int64_t treelet_triangles = 32768;  ///< bvh.treelet_triangles
   std::int64_t link_depth = 16;            ///< topology.link.depth
   Policy policy = Policy::kNearest;
@@ -47,8 +47,7 @@ Config ring_config(const RingSettings& settings, const RingForm& form, int threa
 
 /// Traces the set on the native ring; stops after `limit_seconds`, with a result that is not complete. Throws
 /// SimulationError when the ring breaks.
-RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings& settings,
-                 const RingForm& form, const RaySet& rays, int threads, HitList& hits,
-                 double limit_seconds = 20);
+RingRun run_ring(const accel::Accel& accel, float scene_size, const RingSettings& settings, const RingForm& form,
+                 const RaySet& rays, int threads, HitList& hits, double limit_seconds = 20);
 
 }  // namespace carousel::bench

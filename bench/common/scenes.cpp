@@ -15,8 +15,7 @@ std::string SceneChoice::name() const {
   return builtin + " " + std::to_string(triangles);
 }
 
-std::vector<SceneChoice> choose_scenes(const std::vector<std::string>& builtins,
-                                       const std::vector<std::int64_t>& sizes,
+std::vector<SceneChoice> choose_scenes(const std::vector<std::string>& builtins, const std::vector<std::int64_t>& sizes,
                                        const std::vector<std::string>& files) {
   std::vector<SceneChoice> scenes;
   for (const std::string& builtin : builtins) {

@@ -19,8 +19,7 @@ struct SceneChoice {
 };
 
 /// Every built-in name with every size, then every file. Throws ConfigError for an unknown name.
-std::vector<SceneChoice> choose_scenes(const std::vector<std::string>& builtins,
-                                       const std::vector<std::int64_t>& sizes,
+std::vector<SceneChoice> choose_scenes(const std::vector<std::string>& builtins, const std::vector<std::int64_t>& sizes,
                                        const std::vector<std::string>& files);
 /// Throws SceneError for a file that cannot be read.
 scene::Scene make_scene(const SceneChoice& choice);

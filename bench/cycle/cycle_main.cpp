@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 
 #include "accel/build/build.h"
-#include "bench/cycle/cycle_speed.h"
 #include "bench/common/machine_info.h"
 #include "bench/common/scenes.h"
+#include "bench/cycle/cycle_speed.h"
 #include "core/system/atomic_file.h"
 #include "core/system/executor.h"
 
@@ -56,7 +56,8 @@ int main(int argc, char** argv) {
   CLI::App app("Speed of the cycle engine: synthetic traffic, and rays through a whole machine", "bench_cycle");
   app.add_flag("--quick", o.quick, "a smoke test: few packets, few rays, one repetition");
   app.add_flag("--no-rays", o.no_rays, "traffic only");
-  app.add_option("--repetitions", o.repetitions, "of each case; tables show the median, least and greatest")->check(CLI::Range(1, 100));
+  app.add_option("--repetitions", o.repetitions, "of each case; tables show the median, least and greatest")
+      ->check(CLI::Range(1, 100));
   app.add_option("--only", o.only, "only cases whose name holds this text");
   app.add_option("--json", o.json, "write the results here");
   CLI11_PARSE(app, argc, argv);

@@ -13,14 +13,18 @@ using Json = nlohmann::ordered_json;
 
 // What we want to reach (issue 4): 40 times BookSim2; and by resources.
 constexpr double kAimFlitHops = 40 * Peers::kBookSimFlitHops, kAimHops = 20e6;
-double aim_rays(std::uint64_t resources) { return resources <= 16 ? 0.12e6 : 0.05e6; }
+double aim_rays(std::uint64_t resources) {
+  return resources <= 16 ? 0.12e6 : 0.05e6;
+}
 
 }  // namespace
 
 std::string to_json_text(const CycleBenchResult& r) {
   Json out{{"machine", json_of(r.machine)},
            {"repetitions", r.repetitions},
-           {"peers", {{"booksim2_flit_hops_per_cpu_second", Peers::kBookSimFlitHops}, {"arches_rays_per_second", Peers::kArchesRays}}},
+           {"peers",
+            {{"booksim2_flit_hops_per_cpu_second", Peers::kBookSimFlitHops},
+             {"arches_rays_per_second", Peers::kArchesRays}}},
            {"traffic", Json::array()},
            {"rays", Json::array()}};
   for (const TrafficSpeed& t : r.traffic)
@@ -48,19 +52,24 @@ std::string to_json_text(const CycleBenchResult& r) {
 }
 
 std::string cycle_tables(const CycleBenchResult& r) {
-  std::string out = fmt::format("| traffic | M flit-hops per CPU-second | times BookSim2 (aim 40) |\n|---|---:|---:|\n");
+  std::string out =
+      fmt::format("| traffic | M flit-hops per CPU-second | times BookSim2 (aim 40) |\n|---|---:|---:|\n");
   for (const TrafficSpeed& t : r.traffic)
-    out += fmt::format("| {} resources, {} | {:.1f} ({:.1f} to {:.1f}) | {:.1f} |\n", t.resources, t.name,
-                       1e-6 * t.flit_hops_per_cpu_second.median, 1e-6 * t.flit_hops_per_cpu_second.min,
-                       1e-6 * t.flit_hops_per_cpu_second.max, t.flit_hops_per_cpu_second.median / Peers::kBookSimFlitHops);
-  out += fmt::format("\n| rays | threads | k rays per CPU-second | aim | times Arches | M hops per CPU-second (aim {:.0f}) | hops a ray | k rays per second |\n"
-                     "|---|---:|---:|---:|---:|---:|---:|---:|\n", 1e-6 * kAimHops);
+    out +=
+        fmt::format("| {} resources, {} | {:.1f} ({:.1f} to {:.1f}) | {:.1f} |\n", t.resources, t.name,
+                    1e-6 * t.flit_hops_per_cpu_second.median, 1e-6 * t.flit_hops_per_cpu_second.min,
+                    1e-6 * t.flit_hops_per_cpu_second.max, t.flit_hops_per_cpu_second.median / Peers::kBookSimFlitHops);
+  out += fmt::format(
+      "\n| rays | threads | k rays per CPU-second | aim | times Arches | M hops per CPU-second (aim {:.0f}) | hops a "
+      "ray | k rays per second |\n"
+      "|---|---:|---:|---:|---:|---:|---:|---:|\n",
+      1e-6 * kAimHops);
   for (const RaySpeed& s : r.rays)
-    out += fmt::format("| {} | {} | {:.1f} ({:.1f} to {:.1f}) | {:.0f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", s.name, s.threads,
-                       1e-3 * s.rays_per_cpu_second.median, 1e-3 * s.rays_per_cpu_second.min, 1e-3 * s.rays_per_cpu_second.max,
-                       1e-3 * aim_rays(s.resources), s.rays_per_cpu_second.median / Peers::kArchesRays,
-                       1e-6 * s.hops_per_cpu_second.median, static_cast<double>(s.hops) / static_cast<double>(s.rays),
-                       1e-3 * s.rays_per_wall_second.median);
+    out += fmt::format("| {} | {} | {:.1f} ({:.1f} to {:.1f}) | {:.0f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} |\n", s.name,
+                       s.threads, 1e-3 * s.rays_per_cpu_second.median, 1e-3 * s.rays_per_cpu_second.min,
+                       1e-3 * s.rays_per_cpu_second.max, 1e-3 * aim_rays(s.resources),
+                       s.rays_per_cpu_second.median / Peers::kArchesRays, 1e-6 * s.hops_per_cpu_second.median,
+                       static_cast<double>(s.hops) / static_cast<double>(s.rays), 1e-3 * s.rays_per_wall_second.median);
   return out;
 }
 

@@ -13,10 +13,12 @@ namespace carousel::bench {
 
 namespace {
 
-double per_second(std::uint64_t count, double seconds) { return static_cast<double>(count) / seconds; }
+double per_second(std::uint64_t count, double seconds) {
+  return static_cast<double>(count) / seconds;
+}
 
-TrafficCase traffic_case(const std::string& name, std::int64_t packets, TopologyShape shape, std::int64_t resources, double rate,
-                         Flow flow) {
+TrafficCase traffic_case(const std::string& name, std::int64_t packets, TopologyShape shape, std::int64_t resources,
+                         double rate, Flow flow) {
   TrafficCase out{name, {}};
   Config& c = out.config;
   c.engine.kind = EngineKind::kCycle;
@@ -82,8 +84,9 @@ TrafficSpeed measure_traffic(const TrafficCase& one, int repetitions) {
 }
 
 std::vector<RayCase> ray_cases() {
-  return {ray_case(16, Traversal::kSpread, 1), ray_case(16, Traversal::kTreelet, 1), ray_case(64, Traversal::kSpread, 1),
-          ray_case(64, Traversal::kTreelet, 1), ray_case(64, Traversal::kSpread, 2)};
+  return {ray_case(16, Traversal::kSpread, 1), ray_case(16, Traversal::kTreelet, 1),
+          ray_case(64, Traversal::kSpread, 1), ray_case(64, Traversal::kTreelet, 1),
+          ray_case(64, Traversal::kSpread, 2)};
 }
 
 RaySet primary_and_bounce(const scene::Scene& scene, const accel::Accel& accel, std::uint32_t image_side) {
@@ -96,7 +99,8 @@ RaySet primary_and_bounce(const scene::Scene& scene, const accel::Accel& accel, 
   return out;
 }
 
-RaySpeed measure_rays(const RayCase& one, const accel::Accel& accel, float scene_size, const RaySet& rays, int repetitions) {
+RaySpeed measure_rays(const RayCase& one, const accel::Accel& accel, float scene_size, const RaySet& rays,
+                      int repetitions) {
   RaySpeed out;
   out.name = one.name;
   out.resources = static_cast<std::uint64_t>(one.config.topology.resources);
@@ -119,7 +123,8 @@ RaySpeed measure_rays(const RayCase& one, const accel::Accel& accel, float scene
   }
   const HitList expected = reference_hits(accel, rays);
   for (std::size_t i = 0; i < hits.size(); ++i)
-    if (hits[i].instance != expected[i].instance || hits[i].primitive != expected[i].primitive || hits[i].t != expected[i].t)
+    if (hits[i].instance != expected[i].instance || hits[i].primitive != expected[i].primitive ||
+        hits[i].t != expected[i].t)
       throw std::runtime_error(fmt::format("{}: ray {} differs from the depth-first tracer", one.name, i));
   out.rays_per_cpu_second = spread_of(ray_speeds);
   out.hops_per_cpu_second = spread_of(hop_speeds);

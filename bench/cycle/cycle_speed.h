@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
-#include "bench/cycle/cycle_results.h"
 #include "bench/common/ray_sets.h"
+#include "bench/cycle/cycle_results.h"
 #include "core/config/config.h"
 
 namespace carousel::bench {

@@ -20,7 +20,8 @@ class MinimalTracer final : public PathTracer {
     shade_batch<false>(worker, completed, out,
                        [this](const RayResult& result, const shading::TrianglePoint& point, Worker& own, RayBatch& rays,
                               std::uint32_t& children) {
-                         shade_surface<shading::SurfaceClass::kPlain, Lights::kLamps>(result, point, own, rays, children);
+                         shade_surface<shading::SurfaceClass::kPlain, Lights::kLamps>(result, point, own, rays,
+                                                                                      children);
                        });
   }
 };
@@ -71,7 +72,7 @@ EffectsScene measure_effects(const std::string& name, const scene::Scene& scene,
   EffectsScene out{name, {}};
   std::vector<std::vector<double>> frames(ways.size()), shades(ways.size());
   out.costs.resize(ways.size());
-  for (int round = 0; round <= repetitions; ++round) {   // the first warms up
+  for (int round = 0; round <= repetitions; ++round) {  // the first warms up
     for (std::size_t i = 0; i < ways.size(); ++i) {
       const std::size_t w = (i + static_cast<std::size_t>(round)) % ways.size();
       const std::unique_ptr<PathTracer> tracer = tracer_for(ways[w], scene, config);
@@ -84,10 +85,14 @@ EffectsScene measure_effects(const std::string& name, const scene::Scene& scene,
         shades[w].push_back(timed.seconds());
         continue;
       }
-      out.costs[w] = {name_of(ways[w]),     {},
-                      {},                   tracer->counts().emitted,
-                      run.tests.box,        run.tests.triangle,
-                      tracer->plan().path_state_bytes(), tracer->image_digest()};
+      out.costs[w] = {name_of(ways[w]),
+                      {},
+                      {},
+                      tracer->counts().emitted,
+                      run.tests.box,
+                      run.tests.triangle,
+                      tracer->plan().path_state_bytes(),
+                      tracer->image_digest()};
       if (out.costs[w].image != out.costs[0].image && w != 0 && i > 0 && !out.costs[0].image.empty())
         throw WrongImage(name + ": " + name_of(ways[w]) + " gives another picture");
     }
@@ -105,15 +110,19 @@ std::string to_json_text(const EffectsBenchResult& result) {
   for (const EffectsScene& scene : result.scenes) {
     Json costs = Json::array();
     for (const FrameCost& c : scene.costs) {
-      costs.push_back({{"effects", c.name}, {"frame_cpu_seconds", json_of(c.frame_seconds)},
+      costs.push_back({{"effects", c.name},
+                       {"frame_cpu_seconds", json_of(c.frame_seconds)},
                        {"shade_seconds", json_of(c.shade_seconds)},
                        {"rays", {{"camera", c.rays[0]}, {"bounce", c.rays[1]}, {"shadow", c.rays[2]}}},
-                       {"box_tests", c.box_tests}, {"triangle_tests", c.triangle_tests},
-                       {"path_state_bytes", c.path_state_bytes}, {"image", c.image}});
+                       {"box_tests", c.box_tests},
+                       {"triangle_tests", c.triangle_tests},
+                       {"path_state_bytes", c.path_state_bytes},
+                       {"image", c.image}});
     }
     scenes.push_back({{"scene", scene.name}, {"costs", costs}});
   }
-  return Json{{"machine", json_of(result.machine)}, {"repetitions", result.repetitions}, {"scenes", scenes}}.dump(2) + "\n";
+  return Json{{"machine", json_of(result.machine)}, {"repetitions", result.repetitions}, {"scenes", scenes}}.dump(2) +
+         "\n";
 }
 
 }  // namespace carousel::bench

@@ -16,20 +16,20 @@ namespace carousel::bench {
 
 /// How a frame is shaded.
 enum class Shading {
-  kAuto,      ///< by the effects plan
-  kAll,       ///< nothing is specialised
-  kMinimal,   ///< a program that never had other surfaces than plain ones, nor other lights than lamps
+  kAuto,     ///< by the effects plan
+  kAll,      ///< nothing is specialised
+  kMinimal,  ///< a program that never had other surfaces than plain ones, nor other lights than lamps
 };
 
 /// What a frame took, on one thread with the depth-first tracer.
 struct FrameCost {
   std::string name;
-  Spread frame_seconds;   ///< CPU time, tracing and shading
-  Spread shade_seconds;   ///< wall time in shade() alone
+  Spread frame_seconds;  ///< CPU time, tracing and shading
+  Spread shade_seconds;  ///< wall time in shade() alone
   std::array<std::uint64_t, kRayKinds> rays{};
   std::uint64_t box_tests = 0, triangle_tests = 0;
   std::uint32_t path_state_bytes = 0;
-  std::string image;      ///< digest
+  std::string image;  ///< digest
 };
 
 struct EffectsScene {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "accel/build/build.h"
-#include "bench/effects/effects_frames.h"
 #include "bench/common/machine_info.h"
 #include "bench/common/scenes.h"
+#include "bench/effects/effects_frames.h"
 #include "core/system/atomic_file.h"
 #include "core/system/executor.h"
 #include "scene/builtin/builtin.h"
@@ -25,7 +25,8 @@ struct EffectsOptions {
   std::string json;
 };
 
-EffectsScene run_scene(const EffectsOptions& o, const std::string& name, scene::Scene scene, const std::vector<Shading>& ways) {
+EffectsScene run_scene(const EffectsOptions& o, const std::string& name, scene::Scene scene,
+                       const std::vector<Shading>& ways) {
   fmt::print(stderr, "{}\n", name);
   accel::Accel accel = accel::build(scene, {}, *make_sequential_executor());
   const shading::AlphaTest alpha(scene);
@@ -50,7 +51,8 @@ void run(const EffectsOptions& o) {
   result.machine = machine_info();
   result.repetitions = o.quick ? 1 : o.repetitions;
   const std::vector<Shading> two{Shading::kAuto, Shading::kAll};
-  result.scenes.push_back(run_scene(o, "cornell, diffuse", diffuse_scene(), {Shading::kAuto, Shading::kMinimal, Shading::kAll}));
+  result.scenes.push_back(
+      run_scene(o, "cornell, diffuse", diffuse_scene(), {Shading::kAuto, Shading::kMinimal, Shading::kAll}));
   for (const auto& choice : choose_scenes({"spheres", "terrain"}, {o.quick ? 2'000 : 50'000}, o.files))
     result.scenes.push_back(run_scene(o, choice.name(), make_scene(choice), two));
   fmt::print("{}", to_json_text(result));
@@ -65,7 +67,8 @@ int main(int argc, char** argv) {
   carousel::bench::EffectsOptions o;
   CLI::App app("What shading only the effects a scene calls for saves", "bench_effects");
   app.add_flag("--quick", o.quick, "a smoke test: small pictures, one repetition");
-  app.add_option("--repetitions", o.repetitions, "of each way of shading, in turn; one more warms up")->check(CLI::Range(1, 1000));
+  app.add_option("--repetitions", o.repetitions, "of each way of shading, in turn; one more warms up")
+      ->check(CLI::Range(1, 1000));
   app.add_option("--file", o.files, "glTF files to measure as well");
   app.add_option("--json", o.json, "write the results here, too");
   CLI11_PARSE(app, argc, argv);

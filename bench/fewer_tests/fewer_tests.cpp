@@ -39,8 +39,8 @@ bool same_bits(const HitList& a, const HitList& b, bool any_hit) {
 
 }  // namespace
 
-FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays, const std::vector<TestVariant>& variants,
-                                  int repetitions) {
+FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays,
+                                  const std::vector<TestVariant>& variants, int repetitions) {
   FewerTestsResult out{scene, rays.name, rays.size, {}};
   std::vector<std::vector<double>> seconds(variants.size()), ratios(variants.size());
   std::optional<HitList> expected;
@@ -51,7 +51,8 @@ FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays, 
       const Traced run = traced(variants[i], rays);
       if (!expected) expected = run.hits;
       if (!same_bits(run.hits, *expected, rays.any_hit))
-        throw std::runtime_error(fmt::format("{}, {}: {} {} gives other hits", scene, rays.name, variants[i].method, variants[i].setting));
+        throw std::runtime_error(
+            fmt::format("{}, {}: {} {} gives other hits", scene, rays.name, variants[i].method, variants[i].setting));
       seconds[i].push_back(run.seconds);
       tests[i] = run.tests;
     }
@@ -59,15 +60,14 @@ FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays, 
   }
   for (std::size_t i = 0; i < variants.size(); ++i) {
     for (double& s : seconds[i]) s *= 1e9 / static_cast<double>(rays.size);
-    out.variants.push_back({variants[i].method, variants[i].setting, tests[i], spread_of(seconds[i]), spread_of(ratios[i])});
+    out.variants.push_back(
+        {variants[i].method, variants[i].setting, tests[i], spread_of(seconds[i]), spread_of(ratios[i])});
   }
   return out;
 }
 
 std::string to_json_text(const FewerTestsBench& bench) {
-  Json out{{"machine", json_of(bench.machine)},
-           {"repetitions", bench.repetitions},
-           {"results", Json::array()}};
+  Json out{{"machine", json_of(bench.machine)}, {"repetitions", bench.repetitions}, {"results", Json::array()}};
   for (const FewerTestsResult& r : bench.results) {
     Json variants = Json::array();
     for (const VariantSpeed& v : r.variants)
@@ -79,7 +79,8 @@ std::string to_json_text(const FewerTestsBench& bench) {
                           {"triangle_tests", v.tests.triangle},
                           {"plane_tests", v.tests.plane},
                           {"bundle_tests", v.tests.bundle}});
-    out["results"].push_back({{"scene", r.scene}, {"rays", r.rays}, {"count", r.count}, {"variants", std::move(variants)}});
+    out["results"].push_back(
+        {{"scene", r.scene}, {"rays", r.rays}, {"count", r.count}, {"variants", std::move(variants)}});
   }
   return out.dump(2) + "\n";
 }
@@ -94,7 +95,8 @@ std::string fewer_tests_table(const FewerTestsBench& bench, const std::string& m
       rule += "---:|";
       line += &v == &r.variants.front()
                   ? fmt::format(" {:.0f} ns |", v.nanoseconds_per_ray.median)
-                  : fmt::format(" {:.0f} ns ({:.2f}, {:.2f} to {:.2f}) |", v.nanoseconds_per_ray.median, v.ratio.median, v.ratio.min, v.ratio.max);
+                  : fmt::format(" {:.0f} ns ({:.2f}, {:.2f} to {:.2f}) |", v.nanoseconds_per_ray.median, v.ratio.median,
+                                v.ratio.min, v.ratio.max);
     }
     if (out.empty()) out = head + "\n" + rule + "\n";
     out += line + "\n";

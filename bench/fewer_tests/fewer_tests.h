@@ -18,8 +18,8 @@ namespace carousel::bench {
 
 /// One way to trace rays.
 struct TestVariant {
-  std::string method;    ///< cull_planes, bundles
-  std::string setting;   ///< of the method, as a table names it
+  std::string method;   ///< cull_planes, bundles
+  std::string setting;  ///< of the method, as a table names it
   /// Writes as many hits as there are rays.
   std::function<void(const RaySet&, HitList&, TestCounts&)> trace;
 };
@@ -27,8 +27,8 @@ struct TestVariant {
 struct VariantSpeed {
   std::string method, setting;
   TestCounts tests;
-  Spread nanoseconds_per_ray;   ///< CPU time
-  Spread ratio;                 ///< of the time of the same round's first variant
+  Spread nanoseconds_per_ray;  ///< CPU time
+  Spread ratio;                ///< of the time of the same round's first variant
 };
 
 /// One set of rays in one scene.
@@ -38,10 +38,10 @@ struct FewerTestsResult {
   std::vector<VariantSpeed> variants;
 };
 
-/// Traces `rays` with every variant, all of one method, in turn, `repetitions` times, each round begun with another one. Throws
-/// std::runtime_error when a hit is not that of the first variant, to the bit.
-FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays, const std::vector<TestVariant>& variants,
-                                  int repetitions);
+/// Traces `rays` with every variant, all of one method, in turn, `repetitions` times, each round begun with another
+/// one. Throws std::runtime_error when a hit is not that of the first variant, to the bit.
+FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays,
+                                  const std::vector<TestVariant>& variants, int repetitions);
 
 struct FewerTestsBench {
   MachineInfo machine;

@@ -11,11 +11,11 @@
 #include "accel/build/build.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/reference_tracer.h"
-#include "bench/fewer_tests/fewer_tests.h"
 #include "bench/common/machine_info.h"
 #include "bench/common/marked_file.h"
 #include "bench/common/ring_runner.h"
 #include "bench/common/scenes.h"
+#include "bench/fewer_tests/fewer_tests.h"
 #include "core/system/atomic_file.h"
 #include "core/system/executor.h"
 
@@ -80,7 +80,8 @@ void run(const FewerTestsOptions& o) {
     const SceneChoice choice{name, o.quick ? 5'000 : o.triangles, {}};
     const scene::Scene scene = make_scene(choice);
     const std::vector<TestVariant> methods[] = {plane_variants(scene), bundle_variants(scene)};
-    for (const RaySet& rays : make_ray_sets(scene, accel::build(scene, {}, *make_tbb_executor(1)), o.quick ? 64 : 512, 1)) {
+    for (const RaySet& rays :
+         make_ray_sets(scene, accel::build(scene, {}, *make_tbb_executor(1)), o.quick ? 64 : 512, 1)) {
       if (rays.name.find("shuffled") != std::string::npos) continue;
       fmt::print(stderr, "{}, {}\n", choice.name(), rays.name);
       for (const std::vector<TestVariant>& variants : methods)
@@ -93,7 +94,8 @@ void run(const FewerTestsOptions& o) {
   if (o.markdown.empty()) return;
   std::ifstream in(o.markdown, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  write_file(o.markdown, replace_marked(replace_marked(text, "planes in software", planes), "bundles in software", bundles));
+  write_file(o.markdown,
+             replace_marked(replace_marked(text, "planes in software", planes), "bundles in software", bundles));
 }
 
 }  // namespace
@@ -104,7 +106,8 @@ int main(int argc, char** argv) {
   carousel::bench::FewerTestsOptions o;
   CLI::App app("Software speed of methods that promise fewer tests, on the same rays", "bench_fewer_tests");
   app.add_flag("--quick", o.quick, "a smoke test: few triangles, few rays, one repetition");
-  app.add_option("--repetitions", o.repetitions, "rounds of all variants; tables show the median, least and greatest")->check(CLI::Range(1, 100));
+  app.add_option("--repetitions", o.repetitions, "rounds of all variants; tables show the median, least and greatest")
+      ->check(CLI::Range(1, 100));
   app.add_option("--triangles", o.triangles, "of each scene, about");
   app.add_option("--json", o.json, "write the results here");
   app.add_option("--markdown", o.markdown, "draw the table into this document");

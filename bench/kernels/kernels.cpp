@@ -8,11 +8,11 @@
 
 #include <benchmark/benchmark.h>
 
+#include "accel/box/slab.h"
 #include "accel/build/build.h"
+#include "accel/primitive/watertight.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/ray_check.h"
-#include "accel/box/slab.h"
-#include "accel/primitive/watertight.h"
 #include "bench/common/ray_sets.h"
 #include "core/config/config.h"
 #include "core/system/executor.h"
@@ -37,8 +37,7 @@ struct Setting {
     accel = accel::build(scene, BvhConfig{}, *make_sequential_executor());
     for (const RaySet& set : make_ray_sets(scene, accel, kImageSide, 1)) {
       if (set.name != "shuffled") continue;
-      for (std::size_t i = 0; i < std::min(kRays, set.size); ++i)
-        accel::start_record(set[i], rays.emplace_back());
+      for (std::size_t i = 0; i < std::min(kRays, set.size); ++i) accel::start_record(set[i], rays.emplace_back());
     }
     node = {0, accel.instances.at(0).root};
     for (leaf = node; leaf.ref.is_inner();) leaf = accel.child_key(leaf, 0);

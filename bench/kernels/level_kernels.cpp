@@ -99,7 +99,8 @@ void boxes(benchmark::State& state, BoxLevel level, SimdTarget target) {
   TestCounts counts;
   for (auto _ : state) {
     nearest.fill(kInfinity);
-    accel::test_strip(a, root, ~0u, {rays.data(), nullptr, rays.size()}, {masks.data(), nearest.data(), nullptr}, counts);
+    accel::test_strip(a, root, ~0u, {rays.data(), nullptr, rays.size()}, {masks.data(), nearest.data(), nullptr},
+                      counts);
     benchmark::DoNotOptimize(masks.data());
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(counts.box));
@@ -112,7 +113,8 @@ void triangles(benchmark::State& state, TriangleLevel level, SimdTarget target) 
   accel::NodeKey leaf{0, a.instances.at(0).root};
   while (leaf.ref.is_inner()) {
     const accel::Node& node = a.nodes[leaf.ref.node()];
-    leaf = a.child_key(leaf, static_cast<int>(std::max_element(node.strip_size, node.strip_size + node.count) - node.strip_size));
+    leaf = a.child_key(
+        leaf, static_cast<int>(std::max_element(node.strip_size, node.strip_size + node.count) - node.strip_size));
   }
   std::vector<RayRecord> rays = s.rays();
   const OnTarget on(state, target);
@@ -162,15 +164,18 @@ std::string name(std::string_view what, std::string_view level, std::string_view
 /// Names follow the configuration's words: kernel, level, target.
 const bool kRegistered = [] {
   for (const auto& target : kEnumNames<SimdTarget>) {
-    if (target.value == SimdTarget::kAuto || target.value == SimdTarget::kScalar) continue;  // scalar: not in every build
+    if (target.value == SimdTarget::kAuto || target.value == SimdTarget::kScalar)
+      continue;  // scalar: not in every build
     for (const auto& level : kEnumNames<BoxLevel>)
       benchmark::RegisterBenchmark(name("boxes", level.name, target.name).c_str(), boxes, level.value, target.value);
     for (const auto& level : kEnumNames<TriangleLevel>)
-      benchmark::RegisterBenchmark(name("triangles", level.name, target.name).c_str(), triangles, level.value, target.value);
+      benchmark::RegisterBenchmark(name("triangles", level.name, target.name).c_str(), triangles, level.value,
+                                   target.value);
   }
   for (const auto& triangle : kEnumNames<TriangleLevel>)
     for (const auto& box : kEnumNames<BoxLevel>)
-      benchmark::RegisterBenchmark(name("whole_trace", triangle.name, box.name).c_str(), whole_trace, triangle.value, box.value);
+      benchmark::RegisterBenchmark(name("whole_trace", triangle.name, box.name).c_str(), whole_trace, triangle.value,
+                                   box.value);
   benchmark::RegisterBenchmark("whole_trace/embree_default", whole_trace_embree, false);
   benchmark::RegisterBenchmark("whole_trace/embree_robust", whole_trace_embree, true);
   return true;

@@ -1,7 +1,5 @@
 // Every queue against every other in one process: two pinned threads, and two producers with two consumers. Run with
 // --benchmark_enable_random_interleaving=true --benchmark_repetitions=20, so that a noisy machine meets all of them.
-#include <sched.h>
-
 #include <array>
 #include <atomic>
 #include <barrier>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <sched.h>
 
 #include "bench/queues/queue_benchmarks.h"
 #include "bench/queues/queue_peers.h"
@@ -156,14 +155,16 @@ void ping_pong(benchmark::State& state) {
 template <template <class> class Queue, std::size_t kBytes>
 void enter(const std::string& name) {
   const std::string size = "/" + std::to_string(kBytes) + "B";
-  benchmark::RegisterBenchmark(("1p1c/" + name + size).c_str(), [](benchmark::State& s) { stream<Queue, kBytes>(s, 1); })
+  benchmark::RegisterBenchmark(("1p1c/" + name + size).c_str(),
+                               [](benchmark::State& s) { stream<Queue, kBytes>(s, 1); })
       ->ArgNames({"depth", "batch"})
       ->Args({1024, 1})
       ->Args({1024, 32})
       ->UseManualTime();
   benchmark::RegisterBenchmark(("ping_pong/" + name + size).c_str(), ping_pong<Queue, kBytes>)->UseManualTime();
   if constexpr (Queue<Message<kBytes>>::kProducers == Parties::kMany)
-    benchmark::RegisterBenchmark(("2p2c/" + name + size).c_str(), [](benchmark::State& s) { stream<Queue, kBytes>(s, 2); })
+    benchmark::RegisterBenchmark(("2p2c/" + name + size).c_str(),
+                                 [](benchmark::State& s) { stream<Queue, kBytes>(s, 2); })
         ->ArgNames({"depth", "batch"})
         ->Args({1024, 1})
         ->Args({1024, 32})

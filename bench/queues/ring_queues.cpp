@@ -7,9 +7,9 @@
 #include <benchmark/benchmark.h>
 
 #include "accel/build/build.h"
-#include "bench/queues/queue_benchmarks.h"
 #include "bench/common/ring_runner.h"
 #include "bench/common/scenes.h"
+#include "bench/queues/queue_benchmarks.h"
 #include "core/config/enum_names.h"
 #include "core/system/executor.h"
 

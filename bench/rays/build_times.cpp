@@ -24,10 +24,8 @@ Built build_ours(const scene::Scene& scene, const BvhConfig& bvh, int threads) {
 }
 
 Built build_embree(const scene::Scene& scene, const Field& field, EmbreeQuality quality, int threads) {
-  const EmbreePeer peer(scene, {.robust = false,
-                                .quality = quality,
-                                .frequency_level = field.frequency_level,
-                                .build_threads = threads});
+  const EmbreePeer peer(
+      scene, {.robust = false, .quality = quality, .frequency_level = field.frequency_level, .build_threads = threads});
   return {peer.build_seconds(), peer.size_bytes()};
 }
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "bench/rays/contestants.h"
 #include "bench/common/results.h"
+#include "bench/rays/contestants.h"
 #include "core/config/config.h"
 
 namespace carousel::bench {

@@ -28,8 +28,7 @@ float scene_size(const scene::Scene& scene) {
   return std::sqrt(glm::dot(extent, extent));
 }
 
-Contest::Contest(const scene::Scene& scene, const accel::Accel& accel, const RingSettings& ring,
-                 const Field& field)
+Contest::Contest(const scene::Scene& scene, const accel::Accel& accel, const RingSettings& ring, const Field& field)
     : accel_(accel), field_(field), scene_size_(scene_size(scene)) {
   add_depth_first(kDepthFirst, accel::trace_depth_first);
   add_depth_first(kDepthFirstInterleaved, accel::trace_depth_first_interleaved);

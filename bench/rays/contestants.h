@@ -32,8 +32,7 @@ struct Contestant {
 
 /// Which contestants take part.
 struct Field {
-  bool all_forms =
-      false;  ///< the ring's other traversals, eight resources and statistics, and Embree 16-wide
+  bool all_forms = false;  ///< the ring's other traversals, eight resources and statistics, and Embree 16-wide
   std::vector<std::string> variations;  ///< both treelet rings again with these changes (with_changes())
   std::string only;                     ///< when not empty: those whose name holds this text, and no others
   EmbreeQuality quality = EmbreeQuality::kHigh;
@@ -51,8 +50,7 @@ class Contest {
  private:
   void add(Contestant contestant);
   void add_depth_first(const char* name, decltype(accel::trace_depth_first)& trace);
-  void add_ring(const std::string& name, const RingSettings& settings, const RingForm& form,
-                bool resource_a_thread);
+  void add_ring(const std::string& name, const RingSettings& settings, const RingForm& form, bool resource_a_thread);
   void add_treelet_rings(const std::string& suffix, const RingSettings& settings, bool statistics);
   void add_embree(const scene::Scene& scene, bool robust);
 

@@ -29,8 +29,8 @@ HitList reference_hits(const accel::Accel& accel, const RaySet& rays) {
 
 bool same(const Hit& a, const Hit& b) {
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
-  return a.instance == b.instance && a.primitive == b.primitive && bits(a.t) == bits(b.t) &&
-         bits(a.u) == bits(b.u) && bits(a.v) == bits(b.v);
+  return a.instance == b.instance && a.primitive == b.primitive && bits(a.t) == bits(b.t) && bits(a.u) == bits(b.u) &&
+         bits(a.v) == bits(b.v);
 }
 
 std::string digest(const RaySet& rays, const HitList& hits) {
@@ -99,12 +99,12 @@ class SetMeasurement {
     }
     const std::uint64_t allowed = ours ? 0 : rays_.size / 1000 + 2;
     if (m.disagreements <= allowed) return;
-    throw WrongHits(fmt::format(
-        "{} on {} threads, {} rays: {} of {} rays differ from the depth-first tracer, e.g. ray {} (t {} "
-        "instead of {}); "
-        "digest {} instead of {}",
-        m.contestant, m.threads, rays_.name, m.disagreements, rays_.size, example, hits_[example].t,
-        reference_[example].t, digest(rays_, hits_), digest(rays_, reference_)));
+    throw WrongHits(
+        fmt::format("{} on {} threads, {} rays: {} of {} rays differ from the depth-first tracer, e.g. ray {} (t {} "
+                    "instead of {}); "
+                    "digest {} instead of {}",
+                    m.contestant, m.threads, rays_.name, m.disagreements, rays_.size, example, hits_[example].t,
+                    reference_[example].t, digest(rays_, hits_), digest(rays_, reference_)));
   }
 
   const RaySet& rays_;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/rays/contestants.h"
 #include "bench/common/results.h"
+#include "bench/rays/contestants.h"
 
 namespace carousel::bench {
 

@@ -60,8 +60,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_status) {
   app.add_option("--threads", o.threads, "thread counts")->delimiter(',')->check(CLI::Range(1, 1024));
   app.add_option("--repetitions", o.repetitions, "interleaved rounds")->check(CLI::Range(1, 1000));
   app.add_flag("--all", o.field.all_forms, "every traversal, eight owners, statistics, Embree 16-wide");
-  app.add_option("--vary", o.field.variations,
-                 "both treelet rings again with a change, e.g. treelet=512;ready=128");
+  app.add_option("--vary", o.field.variations, "both treelet rings again with a change, e.g. treelet=512;ready=128");
   app.add_option("--only", o.field.only, "only contestants whose name holds this text");
   app.add_flag("--no-build", no_build, "leave out the build times");
   app.add_flag("--embree-medium", medium, "Embree's medium build quality instead of high");

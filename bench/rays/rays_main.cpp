@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 
 #include "accel/build/build.h"
-#include "bench/rays/build_times.h"
-#include "bench/rays/contestants.h"
 #include "bench/common/machine_info.h"
 #include "bench/common/marked_file.h"
+#include "bench/common/scenes.h"
+#include "bench/rays/build_times.h"
+#include "bench/rays/contestants.h"
 #include "bench/rays/measure.h"
 #include "bench/rays/options.h"
-#include "bench/common/scenes.h"
 #include "bench/rays/summary_tables.h"
 #include "bench/rays/tables.h"
 #include "core/system/atomic_file.h"
@@ -51,13 +51,12 @@ SceneResult run_scene(const SceneChoice& choice, const Options& options) {
   MeasureOptions measure_options{options.repetitions, options.threads, {}};
   measure_options.progress = [](const std::string& text) { fmt::print(stderr, "  {}\n", text); };
   for (const RaySet& rays : make_ray_sets(scene, accel, options.image_side, options.seed)) {
-    if (!options.sets.empty() &&
-        std::find(options.sets.begin(), options.sets.end(), rays.name) == options.sets.end())
+    if (!options.sets.empty() && std::find(options.sets.begin(), options.sets.end(), rays.name) == options.sets.end())
       continue;
     result.sets.push_back(measure(contest.contestants(), accel, rays, measure_options));
     const SetResult& set = result.sets.back();
-    fmt::print("\n{}: {} {} rays, {} hits, digest {}\n\n{}\n{}", result.name, set.rays, set.name, set.hits,
-               set.digest, set_table(set), work_table(set));
+    fmt::print("\n{}: {} {} rays, {} hits, digest {}\n\n{}\n{}", result.name, set.rays, set.name, set.hits, set.digest,
+               set_table(set), work_table(set));
     std::fflush(stdout);
   }
   return result;
@@ -83,8 +82,7 @@ std::string details(const std::vector<SceneResult>& scenes) {
                         scene.triangles, scene.instances);
     for (const SetResult& set : scene.sets)
       text += fmt::format("\n**{}**, {}: {} rays, {} hits.\n\n{}\n{}", set.name,
-                          set.any_hit ? "any hit" : "closest hit", set.rays, set.hits, set_table(set),
-                          work_table(set));
+                          set.any_hit ? "any hit" : "closest hit", set.rays, set.hits, set_table(set), work_table(set));
   }
   return text;
 }

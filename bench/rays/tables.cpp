@@ -17,13 +17,12 @@ std::string Table::text() const {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     out += "|";
     for (std::size_t c = 0; c < widths.size(); ++c)
-      out += c == 0 ? fmt::format(" {:<{}} |", rows_[r][c], widths[c])
-                    : fmt::format(" {:>{}} |", rows_[r][c], widths[c]);
+      out +=
+          c == 0 ? fmt::format(" {:<{}} |", rows_[r][c], widths[c]) : fmt::format(" {:>{}} |", rows_[r][c], widths[c]);
     out += "\n";
     if (r > 0) continue;
     out += "|";
-    for (std::size_t c = 0; c < widths.size(); ++c)
-      out += std::string(widths[c] + 1, '-') + (c == 0 ? "-|" : ":|");
+    for (std::size_t c = 0; c < widths.size(); ++c) out += std::string(widths[c] + 1, '-') + (c == 0 ? "-|" : ":|");
     out += "\n";
   }
   return out;
@@ -76,13 +75,11 @@ std::string set_table(const SetResult& set) {
     std::vector<std::string> row{name};
     for (const int t : counts) {
       const Measurement* m = find(set, name, t);
-      row.insert(row.end(),
-                 {m == nullptr ? "" : spread_text(m->wall) + (m->work.given_up_after > 0 ? " *" : ""),
-                  m == nullptr ? "" : fmt::format("{:.2f}", m->cpu.median),
-                  ratio_text(cpu_rate(set, name, t), cpu_rate(set, kEmbreeRobust, t)),
-                  ratio_text(cpu_rate(set, name, t), cpu_rate(set, kDepthFirst, t))});
-      if (t != counts.front())
-        row.push_back(ratio_text(wall_rate(set, name, t), wall_rate(set, name, counts.front())));
+      row.insert(row.end(), {m == nullptr ? "" : spread_text(m->wall) + (m->work.given_up_after > 0 ? " *" : ""),
+                             m == nullptr ? "" : fmt::format("{:.2f}", m->cpu.median),
+                             ratio_text(cpu_rate(set, name, t), cpu_rate(set, kEmbreeRobust, t)),
+                             ratio_text(cpu_rate(set, name, t), cpu_rate(set, kDepthFirst, t))});
+      if (t != counts.front()) row.push_back(ratio_text(wall_rate(set, name, t), wall_rate(set, name, counts.front())));
     }
     table.add(std::move(row));
   }
@@ -95,9 +92,8 @@ std::string work_table(const SetResult& set) {
   for (const Measurement& m : set.measurements) {
     if (m.threads != set.measurements.front().threads || m.work.box_tests == 0) continue;
     any = true;
-    table.add({m.contestant, fmt::format("{:.1f}", m.work.box_tests),
-               fmt::format("{:.1f}", m.work.triangle_tests), fmt::format("{:.1f}", m.work.memberships),
-               fmt::format("{:.1f}", m.work.packet_rays)});
+    table.add({m.contestant, fmt::format("{:.1f}", m.work.box_tests), fmt::format("{:.1f}", m.work.triangle_tests),
+               fmt::format("{:.1f}", m.work.memberships), fmt::format("{:.1f}", m.work.packet_rays)});
   }
   return any ? table.text() : "";
 }

@@ -19,7 +19,14 @@ enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver };
 enum class EngineKind { kNative, kCycle };
 enum class SimdTarget { kAuto, kScalar, kSsse3, kSse4, kAvx2, kAvx3 };
 enum class TopologyShape {
-  kRing, kBidirectional, kMultiRing, kHierarchical, kPointToPoint, kBus, kCentral, kIndependent
+  kRing,
+  kBidirectional,
+  kMultiRing,
+  kHierarchical,
+  kPointToPoint,
+  kBus,
+  kCentral,
+  kIndependent
 };
 enum class CentralForm { kCells, kDistributor };
 enum class Visit { kAll, kOwners };
@@ -42,36 +49,36 @@ enum class Primary { kRays, kRaster };
 enum class Verify { kNone, kReference, kEffects };
 
 struct SkyConfig {
-  Vec3 color{0.6f, 0.7f, 0.9f};   ///< linear RGB
-  float strength = 1;             ///< radiance multiplier; 0 is no sky
+  Vec3 color{0.6f, 0.7f, 0.9f};  ///< linear RGB
+  float strength = 1;            ///< radiance multiplier; 0 is no sky
 };
 
 struct SceneConfig {
-  std::string file;                        ///< glTF file; relative to the config's folder, then to the working one
-  std::optional<BuiltinScene> builtin;     ///< exactly one of file and builtin
-  bool procedural = false;                 ///< built-in spheres: as such, not as triangles
-  std::int64_t triangles = 20000;          ///< built-in spheres, terrain, sliver: about this many in all
-  std::int64_t instances = 1000;           ///< built-in instances
-  std::int64_t seed = 1;                   ///< built-in scenes
-  std::int64_t camera = 0;                 ///< index among the scene's cameras
-  std::optional<SkyConfig> sky;            ///< absent: the built-in scene's own, or for a file the default above
+  std::string file;                     ///< glTF file; relative to the config's folder, then to the working one
+  std::optional<BuiltinScene> builtin;  ///< exactly one of file and builtin
+  bool procedural = false;              ///< built-in spheres: as such, not as triangles
+  std::int64_t triangles = 20000;       ///< built-in spheres, terrain, sliver: about this many in all
+  std::int64_t instances = 1000;        ///< built-in instances
+  std::int64_t seed = 1;                ///< built-in scenes
+  std::int64_t camera = 0;              ///< index among the scene's cameras
+  std::optional<SkyConfig> sky;         ///< absent: the built-in scene's own, or for a file the default above
 };
 
 struct CameraConfig {
-  float aperture = 0;         ///< lens diameter
+  float aperture = 0;  ///< lens diameter
   float focus_distance = 1;
 };
 
 struct ImageConfig {
   std::int64_t width = 256, height = 256;
   std::int64_t samples = 4;
-  std::int64_t max_depth = 4;   ///< surfaces a path may visit; 1 is direct light only
+  std::int64_t max_depth = 4;  ///< surfaces a path may visit; 1 is direct light only
   std::int64_t seed = 1;
 };
 
 struct EngineConfig {
   EngineKind kind = EngineKind::kNative;
-  std::optional<std::int64_t> threads;   ///< absent: `auto`, the machine's cores
+  std::optional<std::int64_t> threads;  ///< absent: `auto`, the machine's cores
   std::int64_t clock_mhz = 1000;
   SimdTarget simd = SimdTarget::kAuto;
   bool what_if = true;
@@ -159,9 +166,9 @@ struct AccuracyConfig {
   // How the cycle engine's hardware gets there; no hit depends on these.
   enum class TransformedRay { kRecompute, kStore } transformed_ray = TransformedRay::kRecompute;
   enum class InstanceData { kForward, kRt, kInverse };
-  std::optional<InstanceData> instance_data;   ///< absent: what `transform` reads
+  std::optional<InstanceData> instance_data;  ///< absent: what `transform` reads
   enum class Invert { kBuild, kVisit };
-  std::optional<Invert> invert;                ///< absent: as `instance_data` needs
+  std::optional<Invert> invert;  ///< absent: as `instance_data` needs
 };
 
 struct CullPlanesConfig {
@@ -195,7 +202,7 @@ struct BundlesConfig {
     double box_size = 0;
   } split_below;
   struct SplitAbove {
-    double spread = 0, silhouette_area = 0;   ///< 0: whatever they are
+    double spread = 0, silhouette_area = 0;  ///< 0: whatever they are
   } split_above;
   enum class AtInstances { kSplit, kRebound } at_instances = AtInstances::kSplit;
   enum class Hint { kIgnore, kObey } hint = Hint::kIgnore;
@@ -218,7 +225,7 @@ struct ShadingConfig {
   std::int64_t workers = 2;
   struct Effects {
     enum class Choice { kAuto, kAll, kList } choice = Choice::kAuto;
-    std::vector<std::string> names;   ///< for kList
+    std::vector<std::string> names;  ///< for kList
   } effects;
   bool idle_resources_shade = false;
   std::int64_t cycles_per_shade = 20;
@@ -234,14 +241,14 @@ struct TrafficConfig {
   std::int64_t packet_bytes = 32;
   std::int64_t inject_cycles = 1, eject_cycles = 1;
   double warmup_fraction = 0.1;
-  std::int64_t hotspot = 0;         ///< resource, for hotspot
-  double hotspot_fraction = 0.25;   ///< for hotspot
-  std::int64_t burst_packets = 8;   ///< mean, for bursty
+  std::int64_t hotspot = 0;        ///< resource, for hotspot
+  double hotspot_fraction = 0.25;  ///< for hotspot
+  std::int64_t burst_packets = 8;  ///< mean, for bursty
 };
 
 struct WorkloadConfig {
   enum class Kind { kRays, kRaysFrom, kTraffic } kind = Kind::kRays;
-  std::string rays_from;   ///< ray CSV; relative to the config's folder, then to the working one
+  std::string rays_from;  ///< ray CSV; relative to the config's folder, then to the working one
   TrafficConfig traffic;
 };
 
@@ -249,20 +256,20 @@ struct WorkloadConfig {
 struct FaultsConfig {
   std::int64_t seed = 1;
   struct Links {
-    double drop = 0, duplicate = 0, corrupt = 0, reorder = 0, delay = 0;   ///< fractions of the frames on a link
+    double drop = 0, duplicate = 0, corrupt = 0, reorder = 0, delay = 0;  ///< fractions of the frames on a link
     std::int64_t delay_cycles = 100;
     bool any() const { return drop > 0 || duplicate > 0 || corrupt > 0 || reorder > 0 || delay > 0; }
   } links;
   struct Resource {
     enum class Kind { kNone, kPause, kSlow, kStop } kind = Kind::kNone;
     std::int64_t number = 0;
-    std::int64_t after_rays = 0;       ///< completed there
-    std::int64_t cycles = 100'000;     ///< of a pause
-    std::int64_t factor = 4;           ///< kSlow
-    bool recover = true;               ///< kStop
-    std::int64_t silence_cycles = 10'000;   ///< kStop, under virtual time
+    std::int64_t after_rays = 0;           ///< completed there
+    std::int64_t cycles = 100'000;         ///< of a pause
+    std::int64_t factor = 4;               ///< kSlow
+    bool recover = true;                   ///< kStop
+    std::int64_t silence_cycles = 10'000;  ///< kStop, under virtual time
   } resource;
-  bool compare = false;                ///< virtual time: simulate once more without faults
+  bool compare = false;  ///< virtual time: simulate once more without faults
   bool any() const { return links.any() || resource.kind != Resource::Kind::kNone; }
 };
 
@@ -286,7 +293,7 @@ struct Config {
   FaultsConfig faults;
   Verify verify = Verify::kNone;
   WorkloadConfig workload;
-  std::map<std::string, std::vector<std::string>> vary;   ///< key path to values; for sweep
+  std::map<std::string, std::vector<std::string>> vary;  ///< key path to values; for sweep
   Primary primary = Primary::kRays;
 };
 

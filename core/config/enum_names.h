@@ -27,9 +27,8 @@ CAROUSEL_ENUM(BuiltinScene, {BuiltinScene::kCornell, "cornell"}, {BuiltinScene::
               {BuiltinScene::kTerrain, "terrain"}, {BuiltinScene::kInstances, "instances"},
               {BuiltinScene::kSliver, "sliver"});
 CAROUSEL_ENUM(EngineKind, {EngineKind::kNative, "native"}, {EngineKind::kCycle, "cycle"});
-CAROUSEL_ENUM(SimdTarget, {SimdTarget::kAuto, "auto"}, {SimdTarget::kScalar, "scalar"},
-              {SimdTarget::kSsse3, "ssse3"}, {SimdTarget::kSse4, "sse4"}, {SimdTarget::kAvx2, "avx2"},
-              {SimdTarget::kAvx3, "avx3"});
+CAROUSEL_ENUM(SimdTarget, {SimdTarget::kAuto, "auto"}, {SimdTarget::kScalar, "scalar"}, {SimdTarget::kSsse3, "ssse3"},
+              {SimdTarget::kSse4, "sse4"}, {SimdTarget::kAvx2, "avx2"}, {SimdTarget::kAvx3, "avx3"});
 CAROUSEL_ENUM(TopologyShape, {TopologyShape::kRing, "ring"}, {TopologyShape::kBidirectional, "bidirectional"},
               {TopologyShape::kMultiRing, "multi_ring"}, {TopologyShape::kHierarchical, "hierarchical"},
               {TopologyShape::kPointToPoint, "point_to_point"}, {TopologyShape::kBus, "bus"},
@@ -92,20 +91,16 @@ CAROUSEL_ENUM(BundlesConfig::Sources, {BundlesConfig::Sources::kAll, "all"},
 CAROUSEL_ENUM(BundlesConfig::Split, {BundlesConfig::Split::kTester, "tester"},
               {BundlesConfig::Split::kBuilder, "builder"});
 CAROUSEL_ENUM(BundlesConfig::Order, {BundlesConfig::Order::kAllHitFirst, "all_hit_first"},
-              {BundlesConfig::Order::kAnyHitFirst, "any_hit_first"},
-              {BundlesConfig::Order::kParallel, "parallel"},
-              {BundlesConfig::Order::kAllHitOnly, "all_hit_only"},
-              {BundlesConfig::Order::kAnyHitOnly, "any_hit_only"});
+              {BundlesConfig::Order::kAnyHitFirst, "any_hit_first"}, {BundlesConfig::Order::kParallel, "parallel"},
+              {BundlesConfig::Order::kAllHitOnly, "all_hit_only"}, {BundlesConfig::Order::kAnyHitOnly, "any_hit_only"});
 CAROUSEL_ENUM(BundlesConfig::Lifetime, {BundlesConfig::Lifetime::kPersistent, "persistent"},
               {BundlesConfig::Lifetime::kReformed, "reformed"});
 CAROUSEL_ENUM(TestersConfig::Simd::Map, {TestersConfig::Simd::Map::kRays, "rays"},
               {TestersConfig::Simd::Map::kShapes, "shapes"});
-CAROUSEL_ENUM(BvhConfig::Elements, {BvhConfig::Elements::kBoxes, "boxes"},
-              {BvhConfig::Elements::kSpheres, "spheres"});
+CAROUSEL_ENUM(BvhConfig::Elements, {BvhConfig::Elements::kBoxes, "boxes"}, {BvhConfig::Elements::kSpheres, "spheres"});
 CAROUSEL_ENUM(BundlesConfig::AtInstances, {BundlesConfig::AtInstances::kSplit, "split"},
               {BundlesConfig::AtInstances::kRebound, "rebound"});
-CAROUSEL_ENUM(BundlesConfig::Hint, {BundlesConfig::Hint::kIgnore, "ignore"},
-              {BundlesConfig::Hint::kObey, "obey"});
+CAROUSEL_ENUM(BundlesConfig::Hint, {BundlesConfig::Hint::kIgnore, "ignore"}, {BundlesConfig::Hint::kObey, "obey"});
 CAROUSEL_ENUM(RayWishes::Cull, {RayWishes::Cull::kNone, "none"}, {RayWishes::Cull::kBack, "back"},
               {RayWishes::Cull::kFront, "front"});
 CAROUSEL_ENUM(TestersConfig::AnyHit, {TestersConfig::AnyHit::kInline, "inline"},
@@ -113,19 +108,16 @@ CAROUSEL_ENUM(TestersConfig::AnyHit, {TestersConfig::AnyHit::kInline, "inline"},
 CAROUSEL_ENUM(MemoryConfig::Fetch, {MemoryConfig::Fetch::kPacket, "packet"},
               {MemoryConfig::Fetch::kResource, "resource"}, {MemoryConfig::Fetch::kMulticast, "multicast"});
 CAROUSEL_ENUM(ShadingConfig::Distribute, {ShadingConfig::Distribute::kFifoFill, "fifo_fill"},
-              {ShadingConfig::Distribute::kLoad, "load"},
-              {ShadingConfig::Distribute::kRoundRobin, "round_robin"},
+              {ShadingConfig::Distribute::kLoad, "load"}, {ShadingConfig::Distribute::kRoundRobin, "round_robin"},
               {ShadingConfig::Distribute::kRandom, "random"});
 CAROUSEL_ENUM(TrafficConfig::Pattern, {TrafficConfig::Pattern::kUniform, "uniform"},
-              {TrafficConfig::Pattern::kTornado, "tornado"},
-              {TrafficConfig::Pattern::kNeighbour, "neighbour"},
+              {TrafficConfig::Pattern::kTornado, "tornado"}, {TrafficConfig::Pattern::kNeighbour, "neighbour"},
               {TrafficConfig::Pattern::kHotspot, "hotspot"}, {TrafficConfig::Pattern::kBursty, "bursty"});
 CAROUSEL_ENUM(Primary, {Primary::kRays, "rays"}, {Primary::kRaster, "raster"});
 CAROUSEL_ENUM(FaultsConfig::Resource::Kind, {FaultsConfig::Resource::Kind::kNone, "none"},
               {FaultsConfig::Resource::Kind::kPause, "pause"}, {FaultsConfig::Resource::Kind::kSlow, "slow"},
               {FaultsConfig::Resource::Kind::kStop, "stop"});
-CAROUSEL_ENUM(Verify, {Verify::kNone, "none"}, {Verify::kReference, "reference"},
-              {Verify::kEffects, "effects"});
+CAROUSEL_ENUM(Verify, {Verify::kNone, "none"}, {Verify::kReference, "reference"}, {Verify::kEffects, "effects"});
 
 #undef CAROUSEL_ENUM
 

@@ -31,9 +31,7 @@ struct RealRange {
 inline constexpr std::int64_t kMaxResources = 256;
 inline constexpr std::int64_t kMaxSlots = 1 << 22;
 // A ray ID is 32 bits: the resource's number and the slot's have to fit.
-static_assert(std::bit_width(std::uint64_t(kMaxResources - 1)) +
-                  std::bit_width(std::uint64_t(kMaxSlots - 1)) <=
-              32);
+static_assert(std::bit_width(std::uint64_t(kMaxResources - 1)) + std::bit_width(std::uint64_t(kMaxSlots - 1)) <= 32);
 
 inline constexpr IntRange kSeed{0, std::numeric_limits<std::int64_t>::max()};
 inline constexpr IntRange kCycles{1, 1'000'000};
@@ -48,11 +46,11 @@ template <class V>
 void describe(V& v, SceneConfig& c) {
   v.field("file", c.file, "", "glTF file, relative to the config's folder, then to the working one");
   v.choice("builtin", c.builtin, "generated scene, instead of a file");
-  v.field("procedural", c.procedural, "", "built-in spheres: procedural primitives, as many as there would be of triangles");
+  v.field("procedural", c.procedural, "",
+          "built-in spheres: procedural primitives, as many as there would be of triangles");
   v.field("triangles", c.triangles, IntRange{1, 100'000'000}, "triangles",
           "built-in spheres, terrain, sliver: about this many in all");
-  v.field("instances", c.instances, IntRange{1, 10'000'000}, "instances",
-          "built-in scene of instances: how many");
+  v.field("instances", c.instances, IntRange{1, 10'000'000}, "instances", "built-in scene of instances: how many");
   v.field("seed", c.seed, kSeed, "", "varies a built-in scene");
   v.field("camera", c.camera, IntRange{0, 65535}, "", "index among the scene's cameras");
   v.section("sky", c.sky, "constant sky; absent: the built-in scene's own, or for a file the default");
@@ -61,8 +59,7 @@ void describe(V& v, SceneConfig& c) {
 template <class V>
 void describe(V& v, CameraConfig& c) {
   v.field("aperture", c.aperture, RealRange{0, 1e6}, "scene units", "diameter of the lens; 0 is a pinhole");
-  v.field("focus_distance", c.focus_distance, RealRange{0, 1e9, true}, "scene units",
-          "distance of the plane in focus");
+  v.field("focus_distance", c.focus_distance, RealRange{0, 1e9, true}, "scene units", "distance of the plane in focus");
 }
 
 template <class V>
@@ -70,8 +67,7 @@ void describe(V& v, ImageConfig& c) {
   v.field("width", c.width, IntRange{1, 16384}, "pixels", "width of the picture");
   v.field("height", c.height, IntRange{1, 16384}, "pixels", "height of the picture");
   v.field("samples", c.samples, IntRange{1, 65536}, "paths per pixel", "samples of each pixel");
-  v.field("max_depth", c.max_depth, IntRange{1, 64}, "surfaces",
-          "surfaces a path may visit; 1 is direct light only");
+  v.field("max_depth", c.max_depth, IntRange{1, 64}, "surfaces", "surfaces a path may visit; 1 is direct light only");
   v.field("seed", c.seed, kSeed, "", "seed of all random numbers of the picture");
 }
 
@@ -134,8 +130,7 @@ void describe(V& v, TopologyConfig& c) {
   v.field("rings", c.rings, IntRange{1, 64}, "rings", "for multi_ring");
   v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "for hierarchical");
   v.choice("form", c.form, "for central");
-  v.choice("visit", c.visit,
-           "whether a packet is handled by all resources or by the owners of its rays only");
+  v.choice("visit", c.visit, "whether a packet is handled by all resources or by the owners of its rays only");
   v.choice("flow", c.flow, "what keeps the ring from filling up; none needs --force");
   v.section("link", c.link, "every link");
   v.list("overrides", c.overrides, "resources that differ from the rest");
@@ -179,8 +174,9 @@ void describe(V& v, BvhConfig& c) {
   v.field("treelet_triangles", c.treelet_triangles, IntRange{1, 1 << 24}, "triangles",
           "size of the subtrees that traversal: treelet crosses in one visit");
   v.choice("elements", c.elements, "what bounds the children of a node");
-  v.field("mixed_triangles", c.mixed_triangles, IntRange{0, 16}, "triangles",
-          "leaves of so many at most are tested with their parent's other children, without a box of their own; 0 is none");
+  v.field(
+      "mixed_triangles", c.mixed_triangles, IntRange{0, 16}, "triangles",
+      "leaves of so many at most are tested with their parent's other children, without a box of their own; 0 is none");
 }
 
 template <class V>
@@ -188,9 +184,10 @@ void describe(V& v, AccuracyConfig& c) {
   v.choice("triangle", c.triangle,
            "ray against triangle: fast leaks at shared edges, watertight does not, double is that in 64 bits, exact "
            "decides without rounding");
-  v.choice("box", c.box,
-           "ray against box: plain drops some boxes that rays graze, conservative widens them to drop none, double does "
-           "so in 64 bits");
+  v.choice(
+      "box", c.box,
+      "ray against box: plain drops some boxes that rays graze, conservative widens them to drop none, double does "
+      "so in 64 bits");
   v.choice("transform", c.transform,
            "ray from world to model space: one inverse matrix; the translation first; that in fp64, rounded once; "
            "the translation first and a rotation's transpose for its inverse");
@@ -199,9 +196,10 @@ void describe(V& v, AccuracyConfig& c) {
            "rounding can reach");
   v.choice("transformed_ray", c.transformed_ray,
            "cycle: a ray is brought to model space at each visit, or once an instance and kept (24 bytes)");
-  v.choice("instance_data", c.instance_data,
-           "cycle: what is stored of an instance: its matrix, the inverse of the linear part beside the translation, or "
-           "the inverse matrix; absent: what the transform reads");
+  v.choice(
+      "instance_data", c.instance_data,
+      "cycle: what is stored of an instance: its matrix, the inverse of the linear part beside the translation, or "
+      "the inverse matrix; absent: what the transform reads");
   v.choice("invert", c.invert, "cycle: when a stored matrix is inverted; absent: at a visit if it is stored forward");
 }
 
@@ -210,9 +208,11 @@ void describe(V& v, CullPlanesConfig& c) {
   v.field("count", c.count, IntRange{0, 8}, "planes per child", "cull planes at most; 0 is none");
   v.choice("nodes", c.nodes, "children that get planes");
   v.field("shared_normals", c.shared_normals, "", "siblings share their planes' normals");
-  v.choice("fit", c.fit, "what the planes of inner children and instances are moved up to; those of leaves to vertices");
+  v.choice("fit", c.fit,
+           "what the planes of inner children and instances are moved up to; those of leaves to vertices");
   v.choice("levels", c.levels, "nodes below the instances, above them, where the leaves are instances, or all");
-  v.choice("order", c.order, "a child's planes are tested after its box has been hit, or before, which then may need no test");
+  v.choice("order", c.order,
+           "a child's planes are tested after its box has been hit, or before, which then may need no test");
 }
 
 template <class V>
@@ -256,7 +256,8 @@ void describe(V& v, BundlesConfig& c) {
   v.field("min_rays", c.min_rays, IntRange{2, 64}, "rays", "fewer than these travel on their own");
   v.section("split_below", c.split_below, "where bundles are split whatever they hit");
   v.section("split_above", c.split_above, "how wide bundles are split whatever they hit");
-  v.choice("at_instances", c.at_instances, "at an instance with a transform bundles split, or are bounded anew in its space");
+  v.choice("at_instances", c.at_instances,
+           "at an instance with a transform bundles split, or are bounded anew in its space");
   v.choice("hint", c.hint, "what shaders say of rays that left by a wide lobe: that they be left out of bundles");
 }
 
@@ -265,15 +266,12 @@ void describe(V& v, MemoryConfig& c) {
   v.field("l2_kib", c.l2_kib, IntRange{1, 1 << 20}, "KiB", "shared cache");
   v.field("line_bytes", c.line_bytes, IntRange{16, 1024}, "bytes", "cache line");
   v.field("ways", c.ways, IntRange{1, 64}, "ways", "associativity of the shared cache");
-  v.field("shared_by", c.shared_by, IntRange{1, kMaxResources}, "resources",
-          "resources that share one cache");
+  v.field("shared_by", c.shared_by, IntRange{1, kMaxResources}, "resources", "resources that share one cache");
   v.field("l2_latency_cycles", c.l2_latency_cycles, kCycles, "cycles", "a hit in the shared cache");
   v.field("dram_latency_cycles", c.dram_latency_cycles, kCycles, "cycles", "a miss");
-  v.field("dram_bytes_per_cycle", c.dram_bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle",
-          "memory bandwidth");
+  v.field("dram_bytes_per_cycle", c.dram_bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle", "memory bandwidth");
   v.choice("fetch", c.fetch, "who fetches shape data: the packet's issuer, each resource, or one for all");
-  v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets",
-          "packets whose shapes are fetched in advance");
+  v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets", "packets whose shapes are fetched in advance");
   v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB", "shape data a resource holds");
 }
 
@@ -286,7 +284,9 @@ void describe(V& v, RayWishes& c) {
 template <class V>
 void describe(V& v, ShadingConfig& c) {
   v.field("workers", c.workers, IntRange{1, 256}, "workers", "shader workers");
-  v.effects("effects", c.effects, "effects of light: what the scene calls for, all (nothing is specialised), or of what it calls for only those named");
+  v.effects("effects", c.effects,
+            "effects of light: what the scene calls for, all (nothing is specialised), or of what it calls for only "
+            "those named");
   v.field("idle_resources_shade", c.idle_resources_shade, "", "idle resources help the shader workers");
   v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles",
           "time to shade one ray, where it hit a plain surface or nothing");
@@ -319,7 +319,7 @@ void describe(V& v, TrafficConfig& c) {
           "for bursty: packets created cycle after cycle, on average");
 }
 
-inline constexpr RealRange kFaultFraction{0, 0.9};   // something must get through
+inline constexpr RealRange kFaultFraction{0, 0.9};  // something must get through
 
 template <class V>
 void describe(V& v, FaultsConfig::Links& c) {
@@ -338,7 +338,8 @@ void describe(V& v, FaultsConfig::Resource& c) {
   v.field("after_rays", c.after_rays, IntRange{0, 1'000'000'000}, "rays", "completed there before it begins");
   v.field("cycles", c.cycles, IntRange{1, 1'000'000'000}, "cycles", "length of a pause; native: at engine.clock_mhz");
   v.field("factor", c.factor, IntRange{2, 1000}, "times", "slow: a step takes so many times as long");
-  v.field("recover", c.recover, "", "stop: start its unfinished rays again elsewhere; or else end the run and say what is missing");
+  v.field("recover", c.recover, "",
+          "stop: start its unfinished rays again elsewhere; or else end the run and say what is missing");
   v.field("silence_cycles", c.silence_cycles, IntRange{1, 1'000'000'000}, "cycles",
           "stop: without a sign of life before ray control gives it up; native: 100 ms");
 }
@@ -369,11 +370,14 @@ void describe(V& v, Config& c) {
   v.section("testers", c.testers, "test units of a resource; a bare number is units");
   v.section("memory", c.memory, "caches and memory of the simulated machine");
   v.section("shading", c.shading, "shader workers and effects");
-  v.choice("primary", c.primary,
-           "how what the camera sees first is found: by its rays, or by a rasteriser (pinhole cameras only) that leaves "
-           "the other rays to the machine");
+  v.choice(
+      "primary", c.primary,
+      "how what the camera sees first is found: by its rays, or by a rasteriser (pinhole cameras only) that leaves "
+      "the other rays to the machine");
   v.section("faults", c.faults, "what goes wrong on request");
-  v.choice("verify", c.verify, "reference: trace every ray again, depth first, and compare; effects: run again with all effects and compare the picture");
+  v.choice("verify", c.verify,
+           "reference: trace every ray again, depth first, and compare; effects: run again with all effects and "
+           "compare the picture");
   v.workload("workload", c.workload, "rays of the picture, rays of a file, or synthetic traffic");
   v.vary("vary", c.vary, "for sweep: values of keys, key.path: [a, b, c]");
 }

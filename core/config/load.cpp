@@ -67,8 +67,8 @@ LocatedConfig read_config(std::string_view text, const std::string& name, std::s
   return out;
 }
 
-LocatedConfig parse_located_config(std::string_view text, const std::string& name,
-                                   std::span<const std::string> sets, const ValidateOptions& options) {
+LocatedConfig parse_located_config(std::string_view text, const std::string& name, std::span<const std::string> sets,
+                                   const ValidateOptions& options) {
   std::vector<ConfigIssue> issues;
   LocatedConfig located = read_config(text, name, sets, issues);
   const std::size_t read_issues = issues.size();

@@ -22,8 +22,7 @@ struct LocatedConfig {
 /// assignments `key.path=value` of `sets` in order. `name` is what messages call the file. Throws a
 /// ConfigError with every problem: syntax, unknown keys, types, ranges and the rules across fields.
 LocatedConfig parse_located_config(std::string_view text, const std::string& name,
-                                   std::span<const std::string> sets = {},
-                                   const ValidateOptions& options = {});
+                                   std::span<const std::string> sets = {}, const ValidateOptions& options = {});
 Config parse_config(std::string_view text, const std::string& name, std::span<const std::string> sets = {},
                     const ValidateOptions& options = {});
 

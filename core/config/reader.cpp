@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "core/config/schema.h"
 #include "core/config/edit_distance.h"
+#include "core/config/schema.h"
 
 namespace carousel::config {
 
@@ -66,8 +66,7 @@ std::string Reader::path() const {
 }
 
 void Reader::wrong(const Node& node, const std::string& expected, const std::string& hint) {
-  issues_.push_back(
-      {node.position, path(), fmt::format("expected {}, found {}{}", expected, node.found(), hint)});
+  issues_.push_back({node.position, path(), fmt::format("expected {}, found {}{}", expected, node.found(), hint)});
 }
 
 void Reader::field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*) {
@@ -129,8 +128,8 @@ void Reader::field(std::string_view key, std::string& value, const char*, const 
     wrong(*visit.node, "a text that is not empty");
 }
 
-void Reader::field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range,
-                           const char* unit, const char*) {
+void Reader::field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,
+                           const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
   if (visit.node->kind == Node::Kind::kString && visit.node->text == "auto")

@@ -13,8 +13,7 @@ namespace carousel::config {
 /// field keeps its default.
 class Reader {
  public:
-  Reader(std::vector<ConfigIssue>& issues, const TestersConfig& base)
-      : issues_(issues), base_testers_(base) {}
+  Reader(std::vector<ConfigIssue>& issues, const TestersConfig& base) : issues_(issues), base_testers_(base) {}
 
   /// Reads the whole struct from `node`.
   template <class T>
@@ -32,8 +31,8 @@ class Reader {
   void field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*);
   void field(std::string_view key, bool& value, const char*, const char*);
   void field(std::string_view key, std::string& value, const char*, const char*);
-  void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range,
-                     const char* unit, const char*);
+  void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,
+                     const char*);
 
   template <class E>
   void choice(std::string_view key, E& value, const char*) {

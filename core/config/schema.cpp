@@ -31,8 +31,7 @@ class SchemaWriter {
     return out;
   }
 
-  void field(std::string_view key, std::int64_t& value, IntRange range, const char* unit,
-             const char* meaning) {
+  void field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char* meaning) {
     Json out = integer(range);
     out["default"] = value;
     put(key, std::move(out), unit, meaning);
@@ -96,8 +95,7 @@ class SchemaWriter {
   }
   void effects(std::string_view key, ShadingConfig::Effects&, const char* meaning) {
     put(key,
-        {{"anyOf",
-          {Json{{"enum", {"auto", "all"}}}, Json{{"type", "array"}, {"items", {{"enum", kEffectNames}}}}}},
+        {{"anyOf", {Json{{"enum", {"auto", "all"}}}, Json{{"type", "array"}, {"items", {{"enum", kEffectNames}}}}}},
          {"default", "auto"}},
         "", meaning);
   }
@@ -108,13 +106,12 @@ class SchemaWriter {
                   {"required", {name}},
                   {"additionalProperties", false}};
     };
-    Json from = one_key(
-        "rays_from", {{"type", "string"},
-                      {"minLength", 1},
-                      {"description", "ray CSV, relative to the config's folder, then to the working one"}});
+    Json from =
+        one_key("rays_from", {{"type", "string"},
+                              {"minLength", 1},
+                              {"description", "ray CSV, relative to the config's folder, then to the working one"}});
     put(key,
-        {{"anyOf",
-          {Json{{"const", "rays"}}, from, one_key("traffic", object(value.traffic, "synthetic packets"))}},
+        {{"anyOf", {Json{{"const", "rays"}}, from, one_key("traffic", object(value.traffic, "synthetic packets"))}},
          {"default", "rays"}},
         "", meaning);
   }
@@ -122,20 +119,15 @@ class SchemaWriter {
     const Json scalar{{"type", {"string", "number", "boolean"}}};
     put(key,
         {{"type", "object"},
-         {"additionalProperties",
-          {{"anyOf", {scalar, Json{{"type", "array"}, {"items", scalar}, {"minItems", 1}}}}}},
+         {"additionalProperties", {{"anyOf", {scalar, Json{{"type", "array"}, {"items", scalar}, {"minItems", 1}}}}}},
          {"default", Json::object()}},
         "", meaning);
   }
 
  private:
-  static Json integer(IntRange range) {
-    return {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}};
-  }
+  static Json integer(IntRange range) { return {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}}; }
   static Json real(RealRange range) {
-    return {{"type", "number"},
-            {range.above_min ? "exclusiveMinimum" : "minimum", range.min},
-            {"maximum", range.max}};
+    return {{"type", "number"}, {range.above_min ? "exclusiveMinimum" : "minimum", range.min}, {"maximum", range.max}};
   }
   template <class E>
   static std::vector<std::string> names() {
@@ -173,8 +165,7 @@ std::string kind_text(const Json& schema) {
     return fmt::format("{}", fmt::join(schema["enum"].get<std::vector<std::string>>(), ", "));
   if (schema.contains("anyOf")) {
     std::string out;
-    for (const Json& alternative : schema["anyOf"])
-      out += (out.empty() ? "" : " or ") + kind_text(alternative);
+    for (const Json& alternative : schema["anyOf"]) out += (out.empty() ? "" : " or ") + kind_text(alternative);
     return out;
   }
   if (!schema["type"].is_string()) return "value";
@@ -184,8 +175,8 @@ std::string kind_text(const Json& schema) {
   if (type == "string") return "text";
   if (type == "boolean") return "true, false";
   const bool above = schema.contains("exclusiveMinimum");
-  return fmt::format("{}{} to {}", above ? "above " : "",
-                     schema[above ? "exclusiveMinimum" : "minimum"].dump(), schema["maximum"].dump());
+  return fmt::format("{}{} to {}", above ? "above " : "", schema[above ? "exclusiveMinimum" : "minimum"].dump(),
+                     schema["maximum"].dump());
 }
 
 }  // namespace
@@ -204,8 +195,7 @@ std::optional<std::string> config_path_ending_in(std::string_view key) {
   const std::string ending = "." + std::string(key);
   std::optional<std::string> best;
   for (const std::string& path : config_key_paths()) {
-    if (path.size() <= ending.size() || path.compare(path.size() - ending.size(), ending.size(), ending) != 0)
-      continue;
+    if (path.size() <= ending.size() || path.compare(path.size() - ending.size(), ending.size(), ending) != 0) continue;
     if (!best || path.size() < best->size()) best = path;
   }
   return best;
@@ -214,8 +204,7 @@ std::optional<std::string> config_path_ending_in(std::string_view key) {
 }  // namespace config
 
 Json config_schema() {
-  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-              {"title", "Carousel configuration"}};
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Carousel configuration"}};
   schema.update(config::SchemaWriter::object(Config{}, ""));
   schema["required"] = {"scene"};
   Json& scene = schema["properties"]["scene"];
@@ -228,9 +217,8 @@ std::string config_markdown() {
   config::walk(config_schema(), "", [&](const std::string& path, const Json& schema) {
     if (path.find(".0.testers.") != path.npos) return;  // the same as testers, once is enough
     const std::string value = schema.contains("default") ? schema["default"].dump() : "";
-    std::string shown = schema.contains("default") && schema["default"].is_string()
-                            ? schema["default"].get<std::string>()
-                            : value;
+    std::string shown =
+        schema.contains("default") && schema["default"].is_string() ? schema["default"].get<std::string>() : value;
     out += fmt::format("| `{}` | {} | {} | {} | {} |\n", path, config::kind_text(schema), shown,
                        schema.value("unit", ""), schema.value("description", ""));
   });

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "core/config/edit_distance.h"
 #include "core/config/enum_names.h"
 #include "core/config/schema.h"
-#include "core/config/edit_distance.h"
 #include "core/types/effect.h"
 
 namespace carousel {
@@ -61,15 +61,14 @@ class Rules {
       if (c.workload.kind == WorkloadConfig::Kind::kTraffic) return;  // traffic meets no scene
       issue("scene", "expected a scene: file, or builtin (cornell, spheres, terrain, instances, sliver)");
     }
-    if (!c.scene.file.empty() && c.scene.builtin)
-      issue("scene.builtin", "expected either file or builtin, found both");
+    if (!c.scene.file.empty() && c.scene.builtin) issue("scene.builtin", "expected either file or builtin, found both");
   }
 
   void raster_needs_a_pinhole() {
     if (c.primary != Primary::kRaster) return;
     if (c.camera.aperture > 0)
-      issue("camera.aperture", fmt::format("primary: raster needs a pinhole; expected 0, or primary: rays, found {}",
-                                           c.camera.aperture));
+      issue("camera.aperture",
+            fmt::format("primary: raster needs a pinhole; expected 0, or primary: rays, found {}", c.camera.aperture));
     if (c.workload.kind != WorkloadConfig::Kind::kRays)
       issue("primary", "this workload has no camera; expected rays, found raster");
   }
@@ -85,9 +84,9 @@ class Rules {
                     shape == TopologyShape::kBus || shape == TopologyShape::kIndependent))
       return;
     issue("topology.shape",
-          fmt::format("the {} engine has no {}; expected ring, bidirectional{}",
-                      enum_name(c.engine.kind), enum_name(shape),
-                      cycle() ? ", multi_ring, hierarchical, point_to_point, bus or independent" : " or point_to_point"));
+          fmt::format(
+              "the {} engine has no {}; expected ring, bidirectional{}", enum_name(c.engine.kind), enum_name(shape),
+              cycle() ? ", multi_ring, hierarchical, point_to_point, bus or independent" : " or point_to_point"));
   }
 
   void stored_transform_fits() {
@@ -124,27 +123,37 @@ class Rules {
     const BundlesConfig& b = c.bundles;
     if (b.size == 1) issue("bundles.size", "expected 2 rays or more, or 0 for none; found 1");
     if (b.size > c.rays.slots_per_resource)
-      issue("bundles.size", fmt::format("a bundle's rays live in one resource; expected at most rays.slots_per_resource = "
-                                        "{}, found {}",
-                                        c.rays.slots_per_resource, b.size));
+      issue("bundles.size",
+            fmt::format("a bundle's rays live in one resource; expected at most rays.slots_per_resource = "
+                        "{}, found {}",
+                        c.rays.slots_per_resource, b.size));
     if (b.strict && b.order == BundlesConfig::Order::kAnyHitOnly)
-      issue("bundles.strict", "any_hit_only takes bundles along where only some of their rays hit; expected false, found true");
+      issue("bundles.strict",
+            "any_hit_only takes bundles along where only some of their rays hit; expected false, found true");
     constexpr std::string_view without = ", or bundles.size: 0";
     if (c.collections.traversal == Traversal::kOrdered)
-      issue("collections.traversal", fmt::format("rays of a bundle go several ways at once; expected spread or treelet, found ordered{}", without));
+      issue("collections.traversal",
+            fmt::format("rays of a bundle go several ways at once; expected spread or treelet, found ordered{}",
+                        without));
     if (c.packets.shapes == PacketShapes::kSingle)
-      issue("packets.shapes", fmt::format("a bundle is tested against a whole strip; expected strip, found single{}", without));
+      issue("packets.shapes",
+            fmt::format("a bundle is tested against a whole strip; expected strip, found single{}", without));
     if (c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed)
-      issue("rays.placement", fmt::format("bundles are made before their rays have slots; expected balanced or round_robin, "
-                                          "found {}{}",
-                                          enum_name(c.rays.placement), without));
+      issue("rays.placement",
+            fmt::format("bundles are made before their rays have slots; expected balanced or round_robin, "
+                        "found {}{}",
+                        enum_name(c.rays.placement), without));
     if (c.topology.shape == TopologyShape::kIndependent)
-      issue("topology.shape", fmt::format("independent resources trace single rays; expected a ring or another network, "
-                                          "found independent{}", without));
+      issue("topology.shape",
+            fmt::format("independent resources trace single rays; expected a ring or another network, "
+                        "found independent{}",
+                        without));
     if (std::bit_width(static_cast<std::uint64_t>(c.topology.resources - 1)) +
-            std::bit_width(static_cast<std::uint64_t>(2 * c.rays.slots_per_resource)) > 32)
-      issue("rays.slots_per_resource", fmt::format("IDs of 32 bits name bundles as well; expected fewer slots than {}{}",
-                                                   c.rays.slots_per_resource, without));
+            std::bit_width(static_cast<std::uint64_t>(2 * c.rays.slots_per_resource)) >
+        32)
+      issue("rays.slots_per_resource",
+            fmt::format("IDs of 32 bits name bundles as well; expected fewer slots than {}{}",
+                        c.rays.slots_per_resource, without));
   }
 
   // The plane test's slack covers what these kernels may round, and has no bound for others.
@@ -157,10 +166,12 @@ class Rules {
       issue("accuracy.box", fmt::format("cull planes go with conservative boxes; expected conservative, found {}, or "
                                         "cull_planes.count: 0",
                                         enum_name(c.accuracy.box)));
-    if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas && c.accuracy.transform == TransformLevel::kInverseMatrix)
-      issue("accuracy.transform", fmt::format("cull planes above the instances could lose hits of {}; expected two_step, "
-                                              "two_step_double or transpose_if_rotation, or cull_planes.levels: blas",
-                                              enum_name(c.accuracy.transform)));
+    if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas &&
+        c.accuracy.transform == TransformLevel::kInverseMatrix)
+      issue("accuracy.transform",
+            fmt::format("cull planes above the instances could lose hits of {}; expected two_step, "
+                        "two_step_double or transpose_if_rotation, or cull_planes.levels: blas",
+                        enum_name(c.accuracy.transform)));
   }
 
   void built_packets() {
@@ -172,8 +183,8 @@ class Rules {
     if (cycle() && c.memory.fetch == MemoryConfig::Fetch::kMulticast)
       issue("memory.fetch", "multicast is not built yet; expected packet or resource");
     if (cycle() && c.rays.placement != Placement::kBalanced && c.rays.placement != Placement::kRoundRobin)
-      issue("rays.placement", fmt::format("the cycle engine has no {}; expected balanced or round_robin",
-                                          enum_name(c.rays.placement)));
+      issue("rays.placement",
+            fmt::format("the cycle engine has no {}; expected balanced or round_robin", enum_name(c.rays.placement)));
     only("packets.results", c.packets.results, PacketResults::kMask);
   }
 
@@ -195,8 +206,7 @@ class Rules {
 
   void built_workload() {
     if (c.workload.kind != WorkloadConfig::Kind::kTraffic) return;
-    if (!cycle())
-      issue("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
+    if (!cycle()) issue("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
     if (c.topology.shape == TopologyShape::kHierarchical || c.topology.shape == TopologyShape::kBus ||
         c.topology.shape == TopologyShape::kIndependent)
       issue("topology.shape", fmt::format("there is no traffic on {}; expected ring, bidirectional, multi_ring or "
@@ -204,8 +214,8 @@ class Rules {
                                           enum_name(c.topology.shape)));
     const TrafficConfig& traffic = c.workload.traffic;
     if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
-      issue("workload.traffic.hotspot", fmt::format("expected a resource from 0 to {}, found {}",
-                                                    c.topology.resources - 1, traffic.hotspot));
+      issue("workload.traffic.hotspot",
+            fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, traffic.hotspot));
     // Between bursts at least one cycle is quiet.
     const double burst = static_cast<double>(traffic.burst_packets), most = burst / (burst + 1);
     if (traffic.pattern == TrafficConfig::Pattern::kBursty && traffic.rate > most)
@@ -227,8 +237,7 @@ class Rules {
 
   void ordered_needs_strips() {
     if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip)
-      issue("packets.shapes",
-            "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
+      issue("packets.shapes", "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
   }
 
   void hashed_homes_spill() {
@@ -244,8 +253,7 @@ class Rules {
       const ResourceOverride& one = c.topology.overrides[i];
       const std::string key = fmt::format("topology.overrides.{}.resource", i);
       if (one.resource >= c.topology.resources)
-        issue(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1,
-                               one.resource));
+        issue(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, one.resource));
       else if (!seen.emplace(one.resource, i).second)
         issue(key, fmt::format("resource {} has an override already", one.resource));
       only(fmt::format("topology.overrides.{}.testers.any_hit", i), one.testers.any_hit,
@@ -257,24 +265,30 @@ class Rules {
     const FaultsConfig::Resource& r = c.faults.resource;
     const bool resource = r.kind != FaultsConfig::Resource::Kind::kNone;
     if (resource && r.number >= c.topology.resources)
-      issue("faults.resource.number", fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
+      issue("faults.resource.number",
+            fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
     if (c.workload.kind == WorkloadConfig::Kind::kTraffic && (resource || c.faults.links.any()))
       issue("faults", "there are no faults in traffic; expected none, or workload: rays");
     if (resource && c.topology.shape == TopologyShape::kIndependent)
       issue("faults.resource.kind", "independent resources have no faults; expected none");
     if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
-      issue("faults.resource.after_rays", fmt::format("under virtual time a slow resource is so from the beginning; expected 0, found {}", r.after_rays));
+      issue("faults.resource.after_rays",
+            fmt::format("under virtual time a slow resource is so from the beginning; expected 0, found {}",
+                        r.after_rays));
     if (r.kind == FaultsConfig::Resource::Kind::kStop) a_machine_goes_on_without_one();
     if (c.faults.compare && !cycle())
-      issue("faults.compare", "on the wall clock two runs differ by more than faults cost; expected false, or engine.kind: cycle");
+      issue("faults.compare",
+            "on the wall clock two runs differ by more than faults cost; expected false, or engine.kind: cycle");
     // The engine takes a machine that does nothing for ten seconds for one that is stuck.
     if (!cycle() && r.kind == FaultsConfig::Resource::Kind::kPause && r.cycles / c.engine.clock_mhz > 5'000'000)
-      issue("faults.resource.cycles", fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
-                                                  5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
+      issue("faults.resource.cycles",
+            fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
+                        5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
   }
 
   void a_machine_goes_on_without_one() {
-    if (c.topology.resources < 2) issue("topology.resources", "where one stops another has to go on; expected at least 2, found 1");
+    if (c.topology.resources < 2)
+      issue("topology.resources", "where one stops another has to go on; expected at least 2, found 1");
   }
 
   void vary_names_keys() {
@@ -287,9 +301,8 @@ class Rules {
         begin = end + 1;
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         const auto near = nearest_name(key, known);
-        issues_.push_back(
-            {positions_.find("vary." + keys), "vary." + keys,
-             fmt::format("unknown key '{}'{}", key, near ? "; did you mean '" + *near + "'?" : "")});
+        issues_.push_back({positions_.find("vary." + keys), "vary." + keys,
+                           fmt::format("unknown key '{}'{}", key, near ? "; did you mean '" + *near + "'?" : "")});
       }
     }
   }

@@ -34,12 +34,8 @@ class JsonWriter {
     return std::move(writer.out_);
   }
 
-  void field(std::string_view key, std::int64_t& value, IntRange, const char*, const char*) {
-    put(key, value);
-  }
-  void field(std::string_view key, float& value, RealRange, const char*, const char*) {
-    put(key, shortest(value));
-  }
+  void field(std::string_view key, std::int64_t& value, IntRange, const char*, const char*) { put(key, value); }
+  void field(std::string_view key, float& value, RealRange, const char*, const char*) { put(key, shortest(value)); }
   void field(std::string_view key, double& value, RealRange, const char*, const char*) { put(key, value); }
   void field(std::string_view key, Vec3& value, RealRange, const char*, const char*) {
     put(key, {shortest(value.x), shortest(value.y), shortest(value.z)});
@@ -48,8 +44,7 @@ class JsonWriter {
   void field(std::string_view key, std::string& value, const char*, const char*) {
     if (!value.empty()) put(key, value);
   }
-  void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange, const char*,
-                     const char*) {
+  void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange, const char*, const char*) {
     put(key, value ? Json(*value) : Json("auto"));
   }
   template <class E>
@@ -77,8 +72,7 @@ class JsonWriter {
   }
   void effects(std::string_view key, ShadingConfig::Effects& value, const char*) {
     using Choice = ShadingConfig::Effects::Choice;
-    put(key, value.choice == Choice::kList ? Json(value.names)
-                                           : Json(value.choice == Choice::kAuto ? "auto" : "all"));
+    put(key, value.choice == Choice::kList ? Json(value.names) : Json(value.choice == Choice::kAuto ? "auto" : "all"));
   }
   void workload(std::string_view key, WorkloadConfig& value, const char*) {
     switch (value.kind) {
@@ -105,8 +99,8 @@ bool is_nested(const Json& value) {
 }
 
 std::string yaml_key(const std::string& key) {
-  const bool plain = key.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == key.npos &&
-                     !key.empty() && (key[0] < '0' || key[0] > '9');
+  const bool plain = key.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == key.npos && !key.empty() &&
+                     (key[0] < '0' || key[0] > '9');
   return plain ? key : Json(key).dump();  // a JSON string is a double-quoted YAML scalar
 }
 

@@ -23,15 +23,16 @@ struct Chain {
   }
 };
 
-std::uint64_t pair(std::uint32_t high, std::uint32_t low) { return std::uint64_t{high} << 32 | low; }
+std::uint64_t pair(std::uint32_t high, std::uint32_t low) {
+  return std::uint64_t{high} << 32 | low;
+}
 
 }  // namespace
 
 HitsDigest hit_term(std::uint32_t pixel, std::uint32_t sample, const RayTag& tag, const Hit& hit) {
   Chain chain;
   chain.feed(pair(pixel, sample));
-  chain.feed(pair(std::uint32_t{tag.bounce} << 16 | std::uint32_t(tag.kind) << 8 | tag.index,
-                  hit.valid() ? 1 : 0));
+  chain.feed(pair(std::uint32_t{tag.bounce} << 16 | std::uint32_t(tag.kind) << 8 | tag.index, hit.valid() ? 1 : 0));
   if (tag.kind != RayKind::kShadow) {
     chain.feed(pair(hit.instance, hit.primitive));
     chain.feed(pair(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(hit.u)));
@@ -40,7 +41,9 @@ HitsDigest hit_term(std::uint32_t pixel, std::uint32_t sample, const RayTag& tag
   return {chain.a, chain.b};
 }
 
-std::string HitsDigest::hex() const { return fmt::format("{:016x}{:016x}", hi, lo); }
+std::string HitsDigest::hex() const {
+  return fmt::format("{:016x}{:016x}", hi, lo);
+}
 
 std::string image_digest(std::span<const float> rgb) {
   Chain chain;

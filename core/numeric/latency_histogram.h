@@ -7,8 +7,8 @@
 
 namespace carousel {
 
-/// Counts of latencies in cycles or nanoseconds, log-linear: each value by itself up to 2048, from there on 1024 classes
-/// to a doubling (within 0.1 %). Grows with the largest value.
+/// Counts of latencies in cycles or nanoseconds, log-linear: each value by itself up to 2048, from there on 1024
+/// classes to a doubling (within 0.1 %). Grows with the largest value.
 class LatencyHistogram {
  public:
   void add(std::uint64_t latency) {
@@ -44,7 +44,7 @@ class LatencyHistogram {
   friend bool operator==(const LatencyHistogram&, const LatencyHistogram&) = default;
 
  private:
-  static constexpr int kBits = 10;   // of a class above the exact ones
+  static constexpr int kBits = 10;  // of a class above the exact ones
   static constexpr std::size_t kClasses = std::size_t{1} << kBits;
 
   static std::size_t index(std::uint64_t latency) {

@@ -20,8 +20,8 @@ struct SourcePosition {
 /// One thing wrong with a configuration.
 struct ConfigIssue {
   SourcePosition position;
-  std::string key_path;   ///< e.g. "topology.link.depth"; empty when the whole file is meant
-  std::string message;    ///< what was expected, what was found, the nearest valid name
+  std::string key_path;  ///< e.g. "topology.link.depth"; empty when the whole file is meant
+  std::string message;   ///< what was expected, what was found, the nearest valid name
 
   std::string text() const;
 };

@@ -129,10 +129,14 @@ class TbbExecutor final : public Executor {
 
 }  // namespace
 
-std::unique_ptr<Executor> make_sequential_executor() { return std::make_unique<SequentialExecutor>(); }
+std::unique_ptr<Executor> make_sequential_executor() {
+  return std::make_unique<SequentialExecutor>();
+}
 std::unique_ptr<Executor> make_jthread_executor(std::size_t threads) {
   return std::make_unique<JthreadExecutor>(threads);
 }
-std::unique_ptr<Executor> make_tbb_executor(std::size_t threads) { return std::make_unique<TbbExecutor>(threads); }
+std::unique_ptr<Executor> make_tbb_executor(std::size_t threads) {
+  return std::make_unique<TbbExecutor>(threads);
+}
 
 }  // namespace carousel

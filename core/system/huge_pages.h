@@ -1,11 +1,11 @@
 #pragma once
 
-#include <sys/mman.h>
-
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <new>
+
+#include <sys/mman.h>
 
 namespace carousel {
 
@@ -24,7 +24,7 @@ struct HugePageAllocator {
   T* allocate(std::size_t count) {
     if (count > std::numeric_limits<std::size_t>::max() / 2 / sizeof(T)) throw std::bad_array_new_length();
     const std::size_t size = count * sizeof(T);
-    if (size < kPage) return static_cast<T*>(::operator new(size, std::align_val_t{alignof(T)}));
+    if (size < kPage) return static_cast<T*>(::operator new (size, std::align_val_t{alignof(T)}));
     const std::size_t rounded = (size + kPage - 1) / kPage * kPage;
     void* const memory = std::aligned_alloc(kPage, rounded);
     if (memory == nullptr) throw std::bad_alloc();
@@ -34,7 +34,7 @@ struct HugePageAllocator {
   }
   void deallocate(T* memory, std::size_t count) {
     if (count * sizeof(T) < kPage)
-      ::operator delete(memory, std::align_val_t{alignof(T)});
+      ::operator delete (memory, std::align_val_t{alignof(T)});
     else
       std::free(memory);
   }

@@ -10,15 +10,15 @@ namespace carousel {
 /// What cull planes did for the children of nodes at one depth, each child of a ray counted. What is spared are visits
 /// that would have come next: of those, some a closer hit found meanwhile would have spared as well.
 struct CullLevel {
-  std::uint64_t children = 0;       ///< whose planes were tested
+  std::uint64_t children = 0;  ///< whose planes were tested
   std::uint64_t plane_tests = 0;
-  std::uint64_t boxes = 0;          ///< box tests spared, with planes tested before boxes
-  std::uint64_t nodes = 0;          ///< inner children whose box the ray hits, and which it does not visit
-  std::uint64_t leaves = 0;         ///< the same of leaves
-  std::uint64_t triangles = 0;      ///< in those leaves: what they hold, each of which would have been tested
-  std::uint64_t procedural = 0;     ///< likewise procedural primitives
-  std::uint64_t instances = 0;      ///< the same of instances
-  std::uint64_t transforms = 0;     ///< instances among them with a transform: entering costs one at least
+  std::uint64_t boxes = 0;       ///< box tests spared, with planes tested before boxes
+  std::uint64_t nodes = 0;       ///< inner children whose box the ray hits, and which it does not visit
+  std::uint64_t leaves = 0;      ///< the same of leaves
+  std::uint64_t triangles = 0;   ///< in those leaves: what they hold, each of which would have been tested
+  std::uint64_t procedural = 0;  ///< likewise procedural primitives
+  std::uint64_t instances = 0;   ///< the same of instances
+  std::uint64_t transforms = 0;  ///< instances among them with a transform: entering costs one at least
 
   std::uint64_t culled() const { return nodes + leaves + instances; }
   CullLevel& operator+=(const CullLevel& o) {

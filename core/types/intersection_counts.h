@@ -8,9 +8,9 @@ namespace carousel {
 /// or one ray brought from world to model space.
 struct TestCounts {
   std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
-  std::uint64_t asked = 0;        ///< times that it was asked whether a primitive lets a ray through (core/types/any_hit.h)
-  std::uint64_t culled = 0;       ///< children whose box was hit, which a plane showed to be missed
-  std::uint64_t inversions = 0;   ///< of an instance's matrix, before rays are transformed
+  std::uint64_t asked = 0;   ///< times that it was asked whether a primitive lets a ray through (core/types/any_hit.h)
+  std::uint64_t culled = 0;  ///< children whose box was hit, which a plane showed to be missed
+  std::uint64_t inversions = 0;  ///< of an instance's matrix, before rays are transformed
 
   TestCounts& operator+=(const TestCounts& o) {
     box += o.box;

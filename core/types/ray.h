@@ -20,19 +20,19 @@ struct Ray {
 };
 
 enum class RayKind : std::uint8_t {
-  kCamera,   ///< closest hit, from the camera
-  kBounce,   ///< closest hit, from a surface
-  kShadow,   ///< any hit: only occluded or visible is known
+  kCamera,  ///< closest hit, from the camera
+  kBounce,  ///< closest hit, from a surface
+  kShadow,  ///< any hit: only occluded or visible is known
 };
 inline constexpr int kRayKinds = 3;
 
 /// Bits of RayTag::flags. Shaders set those that say what the ray wants, before it goes out; the others are the ring's.
 enum RayFlag : std::uint8_t {
-  kRayDone = 1,          ///< a shadow ray that found its hit: nothing more is tested
-  kRayCullBack = 2,      ///< triangles that turn their back are not there: those whose vertices it sees clockwise
-  kRayCullFront = 4,     ///< triangles that show their front are not there
-  kRayForceOpaque = 8,   ///< nothing is asked, whatever lets rays through (core/types/any_hit.h)
-  kRayAlone = 16,        ///< unlike its neighbours, and not worth a place in a bundle: no more than a hint
+  kRayDone = 1,         ///< a shadow ray that found its hit: nothing more is tested
+  kRayCullBack = 2,     ///< triangles that turn their back are not there: those whose vertices it sees clockwise
+  kRayCullFront = 4,    ///< triangles that show their front are not there
+  kRayForceOpaque = 8,  ///< nothing is asked, whatever lets rays through (core/types/any_hit.h)
+  kRayAlone = 16,       ///< unlike its neighbours, and not worth a place in a bundle: no more than a hint
 };
 inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayForceOpaque | kRayAlone;
 
@@ -41,9 +41,9 @@ inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayFo
 struct RayTag {
   std::uint32_t path = 0;
   RayKind kind = RayKind::kCamera;
-  std::uint8_t bounce = 0;   ///< 0 for camera rays; a shadow ray has the bounce of the surface it leaves
-  std::uint8_t index = 0;    ///< index within the kind at one (path, bounce)
-  std::uint8_t flags = 0;    ///< RayFlag bits
+  std::uint8_t bounce = 0;  ///< 0 for camera rays; a shadow ray has the bounce of the surface it leaves
+  std::uint8_t index = 0;   ///< index within the kind at one (path, bounce)
+  std::uint8_t flags = 0;   ///< RayFlag bits
 };
 
 /// The closest hit, as section 3 of the design defines it: t is t', the largest of the kernel's t and the
@@ -64,7 +64,7 @@ struct alignas(64) RayRecord {
   Ray ray;
   Hit hit;
   RayTag tag;
-  std::int32_t pending = 0;   ///< tests this ray still waits for; written by the owner only
+  std::int32_t pending = 0;  ///< tests this ray still waits for; written by the owner only
 };
 static_assert(sizeof(RayRecord) == 64);
 

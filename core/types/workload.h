@@ -32,8 +32,8 @@ using HitBatch = std::vector<RayResult>;
 class Workload {
  public:
   struct Generated {
-    std::size_t rays = 0;    ///< appended to `out`
-    bool finished = false;   ///< no generate() call, by anyone, will ever append a ray again
+    std::size_t rays = 0;   ///< appended to `out`
+    bool finished = false;  ///< no generate() call, by anyone, will ever append a ray again
   };
 
   virtual ~Workload() = default;
@@ -42,8 +42,8 @@ class Workload {
   /// (e.g. no path state is free); the caller then tries again after shade() calls.
   virtual Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) = 0;
 
-  /// Effects of the surface that a completed ray has hit beyond a plain one's: what a simulated shader worker is charged for
-  /// besides. Call before the ray is given to shade().
+  /// Effects of the surface that a completed ray has hit beyond a plain one's: what a simulated shader worker is
+  /// charged for besides. Call before the ray is given to shade().
   virtual std::uint32_t extra_effects(const RayResult& /*result*/) const { return 0; }
 
   /// Takes completed rays, in any order and mix, each ray exactly once; appends the rays they give rise to.

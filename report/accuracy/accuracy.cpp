@@ -11,7 +11,9 @@ namespace carousel::report {
 
 namespace {
 
-std::string levels_text(const AccuracyRow& row) { return fmt::format("{} + {} + {}", row.triangle, row.box, row.transform); }
+std::string levels_text(const AccuracyRow& row) {
+  return fmt::format("{} + {} + {}", row.triangle, row.box, row.transform);
+}
 
 const AccuracyRow* fastest(const std::vector<AccuracyRow>& rows, bool safe_only) {
   const AccuracyRow* best = nullptr;
@@ -35,16 +37,17 @@ std::string accuracy_verdict(const std::vector<AccuracyRow>& rows) {
   if (rows.empty()) return "";
   const AccuracyRow& first = *fastest(rows, false);
   const AccuracyRow* const safe = fastest(rows, true);
-  const std::string cost_of_first = fmt::format("{} ({:.0f} ns a ray) leaks {} and answers {} of {} rays of the scene wrongly",
-                                                levels_text(first), first.ns_per_ray.median, grouped(first.leaks),
-                                                grouped(first.scene.wrong()), grouped(first.scene.rays));
+  const std::string cost_of_first = fmt::format(
+      "{} ({:.0f} ns a ray) leaks {} and answers {} of {} rays of the scene wrongly", levels_text(first),
+      first.ns_per_ray.median, grouped(first.leaks), grouped(first.scene.wrong()), grouped(first.scene.rays));
   if (safe == nullptr) return "No combination is safe for this scene; the fastest, " + cost_of_first + ".";
   if (safe == &first)
     return fmt::format("The cheapest safe level for this scene is also the fastest: {} ({:.0f} ns a ray).",
                        levels_text(first), first.ns_per_ray.median);
-  return fmt::format("The cheapest safe level for this scene is {} at {:.0f} ns a ray, {:+.0f} % over the fastest; that one, {}.",
-                     levels_text(*safe), safe->ns_per_ray.median,
-                     100 * (safe->ns_per_ray.median / first.ns_per_ray.median - 1), cost_of_first);
+  return fmt::format(
+      "The cheapest safe level for this scene is {} at {:.0f} ns a ray, {:+.0f} % over the fastest; that one, {}.",
+      levels_text(*safe), safe->ns_per_ray.median, 100 * (safe->ns_per_ray.median / first.ns_per_ray.median - 1),
+      cost_of_first);
 }
 
 double log_log_slope(const std::vector<SamplingRow>& rows) {

@@ -25,10 +25,11 @@ class Axes {
     for (const AccuracyRow& row : rows) {
       most_time_ = std::max(most_time_, row.ns_per_ray.median);
       most_errors = std::max(most_errors, parts_per_million(row));
-      if (const double errors = parts_per_million(row); errors > 0) least_power_ = std::min(least_power_, std::floor(std::log10(errors)));
+      if (const double errors = parts_per_million(row); errors > 0)
+        least_power_ = std::min(least_power_, std::floor(std::log10(errors)));
     }
     most_time_ *= 1.2;
-    least_power_ -= 1;   // where none stand
+    least_power_ -= 1;  // where none stand
     most_power_ = std::ceil(std::log10(most_errors) + 0.1);
   }
   /// What would be beyond the right edge stands there.
@@ -42,16 +43,18 @@ class Axes {
     std::string out;
     for (double power = least_power_; power <= most_power_ + 0.5; ++power) {
       const double at = y_of_power(power);
-      out += fmt::format("<line x1='{:.0f}' y1='{:.1f}' x2='{:.0f}' y2='{:.1f}' stroke='#ddd'/>", kLeft, at, kWidth - kRight, at);
+      out += fmt::format("<line x1='{:.0f}' y1='{:.1f}' x2='{:.0f}' y2='{:.1f}' stroke='#ddd'/>", kLeft, at,
+                         kWidth - kRight, at);
       out += fmt::format("<text x='{:.0f}' y='{:.1f}' text-anchor='end'>{}</text>\n", kLeft - 8, at + 4,
                          power == least_power_ ? std::string("none") : fmt::format("{:g}", std::pow(10.0, power)));
     }
     const double step = std::pow(10.0, std::floor(std::log10(most_time_ / 2)));
     const double wide = most_time_ / step > 10 ? 5 * step : most_time_ / step > 4 ? 2 * step : step;
     for (double time = 0; time <= most_time_; time += wide)
-      out += fmt::format("<line x1='{0:.1f}' y1='{1:.0f}' x2='{0:.1f}' y2='{2:.0f}' stroke='#eee'/><text x='{0:.1f}' y='{3:.0f}' "
-                         "text-anchor='middle'>{4:g}</text>\n",
-                         x(time), kTop, kHeight - kBottom, kHeight - kBottom + 18, time);
+      out += fmt::format(
+          "<line x1='{0:.1f}' y1='{1:.0f}' x2='{0:.1f}' y2='{2:.0f}' stroke='#eee'/><text x='{0:.1f}' y='{3:.0f}' "
+          "text-anchor='middle'>{4:g}</text>\n",
+          x(time), kTop, kHeight - kBottom, kHeight - kBottom + 18, time);
     return out;
   }
 
@@ -70,7 +73,7 @@ std::vector<double> label_heights(const std::vector<AccuracyRow>& rows, const Ax
   std::vector<double> heights(rows.size());
   const double lowest = kHeight - kBottom;
   double last = lowest + 13;
-  for (std::size_t i = order.size(); i-- > 0;) {   // from the foot upwards
+  for (std::size_t i = order.size(); i-- > 0;) {  // from the foot upwards
     const double wanted = axes.y(parts_per_million(rows[order[i]]));
     last = heights[order[i]] = std::min(wanted, last - 13);
   }
@@ -89,8 +92,10 @@ std::string accuracy_plot(const Accuracy& accuracy) {
   out += axes.frame();
   out += fmt::format("<text x='{:.0f}' y='{:.0f}' text-anchor='middle'>ns a ray, depth-first on one thread</text>\n",
                      (kLeft + kWidth - kRight) / 2, kHeight - 24);
-  out += fmt::format("<text transform='translate(24 {:.0f}) rotate(-90)' text-anchor='middle'>wrong answers in a million rays, "
-                     "hard cases included</text>\n", kHeight / 2);
+  out += fmt::format(
+      "<text transform='translate(24 {:.0f}) rotate(-90)' text-anchor='middle'>wrong answers in a million rays, "
+      "hard cases included</text>\n",
+      kHeight / 2);
 
   std::vector<const AccuracyRow*> frontier;
   for (const AccuracyRow& row : accuracy.rows)
@@ -106,18 +111,21 @@ std::string accuracy_plot(const Accuracy& accuracy) {
   for (std::size_t i = 0; i < accuracy.rows.size(); ++i) {
     const AccuracyRow& row = accuracy.rows[i];
     const double x = axes.x(row.ns_per_ray.median), y = axes.y(parts_per_million(row));
-    out += fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='#999'/>", axes.x(row.ns_per_ray.least), y,
-                       axes.x(row.ns_per_ray.most), y);
-    out += fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='#ccc' stroke-dasharray='2 2'/>", x, y,
-                       kWidth - kRight + 6, heights[i]);
+    out += fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='#999'/>",
+                       axes.x(row.ns_per_ray.least), y, axes.x(row.ns_per_ray.most), y);
+    out += fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='#ccc' stroke-dasharray='2 2'/>",
+                       x, y, kWidth - kRight + 6, heights[i]);
     out += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='4.5' fill='{}' stroke='#333'/>", x, y,
-                       row.safe ? "#2a8" : row.frontier ? "#c40" : "#bbb");
-    out += fmt::format("<text x='{:.0f}' y='{:.1f}'>{} + {} + {}</text>\n", kWidth - kRight + 10, heights[i] + 4, row.triangle,
-                       row.box, row.transform);
+                       row.safe       ? "#2a8"
+                       : row.frontier ? "#c40"
+                                      : "#bbb");
+    out += fmt::format("<text x='{:.0f}' y='{:.1f}'>{} + {} + {}</text>\n", kWidth - kRight + 10, heights[i] + 4,
+                       row.triangle, row.box, row.transform);
   }
-  out += fmt::format("<text x='{:.0f}' y='{:.0f}' fill='#2a8'>green: safe for this scene</text>"
-                     "<text x='{:.0f}' y='{:.0f}' fill='#c40'>line: the frontier</text>\n</svg>\n",
-                     kWidth - kRight + 10, kHeight - 40, kWidth - kRight + 10, kHeight - 24);
+  out += fmt::format(
+      "<text x='{:.0f}' y='{:.0f}' fill='#2a8'>green: safe for this scene</text>"
+      "<text x='{:.0f}' y='{:.0f}' fill='#c40'>line: the frontier</text>\n</svg>\n",
+      kWidth - kRight + 10, kHeight - 40, kWidth - kRight + 10, kHeight - 24);
   return out;
 }
 

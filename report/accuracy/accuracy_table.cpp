@@ -13,26 +13,35 @@ std::string cycles_text(const AccuracyRow& row) {
   return fmt::format("{:.1f}/{:.1f}", row.modelled->cycles_per_ray, row.modelled->tester_cycles_per_ray);
 }
 
-std::string ulp_text(const HitErrors& e) { return fmt::format("{:.2g}/{:.3g}/{:.3g}", e.ulp_median, e.ulp_p99, e.ulp_max); }
+std::string ulp_text(const HitErrors& e) {
+  return fmt::format("{:.2g}/{:.3g}/{:.3g}", e.ulp_median, e.ulp_p99, e.ulp_max);
+}
 
-std::uint64_t hard_wrong(const AccuracyRow& row) { return row.wrong() - row.scene.wrong(); }
+std::uint64_t hard_wrong(const AccuracyRow& row) {
+  return row.wrong() - row.scene.wrong();
+}
 
 void level_lines(const Accuracy& a, std::string& out) {
-  out += fmt::format("{:<2}{:<11}{:<13}{:<22}{:>8}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10}{:>10}\n", "", "triangle",
-                     "box", "transform", "ns/ray", "least-most", "cycles/ray", "missed", "extra", "other", "t error in ulp", "leaks",
-                     "hard", "pixels", "RMSE", "worst");
+  out += fmt::format("{:<2}{:<11}{:<13}{:<22}{:>8}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10}{:>10}\n", "",
+                     "triangle", "box", "transform", "ns/ray", "least-most", "cycles/ray", "missed", "extra", "other",
+                     "t error in ulp", "leaks", "hard", "pixels", "RMSE", "worst");
   for (const AccuracyRow& row : a.rows) {
-    out += fmt::format("{:<2}{:<11}{:<13}{:<22}{:>8.0f}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10.2g}{:>10.2g}{}\n",
-                       row.frontier ? "*" : "", row.triangle, row.box, row.transform, row.ns_per_ray.median,
-                       fmt::format("{:.0f}-{:.0f}", row.ns_per_ray.least, row.ns_per_ray.most), cycles_text(row),
-                       grouped(row.scene.missed), grouped(row.scene.extra), grouped(row.scene.other), ulp_text(row.scene),
-                       grouped(row.leaks), grouped(hard_wrong(row)), grouped(row.picture.differ), row.picture.rmse,
-                       row.picture.worst, row.safe ? "  safe" : "");
+    out += fmt::format(
+        "{:<2}{:<11}{:<13}{:<22}{:>8.0f}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10.2g}{:>10.2g}{}\n",
+        row.frontier ? "*" : "", row.triangle, row.box, row.transform, row.ns_per_ray.median,
+        fmt::format("{:.0f}-{:.0f}", row.ns_per_ray.least, row.ns_per_ray.most), cycles_text(row),
+        grouped(row.scene.missed), grouped(row.scene.extra), grouped(row.scene.other), ulp_text(row.scene),
+        grouped(row.leaks), grouped(hard_wrong(row)), grouped(row.picture.differ), row.picture.rmse, row.picture.worst,
+        row.safe ? "  safe" : "");
   }
-  out += "* on the frontier: nothing is both faster and less often wrong. cycles/ray: modelled, and of these units at work (summed\n"
-         "over the resources). missed, extra, other: rays of the scene that miss where exact arithmetic hits, hit where it misses,\n"
-         "hit another triangle; t error: median/p99/max; leaks: rays that get out of closed surfaces; hard: missed and extra hits\n"
-         "of the hard cases; pixels that differ from the exact picture.\n";
+  out +=
+      "* on the frontier: nothing is both faster and less often wrong. cycles/ray: modelled, and of these units at "
+      "work (summed\n"
+      "over the resources). missed, extra, other: rays of the scene that miss where exact arithmetic hits, hit where "
+      "it misses,\n"
+      "hit another triangle; t error: median/p99/max; leaks: rays that get out of closed surfaces; hard: missed and "
+      "extra hits\n"
+      "of the hard cases; pixels that differ from the exact picture.\n";
 }
 
 void hard_lines(const Accuracy& a, std::string& out) {
@@ -43,17 +52,19 @@ void hard_lines(const Accuracy& a, std::string& out) {
   out += '\n';
   for (const AccuracyRow& row : a.rows) {
     out += fmt::format("{:<2}{:<11}{:<13}{:<22}", "", row.triangle, row.box, row.transform);
-    for (const HitErrors& e : row.hard) out += fmt::format("{:>18}", fmt::format("{} / {} / {}", e.missed, e.extra, e.other));
+    for (const HitErrors& e : row.hard)
+      out += fmt::format("{:>18}", fmt::format("{} / {} / {}", e.missed, e.extra, e.other));
     out += '\n';
   }
 }
 
 void spawn_lines(const Accuracy& a, std::string& out) {
-  out += fmt::format("\n{:<10}{:>12}{:>12}{:>16}{:>16}{:>10}{:>10}\n", "spawn", "bounces", "self-hits", "far bounces", "far self-hits",
-                     "pixels", "RMSE");
+  out += fmt::format("\n{:<10}{:>12}{:>12}{:>16}{:>16}{:>10}{:>10}\n", "spawn", "bounces", "self-hits", "far bounces",
+                     "far self-hits", "pixels", "RMSE");
   for (const SpawnRow& row : a.spawn)
-    out += fmt::format("{:<10}{:>12}{:>12}{:>16}{:>16}{:>10}{:>10.2g}\n", row.spawn, grouped(row.bounces), grouped(row.self_hits),
-                       grouped(row.hard_bounces), grouped(row.hard_self_hits), grouped(row.picture.differ), row.picture.rmse);
+    out += fmt::format("{:<10}{:>12}{:>12}{:>16}{:>16}{:>10}{:>10.2g}\n", row.spawn, grouped(row.bounces),
+                       grouped(row.self_hits), grouped(row.hard_bounces), grouped(row.hard_self_hits),
+                       grouped(row.picture.differ), row.picture.rmse);
 }
 
 void sampling_lines(const Accuracy& a, std::string& out) {
@@ -65,8 +76,13 @@ void sampling_lines(const Accuracy& a, std::string& out) {
 }
 
 nlohmann::ordered_json errors_json(const HitErrors& e) {
-  return {{"rays", e.rays},   {"missed", e.missed}, {"extra", e.extra}, {"other", e.other}, {"t_error_ulp_median", e.ulp_median},
-          {"t_error_ulp_p99", e.ulp_p99}, {"t_error_ulp_max", e.ulp_max}};
+  return {{"rays", e.rays},
+          {"missed", e.missed},
+          {"extra", e.extra},
+          {"other", e.other},
+          {"t_error_ulp_median", e.ulp_median},
+          {"t_error_ulp_p99", e.ulp_p99},
+          {"t_error_ulp_max", e.ulp_max}};
 }
 
 nlohmann::ordered_json picture_json(const PictureErrors& p) {
@@ -92,9 +108,9 @@ nlohmann::ordered_json row_json(const AccuracyRow& row, const std::vector<HardCa
 }  // namespace
 
 std::string accuracy_table(const Accuracy& a) {
-  std::string out = fmt::format("{}: {} triangles, {} instances; {} rays, {} repetitions, seed {}; pictures {} x {} x {}\n\n",
-                                a.scene, grouped(a.triangles), grouped(a.instances), grouped(a.rays), a.repetitions, a.seed,
-                                a.width, a.height, a.samples);
+  std::string out = fmt::format(
+      "{}: {} triangles, {} instances; {} rays, {} repetitions, seed {}; pictures {} x {} x {}\n\n", a.scene,
+      grouped(a.triangles), grouped(a.instances), grouped(a.rays), a.repetitions, a.seed, a.width, a.height, a.samples);
   if (a.incomplete) out = "INCOMPLETE: interrupted; what follows is what was done\n" + out;
   level_lines(a, out);
   hard_lines(a, out);
@@ -104,15 +120,19 @@ std::string accuracy_table(const Accuracy& a) {
 }
 
 nlohmann::ordered_json accuracy_json(const Accuracy& a) {
-  nlohmann::ordered_json j{{"schema_version", 1}, {"incomplete", a.incomplete}, {"scene", a.scene}, {"triangles", a.triangles}, {"instances", a.instances},
-                           {"rays", a.rays}, {"seed", a.seed}, {"repetitions", a.repetitions}};
+  nlohmann::ordered_json j{{"schema_version", 1},      {"incomplete", a.incomplete},  {"scene", a.scene},
+                           {"triangles", a.triangles}, {"instances", a.instances},    {"rays", a.rays},
+                           {"seed", a.seed},           {"repetitions", a.repetitions}};
   j["picture"] = {{"width", a.width}, {"height", a.height}, {"samples", a.samples}};
   j["levels"] = nlohmann::ordered_json::array();
   for (const AccuracyRow& row : a.rows) j["levels"].push_back(row_json(row, a.hard));
   j["spawn"] = nlohmann::ordered_json::array();
   for (const SpawnRow& row : a.spawn)
-    j["spawn"].push_back({{"spawn", row.spawn}, {"bounces", row.bounces}, {"self_hits", row.self_hits},
-                          {"far_bounces", row.hard_bounces}, {"far_self_hits", row.hard_self_hits},
+    j["spawn"].push_back({{"spawn", row.spawn},
+                          {"bounces", row.bounces},
+                          {"self_hits", row.self_hits},
+                          {"far_bounces", row.hard_bounces},
+                          {"far_self_hits", row.hard_self_hits},
                           {"picture", picture_json(row.picture)}});
   j["sampling"] = {{"slope", a.sampling_slope}, {"rows", nlohmann::ordered_json::array()}};
   for (const SamplingRow& row : a.sampling)

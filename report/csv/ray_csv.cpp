@@ -4,8 +4,8 @@
 #include <array>
 #include <tuple>
 
-#include "report/text/number_text.h"
 #include "report/csv/ray_csv_columns.h"
+#include "report/text/number_text.h"
 
 namespace carousel::report {
 
@@ -16,8 +16,8 @@ void append_ray(std::string& line, std::size_t number, const RayResult& result) 
   line += ',';
   line += kRayKindNames[static_cast<std::size_t>(result.tag.kind)];
   const Ray& ray = result.ray;
-  for (const float value : {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
-                            ray.direction.z, ray.tmin, ray.tmax}) {
+  for (const float value : {ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z,
+                            ray.tmin, ray.tmax}) {
     line += ',';
     line += float_text(value);
   }
@@ -31,8 +31,8 @@ void append_hit(std::string& line, const RayResult& result) {
   } else if (!hit.valid()) {
     line += ",inf,,,,";
   } else {
-    line += ',' + float_text(hit.t) + ',' + std::to_string(hit.instance) + ',' +
-            std::to_string(hit.primitive) + ',' + float_text(hit.u) + ',' + float_text(hit.v);
+    line += ',' + float_text(hit.t) + ',' + std::to_string(hit.instance) + ',' + std::to_string(hit.primitive) + ',' +
+            float_text(hit.u) + ',' + float_text(hit.v);
   }
 }
 

@@ -79,9 +79,7 @@ class RayReader {
     return out;
   }
 
-  void issue(int column, std::string message) {
-    issues_.push_back({{name_, line_, column}, "", std::move(message)});
-  }
+  void issue(int column, std::string message) { issues_.push_back({{name_, line_, column}, "", std::move(message)}); }
 
   void read_header(std::string_view line) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
@@ -89,9 +87,8 @@ class RayReader {
     const Cells cells = split(line);
     for (std::size_t i = 0; i < kRayColumns; ++i)
       if (cells.text[i] != kColumns[i])
-        return issue(std::max(1, cells.column[i]),
-                     fmt::format("expected the header {}, found '{}' in place of {}", header(), cells.text[i],
-                                 kColumns[i]));
+        return issue(std::max(1, cells.column[i]), fmt::format("expected the header {}, found '{}' in place of {}",
+                                                               header(), cells.text[i], kColumns[i]));
   }
 
   void read_ray(std::string_view line) {
@@ -109,8 +106,7 @@ class RayReader {
     if (issues_.size() == before && dx == 0 && dy == 0 && dz == 0)
       issue(cells.column[5], "expected a direction, found 0,0,0");
     if (issues_.size() == before && !(tmin >= 0 && tmin <= tmax))
-      issue(cells.column[8],
-            fmt::format("expected 0 <= tmin <= tmax, found {} and {}", cells.text[8], cells.text[9]));
+      issue(cells.column[8], fmt::format("expected 0 <= tmin <= tmax, found {} and {}", cells.text[8], cells.text[9]));
     if (issues_.size() == before) rays_.push_back(request);
   }
 
@@ -127,9 +123,8 @@ class RayReader {
     const std::optional<float> value = read_float(cells.text[cell]);
     const bool may_be_infinite = kColumns[cell] == "tmax";
     if (!value || std::isnan(*value) || (std::isinf(*value) && !may_be_infinite)) {
-      issue(cells.column[cell],
-            fmt::format("expected a {}number for {}, found '{}'", may_be_infinite ? "" : "finite ",
-                        kColumns[cell], cells.text[cell]));
+      issue(cells.column[cell], fmt::format("expected a {}number for {}, found '{}'", may_be_infinite ? "" : "finite ",
+                                            kColumns[cell], cells.text[cell]));
       return 1;
     }
     return *value;

@@ -10,7 +10,8 @@ namespace carousel::report {
 struct CullPlaneLevel {
   std::string structure;
   std::uint64_t depth = 0, children_tested = 0, plane_tests = 0, culled = 0;
-  std::uint64_t box_tests_spared = 0, nodes_spared = 0, leaves_spared = 0, triangle_tests_spared = 0, transforms_spared = 0;
+  std::uint64_t box_tests_spared = 0, nodes_spared = 0, leaves_spared = 0, triangle_tests_spared = 0,
+                transforms_spared = 0;
 };
 
 struct CullPlanes {

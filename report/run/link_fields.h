@@ -37,9 +37,12 @@ void describe(V& v, Link& r) {
   v.field("to", r.to, "", "resource that receives");
   v.field("depth", r.depth, "packets", "room of the queue");
   v.field("packets", r.packets, "packets", "carried");
-  v.field("occupancy_mean", r.occupancy_mean, "packets", "waiting: seen at every eighth send (native), over time (cycle)");
-  v.field("occupancy_max", r.occupancy_max, "packets", "waiting: seen at every eighth send and at refusals (native), ever (cycle)");
-  v.field("stalled", r.stalled, "attempts|cycles", "sends that found the queue full (native), cycles in which a packet waited for a credit (cycle)");
+  v.field("occupancy_mean", r.occupancy_mean, "packets",
+          "waiting: seen at every eighth send (native), over time (cycle)");
+  v.field("occupancy_max", r.occupancy_max, "packets",
+          "waiting: seen at every eighth send and at refusals (native), ever (cycle)");
+  v.field("stalled", r.stalled, "attempts|cycles",
+          "sends that found the queue full (native), cycles in which a packet waited for a credit (cycle)");
   v.field("utilisation", r.utilisation, "fraction", "cycles in which it moved something, over all");
   v.section("cycles", r.cycles, "they add up to engine.cycles");
   v.field("queue", r.queue, "", "kind of queue (native)");

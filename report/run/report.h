@@ -28,8 +28,7 @@ struct Bounds {
 
 struct SceneSummary {
   std::string name;
-  std::uint64_t triangles = 0, instanced_triangles = 0, meshes = 0, instances = 0, materials = 0,
-                textures = 0;
+  std::uint64_t triangles = 0, instanced_triangles = 0, meshes = 0, instances = 0, materials = 0, textures = 0;
   std::uint64_t lights = 0, cameras = 0;
   Bounds bounds;
   std::vector<std::string> warnings;

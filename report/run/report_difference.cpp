@@ -12,7 +12,8 @@ void compare(const std::string& path, const Json* a, const Json* b, std::vector<
   if (a != nullptr && b != nullptr && *a == *b) return;
   const auto child = [&](const std::string& key) { return path.empty() ? key : path + "." + key; };
   if (a != nullptr && b != nullptr && a->is_object() && b->is_object()) {
-    for (const auto& [key, value] : a->items()) compare(child(key), &value, b->contains(key) ? &(*b)[key] : nullptr, out);
+    for (const auto& [key, value] : a->items())
+      compare(child(key), &value, b->contains(key) ? &(*b)[key] : nullptr, out);
     for (const auto& [key, value] : b->items())
       if (!a->contains(key)) compare(child(key), nullptr, &value, out);
     return;
@@ -32,7 +33,8 @@ std::vector<Difference> differences(const Json& a, const Json& b) {
   for (Json* report : {&left, &right}) {
     report->erase("host");
     // How many threads the host was to use is its affair too.
-    if (const auto engine = Json::json_pointer("/config/engine"); report->contains(engine)) (*report)[engine].erase("threads");
+    if (const auto engine = Json::json_pointer("/config/engine"); report->contains(engine))
+      (*report)[engine].erase("threads");
   }
   std::vector<Difference> out;
   compare("", &left, &right, out);

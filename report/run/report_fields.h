@@ -57,8 +57,7 @@ void describe(V& v, Engine& r) {
   v.field("kind", r.kind, "", "native or cycle");
   v.field("cycles", r.cycles, "cycles", "simulated, until everything had come to rest");
   v.section("epochs", r.epochs, "where two runs that differ begin to, see carousel compare");
-  v.field("deterministic", r.deterministic, "",
-          "whether everything outside of host is the same in every run");
+  v.field("deterministic", r.deterministic, "", "whether everything outside of host is the same in every run");
   v.field("reason", r.reason, "", "why");
 }
 
@@ -75,7 +74,8 @@ void describe(V& v, Rays& r) {
   v.field("completed", r.completed, "rays", "that shading got back");
   v.field("lost", r.lost, "rays", "emitted and never completed; 0 in a complete run");
   v.field("restarted", r.restarted, "rays", "under way when a resource stopped, and traced again from the root");
-  v.field("paths_restarted", r.paths_restarted, "(pixel, sample)s", "unfinished, that these rays belong to; what they had gathered before was kept");
+  v.field("paths_restarted", r.paths_restarted, "(pixel, sample)s",
+          "unfinished, that these rays belong to; what they had gathered before was kept");
   v.section("by_kind", r.by_kind, "emitted rays by kind");
 }
 
@@ -108,7 +108,8 @@ void describe(V& v, BundleTests& r) {
   v.field("all_miss", r.all_miss, "boxes", "no ray of a bundle went on to");
   v.field("split", r.split, "boxes", "left to the single rays");
   v.field("box_tests_spared", r.box_tests_spared, "tests", "ray against box");
-  v.field("ray_reads_spared", r.ray_reads_spared, "records", "less than without bundles, splitting and dissolving counted");
+  v.field("ray_reads_spared", r.ray_reads_spared, "records",
+          "less than without bundles, splitting and dissolving counted");
 }
 
 template <class V>
@@ -141,8 +142,7 @@ void describe(V& v, Packets& r) {
   v.field("retired", r.retired, "packets", "that came back; equal to issued in a complete run");
   v.field("hops", r.hops, "hops", "links crossed");
   v.field("rays_mean", r.rays_mean, "rays", "members of an issued packet");
-  v.field("local_fraction", r.local_fraction, "",
-          "of a packet's members, those that live where it is looked at");
+  v.field("local_fraction", r.local_fraction, "", "of a packet's members, those that live where it is looked at");
   v.field("bubble_fraction", r.bubble_fraction, "", "of the visits of packets, those without a local ray");
   v.section("latency", r.latency, "from the issue queue until they are home");
 }
@@ -178,7 +178,8 @@ void describe(V& v, Memory& r) {
 template <class V>
 void describe(V& v, BoundClass& r) {
   v.field("name", r.name, "", "class of parts");
-  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "if it were busy all the time, at this work a ray");
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles",
+          "if it were busy all the time, at this work a ray");
 }
 
 template <class V>
@@ -192,7 +193,8 @@ template <class V>
 void describe(V& v, BottleneckGain& r) {
   v.field("name", r.name, "", "class of parts");
   v.field("action", r.action, "", "how it was lifted");
-  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "of the machine with it lifted, steady state");
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles",
+          "of the machine with it lifted, steady state");
   v.field("gain", r.gain, "fraction", "over the machine as it is");
 }
 
@@ -200,7 +202,8 @@ template <class V>
 void describe(V& v, Bottleneck& r) {
   v.field("limits", r.limits, "", "class whose lift gains most; empty when none gains 5 %");
   v.field("verdict", r.verdict, "", "the same in words");
-  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles", "of the machine as it is, over the same rays, steady state");
+  v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles",
+          "of the machine as it is, over the same rays, steady state");
   v.field("noise", r.noise, "fraction", "by how much the two halves of that steady state differ");
   v.field("paths", r.paths, "paths", "simulated for each lift");
   v.section("gains", r.gains, "greatest first");
@@ -230,10 +233,12 @@ void describe(V& v, Machine& r) {
 template <class V>
 void describe(V& v, Stop& r) {
   v.field("resource", r.resource, "", "which");
-  v.field("packets_discarded", r.packets_discarded, "packets", "of all resources, that had been issued and not come home");
+  v.field("packets_discarded", r.packets_discarded, "packets",
+          "of all resources, that had been issued and not come home");
   v.field("stopped_cycle", r.stopped_cycle, "cycles", "when it took its last step");
   v.field("noticed_cycle", r.noticed_cycle, "cycles", "when ray control gave it up");
-  v.field("restarted_cycle", r.restarted_cycle, "cycles", "when nothing was under way any more and rays began again; absent when all had come back");
+  v.field("restarted_cycle", r.restarted_cycle, "cycles",
+          "when nothing was under way any more and rays began again; absent when all had come back");
 }
 
 template <class V>
@@ -247,15 +252,16 @@ void describe(V& v, Faults& r) {
 template <class V>
 void describe(V& v, Host& r) {
   v.field("threads", r.threads, "threads", "worker threads");
-  v.field("wall_seconds", r.wall_seconds, "s",
-          "of the simulation, verification included, loading and building not");
+  v.field("wall_seconds", r.wall_seconds, "s", "of the simulation, verification included, loading and building not");
   v.field("rays_per_second", r.rays_per_second, "rays/s", "completed rays over wall_seconds");
   v.field("scene_seconds", r.scene_seconds, "s", "to load or generate the scene");
   v.field("build_seconds", r.build_seconds, "s", "to build the acceleration structure, without cull planes");
   v.field("plane_seconds", r.plane_seconds, "s", "to find its cull planes");
   v.field("raster_seconds", r.raster_seconds, "s", "to rasterise what the camera sees first");
-  v.field("all_effects_seconds", r.all_effects_seconds, "s", "that the run took with all effects; wall_seconds is without");
-  v.field("recovery_seconds", r.recovery_seconds, "s", "from the last sign of life of a resource that stopped until its rays began again");
+  v.field("all_effects_seconds", r.all_effects_seconds, "s",
+          "that the run took with all effects; wall_seconds is without");
+  v.field("recovery_seconds", r.recovery_seconds, "s",
+          "from the last sign of life of a resource that stopped until its rays began again");
   v.field("accel_bytes", r.accel_bytes, "bytes", "of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "resident in the process at most");
   v.field("simd", r.simd, "", "instruction set of the test kernels");

@@ -104,9 +104,7 @@ class SchemaWriter {
   void section(std::string_view key, std::optional<T>&, const char* meaning) {
     put(key, schema_for(T{}), false, "", meaning);
   }
-  void any(std::string_view key, Json&, const char* meaning) {
-    put(key, {{"type", "object"}}, true, "", meaning);
-  }
+  void any(std::string_view key, Json&, const char* meaning) { put(key, {{"type", "object"}}, true, "", meaning); }
 
  private:
   void put(std::string_view key, Json schema, bool required, const char* unit, const char* meaning) {
@@ -130,13 +128,12 @@ Json stress_json(const Stress& stress) {
 }
 
 Json report_schema() {
-  Json schema{
-      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
-      {"title", "Carousel report"},
-      {"description",
-       "Two runs are identical when all outside of host is equal. Where engine.deterministic is false, "
-       "throughput, tests, packets, collections, resources and links count what the threads happened to "
-       "do and may differ between runs; rays, shading, verify and digest may not."}};
+  Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", "Carousel report"},
+              {"description",
+               "Two runs are identical when all outside of host is equal. Where engine.deterministic is false, "
+               "throughput, tests, packets, collections, resources and links count what the threads happened to "
+               "do and may differ between runs; rays, shading, verify and digest may not."}};
   schema.update(SchemaWriter::schema_for(Report{}));
   schema["$defs"]["stress"] = SchemaWriter::schema_for(Stress{});
   schema["$defs"]["stress"]["description"] = "stress.json of carousel stress";

@@ -30,8 +30,7 @@ class Table {
 
 /// Least, mean and greatest over the resources: what balance looks like without a line for each.
 template <class Value>
-void spread_line(Table& table, std::string_view name, const std::vector<Resource>& resources,
-                 const Value& value) {
+void spread_line(Table& table, std::string_view name, const std::vector<Resource>& resources, const Value& value) {
   std::uint64_t least = value(resources.front()), most = least, sum = 0;
   for (const Resource& resource : resources) {
     least = std::min(least, value(resource));
@@ -44,8 +43,8 @@ void spread_line(Table& table, std::string_view name, const std::vector<Resource
 }
 
 void resource_lines(Table& table, const std::vector<Resource>& resources) {
-  table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean",
-             fmt::format("{} of them", resources.size()), "least", "mean", "most");
+  table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean", fmt::format("{} of them", resources.size()),
+             "least", "mean", "most");
   spread_line(table, "rays", resources, [](const Resource& r) { return r.rays_completed; });
   spread_line(table, "rays tested", resources, [](const Resource& r) { return r.rays_tested; });
   spread_line(table, "box tests", resources, [](const Resource& r) { return r.box_tests; });
@@ -82,16 +81,18 @@ void link_line(Table& table, const std::vector<Link>& links) {
 
 void test_line(Table& table, const Tests& t) {
   std::string rare;
-  for (const auto& [name, test] : {std::pair{"plane", t.plane}, std::pair{"culled", t.culled}, std::pair{"bundle", t.bundle}})
+  for (const auto& [name, test] :
+       {std::pair{"plane", t.plane}, std::pair{"culled", t.culled}, std::pair{"bundle", t.bundle}})
     if (test.count > 0) rare += fmt::format("   {} {:.2f}", name, test.per_ray);
   if (t.procedural) rare += fmt::format("   procedural {:.2f}", t.procedural->per_ray);
   if (t.any_hit) rare += fmt::format("   any-hit {:.2f}", t.any_hit->per_ray);
-  table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray,
-             t.triangle.per_ray, t.transforms.per_ray, rare);
+  table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray, t.triangle.per_ray,
+             t.transforms.per_ray, rare);
   if (const auto& b = t.bundles) {
     const std::uint64_t boxes = b->sum.all_hit + b->sum.all_miss + b->sum.split;
-    table.line("bundles", "{} of {:.1f} rays   of their boxes {} all hit, {} all missed, {} split", grouped(b->formed), b->rays_mean,
-               percent(ratio(b->sum.all_hit, boxes)), percent(ratio(b->sum.all_miss, boxes)), percent(ratio(b->sum.split, boxes)));
+    table.line("bundles", "{} of {:.1f} rays   of their boxes {} all hit, {} all missed, {} split", grouped(b->formed),
+               b->rays_mean, percent(ratio(b->sum.all_hit, boxes)), percent(ratio(b->sum.all_miss, boxes)),
+               percent(ratio(b->sum.split, boxes)));
   }
 }
 
@@ -107,9 +108,9 @@ void cull_plane_lines(Table& table, const Report& report) {
     sum.triangle_tests_spared += level.triangle_tests_spared;
     sum.transforms_spared += level.transforms_spared;
   }
-  table.line("cull planes", "{} planes, {:.1f} bytes a node, found in {}   {} of {} children culled", grouped(report.cull_planes->planes),
-             report.cull_planes->bytes_per_node, seconds_text(report.host.plane_seconds.value_or(0)), grouped(sum.culled),
-             grouped(sum.children_tested));
+  table.line("cull planes", "{} planes, {:.1f} bytes a node, found in {}   {} of {} children culled",
+             grouped(report.cull_planes->planes), report.cull_planes->bytes_per_node,
+             seconds_text(report.host.plane_seconds.value_or(0)), grouped(sum.culled), grouped(sum.children_tested));
   table.line("", "spared: {} nodes   {} leaves of {} triangles   {} transforms   {} boxes", grouped(sum.nodes_spared),
              grouped(sum.leaves_spared), grouped(sum.triangle_tests_spared), grouped(sum.transforms_spared),
              grouped(sum.box_tests_spared));
@@ -118,8 +119,9 @@ void cull_plane_lines(Table& table, const Report& report) {
 void proof_line(Table& table, const EffectsProof& proof) {
   std::string cycles;
   if (proof.cycles_spared) cycles = fmt::format("   {} cycles", *proof.cycles_spared);
-  table.line("all effects", "hits {}   image {}   spared: {} rays   {} tests{}", proof.same_hits ? "the same" : "DIFFER",
-             proof.same_image ? "the same" : "DIFFERS", proof.rays_spared, proof.tests_spared, cycles);
+  table.line("all effects", "hits {}   image {}   spared: {} rays   {} tests{}",
+             proof.same_hits ? "the same" : "DIFFER", proof.same_image ? "the same" : "DIFFERS", proof.rays_spared,
+             proof.tests_spared, cycles);
 }
 
 void packet_lines(Table& table, const Report& report) {
@@ -130,9 +132,8 @@ void packet_lines(Table& table, const Report& report) {
                percent(p->local_fraction), percent(p->bubble_fraction));
   }
   if (const auto& c = report.collections) {
-    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled",
-               grouped(c->created), grouped(c->peak), percent(c->fullness_mean), grouped(c->memberships_peak),
-               grouped(c->spilled));
+    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled", grouped(c->created),
+               grouped(c->peak), percent(c->fullness_mean), grouped(c->memberships_peak), grouped(c->spilled));
   }
 }
 
@@ -208,22 +209,24 @@ std::string report_table(const Report& report) {
   table.line("rays", "{} emitted   {} completed   {} lost{}", grouped(rays.emitted), grouped(rays.completed),
              grouped(rays.lost),
              rays.restarted == 0 ? ""
-                                 : fmt::format("   {} restarted of {} paths, {} after a resource stopped", grouped(rays.restarted),
-                                               grouped(rays.paths_restarted),
+                                 : fmt::format("   {} restarted of {} paths, {} after a resource stopped",
+                                               grouped(rays.restarted), grouped(rays.paths_restarted),
                                                stop && stop->restarted_cycle
                                                    ? grouped(*stop->restarted_cycle - *stop->stopped_cycle) + " cycles"
                                                    : seconds_text(report.host.recovery_seconds.value_or(0))));
-  table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera),
-             grouped(rays.by_kind.bounce), grouped(rays.by_kind.shadow));
+  table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera), grouped(rays.by_kind.bounce),
+             grouped(rays.by_kind.shadow));
   if (report.raster) {
     const Raster& raster = *report.raster;
-    table.line("raster", "{} triangles seen {} times by tiles   {} hits   {} left to rays   {}", grouped(raster.triangles),
-               grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
+    table.line("raster", "{} triangles seen {} times by tiles   {} hits   {} left to rays   {}",
+               grouped(raster.triangles), grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
                seconds_text(report.host.raster_seconds.value_or(0)));
   }
   if (report.faults && report.faults->cycles_without)
-    table.line("faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost, grouped(*report.faults->cycles_without),
-               report.faults->same_hits.value_or(true) ? ", the same hits and picture" : ", OTHER HITS OR ANOTHER PICTURE");
+    table.line(
+        "faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost,
+        grouped(*report.faults->cycles_without),
+        report.faults->same_hits.value_or(true) ? ", the same hits and picture" : ", OTHER HITS OR ANOTHER PICTURE");
   table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
              scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
              seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
@@ -241,10 +244,8 @@ std::string report_table(const Report& report) {
   table.gap();
   if (report.verify)
     table.line("verify", "{} rays traced again, {} mismatches{}", grouped(report.verify->compared),
-               grouped(report.verify->mismatches),
-               report.verify->example.empty() ? "" : "; " + report.verify->example);
-  table.line("digest", "hits {}{}", report.digest.hits,
-             report.digest.image ? "   image " + *report.digest.image : "");
+               grouped(report.verify->mismatches), report.verify->example.empty() ? "" : "; " + report.verify->example);
+  table.line("digest", "hits {}{}", report.digest.hits, report.digest.image ? "   image " + *report.digest.image : "");
   return table.take();
 }
 

@@ -11,8 +11,10 @@ void describe(V& v, EffectCost& r) {
   v.field("rays", r.rays, "rays", "of a path, at most");
   v.field("texture_reads", r.texture_reads, "lookups", "filtered, at a hit, at most");
   v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
-  v.field("cycles_per_hit", r.cycles_per_hit, "cycles", "modelled, of a shader worker or opacity unit where a surface has it");
-  v.field("cycles_per_path", r.cycles_per_path, "cycles", "modelled, of shader workers for those rays, at most; their tests come on top");
+  v.field("cycles_per_hit", r.cycles_per_hit, "cycles",
+          "modelled, of a shader worker or opacity unit where a surface has it");
+  v.field("cycles_per_path", r.cycles_per_path, "cycles",
+          "modelled, of shader workers for those rays, at most; their tests come on top");
 }
 
 template <class V>
@@ -27,7 +29,8 @@ void describe(V& v, Effect& r) {
 
 template <class V>
 void describe(V& v, ShaderClass& r) {
-  v.field("name", r.name, "", "unlit, plain, textured, layered, opaque (other boundaries than glTF's core), transmissive, or anything");
+  v.field("name", r.name, "",
+          "unlit, plain, textured, layered, opaque (other boundaries than glTF's core), transmissive, or anything");
   v.field("materials", r.materials, "materials", "shaded by code for this");
 }
 
@@ -42,7 +45,8 @@ void describe(V& v, EffectsProof& r) {
   v.field("same_hits", r.same_hits, "", "digest.hits is the same");
   v.field("same_image", r.same_image, "", "digest.image is the same");
   v.field("rays_spared", r.rays_spared, "rays", "that all effects would have sent besides");
-  v.field("tests_spared", r.tests_spared, "tests", "box, triangle, procedural, plane and bundle tests; on the native engine they vary by timing");
+  v.field("tests_spared", r.tests_spared, "tests",
+          "box, triangle, procedural, plane and bundle tests; on the native engine they vary by timing");
   v.field("cycles_spared", r.cycles_spared, "cycles", "of the simulated machine");
 }
 
@@ -53,7 +57,8 @@ void describe(V& v, Shading& r) {
   v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
   v.field("utilisation", r.utilisation, "fraction", "of the workers' cycles, those spent on shading and camera rays");
   v.section("effects", r.effects, "effects of light");
-  v.field("effects_choice", r.effects_choice, "", "shading.effects: auto, all, or the list; a list changes digest.image");
+  v.field("effects_choice", r.effects_choice, "",
+          "shading.effects: auto, all, or the list; a list changes digest.image");
   v.field("path_state_bytes", r.path_state_bytes, "bytes", "of a path in flight");
   v.section("saved", r.saved, "what effects that are off did not take");
   v.section("proof", r.proof, "the same run with all effects, with verify: effects");

@@ -30,7 +30,8 @@ void describe(V& v, Traffic& r) {
   v.field("window_end", r.window_end, "cycle", "the one after the last in which packets were created");
   v.field("measured", r.measured, "packets", "created within the window");
   v.field("offered", r.offered, "packets/resource/cycle", "created within the window");
-  v.field("accepted", r.accepted, "packets/resource/cycle", "delivered within the window; less than offered: saturated");
+  v.field("accepted", r.accepted, "packets/resource/cycle",
+          "delivered within the window; less than offered: saturated");
   v.field("routers_mean", r.routers_mean, "resources", "visited by a measured packet, the first and the last included");
   v.field("zero_load_latency", r.zero_load_latency, "cycles", "mean of the measured packets if each were alone");
   v.section("latency", r.latency, "of the measured packets");

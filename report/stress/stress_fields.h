@@ -27,7 +27,8 @@ void describe(V& v, StressRow& r) {
   v.field("rate_most", r.rate_most, "messages/s", "fastest repetition");
   v.section("transit", r.transit, "from the push that took a message to its pop");
   v.section("round_trip", r.round_trip, "until it is back where it came from");
-  v.field("fairness", r.fairness, "fraction", "least over most sent by a producer when the first had sent its share; worst repetition");
+  v.field("fairness", r.fairness, "fraction",
+          "least over most sent by a producer when the first had sent its share; worst repetition");
   v.field("push_refused", r.push_refused, "fraction", "of the push calls");
   v.field("pop_refused", r.pop_refused, "fraction", "of the pop calls");
   v.field("blocked", r.blocked, "fraction", "back-pressure: of the producers' time, waiting for a place");

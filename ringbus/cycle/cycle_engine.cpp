@@ -8,10 +8,10 @@
 #include "ringbus/cycle/fabric/bridge.h"
 #include "ringbus/cycle/fabric/bus.h"
 #include "ringbus/cycle/machine/cycle_machine.h"
-#include "ringbus/cycle/tile/independent_tile.h"
 #include "ringbus/cycle/memory/memory.h"
-#include "ringbus/cycle/shading/shading_agent.h"
 #include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/shading/shading_agent.h"
+#include "ringbus/cycle/tile/independent_tile.h"
 #include "ringbus/cycle/tile/tile.h"
 #include "ringbus/cycle/time/wait_cycle.h"
 #include "ringbus/cycle/time/windows.h"
@@ -95,7 +95,7 @@ class CycleRun {
   struct NodePorts {
     std::vector<InPort> in;
     std::vector<OutPort> out;
-    std::vector<ResourceId> out_to;   ///< as `out`
+    std::vector<ResourceId> out_to;  ///< as `out`
   };
   NodePorts ports_at(ResourceId node) const {
     NodePorts ports;
@@ -135,7 +135,8 @@ class CycleRun {
     ports.out = std::move(node.out);
     if (!machine_.topology.direct()) return ports;
     ports.out_to.resize(machine_.topology.resources());
-    for (std::uint32_t i = 0; !machine_.topology.bus() && i < node.out_to.size(); ++i) ports.out_to[node.out_to[i].value] = i;
+    for (std::uint32_t i = 0; !machine_.topology.bus() && i < node.out_to.size(); ++i)
+      ports.out_to[node.out_to[i].value] = i;
     return ports;
   }
 
@@ -168,7 +169,10 @@ class CycleRun {
       Channel<std::uint64_t>& down = *lines_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
       Channel<std::uint64_t>& up = *lines_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
       caches_.push_back(std::make_unique<ShapeCache>(
-          config_.memory, std::vector<ShapeCache::Client>(clients.begin() + static_cast<std::ptrdiff_t>(first), clients.begin() + static_cast<std::ptrdiff_t>(last)), down, up));
+          config_.memory,
+          std::vector<ShapeCache::Client>(clients.begin() + static_cast<std::ptrdiff_t>(first),
+                                          clients.begin() + static_cast<std::ptrdiff_t>(last)),
+          down, up));
       memory_clients.push_back({&down, &up});
     }
     memory_ = std::make_unique<Memory>(config_.memory, std::move(memory_clients));
@@ -178,8 +182,7 @@ class CycleRun {
   Cycle lookahead() const {
     Cycle least = control_latency(config_);
     for (const Topology::Wire& wire : machine_.topology.wires()) least = std::min(least, latency_of(wire));
-    return std::min({least,
-                     ShapeCache::request_latency(config_.memory), ShapeCache::answer_latency(config_.memory),
+    return std::min({least, ShapeCache::request_latency(config_.memory), ShapeCache::answer_latency(config_.memory),
                      Memory::request_latency(config_.memory), Memory::answer_latency(config_.memory)});
   }
 
@@ -285,7 +288,8 @@ class CycleRun {
       c.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[c.links.size()]->queue});
       LinkStatistics s;
       s.packets = port.packets();
-      out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s, {}, port.faults()});
+      out.links.push_back(
+          {wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s, {}, port.faults()});
     });
     for (const auto& cache : caches_) {
       const ShapeCache::Statistics& s = cache->statistics();
@@ -313,7 +317,7 @@ class CycleRun {
   const Config& config_;
   const RunOptions& options_;
   CycleMachine machine_;
-  std::vector<std::unique_ptr<Wire>> wires_;   // as the topology's
+  std::vector<std::unique_ptr<Wire>> wires_;  // as the topology's
   std::vector<std::unique_ptr<Channel<NewRays>>> new_rays_;
   std::vector<std::unique_ptr<Channel<CompletedRays>>> completed_;
   std::vector<std::unique_ptr<Channel<FetchRequest>>> fetches_;

@@ -22,16 +22,22 @@ class FirstPaths final : public Workload {
     return made;
   }
   std::uint32_t extra_effects(const RayResult& result) const override { return whole_->extra_effects(result); }
-  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override { whole_->shade(worker, completed, out); }
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
+    whole_->shade(worker, completed, out);
+  }
 
  private:
   std::unique_ptr<Workload> whole_;
   std::uint64_t left_;
 };
 
-std::int64_t halved(std::int64_t cycles) { return std::max<std::int64_t>(1, cycles / 2); }
+std::int64_t halved(std::int64_t cycles) {
+  return std::max<std::int64_t>(1, cycles / 2);
+}
 
-void double_units(TestersConfig& testers, TesterUnits TestersConfig::*bank) { (testers.*bank).units *= 2; }
+void double_units(TestersConfig& testers, TesterUnits TestersConfig::*bank) {
+  (testers.*bank).units *= 2;
+}
 
 Lift units_lift(std::string name, std::string key, TesterUnits TestersConfig::*bank) {
   return {std::move(name), "twice testers." + key + ".units", [bank](Config& c) {
@@ -46,7 +52,8 @@ std::vector<Lift> lifts(const Config& config, const accel::Accel& accel) {
   std::vector<Lift> all;
   all.push_back(units_lift("box_tests", "box", &TestersConfig::box));
   all.push_back(units_lift("triangle_tests", "triangle", &TestersConfig::triangle));
-  if (accel.procedural_primitives) all.push_back(units_lift("procedural_tests", "procedural", &TestersConfig::procedural));
+  if (accel.procedural_primitives)
+    all.push_back(units_lift("procedural_tests", "procedural", &TestersConfig::procedural));
   if (accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
     all.push_back(units_lift("any_hit_lookups", "any_hit_unit", &TestersConfig::any_hit_unit));
   if (config.cull_planes.count > 0) all.push_back(units_lift("plane_tests", "plane", &TestersConfig::plane));
@@ -55,13 +62,14 @@ std::vector<Lift> lifts(const Config& config, const accel::Accel& accel) {
     all.push_back({"ray_reads", "twice rays.reads_per_cycle", [](Config& c) { c.rays.reads_per_cycle *= 2; }});
   all.push_back(units_lift("transforms", "transform", &TestersConfig::transform));
   const bool independent = config.topology.shape == TopologyShape::kIndependent;
-  if (!independent) all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
+  if (!independent)
+    all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
   all.push_back({"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", [](Config& c) {
                    c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);
                    c.memory.dram_latency_cycles = halved(c.memory.dram_latency_cycles);
                  }});
-  all.push_back({"memory_bandwidth", "twice memory.dram_bytes_per_cycle",
-                 [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }});
+  all.push_back(
+      {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }});
   all.push_back({"ray_slots", "twice rays.slots_per_resource", [](Config& c) { c.rays.slots_per_resource *= 2; }});
   all.push_back({"shading", "twice shading.workers", [](Config& c) { c.shading.workers *= 2; }});
   if (config.topology.resources > 1 && config.collections.home != Home::kLocal && !independent) {

@@ -15,8 +15,8 @@ namespace carousel::ringbus {
 
 /// A class of the machine's parts, and how a machine looks that has twice as much of it (or half the latency).
 struct Lift {
-  std::string name;     ///< as in the report: box_tests, link_bandwidth, ...
-  std::string action;   ///< what was doubled or halved, with the key
+  std::string name;    ///< as in the report: box_tests, link_bandwidth, ...
+  std::string action;  ///< what was doubled or halved, with the key
   std::function<void(Config&)> apply;
 };
 /// Those that can make a difference to the configured machine with such a scene.
@@ -26,15 +26,15 @@ std::vector<Lift> lifts(const Config& config, const accel::Accel& accel);
 struct Gain {
   std::string name, action;
   double rays_per_kilocycle = 0;
-  double gain = 0;   ///< over the machine as it is, as a fraction of its throughput
+  double gain = 0;  ///< over the machine as it is, as a fraction of its throughput
 };
 
 /// What limits a machine, found by simulating it with each class lifted in turn.
 struct Bottleneck {
-  double rays_per_kilocycle = 0;   ///< of the machine as it is, over the same rays
-  double noise = 0;                ///< by how much two halves of its steady state differ, as a fraction
-  std::uint64_t paths = 0;         ///< first rays simulated each time
-  std::vector<Gain> gains;         ///< greatest first
+  double rays_per_kilocycle = 0;  ///< of the machine as it is, over the same rays
+  double noise = 0;               ///< by how much two halves of its steady state differ, as a fraction
+  std::uint64_t paths = 0;        ///< first rays simulated each time
+  std::vector<Gain> gains;        ///< greatest first
 };
 
 /// Makes the workload of one simulation. Called for each; must give the same rays each time.

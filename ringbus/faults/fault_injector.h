@@ -10,7 +10,7 @@ namespace carousel::ringbus {
 /// What happens to one frame.
 struct FrameFate {
   bool drop = false, duplicate = false, corrupt = false, reorder = false, delay = false;
-  std::uint64_t bits = 0;   ///< random: where a corrupted frame is hurt
+  std::uint64_t bits = 0;  ///< random: where a corrupted frame is hurt
 };
 
 /// Draws fates: the n-th frame of a stream has the same one in every run.
@@ -30,7 +30,7 @@ class FaultDice {
     fate.delay = happens(links_.delay);
     fate.bits = draw();
     counts.dropped += fate.drop;
-    if (fate.drop) return fate;   // the rest cannot be seen
+    if (fate.drop) return fate;  // the rest cannot be seen
     counts.duplicated += fate.duplicate;
     counts.corrupted += fate.corrupt;
     counts.reordered += fate.reorder;

@@ -24,7 +24,7 @@ class FaultyWire {
   FaultyWire(const FaultyWire&) = delete;
   FaultyWire& operator=(const FaultyWire&) = delete;
 
-  bool has_room() { return queue_.free_places() > 1; }   // one may come twice
+  bool has_room() { return queue_.free_places() > 1; }  // one may come twice
 
   /// Takes the frame, which is the wire's from then on.
   void put(Frame frame) {
@@ -38,7 +38,7 @@ class FaultyWire {
         late_.push_back({Clock::now() + delay_, frame});
       } else if (fate.reorder) {
         after_next_.push_back(frame);
-        return;   // the next one goes first
+        return;  // the next one goes first
       } else {
         send(frame);
       }
@@ -79,7 +79,7 @@ class FaultyWire {
   FaultDice dice_;
   std::chrono::nanoseconds delay_;
   std::vector<Frame> after_next_;
-  int quiet_ = 0;   // releases since something waits for a next one
+  int quiet_ = 0;  // releases since something waits for a next one
   std::vector<Late> late_;
   LinkFaultCounts counts_;
 };

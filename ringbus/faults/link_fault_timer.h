@@ -20,13 +20,15 @@ namespace carousel::ringbus::cycle {
 class LinkFaultTimer {
  public:
   LinkFaultTimer(const FaultsConfig& config, std::uint64_t link, Cycle latency)
-      : dice_(config, 2 * link), ack_dice_(config, 2 * link + 1),
-        delay_(static_cast<Cycle>(config.links.delay_cycles)), latency_(latency) {}
+      : dice_(config, 2 * link),
+        ack_dice_(config, 2 * link + 1),
+        delay_(static_cast<Cycle>(config.links.delay_cycles)),
+        latency_(latency) {}
 
   struct Delivery {
-    Cycle arrival = 0;     ///< of the head
-    Cycle link_free = 0;   ///< when the next one may start
-    Cycle busy = 0;        ///< for which the link moved something
+    Cycle arrival = 0;    ///< of the head
+    Cycle link_free = 0;  ///< when the next one may start
+    Cycle busy = 0;       ///< for which the link moved something
   };
   /// A packet of `cycles` that starts `now`.
   Delivery send(Cycle now, Cycle cycles) {
@@ -71,7 +73,7 @@ class LinkFaultTimer {
   /// What late acknowledgements and asking again have brought by `now`.
   struct MadeGood {
     std::uint32_t places = 0;
-    Cycle busy = 0;   ///< for which the link was asked over
+    Cycle busy = 0;  ///< for which the link was asked over
   };
   MadeGood made_good(Cycle now) {
     MadeGood out;
@@ -108,18 +110,19 @@ class LinkFaultTimer {
     const bool through = !frame.drop && !frame.corrupt;
     const FrameFate answer = through ? ack_dice_.next(counts_) : FrameFate{};
     if (through && !answer.drop && !answer.corrupt)
-      silent_.back() = std::min(silent_.back(), ask_at_ + patience() + (frame.delay ? delay_ : 0) + (answer.delay ? delay_ : 0));
+      silent_.back() =
+          std::min(silent_.back(), ask_at_ + patience() + (frame.delay ? delay_ : 0) + (answer.delay ? delay_ : 0));
     ask_at_ += cycles_ + patience();
     return cycles_;
   }
 
   FaultDice dice_, ack_dice_;
   Cycle delay_, latency_;
-  Cycle cycles_ = 1;   // of the last packet
+  Cycle cycles_ = 1;  // of the last packet
   Cycle last_ = 0;
-  bool overtaken_ = false;   // the one before comes after the next
-  std::deque<Cycle> silent_;   // acknowledgements that did not come when they should: when they will, or never
-  Cycle ask_at_ = kNever;      // while there are any
+  bool overtaken_ = false;    // the one before comes after the next
+  std::deque<Cycle> silent_;  // acknowledgements that did not come when they should: when they will, or never
+  Cycle ask_at_ = kNever;     // while there are any
   LinkFaultCounts counts_;
 };
 

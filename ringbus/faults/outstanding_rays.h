@@ -38,13 +38,15 @@ class RetryLedger {
     const std::lock_guard lock(mutex_);
     RayBatch rays;
     for (const auto& [k, ray] : open_) rays.push_back(ray);
-    std::sort(rays.begin(), rays.end(), [](const RayRequest& a, const RayRequest& b) { return key(a.tag) < key(b.tag); });
+    std::sort(rays.begin(), rays.end(),
+              [](const RayRequest& a, const RayRequest& b) { return key(a.tag) < key(b.tag); });
     return rays;
   }
 
  private:
   static std::uint64_t key(const RayTag& tag) {
-    return std::uint64_t{tag.path} << 32 | std::uint64_t{tag.bounce} << 16 | static_cast<std::uint64_t>(tag.kind) << 8 | tag.index;
+    return std::uint64_t{tag.path} << 32 | std::uint64_t{tag.bounce} << 16 | static_cast<std::uint64_t>(tag.kind) << 8 |
+           tag.index;
   }
   mutable std::mutex mutex_;
   std::unordered_map<std::uint64_t, RayRequest> open_;

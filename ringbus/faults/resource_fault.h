@@ -41,15 +41,17 @@ class ResourceFault {
  private:
   using Clock = std::chrono::steady_clock;
   explicit ResourceFault(const Config& config)
-      : kind_(config.faults.resource.kind), after_(static_cast<std::uint64_t>(config.faults.resource.after_rays)),
-        pause_(config.faults.resource.cycles * 1000 / config.engine.clock_mhz), factor_(config.faults.resource.factor) {}
+      : kind_(config.faults.resource.kind),
+        after_(static_cast<std::uint64_t>(config.faults.resource.after_rays)),
+        pause_(config.faults.resource.cycles * 1000 / config.engine.clock_mhz),
+        factor_(config.faults.resource.factor) {}
 
   FaultsConfig::Resource::Kind kind_;
   std::uint64_t after_;
   std::chrono::nanoseconds pause_;
   std::int64_t factor_;
   bool paused_ = false;
-  Clock::time_point until_{};   // it rests until then
+  Clock::time_point until_{};  // it rests until then
 };
 
 /// Under virtual time a slow resource has slow testers, from the beginning.

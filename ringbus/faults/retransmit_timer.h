@@ -8,9 +8,10 @@ namespace carousel::ringbus {
 
 /// For how many turns a sender waits for an acknowledgement before it sends again: twice what one takes on average
 /// (V. Jacobson, Congestion avoidance and control, SIGCOMM 1988), learnt from frames that were sent once only, and
-/// doubled each time it was in vain (P. Karn, C. Partridge, Improving round-trip time estimates, SIGCOMM 1987). Turns are
-/// short where threads have cores, and then there is no need to wait for so much as a clock's tick. Where threads wait for
-/// cores each turn takes a time slice in which the other end will have had its turn, so few of them are enough.
+/// doubled each time it was in vain (P. Karn, C. Partridge, Improving round-trip time estimates, SIGCOMM 1987). Turns
+/// are short where threads have cores, and then there is no need to wait for so much as a clock's tick. Where threads
+/// wait for cores each turn takes a time slice in which the other end will have had its turn, so few of them are
+/// enough.
 class ResendPatience {
  public:
   using Clock = std::chrono::steady_clock;
@@ -26,7 +27,7 @@ class ResendPatience {
     if (timed_ && expected > timed_sequence_) {
       average_ += (static_cast<double>(turn_ - timed_since_) - average_) / 8;
       timed_ = false;
-      factor_ = 1;   // not for less: an answer to what was sent twice does not say how long one takes
+      factor_ = 1;  // not for less: an answer to what was sent twice does not say how long one takes
     }
     quiet_ = 0;
   }
@@ -56,11 +57,11 @@ class ResendPatience {
   static constexpr std::uint64_t kSlow = 1;
   static constexpr std::chrono::microseconds kSlice{500};
 
-  std::uint64_t turn_ = 0, quiet_ = 0;   // quiet: since something was heard, or sent again
+  std::uint64_t turn_ = 0, quiet_ = 0;  // quiet: since something was heard, or sent again
   Clock::time_point slow_at_{};
   double average_ = 2;
   std::uint64_t factor_ = 1;
-  bool timed_ = false;                   // the frame that is being timed, and since when
+  bool timed_ = false;  // the frame that is being timed, and since when
   std::uint64_t timed_sequence_ = 0, timed_since_ = 0;
 };
 

@@ -13,8 +13,9 @@ namespace carousel::ringbus {
 
 /// What is missing when a resource has stopped and nothing is to begin again; `open` as RetryLedger tells it.
 inline std::string missing_rays(ResourceId stopped, const RayBatch& open, std::uint64_t completed) {
-  std::string text = fmt::format("resource {} stopped and faults.resource.recover is off: {} rays are missing, of paths",
-                                 stopped.value, open.size());
+  std::string text =
+      fmt::format("resource {} stopped and faults.resource.recover is off: {} rays are missing, of paths",
+                  stopped.value, open.size());
   constexpr std::size_t kNamed = 8;
   const std::size_t named = std::min(kNamed, open.size());
   for (std::size_t i = 0; i < named; ++i) text += fmt::format(" {}{}", open[i].tag.path, i + 1 < named ? "," : "");

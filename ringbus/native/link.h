@@ -10,10 +10,10 @@
 #include "core/config/config.h"
 #include "core/types/ids.h"
 #include "ringbus/faults/link_fault_counts.h"
-#include "ringbus/results/link_statistics.h"
-#include "ringbus/results/occupancy_series.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/queues/link_queue.h"
+#include "ringbus/results/link_statistics.h"
+#include "ringbus/results/occupancy_series.h"
 
 namespace carousel::ringbus {
 

@@ -6,9 +6,13 @@
 namespace carousel::ringbus {
 
 Machine::Machine(const Config& c, const accel::Accel& a, float scene_size)
-    : config(c), accel(a), topology(c.topology), packets_per_direction(packets_in_flight(c.topology)),
+    : config(c),
+      accel(a),
+      topology(c.topology),
+      packets_per_direction(packets_in_flight(c.topology)),
       packets(make_packets(c, topology, packets_per_direction)),
-      stores(make_ray_stores(c)), control(c, stores, Resource::initial_tests(c, a), scene_size) {
+      stores(make_ray_stores(c)),
+      control(c, stores, Resource::initial_tests(c, a), scene_size) {
   // One resource sends on a wire and one receives, and one thread at a time plays a resource.
   require_parties(c.topology.link.queue, "topology.link.queue", Parties::kOne, Parties::kOne);
   for (const Topology::Wire& wire : topology.wires())

@@ -23,10 +23,10 @@ struct Machine {
   const Config& config;
   const accel::Accel& accel;
   Topology topology;
-  std::uint32_t packets_per_direction;   ///< of one resource
-  std::vector<Packet> packets;           ///< by owner, then direction
-  std::vector<std::unique_ptr<Link>> links;   ///< as topology.wires()
-  std::vector<std::unique_ptr<RayStore>> stores;   ///< by resource
+  std::uint32_t packets_per_direction;            ///< of one resource
+  std::vector<Packet> packets;                    ///< by owner, then direction
+  std::vector<std::unique_ptr<Link>> links;       ///< as topology.wires()
+  std::vector<std::unique_ptr<RayStore>> stores;  ///< by resource
   RayControl control;
   CompletedQueue completed;
 };

@@ -55,7 +55,7 @@ class NativeRun {
 
  private:
   struct alignas(128) Progress {
-    std::atomic<std::uint64_t> steps{0};   // that moved something
+    std::atomic<std::uint64_t> steps{0};  // that moved something
   };
 
   using Clock = std::chrono::steady_clock;
@@ -191,17 +191,20 @@ class NativeRun {
   }
 
   std::string describe_stuck() const {
-    std::string text = fmt::format("no progress for {} ms with {} rays outstanding; who waits for whom:",
-                                   options_.stuck_after.count(), count_.outstanding.load());
+    std::string text =
+        fmt::format("no progress for {} ms with {} rays outstanding; who waits for whom:", options_.stuck_after.count(),
+                    count_.outstanding.load());
     for (const auto& port : ports_) text += "\n  " + port->describe();
     return text;
   }
 
   void check_drained() const {
     if (count_.emitted != count_.completed)
-      throw SimulationError(fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
+      throw SimulationError(
+          fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
     for (const auto& port : ports_)
-      if (!(given_up_ && port->resource().id() == *lost_) && !port->drained()) throw SimulationError("not everything came home: " + port->describe());
+      if (!(given_up_ && port->resource().id() == *lost_) && !port->drained())
+        throw SimulationError("not everything came home: " + port->describe());
   }
 
   RunResult result(bool complete, double wall_seconds) const {
@@ -222,7 +225,8 @@ class NativeRun {
       out.collections.push_back(ports_[r]->resource().collections().statistics());
     }
     for (const auto& link : machine_->links)
-      out.links.push_back({link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
+      out.links.push_back(
+          {link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
     for (std::size_t i = 0; i < faults_before_.size(); ++i) out.links[i].faults += faults_before_[i];
     out.start = start_;
     return out;
@@ -235,15 +239,15 @@ class NativeRun {
   Workload& workload_;
   std::unique_ptr<Machine> machine_;
   RayCount count_;
-  std::unique_ptr<RetryLedger> ledger_;       // where a resource may stop
-  std::atomic<std::uint64_t> turns_{0};       // of the thread that plays it
+  std::unique_ptr<RetryLedger> ledger_;  // where a resource may stop
+  std::atomic<std::uint64_t> turns_{0};  // of the thread that plays it
   std::uint64_t turns_seen_ = 0, beats_ = 0;
   Clock::time_point last_beat_{};
-  std::optional<ResourceId> lost_;            // it has stopped
-  bool given_up_ = false;                     // and the others go on without it
+  std::optional<ResourceId> lost_;  // it has stopped
+  bool given_up_ = false;           // and the others go on without it
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0, packets_discarded_ = 0;
-  std::uint64_t slots_used_ = 0, slot_waits_ = 0;   // before the machine was built anew
-  std::vector<LinkFaultCounts> faults_before_;      // likewise, by link
+  std::uint64_t slots_used_ = 0, slot_waits_ = 0;  // before the machine was built anew
+  std::vector<LinkFaultCounts> faults_before_;     // likewise, by link
   double recovery_seconds_ = 0;
   std::vector<std::unique_ptr<StatisticsSink>> sinks_;
   std::vector<std::unique_ptr<NativePort>> ports_;
@@ -253,7 +257,7 @@ class NativeRun {
   std::unique_ptr<Progress[]> progress_;
   std::atomic<bool> end_{false};
   bool stuck_ = false;
-  std::mutex mutex_;                         // guards ended_ and error_
+  std::mutex mutex_;  // guards ended_ and error_
   std::condition_variable ended_changed_;
   std::size_t ended_ = 0;
   std::exception_ptr error_;

@@ -10,8 +10,8 @@ namespace carousel::ringbus {
 
 namespace {
 
-constexpr std::size_t kReceiveBatch = 8;     // packets taken from a link at once: one index update for all
-constexpr std::size_t kCompletedBatch = 512; // rays handed to shading at once, at most a quarter of the slots
+constexpr std::size_t kReceiveBatch = 8;       // packets taken from a link at once: one index update for all
+constexpr std::size_t kCompletedBatch = 512;   // rays handed to shading at once, at most a quarter of the slots
 constexpr std::size_t kCompletedPause = 4096;  // completed rays after which issuing makes a pause for shading
 
 }  // namespace
@@ -121,9 +121,15 @@ void NativePort::arrive(PacketId id) {
   if (stopped_) return forward(id);
   if (machine_.topology.handles(packet, resource_.id())) {
     switch (packet.kind) {
-      case PacketKind::kTest: resource_.test(packet); break;
-      case PacketKind::kMemberships: resource_.join(packet); break;
-      case PacketKind::kRays: take_rays(packet); break;
+      case PacketKind::kTest:
+        resource_.test(packet);
+        break;
+      case PacketKind::kMemberships:
+        resource_.join(packet);
+        break;
+      case PacketKind::kRays:
+        take_rays(packet);
+        break;
     }
   }
   forward(id);
@@ -131,9 +137,8 @@ void NativePort::arrive(PacketId id) {
 
 void NativePort::forward(PacketId id) {
   const Packet& packet = machine_.packet(id);
-  const std::size_t exit = machine_.topology.direct()
-                               ? exit_of_[machine_.topology.next(packet, resource_.id()).value]
-                               : packet.direction;
+  const std::size_t exit =
+      machine_.topology.direct() ? exit_of_[machine_.topology.next(packet, resource_.id()).value] : packet.direction;
   exits_[exit].in_hand.push_back(id);
   hop(id);
 }
@@ -235,7 +240,7 @@ void NativePort::take_rays(Packet& packet) {
           packet.members.push_back({*id, 0});
         continue;
       }
-      share = taken;   // no slot is left
+      share = taken;  // no slot is left
     }
     packet.requests[kept] = packet.requests[i];
     if (addressed) packet.addresses[kept] = packet.addresses[i];
@@ -317,8 +322,8 @@ bool NativePort::issue(bool partial) {
   bool moved = false;
   // When only partial collections are left, one at a time: the next look at the links may fill the others.
   // Completed rays go to shading while they are still in cache.
-  for (int budget = partial ? 1 : 64;
-       budget > 0 && !resource_.idle() && resource_.completed().size() < kCompletedPause; --budget) {
+  for (int budget = partial ? 1 : 64; budget > 0 && !resource_.idle() && resource_.completed().size() < kCompletedPause;
+       --budget) {
     PacketId id;
     Packet* packet = &local_;
     if (!stays) {
@@ -348,7 +353,8 @@ void NativePort::flush_completed(bool all) {
   const std::size_t enough = std::min<std::size_t>(kCompletedBatch, resource_.rays().slots() / 4 + 1);
   if (done.empty() || (!all && done.size() < enough)) return;
   if (sink_ != nullptr)
-    sink_->record({.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
+    sink_->record(
+        {.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
   rays_completed_ += done.size();
   machine_.control.free(resource_.id(), resource_.freed_slots());
   resource_.freed_slots().clear();
@@ -362,17 +368,15 @@ void NativePort::flush_completed(bool all) {
 bool NativePort::drained() const {
   const bool hands_empty =
       std::all_of(exits_.begin(), exits_.end(), [](const Exit& exit) { return exit.in_hand.empty(); });
-  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_ids_.empty() &&
-         waiting_rays_.empty() && resource_.packets_in_flight() == 0 &&
-         machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
+  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_ids_.empty() && waiting_rays_.empty() &&
+         resource_.packets_in_flight() == 0 && machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
 }
 
 std::string NativePort::describe() const {
   std::string text = fmt::format("resource {}: {} of {} slots free, {} collections with {} memberships, {} packets out",
                                  resource_.id().value, machine_.control.free_slots(resource_.id()),
-                                 resource_.rays().slots(),
-                                 resource_.collections().collections(), resource_.collections().memberships(),
-                                 resource_.packets_in_flight());
+                                 resource_.rays().slots(), resource_.collections().collections(),
+                                 resource_.collections().memberships(), resource_.packets_in_flight());
   std::size_t rays = 0;
   for (const std::vector<RayId>& ids : waiting_ids_) rays += ids.size();
   for (const RayGroup& group : waiting_rays_) rays += group.rays.size();

@@ -88,10 +88,10 @@ class NativePort {
     Link* link;
     std::uint16_t direction;
   };
-  std::vector<Entry> entries_;                  // incoming links
-  std::vector<Exit> exits_;                     // a ring: one a direction
-  std::vector<std::uint32_t> exit_of_;          // point to point: by destination
-  std::vector<std::vector<PacketId>> free_;     // own packets at home, by direction
+  std::vector<Entry> entries_;               // incoming links
+  std::vector<Exit> exits_;                  // a ring: one a direction
+  std::vector<std::uint32_t> exit_of_;       // point to point: by destination
+  std::vector<std::vector<PacketId>> free_;  // own packets at home, by direction
   std::size_t next_direction_ = 0;
   std::atomic<std::uint32_t> out_{0};           // own packets under way; written by the owner
   Packet local_;                                // never travels: collections that are tested on the spot

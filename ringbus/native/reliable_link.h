@@ -17,9 +17,9 @@
 namespace carousel::ringbus {
 
 /// A link over wires that fail: frames carry sequence numbers and checksums, the receiver takes them in order and says
-/// how far it is, and after silence, or when it hears that the first one out is still missing, the sender goes back to it
-/// (go-back-N; Tanenbaum, Computer Networks, "a protocol using go-back-n"). Above it nothing is lost, doubled or out of
-/// order; a packet holds its place until it is acknowledged.
+/// how far it is, and after silence, or when it hears that the first one out is still missing, the sender goes back to
+/// it (go-back-N; Tanenbaum, Computer Networks, "a protocol using go-back-n"). Above it nothing is lost, doubled or out
+/// of order; a packet holds its place until it is acknowledged.
 ///
 /// A frame is a copy of all that the packet holds, and what comes out of the link is the copy: it is written over the
 /// packet, which nobody else touches between a send and its reception. Any part of a copy may be damaged on the wire.
@@ -29,9 +29,13 @@ class ReliableLink final : public Link {
  public:
   /// Packets that are not among `packets` travel by their ID alone, for tests of links without a machine.
   ReliableLink(const Config& config, std::uint64_t number, ResourceId from, ResourceId to, std::span<Packet> packets)
-      : Link(from, to), depth_(static_cast<std::size_t>(config.topology.link.depth)), number_(number), packets_(packets),
+      : Link(from, to),
+        depth_(static_cast<std::size_t>(config.topology.link.depth)),
+        number_(number),
+        packets_(packets),
         window_(depth_),
-        frames_(2 * depth_ + 2), acks_(kAcks),
+        frames_(2 * depth_ + 2),
+        acks_(kAcks),
         out_(frames_, config.faults, 2 * number, delay_of(config)),
         back_(acks_, config.faults, 2 * number + 1, delay_of(config)) {}
   ~ReliableLink() override {
@@ -195,21 +199,21 @@ class ReliableLink final : public Link {
   std::uint64_t number_;
   std::span<Packet> packets_;
   // The sender's.
-  std::vector<Sent> window_;                          // by sequence number modulo depth
-  std::uint64_t base_ = 0, sent_ = 0, next_ = 0;      // acknowledged up to; on the wire up to; accepted up to
-  std::uint64_t once_sent_ = 0;                       // the first that has never been on the wire
+  std::vector<Sent> window_;                      // by sequence number modulo depth
+  std::uint64_t base_ = 0, sent_ = 0, next_ = 0;  // acknowledged up to; on the wire up to; accepted up to
+  std::uint64_t once_sent_ = 0;                   // the first that has never been on the wire
   ResendPatience patience_;
-  std::uint64_t asked_for_ = ~std::uint64_t{0};       // the frame that an acknowledgement last asked for again
+  std::uint64_t asked_for_ = ~std::uint64_t{0};  // the frame that an acknowledgement last asked for again
   std::uint64_t resent_ = 0;
   // The receiver's.
   alignas(128) std::uint64_t expected_ = 0;
   std::uint64_t discarded_ = 0;
-  std::optional<PacketId> held_;   // taken in while nobody wanted it
+  std::optional<PacketId> held_;  // taken in while nobody wanted it
   // Between them.
   alignas(128) Queue<Frame> frames_;
   SpscRing<Ack> acks_;
-  alignas(128) FaultyWire<Queue<Frame>, Frame> out_;   // the sender's end
-  alignas(128) FaultyWire<SpscRing<Ack>, Ack> back_;   // the receiver's end
+  alignas(128) FaultyWire<Queue<Frame>, Frame> out_;  // the sender's end
+  alignas(128) FaultyWire<SpscRing<Ack>, Ack> back_;  // the receiver's end
 };
 
 }  // namespace carousel::ringbus

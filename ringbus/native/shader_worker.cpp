@@ -7,10 +7,9 @@ namespace carousel::ringbus {
 namespace {
 // Rays asked for at once: few enough that they are still in cache when ray control puts them into their slots.
 constexpr std::int64_t kGenerateBatch = 4096;
-}
+}  // namespace
 
-ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count,
-                           RetryLedger* ledger)
+ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, RetryLedger* ledger)
     : id_(id),
       machine_(machine),
       workload_(workload),

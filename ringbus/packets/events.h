@@ -8,28 +8,28 @@
 #include "core/types/cull_counts.h"
 #include "core/types/ids.h"
 #include "core/types/intersection_counts.h"
-#include "ringbus/rays/bundle_counts.h"
 #include "ringbus/packets/packet.h"
+#include "ringbus/rays/bundle_counts.h"
 
 namespace carousel::ringbus {
 
 enum class EventKind : std::uint8_t {
-  kAdmit,      ///< `rays` new rays got slots
-  kIssue,      ///< a packet left the collections of its owner with `rays` members
-  kTest,       ///< a packet's `rays` local members were tested; `tests` is what it cost. 0 rays: a bubble
-  kHop,        ///< a packet was sent on to a neighbour
-  kRetire,     ///< a packet is back at its owner; `rays` memberships joined collections
-  kComplete,   ///< `rays` rays were handed over to shading
-  kStall,      ///< something could not proceed, and why
+  kAdmit,     ///< `rays` new rays got slots
+  kIssue,     ///< a packet left the collections of its owner with `rays` members
+  kTest,      ///< a packet's `rays` local members were tested; `tests` is what it cost. 0 rays: a bubble
+  kHop,       ///< a packet was sent on to a neighbour
+  kRetire,    ///< a packet is back at its owner; `rays` memberships joined collections
+  kComplete,  ///< `rays` rays were handed over to shading
+  kStall,     ///< something could not proceed, and why
 };
 
 enum class StallReason : std::uint8_t {
   kNone,
-  kCredits,   ///< no packet free to issue with
-  kLink,      ///< the outgoing link is full
-  kSlots,     ///< new rays wait for slots
-  kStorage,   ///< too few free collection blocks to issue or admit
-  kReserve,   ///< not a stall yet: the reserve was entered, issuing goes one packet at a time, deepest first
+  kCredits,  ///< no packet free to issue with
+  kLink,     ///< the outgoing link is full
+  kSlots,    ///< new rays wait for slots
+  kStorage,  ///< too few free collection blocks to issue or admit
+  kReserve,  ///< not a stall yet: the reserve was entered, issuing goes one packet at a time, deepest first
 };
 
 /// One thing that happened at a resource. The times are the engine's affair.
@@ -39,12 +39,12 @@ struct Event {
   std::optional<PacketId> packet = std::nullopt;
   accel::NodeKey key{};
   std::uint32_t rays = 0;
-  std::uint32_t reads = 0;   ///< kTest: records of rays and bundles that were read
-  std::uint16_t depth = 0;   ///< kTest: of `key`
+  std::uint32_t reads = 0;  ///< kTest: records of rays and bundles that were read
+  std::uint16_t depth = 0;  ///< kTest: of `key`
   TestCounts tests{};
-  const BundleCounts* bundles = nullptr;   ///< kTest with bundles; valid during the call only
+  const BundleCounts* bundles = nullptr;  ///< kTest with bundles; valid during the call only
   StallReason reason = StallReason::kNone;
-  std::span<const PacketMember> members{};   ///< valid during the call only
+  std::span<const PacketMember> members{};  ///< valid during the call only
 };
 
 /// Where events go; each resource has its own sink, called from the resource's thread. A resource without one

@@ -28,7 +28,9 @@ ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) 
 void StatisticsSink::record(const Event& event) {
   ResourceStatistics& s = statistics_;
   switch (event.kind) {
-    case EventKind::kAdmit: s.rays_admitted += event.rays; break;
+    case EventKind::kAdmit:
+      s.rays_admitted += event.rays;
+      break;
     case EventKind::kIssue:
       ++s.packets_issued;
       s.packet_rays += event.rays;
@@ -45,13 +47,19 @@ void StatisticsSink::record(const Event& event) {
         s.bundles[event.depth] += *event.bundles;
       }
       break;
-    case EventKind::kHop: ++s.hops; break;
+    case EventKind::kHop:
+      ++s.hops;
+      break;
     case EventKind::kRetire:
       ++s.packets_retired;
       s.memberships += event.rays;
       break;
-    case EventKind::kComplete: s.rays_completed += event.rays; break;
-    case EventKind::kStall: ++s.stalls[static_cast<std::size_t>(event.reason)]; break;
+    case EventKind::kComplete:
+      s.rays_completed += event.rays;
+      break;
+    case EventKind::kStall:
+      ++s.stalls[static_cast<std::size_t>(event.reason)];
+      break;
   }
 }
 

@@ -11,14 +11,14 @@ namespace carousel::ringbus {
 struct ResourceStatistics {
   std::uint64_t rays_admitted = 0, rays_completed = 0;
   std::uint64_t packets_issued = 0, packet_rays = 0, packets_retired = 0;
-  std::uint64_t hops = 0;                    ///< packets sent on
-  std::uint64_t visits = 0, bubbles = 0;     ///< packets seen; those with no local ray
-  std::uint64_t local_rays = 0, seen_rays = 0;   ///< members tested here; members of all packets seen
-  std::uint64_t memberships = 0;             ///< ray IDs that joined collections at retirement
-  std::array<std::uint64_t, 6> stalls{};     ///< by StallReason
+  std::uint64_t hops = 0;                       ///< packets sent on
+  std::uint64_t visits = 0, bubbles = 0;        ///< packets seen; those with no local ray
+  std::uint64_t local_rays = 0, seen_rays = 0;  ///< members tested here; members of all packets seen
+  std::uint64_t memberships = 0;                ///< ray IDs that joined collections at retirement
+  std::array<std::uint64_t, 6> stalls{};        ///< by StallReason
   TestCounts tests;
-  std::uint64_t reads = 0;                   ///< records of rays and bundles read for tests
-  std::vector<BundleCounts> bundles;         ///< by depth in strips; empty without bundles
+  std::uint64_t reads = 0;            ///< records of rays and bundles read for tests
+  std::vector<BundleCounts> bundles;  ///< by depth in strips; empty without bundles
   CullCounts culls;
 
   ResourceStatistics& operator+=(const ResourceStatistics& o);

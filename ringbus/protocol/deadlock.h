@@ -12,7 +12,7 @@ namespace carousel::ringbus {
 /// Whether the links of a machine can fill up and stop, said before it runs (DESIGN.md section 4).
 struct DeadlockVerdict {
   bool can_deadlock = false;
-  std::string rule;   ///< the rule that protects it, with its numbers; or what is missing
+  std::string rule;  ///< the rule that protects it, with its numbers; or what is missing
 };
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
 

@@ -19,7 +19,8 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   e.ray_store = resources * slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));
   if (config.bundles.size > 0) {
     const BundleRoom room = bundle_room(config);
-    e.ray_store += resources * (room.loaded + room.own) * (sizeof(accel::BundleRecord) + (room.rays + 2) * sizeof(std::uint32_t));
+    e.ray_store +=
+        resources * (room.loaded + room.own) * (sizeof(accel::BundleRecord) + (room.rays + 2) * sizeof(std::uint32_t));
   }
   const bool independent = config.topology.shape == TopologyShape::kIndependent;
   if (ordered || independent) {
@@ -32,7 +33,8 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   // An ID, and a block's share of a collection, its place in the table and its list links.
   const std::uint64_t blocks = u(config.collections.capacity) / packet_rays + 1;
   e.collections = resources * blocks * (packet_rays * sizeof(RayId) + 128);
-  const std::uint64_t packets = resources * Topology(config.topology).directions() * packets_in_flight(config.topology) + resources;
+  const std::uint64_t packets =
+      resources * Topology(config.topology).directions() * packets_in_flight(config.topology) + resources;
   e.packets = packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));
   return e;
 }

@@ -9,8 +9,8 @@ namespace carousel::ringbus {
 
 /// Bytes a run will take, from above: what is set aside at the start plus the most that collections may grow to.
 struct MemoryEstimate {
-  std::uint64_t ray_store = 0;     ///< records and free lists
-  std::uint64_t ray_stacks = 0;    ///< ordered traversal and independent resources; mostly untouched
+  std::uint64_t ray_store = 0;   ///< records and free lists
+  std::uint64_t ray_stacks = 0;  ///< ordered traversal and independent resources; mostly untouched
   std::uint64_t collections = 0;
   std::uint64_t packets = 0;
   std::uint64_t rays_waiting = 0;  ///< new rays not yet in slots, completed ones not yet shaded

@@ -10,7 +10,8 @@ std::vector<Packet> make_packets(const Config& config, const Topology& topology,
     p.direction = static_cast<std::uint16_t>(i / per_direction % topology.directions());
     p.members.reserve(static_cast<std::size_t>(config.packets.rays));
     p.owners.resize((topology.resources() + 63) / 64);
-    if (config.collections.traversal == Traversal::kOrdered) p.next.reserve(static_cast<std::size_t>(config.packets.rays));
+    if (config.collections.traversal == Traversal::kOrdered)
+      p.next.reserve(static_cast<std::size_t>(config.packets.rays));
   }
   return packets;
 }

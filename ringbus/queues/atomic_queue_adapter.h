@@ -11,8 +11,8 @@
 
 namespace carousel::ringbus {
 
-/// Maxim Egorushkin's AtomicQueueB2. Its own capacity is a power of two of at least 4,096; less is bounded by a count of
-/// places. A call that has its ticket spins until the cell's last user is done, so where several threads push (pop)
+/// Maxim Egorushkin's AtomicQueueB2. Its own capacity is a power of two of at least 4,096; less is bounded by a count
+/// of places. A call that has its ticket spins until the cell's last user is done, so where several threads push (pop)
 /// and one of them is preempted, others may burn their time slices waiting for it.
 template <class T>
 class AtomicQueue {

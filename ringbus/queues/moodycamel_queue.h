@@ -22,7 +22,7 @@ class MoodycamelQueue {
 
   bool try_push(const T& value) {
     if (places_.take(1) == 0) return false;
-    queue_.enqueue(value);   // may allocate
+    queue_.enqueue(value);  // may allocate
     return true;
   }
   bool try_pop(T& value) {

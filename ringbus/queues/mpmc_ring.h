@@ -27,7 +27,8 @@ class MpmcRing {
   static constexpr Parties kConsumers = Parties::kMany;
 
   explicit MpmcRing(std::size_t capacity)
-      : capacity_(capacity), mask_(std::has_single_bit(capacity) ? capacity - 1 : 0),
+      : capacity_(capacity),
+        mask_(std::has_single_bit(capacity) ? capacity - 1 : 0),
         cells_(std::make_unique<Cell[]>(capacity)) {
     // Relaxed: nobody else has the queue yet.
     for (std::size_t i = 0; i < capacity; ++i) cells_[i].number.store(2 * i, std::memory_order_relaxed);
@@ -66,14 +67,15 @@ class MpmcRing {
     const std::uint64_t first = tail_.ticket.load(std::memory_order_relaxed);
     std::size_t count = 0;
     // Acquire: as in claim(), since a push may rely on the answer.
-    while (count < capacity_ && at(first + count).number.load(std::memory_order_acquire) == 2 * (first + count)) ++count;
+    while (count < capacity_ && at(first + count).number.load(std::memory_order_acquire) == 2 * (first + count))
+      ++count;
     return count;
   }
   std::size_t capacity() const { return capacity_; }
 
  private:
   struct Cell {
-    std::atomic<std::uint64_t> number;   // 2p: free for the push with ticket p; 2p + 1: holds what it pushed
+    std::atomic<std::uint64_t> number;  // 2p: free for the push with ticket p; 2p + 1: holds what it pushed
     T value;
   };
   // A line pair each: producers and consumers write them at the same time. Cells are not padded: at 8 bytes a message
@@ -100,7 +102,7 @@ class MpmcRing {
       if (count == 0) {
         // The cell is still in use from the round before: full, or empty.
         if (number < 2 * first + holds) return 0;
-        first = next.load(std::memory_order_relaxed);   // another thread has been quicker
+        first = next.load(std::memory_order_relaxed);  // another thread has been quicker
       } else if (next.compare_exchange_weak(first, first + count, std::memory_order_relaxed)) {
         // Relaxed: a ticket carries no data; the cells' numbers do.
         return count;
@@ -110,8 +112,8 @@ class MpmcRing {
   }
 
   Tickets tail_, head_;
-  alignas(128) std::size_t capacity_;   // read by all, written by none
-  std::size_t mask_;                    // 0 where the capacity is no power of two
+  alignas(128) std::size_t capacity_;  // read by all, written by none
+  std::size_t mask_;                   // 0 where the capacity is no power of two
   std::unique_ptr<Cell[]> cells_;
 };
 

@@ -31,7 +31,7 @@ class PlaceCount {
   std::size_t capacity() const { return capacity_; }
 
  private:
-  alignas(128) std::atomic<std::size_t> taken_{0};   // a line pair of its own: all threads write it
+  alignas(128) std::atomic<std::size_t> taken_{0};  // a line pair of its own: all threads write it
   alignas(128) std::size_t capacity_;
 };
 

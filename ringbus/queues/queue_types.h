@@ -22,13 +22,20 @@ struct QueueType {
 template <class Body>
 decltype(auto) with_queue_type(QueueKind kind, Body&& body) {
   switch (kind) {
-    case QueueKind::kSpscRing: return body(QueueType<SpscRing>{});
-    case QueueKind::kMpmcRing: return body(QueueType<MpmcRing>{});
-    case QueueKind::kTbbBounded: return body(QueueType<TbbBoundedQueue>{});
-    case QueueKind::kMoodycamel: return body(QueueType<MoodycamelQueue>{});
-    case QueueKind::kAtomicQueue: return body(QueueType<AtomicQueue>{});
-    case QueueKind::kBoostSpsc: return body(QueueType<BoostSpscQueue>{});
-    case QueueKind::kMutex: return body(QueueType<MutexQueue>{});
+    case QueueKind::kSpscRing:
+      return body(QueueType<SpscRing>{});
+    case QueueKind::kMpmcRing:
+      return body(QueueType<MpmcRing>{});
+    case QueueKind::kTbbBounded:
+      return body(QueueType<TbbBoundedQueue>{});
+    case QueueKind::kMoodycamel:
+      return body(QueueType<MoodycamelQueue>{});
+    case QueueKind::kAtomicQueue:
+      return body(QueueType<AtomicQueue>{});
+    case QueueKind::kBoostSpsc:
+      return body(QueueType<BoostSpscQueue>{});
+    case QueueKind::kMutex:
+      return body(QueueType<MutexQueue>{});
   }
   throw SimulationError("no such queue kind");
 }

@@ -12,11 +12,11 @@
 namespace carousel::ringbus {
 
 /// Lamport's single-producer single-consumer ring (Lamport, "Proving the correctness of multiprocess programs", 1977)
-/// whose producer's index travels with the data: what a push publishes is one run of cells, and the first cell of the run
-/// holds the index after it. So a message and the news of it come with one cache line where an index of its own costs a
-/// second (Giacomoni, Moseley, Vachharajani, "FastForward for efficient pipeline parallelism", PPoPP 2008, mark every
-/// cell), and a run of 32 is announced once. The consumer's index is cached by the producer (Lee, Bu, Chandranmenon,
-/// MCRingBuffer, 2010). Indices count on and never wrap in practice (2^64).
+/// whose producer's index travels with the data: what a push publishes is one run of cells, and the first cell of the
+/// run holds the index after it. So a message and the news of it come with one cache line where an index of its own
+/// costs a second (Giacomoni, Moseley, Vachharajani, "FastForward for efficient pipeline parallelism", PPoPP 2008, mark
+/// every cell), and a run of 32 is announced once. The consumer's index is cached by the producer (Lee, Bu,
+/// Chandranmenon, MCRingBuffer, 2010). Indices count on and never wrap in practice (2^64).
 template <class T>
 class SpscRing {
  public:
@@ -70,13 +70,13 @@ class SpscRing {
 
  private:
   struct Cell {
-    std::atomic<std::size_t> run_end{0};   // of the run that began here when it was last written as a first cell
+    std::atomic<std::size_t> run_end{0};  // of the run that began here when it was last written as a first cell
     T value{};
   };
   // A line pair each: the two sides write at the same time, and the prefetcher fetches lines in pairs.
   struct alignas(128) Side {
-    std::size_t index = 0;   // how many this side has pushed, or popped
-    std::size_t other = 0;   // what it knows of the other side's index
+    std::size_t index = 0;  // how many this side has pushed, or popped
+    std::size_t other = 0;  // what it knows of the other side's index
   };
   struct alignas(128) Shared {
     std::atomic<std::size_t> index{0};
@@ -95,10 +95,10 @@ class SpscRing {
     return std::max(head, cell(head).run_end.load(std::memory_order_acquire));
   }
 
-  Side producer_;   // the producer's own
-  Side consumer_;   // the consumer's own
-  Shared taken_;    // the consumer's index, for the producer to see
-  alignas(128) std::size_t capacity_;   // read by both, written by none
+  Side producer_;                      // the producer's own
+  Side consumer_;                      // the consumer's own
+  Shared taken_;                       // the consumer's index, for the producer to see
+  alignas(128) std::size_t capacity_;  // read by both, written by none
   std::size_t mask_;
   std::unique_ptr<Cell[]> cells_;
 };

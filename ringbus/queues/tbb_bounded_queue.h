@@ -25,7 +25,7 @@ class TbbBoundedQueue {
   std::size_t try_push_n(std::span<const T> values) { return push_one_by_one(*this, values); }
   std::size_t try_pop_n(std::span<T> values) { return pop_one_by_one(*this, values); }
   std::size_t free_places() {
-    const std::ptrdiff_t size = queue_.size();   // below zero while pops wait
+    const std::ptrdiff_t size = queue_.size();  // below zero while pops wait
     return size <= 0 ? capacity_ : capacity_ - std::min(capacity_, static_cast<std::size_t>(size));
   }
   std::size_t capacity() const { return capacity_; }

@@ -12,7 +12,9 @@
 namespace carousel::ringbus {
 namespace {
 
-double largest(const DVec3& v) { return std::max({v.x, v.y, v.z}); }
+double largest(const DVec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
 
 std::uint32_t sign_bits(const Vec3& v) {
   std::uint32_t bits = 0;
@@ -23,7 +25,10 @@ std::uint32_t sign_bits(const Vec3& v) {
 }  // namespace
 
 BundleBuilder::Bounds::Bounds(const Ray& ray)
-    : origin_min(ray.origin), origin_max(ray.origin), direction_min(ray.direction), direction_max(ray.direction),
+    : origin_min(ray.origin),
+      origin_max(ray.origin),
+      direction_min(ray.direction),
+      direction_max(ray.direction),
       longest(glm::length(DVec3(ray.direction))) {}
 
 void BundleBuilder::Bounds::extend(const Bounds& other) {
@@ -46,7 +51,7 @@ bool BundleBuilder::may_share(const RayRequest& request) const {
 }
 
 bool BundleBuilder::may_join(const RayRequest& request, const Open& open) const {
-  if (request.tag.kind != open.kind) return false;   // they end differently
+  if (request.tag.kind != open.kind) return false;  // they end differently
   if (config_.builder.same_signs && sign_bits(request.ray.direction) != open.signs) return false;
   return !config_.builder.same_origin || request.ray.origin == open.bounds.origin_min;
 }
@@ -58,13 +63,16 @@ double BundleBuilder::size_of(const Bounds& b) const {
   const double origins = scene_size_ > 0 ? largest(DVec3(b.origin_max) - DVec3(b.origin_min)) / scene_size_ : 0;
   const DVec3 least(b.direction_min), most(b.direction_max), range = (most - least) / b.longest;
   switch (config_.builder.similarity) {
-    case Similarity::kGrowth: return std::max(origins, largest(range));
-    case Similarity::kSolidAngle: {   // how large the box of directions looks from where they start
+    case Similarity::kGrowth:
+      return std::max(origins, largest(range));
+    case Similarity::kSolidAngle: {  // how large the box of directions looks from where they start
       const DVec3 along = glm::abs(0.5 * (least + most)) / b.longest;
       return along.x * range.y * range.z + along.y * range.z * range.x + along.z * range.x * range.y;
     }
-    case Similarity::kComponentRange: return largest(range);
-    case Similarity::kOriginBox: return origins;
+    case Similarity::kComponentRange:
+      return largest(range);
+    case Similarity::kOriginBox:
+      return origins;
   }
   return 0;
 }

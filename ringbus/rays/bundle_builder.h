@@ -28,7 +28,7 @@ class BundleBuilder {
   /// What similarity is computed from.
   struct Bounds {
     Vec3 origin_min, origin_max, direction_min, direction_max;
-    double longest;   ///< direction; the others are measured by it
+    double longest;  ///< direction; the others are measured by it
 
     explicit Bounds(const Ray& ray);
     void extend(const Bounds& other);
@@ -39,7 +39,7 @@ class BundleBuilder {
     double size;           ///< of the bounds
     std::uint64_t opened;  ///< how many rays had been looked at
     RayKind kind;
-    std::uint32_t signs;   ///< of its directions with same_signs
+    std::uint32_t signs;  ///< of its directions with same_signs
     std::size_t count;
     std::array<std::uint32_t, kMostRays> rays;
   };
@@ -60,7 +60,7 @@ class BundleBuilder {
   BundlesConfig config_;
   double scene_size_;
   std::vector<Open> open_;
-  std::vector<std::uint32_t> oldest_first_, unused_;   // places in open_
+  std::vector<std::uint32_t> oldest_first_, unused_;  // places in open_
   std::uint64_t looked_at_ = 0;
 };
 

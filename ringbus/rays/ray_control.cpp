@@ -73,7 +73,7 @@ std::size_t RayControl::load_some(ResourceId resource, std::span<const RayReques
   SlotList& list = slots_[resource.value];
   const std::lock_guard lock(list.mutex);
   const std::size_t count = std::min(rays.size(), list.free.size());
-  constexpr std::size_t kAhead = 8;   // records that are fetched while others are written
+  constexpr std::size_t kAhead = 8;  // records that are fetched while others are written
   for (std::size_t i = 0; i < count; ++i) {
     if (i + kAhead < count) stores_[resource.value]->prefetch(list.free[list.free.size() - 1 - kAhead]);
     ids.push_back(stores_[resource.value]->load(list.free.back(), rays[i], initial_tests_));

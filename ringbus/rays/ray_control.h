@@ -21,15 +21,15 @@ namespace carousel::ringbus {
 struct RayGroup {
   std::vector<RayId> ids;
   RayBatch rays;
-  std::vector<ResourceId> addresses;   ///< addressed placement: one a ray; otherwise empty
+  std::vector<ResourceId> addresses;  ///< addressed placement: one a ray; otherwise empty
 };
 
 /// Gives new rays a slot and an ID, in slots that completed rays freed. The rays of one group (as many as a
 /// packet carries) are spread over the resources, so that every packet finds work everywhere, and the group's
 /// IDs go to one resource, which issues it from its root collection; with `home: local` and
 /// independent resources a whole group lives where it is issued. With bundles each of them has one owner, and a group
-/// as many bundles and single rays as a packet carries IDs. With first_taker and addressed placement the rays travel instead, and resources ask for
-/// slots as packets pass. Any thread may call.
+/// as many bundles and single rays as a packet carries IDs. With first_taker and addressed placement the rays travel
+/// instead, and resources ask for slots as packets pass. Any thread may call.
 class RayControl {
  public:
   /// `stores` by resource; `initial_tests` is what a ray waits for at the root.
@@ -54,7 +54,9 @@ class RayControl {
 
   bool rays_travel() const { return rays_travel_; }
   /// Relaxed: an estimate unless nothing runs.
-  std::size_t free_slots(ResourceId resource) const { return slots_[resource.value].count.load(std::memory_order_relaxed); }
+  std::size_t free_slots(ResourceId resource) const {
+    return slots_[resource.value].count.load(std::memory_order_relaxed);
+  }
   std::size_t free_slots() const;
   /// How often rays had to wait because there were too few free slots.
   std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
@@ -64,7 +66,7 @@ class RayControl {
  private:
   struct alignas(128) SlotList {
     std::mutex mutex;
-    std::vector<std::uint32_t> free;   // last freed, first used: its record is still in cache
+    std::vector<std::uint32_t> free;  // last freed, first used: its record is still in cache
     std::vector<std::uint32_t> free_bundles;
     std::atomic<std::size_t> count{0};
   };
@@ -99,14 +101,14 @@ class RayControl {
   std::unique_ptr<Inbox[]> inboxes_;
   std::atomic<std::uint64_t> slot_waits_{0}, slots_used_{0};
 
-  std::mutex waiting_mutex_;      // guards what follows
-  RayBatch waiting_;              // oldest at waiting_head_
+  std::mutex waiting_mutex_;  // guards what follows
+  RayBatch waiting_;          // oldest at waiting_head_
   std::size_t waiting_head_ = 0;
   std::optional<BundleBuilder> builder_;
-  std::vector<std::uint8_t> waiting_bundles_;   // rays of each bundle, single rays among them, oldest at its head
+  std::vector<std::uint8_t> waiting_bundles_;  // rays of each bundle, single rays among them, oldest at its head
   std::size_t waiting_bundles_head_ = 0;
-  std::vector<std::uint32_t> order_, members_;   // scratch
-  std::vector<std::uint8_t> sizes_;              // scratch
+  std::vector<std::uint32_t> order_, members_;  // scratch
+  std::vector<std::uint8_t> sizes_;             // scratch
   std::uint32_t turn_ = 0;
   std::optional<ResourceId> excluded_;
   std::atomic<bool> any_waiting_{false};

@@ -24,11 +24,11 @@ std::size_t RayControl::load_bundle(ResourceId resource, std::span<const RayRequ
   RayStore& store = *stores_[resource.value];
   SlotList& list = slots_[resource.value];
   const std::lock_guard lock(list.mutex);
-  if (list.free_bundles.empty()) return rays.size();   // each on its own
+  if (list.free_bundles.empty()) return rays.size();  // each on its own
   members_.clear();
   for (std::size_t i = first; i < ids.size(); ++i) {
     members_.push_back(store.layout().slot(ids[i]));
-    store.record(members_.back()).pending = 1;   // held for the bundle, until it dissolves
+    store.record(members_.back()).pending = 1;  // held for the bundle, until it dissolves
   }
   ids.resize(first);
   ids.push_back(store.bundle_up(list.free_bundles.back(), members_, static_cast<std::int16_t>(initial_tests_)));
@@ -43,11 +43,13 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
   while (room && bundle < waiting_bundles_.size()) {
     // As with single rays, a group waits until it finds room whole, or as much as is worth starting with.
     std::size_t wanted = 0;
-    for (std::size_t i = bundle; i < std::min(bundle + group_rays_, waiting_bundles_.size()); ++i) wanted += waiting_bundles_[i];
+    for (std::size_t i = bundle; i < std::min(bundle + group_rays_, waiting_bundles_.size()); ++i)
+      wanted += waiting_bundles_[i];
     const ResourceId issuer = local_ && placement_ == Placement::kBalanced ? emptiest() : next_resource();
     if ((local_ ? free_slots(issuer) : free_slots()) < std::min(wanted, enough_slots_)) {
       slot_waits_.fetch_add(1, std::memory_order_relaxed);
-      if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= std::min(wanted, enough_slots_)) continue;
+      if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= std::min(wanted, enough_slots_))
+        continue;
       break;
     }
     RayGroup group;

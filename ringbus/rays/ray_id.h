@@ -46,8 +46,12 @@ class RayIdLayout {
     id.bits = static_cast<std::uint32_t>(std::uint64_t{owner.value} << slot_bits_) | slot;
     return id;
   }
-  ResourceId owner(RayId id) const { return ResourceId(static_cast<std::uint32_t>(std::uint64_t{id.bits} >> slot_bits_)); }
-  std::uint32_t slot(RayId id) const { return id.bits & static_cast<std::uint32_t>((std::uint64_t{1} << slot_bits_) - 1); }
+  ResourceId owner(RayId id) const {
+    return ResourceId(static_cast<std::uint32_t>(std::uint64_t{id.bits} >> slot_bits_));
+  }
+  std::uint32_t slot(RayId id) const {
+    return id.bits & static_cast<std::uint32_t>((std::uint64_t{1} << slot_bits_) - 1);
+  }
 
  private:
   int slot_bits_;

@@ -21,7 +21,7 @@ namespace carousel::ringbus {
 /// own for what it makes of the rays of split bundles.
 struct BundleRoom {
   std::uint32_t loaded = 0, own = 0;
-  std::uint32_t rays = 0;   ///< of a bundle at most
+  std::uint32_t rays = 0;  ///< of a bundle at most
 };
 
 /// A resource's ray data: records in slots. Ray control hands out the slots and fills in the records of new
@@ -127,8 +127,8 @@ class RayStore {
   std::vector<RayRecord, HugePageAllocator<RayRecord>> records_;
   BundleRoom room_;
   std::vector<accel::BundleRecord> bundles_;
-  std::vector<std::uint32_t> bundle_rays_;   // slots, `room_.rays` a bundle
-  std::vector<std::uint32_t> generations_;   // odd while in use; checked builds only
+  std::vector<std::uint32_t> bundle_rays_;  // slots, `room_.rays` a bundle
+  std::vector<std::uint32_t> generations_;  // odd while in use; checked builds only
 };
 
 /// Bundles have two rays or more; where a quarter of the slots is not enough, rays go on their own.

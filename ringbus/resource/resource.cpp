@@ -30,8 +30,7 @@ CollectionStore::Settings collection_settings(const Config& config, const accel:
 
 }  // namespace
 
-Resource::Resource(const Config& config, const accel::Accel& accel, float scene_size, RayStore& store,
-                   EventSink* sink)
+Resource::Resource(const Config& config, const accel::Accel& accel, float scene_size, RayStore& store, EventSink* sink)
     : config_(config),
       accel_(accel),
       sink_(sink),
@@ -121,7 +120,8 @@ std::uint32_t Resource::blocks_needed(accel::NodeKey key, std::uint32_t rays) co
   if (ordered_) return rays;
   if (!key.ref.is_inner() || is_treelet(key)) return 0;
   if (single_) return 1;
-  return accel_.nodes[key.ref.node()].count * static_cast<std::uint32_t>(std::max<std::int64_t>(1, config_.bundles.size));
+  return accel_.nodes[key.ref.node()].count *
+         static_cast<std::uint32_t>(std::max<std::int64_t>(1, config_.bundles.size));
 }
 
 bool Resource::fits(std::uint32_t needed, std::uint32_t freed) const {
@@ -157,7 +157,8 @@ Resource::Offer Resource::offer(bool partial, Packet& packet) {
   } else if (in_flight_ > 0 && !fits(blocks_needed(issuing_.key, 0), 0)) {
     return Offer::kStorage;
   }
-  fill(packet, issuing_.key, issuing_.depth, issuing_.rays, issuing_.shapes == 1 && !single_ ? ~0u : 1u << issuing_.next_shape);
+  fill(packet, issuing_.key, issuing_.depth, issuing_.rays,
+       issuing_.shapes == 1 && !single_ ? ~0u : 1u << issuing_.next_shape);
   if (++issuing_.next_shape == issuing_.shapes) issuing_.rays.clear();
   return Offer::kPacket;
 }
@@ -186,7 +187,10 @@ void Resource::fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std
   if (ordered_) packet.next.assign(rays.size(), NextNode{});
   reserved_blocks_ += packet.reserved_blocks;
   ++in_flight_;
-  record({.kind = EventKind::kIssue, .resource = id(), .key = key, .rays = static_cast<std::uint32_t>(rays.size()),
+  record({.kind = EventKind::kIssue,
+          .resource = id(),
+          .key = key,
+          .rays = static_cast<std::uint32_t>(rays.size()),
           .members = packet.members});
 }
 

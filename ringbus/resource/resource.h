@@ -10,13 +10,13 @@
 #include "accel/traverse/kernels.h"
 #include "core/config/config.h"
 #include "core/types/workload.h"
-#include "ringbus/rays/bundle_builder.h"
-#include "ringbus/rays/bundle_counts.h"
-#include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/packets/events.h"
 #include "ringbus/packets/packet.h"
-#include "ringbus/resource/ray_stacks.h"
+#include "ringbus/rays/bundle_builder.h"
+#include "ringbus/rays/bundle_counts.h"
 #include "ringbus/rays/ray_store.h"
+#include "ringbus/resource/collections/collection_store.h"
+#include "ringbus/resource/ray_stacks.h"
 #include "ringbus/resource/transform_account.h"
 
 namespace carousel::ringbus {
@@ -90,8 +90,8 @@ class Resource {
   HitBatch& completed() { return completed_; }
   std::vector<std::uint32_t>& freed_slots() { return freed_slots_; }
 
-  /// Forgets all work: collections, packets under way, rays in slots, however far they are. Returns how many packets had
-  /// been issued and not come home; they are not to be retired any more.
+  /// Forgets all work: collections, packets under way, rays in slots, however far they are. Returns how many packets
+  /// had been issued and not come home; they are not to be retired any more.
   std::uint32_t discard();
   /// From now on `resource` is no home to collections. Before the first test, or after discard().
   void lose(ResourceId resource) { lost_ = resource; }
@@ -119,8 +119,7 @@ class Resource {
   std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const;
   bool fits(std::uint32_t needed, std::uint32_t freed) const;
   std::optional<CollectionId> choose(bool partial, bool& storage);
-  void fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std::span<const RayId> rays,
-            std::uint32_t lanes);
+  void fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std::span<const RayId> rays, std::uint32_t lanes);
 
   void gather_local(const Packet& packet);
   TestCounts transforms_of(accel::NodeKey key);
@@ -147,7 +146,8 @@ class Resource {
   void retire_spread(Packet& packet);
   void retire_ordered(Packet& packet);
   void record(const Event& event) {
-    if (sink_ != nullptr) [[unlikely]] sink_->record(event);
+    if (sink_ != nullptr) [[unlikely]]
+      sink_->record(event);
   }
 
   const Config& config_;
@@ -165,26 +165,26 @@ class Resource {
   std::optional<RayStacks> stacks_;
   Issuing issuing_;
   std::uint32_t in_flight_ = 0, reserved_blocks_ = 0;
-  std::uint32_t custody_ = 0;   // rays in its collections or in its packets
+  std::uint32_t custody_ = 0;  // rays in its collections or in its packets
   HitBatch completed_;
   std::vector<std::uint32_t> freed_slots_;
 
   // With bundles (resource_bundles.cpp).
   std::optional<BundleBuilder> builder_;
   bool bundled_, reformed_, rebuilds_;
-  float split_below_ = 0;                       // the surface area of a box at which bundles split
-  std::vector<std::uint32_t> free_bundles_;     // of the owner's own
+  float split_below_ = 0;                    // the surface area of a box at which bundles split
+  std::vector<std::uint32_t> free_bundles_;  // of the owner's own
   struct LocalBundle {
     std::uint32_t slot, member;
   };
-  struct OnTheirOwn {   // a ray that leaves its bundle for some of a node's children
+  struct OnTheirOwn {  // a ray that leaves its bundle for some of a node's children
     std::uint32_t slot;
     std::uint8_t mask;
   };
   std::vector<LocalBundle> local_bundles_;
   std::vector<OnTheirOwn> leaving_;
-  std::vector<std::int32_t> bundle_changes_;    // of the local bundles' pending counts
-  std::uint64_t bundle_transforms_ = 0;         // of their rays, in this visit
+  std::vector<std::int32_t> bundle_changes_;  // of the local bundles' pending counts
+  std::uint64_t bundle_transforms_ = 0;       // of their rays, in this visit
   RayBatch regrouped_;
   std::vector<std::uint32_t> order_, bundle_slots_;
   std::vector<std::uint8_t> sizes_;

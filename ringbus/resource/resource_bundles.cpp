@@ -16,7 +16,9 @@ namespace carousel::ringbus {
 
 namespace {
 
-std::uint32_t bits(std::uint32_t mask) { return static_cast<std::uint32_t>(std::popcount(mask)); }
+std::uint32_t bits(std::uint32_t mask) {
+  return static_cast<std::uint32_t>(std::popcount(mask));
+}
 
 // The largest extent of the node's children together, along an axis.
 float extent(const accel::Node& node) {
@@ -66,8 +68,8 @@ bool Resource::bundles_go_on(const Packet& packet) const {
   });
 }
 
-/// Whether a bundle, in the node's space, is to be split there by its spread or its silhouette's area: how large a box its
-/// rays fill by the time they have come as far as the node's middle, seen from where they come.
+/// Whether a bundle, in the node's space, is to be split there by its spread or its silhouette's area: how large a box
+/// its rays fill by the time they have come as far as the node's middle, seen from where they come.
 bool Resource::too_wide(const accel::BundleRecord& bundle, const accel::Node& node) const {
   const auto& [spread, silhouette_area] = config_.bundles.split_above;
   if ((spread <= 0 && silhouette_area <= 0) || node.count == 0) return false;
@@ -148,8 +150,8 @@ void Resource::settle_bundle(std::uint32_t slot, std::int32_t pending_change) {
   bundle.pending = static_cast<std::int16_t>(bundle.pending + pending_change);
   if constexpr (kChecked) {
     if (bundle.pending < 0)
-      throw SimulationError("resource " + std::to_string(id().value) + " bundle " + std::to_string(slot - store_.slots()) +
-                            ": more answers than pending tests");
+      throw SimulationError("resource " + std::to_string(id().value) + " bundle " +
+                            std::to_string(slot - store_.slots()) + ": more answers than pending tests");
   }
   if (bundle.pending > 0) return;
   ++bundles_.formed;
@@ -167,13 +169,15 @@ void Resource::settle_bundle(std::uint32_t slot, std::int32_t pending_change) {
 void Resource::test_whole(Packet& packet) {
   const accel::Node& node = accel_.nodes[packet.key.ref.node()];
   const bool edge_by_edge = config_.bundles.edges == BundlesConfig::Edges::kSerial;
-  const std::uint32_t direct = node.direct & packet.lanes, boxes = packet.lanes & ~std::uint32_t{node.direct} & ((1u << node.count) - 1);
+  const std::uint32_t direct = node.direct & packet.lanes,
+                      boxes = packet.lanes & ~std::uint32_t{node.direct} & ((1u << node.count) - 1);
   leaving_.clear();
   bundle_transforms_ = 0;
   for (const LocalBundle& local : local_bundles_) {
     const std::span<const std::uint32_t> rays = store_.rays_of(local.slot);
     // A bundle of the world, at the border of an instance, becomes one of the instance: if there is room for it.
-    const bool enters = moved(packet.key) && (store_.bundle(local.slot).flags & accel::BundleRecord::kInModelSpace) == 0;
+    const bool enters =
+        moved(packet.key) && (store_.bundle(local.slot).flags & accel::BundleRecord::kInModelSpace) == 0;
     const bool stays_out = enters && free_bundles_.empty();
     accel::BundleRecord inside;
     if (enters && !stays_out) bound_anew(rays, packet.key.instance, inside);
@@ -184,7 +188,8 @@ void Resource::test_whole(Packet& packet) {
     } else {
       const std::uint64_t tests_before = tests_.bundle;
       answer = accel::test_bundle(accel_, node, boxes, bundle, config_.bundles, tests_);
-      bundle_passes_ += edge_by_edge && answer.edges > 0 ? answer.edges : static_cast<std::uint32_t>(tests_.bundle - tests_before);
+      bundle_passes_ +=
+          edge_by_edge && answer.edges > 0 ? answer.edges : static_cast<std::uint32_t>(tests_.bundle - tests_before);
     }
     answer.undecided |= static_cast<std::uint8_t>(direct);
     for (std::uint32_t lanes = answer.all; lanes != 0; lanes &= lanes - 1) {
@@ -221,7 +226,8 @@ void Resource::test_whole(Packet& packet) {
   if (!local_slots_.empty()) {
     if (reformed_) {
       masks_.resize(local_slots_.size());
-      const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), nullptr, answers_wanted()};
+      const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), nullptr,
+                                      answers_wanted()};
       accel::test_strip(accel_, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr}, tests_);
       hold_back(local_slots_);
       for (std::size_t i = 0; i < local_slots_.size(); ++i) {
@@ -261,7 +267,8 @@ void Resource::regroup(Packet& packet) {
     for (const OnTheirOwn& ray : leaving_) send_alone(packet, ray.slot, ray.mask);
     return;
   }
-  std::stable_sort(leaving_.begin(), leaving_.end(), [](const OnTheirOwn& a, const OnTheirOwn& b) { return a.mask < b.mask; });
+  std::stable_sort(leaving_.begin(), leaving_.end(),
+                   [](const OnTheirOwn& a, const OnTheirOwn& b) { return a.mask < b.mask; });
   for (std::size_t first = 0, end; first < leaving_.size(); first = end) {
     const std::uint8_t mask = leaving_[first].mask;
     regrouped_.clear();
@@ -282,7 +289,8 @@ void Resource::regroup(Packet& packet) {
         continue;
       }
       for (const std::uint32_t slot : bundle_slots_) ++store_.record(slot).pending;
-      packet.members.push_back({store_.bundle_up(free_bundles_.back(), bundle_slots_, static_cast<std::int16_t>(bits(mask))), mask});
+      packet.members.push_back(
+          {store_.bundle_up(free_bundles_.back(), bundle_slots_, static_cast<std::int16_t>(bits(mask))), mask});
       free_bundles_.pop_back();
     }
   }

@@ -61,7 +61,7 @@ TestCounts Resource::transforms_of(accel::NodeKey key) {
   if (!transforms_->moves(key.instance)) return counts;
   for (const std::uint32_t slot : local_slots_)
     if ((store_.record(slot).tag.flags & kRayDone) == 0) counts.transforms += transforms_->needs(slot, key.instance);
-  counts.inversions = counts.transforms > 0 && transforms_->inverts(key.instance);   // one for all rays of the visit
+  counts.inversions = counts.transforms > 0 && transforms_->inverts(key.instance);  // one for all rays of the visit
   return counts;
 }
 
@@ -94,7 +94,7 @@ void Resource::test(Packet& packet) {
   const bool whole = bundled_ && bundles_go_on(packet);
   if (!local_bundles_.empty() && !whole) expand_bundles(packet);
   if (seen > 0) {
-    const bool accounted = transforms_ != nullptr && !is_treelet(packet.key);   // a subtree's tracer does it itself
+    const bool accounted = transforms_ != nullptr && !is_treelet(packet.key);  // a subtree's tracer does it itself
     const TestCounts moved = accounted ? transforms_of(packet.key) : TestCounts{};
     if (ordered_)
       test_ordered(packet);
@@ -110,9 +110,15 @@ void Resource::test(Packet& packet) {
       if (moved.transforms == 0 && of_bundles > 0) tests_.inversions = transforms_->inverts(packet.key.instance);
     }
   }
-  record({.kind = EventKind::kTest, .resource = id(), .key = packet.key,
-          .rays = static_cast<std::uint32_t>(seen), .reads = reads_, .depth = packet.depth, .tests = tests_,
-          .bundles = bundled_ ? &bundles_ : nullptr, .members = packet.members});
+  record({.kind = EventKind::kTest,
+          .resource = id(),
+          .key = packet.key,
+          .rays = static_cast<std::uint32_t>(seen),
+          .reads = reads_,
+          .depth = packet.depth,
+          .tests = tests_,
+          .bundles = bundled_ ? &bundles_ : nullptr,
+          .members = packet.members});
 }
 
 void Resource::test_spread(Packet& packet) {
@@ -164,7 +170,8 @@ void Resource::test_ordered(Packet& packet) {
     const std::uint32_t slot = local_slots_[i];
     const float* entry = entries_.data() + accel::kMaxWidth * i;
     farthest_first(masks_[i], entry, [&](int lane) {
-      stacks_->push(slot, {accel_.child_key(packet.key, lane), entry[lane], static_cast<std::uint16_t>(packet.depth + 1), true});
+      stacks_->push(
+          slot, {accel_.child_key(packet.key, lane), entry[lane], static_cast<std::uint16_t>(packet.depth + 1), true});
     });
     const RayRecord& ray = store_.record(slot);
     const bool done = (ray.tag.flags & kRayDone) != 0;

@@ -60,7 +60,7 @@ class TransformAccount {
  private:
   const accel::Accel& accel_;
   bool store_, forward_;
-  std::vector<std::vector<std::uint32_t>> kept_;   // by slot: the instances it has a copy for
+  std::vector<std::vector<std::uint32_t>> kept_;  // by slot: the instances it has a copy for
   std::uint64_t held_ = 0;
   TransformedRayBytes bytes_;
 };

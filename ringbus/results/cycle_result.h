@@ -5,55 +5,56 @@
 #include <optional>
 #include <vector>
 
-#include "ringbus/cycle/time/clock.h"
 #include "core/numeric/latency_histogram.h"
-#include "ringbus/results/trace.h"
+#include "ringbus/cycle/time/clock.h"
 #include "ringbus/resource/transform_account.h"
+#include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
 
 /// What the testers of a resource did, cycle by cycle: the states add up to the run's length.
 enum class TileState : std::uint8_t {
-  kIdle,      ///< nothing to test: no rays, or collections that wait to fill
-  kTesting,   ///< a packet is in test
-  kMemory,    ///< shape data is on its way
-  kLink,      ///< a packet cannot leave
-  kCredits,   ///< collections are ready, but all packets are out
-  kStorage,   ///< too little collection storage to go on
-  kShading,   ///< it helps the shader workers
+  kIdle,     ///< nothing to test: no rays, or collections that wait to fill
+  kTesting,  ///< a packet is in test
+  kMemory,   ///< shape data is on its way
+  kLink,     ///< a packet cannot leave
+  kCredits,  ///< collections are ready, but all packets are out
+  kStorage,  ///< too little collection storage to go on
+  kShading,  ///< it helps the shader workers
 };
 inline constexpr std::size_t kTileStates = 7;
 
 /// A class of equal units of one resource, or a link, over the whole run.
 struct UnitLedger {
-  Cycle busy = 0;      ///< cycles in which it worked
-  Cycle stalled = 0;   ///< it had work and could not do it
+  Cycle busy = 0;     ///< cycles in which it worked
+  Cycle stalled = 0;  ///< it had work and could not do it
   friend bool operator==(const UnitLedger&, const UnitLedger&) = default;
 };
 
 /// What the stacks of a resource's rays moved, for `shape: independent`.
 struct StackLedger {
   std::uint64_t pushed_bytes = 0, popped_bytes = 0;
-  std::uint64_t peak_bytes = 0;       ///< of all its rays at once
-  std::uint64_t ray_peak_bytes = 0;   ///< of one ray
+  std::uint64_t peak_bytes = 0;      ///< of all its rays at once
+  std::uint64_t ray_peak_bytes = 0;  ///< of one ray
   friend bool operator==(const StackLedger&, const StackLedger&) = default;
 };
 
 struct TileResult {
-  std::array<Cycle, kTileStates> states{};   ///< by TileState
-  UnitLedger box, triangle, plane, bundle, transform, ray_reads, procedural, any_hit;   ///< busy within TileState::kTesting
+  std::array<Cycle, kTileStates> states{};  ///< by TileState
+  UnitLedger box, triangle, plane, bundle, transform, ray_reads, procedural,
+      any_hit;  ///< busy within TileState::kTesting
   UnitLedger handler;
   StackLedger stack;
-  TransformedRayBytes transformed_rays;      ///< kept beside the records
-  LatencyHistogram round_trips;              ///< of its packets, from the issue queue until they are home
-  Cycle packet_cycles = 0;                   ///< its packets under way, summed over the cycles
+  TransformedRayBytes transformed_rays;  ///< kept beside the records
+  LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they are home
+  Cycle packet_cycles = 0;               ///< its packets under way, summed over the cycles
   friend bool operator==(const TileResult&, const TileResult&) = default;
 };
 
 /// What stood in the queue at the far end of a link.
 struct QueueLedger {
-  Cycle packet_cycles = 0;   ///< packets times the cycles they waited
-  std::uint64_t most = 0;    ///< packets at once
+  Cycle packet_cycles = 0;  ///< packets times the cycles they waited
+  std::uint64_t most = 0;   ///< packets at once
   friend bool operator==(const QueueLedger&, const QueueLedger&) = default;
 };
 
@@ -78,20 +79,20 @@ struct StopLedger {
 };
 
 struct CycleResult {
-  Cycle cycles = 0;                  ///< when the last ray was shaded and everything had come to rest
-  Cycle steady_cycles = 0;           ///< between a quarter and three quarters of the rays
-  std::uint64_t steady_rays = 0;     ///< completed in these
-  double steady_spread = 0;          ///< by how much the rates of their halves differ, as a fraction
-  std::vector<TileResult> tiles;     ///< by resource
+  Cycle cycles = 0;               ///< when the last ray was shaded and everything had come to rest
+  Cycle steady_cycles = 0;        ///< between a quarter and three quarters of the rays
+  std::uint64_t steady_rays = 0;  ///< completed in these
+  double steady_spread = 0;       ///< by how much the rates of their halves differ, as a fraction
+  std::vector<TileResult> tiles;  ///< by resource
   std::vector<LinkLedger> links;
   std::vector<CacheResult> caches;
   std::uint64_t memory_lines = 0;
   Cycle memory_busy = 0;
-  Cycle shading_busy = 0;            ///< worker-cycles, without resources that help
+  Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
-  std::optional<StopLedger> stop;    ///< if one was given up before the last ray was shaded
+  std::optional<StopLedger> stop;  ///< if one was given up before the last ray was shaded
   EpochDigests epochs;
-  std::vector<Step> steps;           ///< of RunOptions::trace
+  std::vector<Step> steps;  ///< of RunOptions::trace
   friend bool operator==(const CycleResult&, const CycleResult&) = default;
 };
 

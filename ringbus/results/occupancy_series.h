@@ -42,7 +42,7 @@ class OccupancySeries {
     each_ *= 2;
   }
 
-  std::uint64_t each_ = 32;   // samples of an entry
+  std::uint64_t each_ = 32;  // samples of an entry
   Entry open_;
   std::vector<Entry> entries_;
 };

@@ -7,23 +7,23 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/types/ids.h"
+#include "ringbus/faults/link_fault_counts.h"
+#include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/cycle_result.h"
-#include "ringbus/faults/link_fault_counts.h"
 #include "ringbus/results/link_statistics.h"
 #include "ringbus/results/occupancy_series.h"
-#include "core/types/ids.h"
-#include "ringbus/packets/statistics_sink.h"
 
 namespace carousel::ringbus {
 
 struct RunOptions {
   std::size_t threads = 1;
-  bool statistics = true;                          ///< false: no sinks at all
-  bool link_statistics = true;                     ///< native, besides `statistics`: what passes the links is counted
-  std::stop_token stop;                            ///< ends the run early; it is then incomplete
-  std::chrono::milliseconds stuck_after{10000};    ///< native: no progress for so long is a SimulationError
-  cycle::TraceWindow trace{};                      ///< cycle: keep every step of these cycles
+  bool statistics = true;                        ///< false: no sinks at all
+  bool link_statistics = true;                   ///< native, besides `statistics`: what passes the links is counted
+  std::stop_token stop;                          ///< ends the run early; it is then incomplete
+  std::chrono::milliseconds stuck_after{10000};  ///< native: no progress for so long is a SimulationError
+  cycle::TraceWindow trace{};                    ///< cycle: keep every step of these cycles
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
   std::function<void(std::uint64_t completed)> progress;
 };
@@ -32,26 +32,26 @@ struct LinkResult {
   ResourceId from, to;
   std::size_t depth = 0;
   LinkStatistics statistics;
-  OccupancySeries series{};     ///< native
+  OccupancySeries series{};  ///< native
   LinkFaultCounts faults{};
 };
 
 struct RunResult {
-  bool complete = true;                       ///< false: stopped early
+  bool complete = true;  ///< false: stopped early
   std::uint64_t rays_emitted = 0, rays_completed = 0;
-  std::uint64_t rays_restarted = 0;           ///< started again because a resource stopped
-  std::uint64_t paths_restarted = 0;          ///< the unfinished (pixel, sample) they belong to
-  std::uint64_t packets_discarded = 0;        ///< with them: under way when it was found out
-  double recovery_seconds = 0;                ///< native: from its last sign of life until they began again
+  std::uint64_t rays_restarted = 0;     ///< started again because a resource stopped
+  std::uint64_t paths_restarted = 0;    ///< the unfinished (pixel, sample) they belong to
+  std::uint64_t packets_discarded = 0;  ///< with them: under way when it was found out
+  double recovery_seconds = 0;          ///< native: from its last sign of life until they began again
   double wall_seconds = 0;
-  std::size_t threads = 1;                    ///< that were used
-  std::chrono::steady_clock::time_point start{};   ///< native: what the links' series count from
-  std::uint64_t slots_used = 0;               ///< times a slot was handed out; beyond the slots: reuse
-  std::uint64_t slot_waits = 0;               ///< times new rays had to wait for free slots
-  std::vector<ResourceStatistics> resources;  ///< empty without statistics
+  std::size_t threads = 1;                        ///< that were used
+  std::chrono::steady_clock::time_point start{};  ///< native: what the links' series count from
+  std::uint64_t slots_used = 0;                   ///< times a slot was handed out; beyond the slots: reuse
+  std::uint64_t slot_waits = 0;                   ///< times new rays had to wait for free slots
+  std::vector<ResourceStatistics> resources;      ///< empty without statistics
   std::vector<CollectionStore::Statistics> collections;
   std::vector<LinkResult> links;
-  std::optional<cycle::CycleResult> cycle;    ///< of the cycle engine
+  std::optional<cycle::CycleResult> cycle;  ///< of the cycle engine
 };
 
 }  // namespace carousel::ringbus

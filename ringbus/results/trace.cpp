@@ -19,9 +19,15 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
 }  // namespace
 
 std::string step_text(const Step& step) {
-  constexpr std::array<std::string_view, 9> kNames{"new rays", "issues packet", "takes packet", "has tested packet",
+  constexpr std::array<std::string_view, 9> kNames{"new rays",
+                                                   "issues packet",
+                                                   "takes packet",
+                                                   "has tested packet",
                                                    "has tested the ray in slot",
-                                                   "retires packet", "hands over completed rays", "shades", "places"};
+                                                   "retires packet",
+                                                   "hands over completed rays",
+                                                   "shades",
+                                                   "places"};
   const auto kind = static_cast<std::size_t>(step.kind);
   std::string text = fmt::format("cycle {}, node {}: {}", step.at, step.node, kNames[kind]);
   if (step.kind >= StepKind::kIssue && step.kind <= StepKind::kRetire) text += fmt::format(" {}", step.packet);

@@ -23,9 +23,9 @@ enum class StepKind : std::uint8_t {
 
 struct Step {
   Cycle at = 0;
-  std::uint32_t node = 0;     ///< resource; beyond them ray control and shading
+  std::uint32_t node = 0;  ///< resource; beyond them ray control and shading
   StepKind kind = StepKind::kNewRays;
-  std::uint32_t packet = 0;   ///< its ID, where there is one; or the ray's slot
+  std::uint32_t packet = 0;  ///< its ID, where there is one; or the ray's slot
   std::uint32_t rays = 0;
   friend bool operator==(const Step&, const Step&) = default;
 };

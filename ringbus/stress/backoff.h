@@ -20,7 +20,9 @@ class Backoff {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
   }
-  void reset() { refusals_ = 0; }
+  void reset() {
+    refusals_ = 0;
+  }
 
  private:
   static constexpr int kHope = 16, kPatience = 2048;

@@ -3,8 +3,8 @@
 #include <deque>
 #include <thread>
 
-#include "ringbus/stress/delivery_checker.h"
 #include "ringbus/stress/backoff.h"
+#include "ringbus/stress/delivery_checker.h"
 #include "ringbus/stress/trials.h"
 
 namespace carousel::ringbus::stress {
@@ -12,7 +12,7 @@ namespace carousel::ringbus::stress {
 namespace {
 
 constexpr std::size_t kNodes = 4;
-constexpr std::size_t kTaken = 8;   // at most, from a link at once
+constexpr std::size_t kTaken = 8;  // at most, from a link at once
 
 /// A ring as the native engine's: each node takes in what comes, passes on what is not its own, and sends messages of
 /// its own, at most `capacity` of them out at once, which leaves a place free on the ring.
@@ -20,7 +20,9 @@ template <std::size_t kBytes>
 class Ring final : public Crew {
  public:
   Ring(const QueueUnderTest& queue, std::size_t threads, const TrialOptions& options)
-      : Crew(threads), threads_(threads), each_(std::max<std::uint64_t>(options.messages / kNodes, 1)),
+      : Crew(threads),
+        threads_(threads),
+        each_(std::max<std::uint64_t>(options.messages / kNodes, 1)),
         capacity_(options.capacity) {
     for (std::size_t n = 0; n < kNodes; ++n) {
       nodes_.emplace_back(Node{});
@@ -72,7 +74,7 @@ class Ring final : public Crew {
     std::uint64_t sent = 0, home = 0;
     bool finished = false;
     std::deque<Message<kBytes>> in_hand;
-    std::vector<std::int64_t> sent_at;   // of those out, by number modulo capacity
+    std::vector<std::int64_t> sent_at;  // of those out, by number modulo capacity
     Arrivals arrivals{0, 0};
     LatencyHistogram round_trips;
     std::uint64_t push_calls = 0, push_refusals = 0, pop_calls = 0, pop_refusals = 0;
@@ -123,8 +125,8 @@ class Ring final : public Crew {
         continue;
       }
       ++node.home;
-      node.round_trips.add(static_cast<std::uint64_t>(
-          std::max<std::int64_t>(now_ns() - node.sent_at[origin->number % capacity_], 0)));
+      node.round_trips.add(
+          static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns() - node.sent_at[origin->number % capacity_], 0)));
     }
     return count > 0;
   }
@@ -133,9 +135,9 @@ class Ring final : public Crew {
   std::uint64_t each_;
   std::size_t capacity_;
   std::deque<Node> nodes_;
-  std::vector<std::unique_ptr<AnyQueue<Message<kBytes>>>> links_;   // from node n to the next
+  std::vector<std::unique_ptr<AnyQueue<Message<kBytes>>>> links_;  // from node n to the next
   std::int64_t begin_ = 0, finish_ = 0;
-  std::atomic<std::size_t> home_{0};   // nodes whose messages are all back
+  std::atomic<std::size_t> home_{0};  // nodes whose messages are all back
 };
 
 }  // namespace

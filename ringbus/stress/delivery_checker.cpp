@@ -37,10 +37,11 @@ Findings Arrivals::judge(std::span<const Arrivals> consumers, std::span<const st
       std::uint64_t seen = 0;
       for (const Arrivals& one : consumers) {
         const std::uint64_t here = one.from_[p].seen[base / 64];
-        out.doubled += static_cast<std::uint64_t>(std::popcount(seen & here));   // by two consumers
+        out.doubled += static_cast<std::uint64_t>(std::popcount(seen & here));  // by two consumers
         seen |= here;
       }
-      const std::uint64_t wanted = sent[p] - base >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (sent[p] - base)) - 1;
+      const std::uint64_t wanted =
+          sent[p] - base >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (sent[p] - base)) - 1;
       const std::uint64_t gone = wanted & ~seen;
       if (missing == 0 && gone != 0) first = base + static_cast<std::uint64_t>(std::countr_zero(gone));
       missing += static_cast<std::uint64_t>(std::popcount(gone));

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "ringbus/stress/violations.h"
 #include "ringbus/stress/message.h"
+#include "ringbus/stress/violations.h"
 
 namespace carousel::ringbus::stress {
 
@@ -45,8 +45,8 @@ class Arrivals {
 
  private:
   struct From {
-    std::uint64_t next = 0;            // one beyond the latest
-    std::vector<std::uint64_t> seen;   // a bit a message
+    std::uint64_t next = 0;           // one beyond the latest
+    std::vector<std::uint64_t> seen;  // a bit a message
   };
   void tear();
   void misplaced(From& from, Origin origin, bool again);

@@ -19,8 +19,8 @@ constexpr std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// A message that can tell whether it arrived whole: the first word is a scrambled 20-bit checksum, 12 bits of producer and
-/// 32 of number; the others follow from the first, each in its own way.
+/// A message that can tell whether it arrived whole: the first word is a scrambled 20-bit checksum, 12 bits of producer
+/// and 32 of number; the others follow from the first, each in its own way.
 template <std::size_t kBytes>
 struct Message {
   static_assert(kBytes % 8 == 0 && kBytes >= 8);

@@ -9,19 +9,19 @@
 namespace carousel::ringbus::stress {
 
 enum class Pattern {
-  kStream,          ///< one producer, one consumer, a message a call
-  kBatches,         ///< the same, 32 messages a call
-  kBurst,           ///< 32 at once, then a pause
-  kPingPong,        ///< one message to and fro
-  kCirculation,     ///< a ring of four: each message visits everyone and returns
-  kHotspot,         ///< four producers, one consumer
-  kManyToMany,      ///< two producers, two consumers, one queue
-  kSlowConsumer,    ///< a pause after every message taken
-  kStalledConsumer, ///< the consumer stops now and then for milliseconds
-  kOversubscribed,  ///< more threads than cores
+  kStream,           ///< one producer, one consumer, a message a call
+  kBatches,          ///< the same, 32 messages a call
+  kBurst,            ///< 32 at once, then a pause
+  kPingPong,         ///< one message to and fro
+  kCirculation,      ///< a ring of four: each message visits everyone and returns
+  kHotspot,          ///< four producers, one consumer
+  kManyToMany,       ///< two producers, two consumers, one queue
+  kSlowConsumer,     ///< a pause after every message taken
+  kStalledConsumer,  ///< the consumer stops now and then for milliseconds
+  kOversubscribed,   ///< more threads than cores
   kCapacity1,
   kCapacity2,
-  kRandomPauses,    ///< both sides yield and sleep at random; batches of random length
+  kRandomPauses,  ///< both sides yield and sleep at random; batches of random length
 };
 
 struct PatternName {

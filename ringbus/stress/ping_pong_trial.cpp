@@ -1,7 +1,7 @@
 #include <array>
 
-#include "ringbus/stress/delivery_checker.h"
 #include "ringbus/stress/backoff.h"
+#include "ringbus/stress/delivery_checker.h"
 #include "ringbus/stress/trials.h"
 
 namespace carousel::ringbus::stress {
@@ -13,8 +13,11 @@ template <std::size_t kBytes>
 class PingPong final : public Crew {
  public:
   PingPong(const QueueUnderTest& queue, const TrialOptions& options)
-      : Crew(2), messages_(options.messages), there_(queue.make<kBytes>()(options.capacity)),
-        back_(queue.make<kBytes>()(options.capacity)), arrivals_(2, Arrivals(1, options.messages)) {}
+      : Crew(2),
+        messages_(options.messages),
+        there_(queue.make<kBytes>()(options.capacity)),
+        back_(queue.make<kBytes>()(options.capacity)),
+        arrivals_(2, Arrivals(1, options.messages)) {}
 
   void serve() {
     const std::int64_t begin = now_ns();
@@ -87,9 +90,9 @@ class PingPong final : public Crew {
 
   std::uint64_t messages_;
   std::unique_ptr<AnyQueue<Message<kBytes>>> there_, back_;
-  std::vector<Arrivals> arrivals_;   // where it turns, and back where it started
+  std::vector<Arrivals> arrivals_;  // where it turns, and back where it started
   std::array<Side, 2> sides_;
-  alignas(128) std::uint64_t served_ = 0;   // serve()'s, to the end of its block
+  alignas(128) std::uint64_t served_ = 0;  // serve()'s, to the end of its block
   double seconds_ = 0;
   LatencyHistogram round_trips_;
   alignas(128) std::atomic<bool> done_{false};

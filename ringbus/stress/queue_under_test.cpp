@@ -6,9 +6,8 @@
 namespace carousel::ringbus::stress {
 
 QueueUnderTest built_in_queue(QueueKind kind) {
-  return with_queue_type(kind, [&](auto type) {
-    return queue_under_test<decltype(type)::template Of>(std::string(enum_name(kind)));
-  });
+  return with_queue_type(
+      kind, [&](auto type) { return queue_under_test<decltype(type)::template Of>(std::string(enum_name(kind))); });
 }
 
 }  // namespace carousel::ringbus::stress

@@ -20,8 +20,9 @@ Findings check_alone(AnyQueue<Message<kBytes>>& queue, std::size_t capacity) {
     ++out.bounds;
     if (out.detail.empty()) out.detail = std::move(what);
   };
-  if (queue.capacity() != capacity) wrong(fmt::format("made for {} messages it says it holds {}", capacity, queue.capacity()));
-  Arrivals arrivals(1, kRounds * (10 * capacity + 128));   // more than is pushed below
+  if (queue.capacity() != capacity)
+    wrong(fmt::format("made for {} messages it says it holds {}", capacity, queue.capacity()));
+  Arrivals arrivals(1, kRounds * (10 * capacity + 128));  // more than is pushed below
   std::uint64_t sent = 0, inside = 0;
   std::array<Message<kBytes>, 7> batch;
   const auto push = [&](std::size_t want) {
@@ -43,16 +44,19 @@ Findings check_alone(AnyQueue<Message<kBytes>>& queue, std::size_t capacity) {
     return got;
   };
   for (std::size_t round = 0; round < kRounds && out.bounds == 0; ++round) {
-    while (inside < capacity && push(1) > 0) {}
-    (void)push(1);   // refused
+    while (inside < capacity && push(1) > 0) {
+    }
+    (void)push(1);  // refused
     (void)push(3);
-    while (pop(1) > 0) {}
-    inside = 0;      // what is still missing is lost
+    while (pop(1) > 0) {
+    }
+    inside = 0;  // what is still missing is lost
     for (std::size_t i = 0; i < capacity + 8; ++i) {
       (void)push(1 + i % 7);
       (void)pop(1 + (i * 3) % 7);
     }
-    while (pop(7) > 0) {}
+    while (pop(7) > 0) {
+    }
     inside = 0;
     for (std::size_t i = 0; i < capacity + 3 && out.bounds == 0; ++i) {
       (void)push(1);

@@ -3,8 +3,8 @@
 #include <random>
 #include <thread>
 
-#include "ringbus/stress/single_thread_check.h"
 #include "ringbus/stress/backoff.h"
+#include "ringbus/stress/single_thread_check.h"
 #include "ringbus/stress/trials.h"
 
 namespace carousel::ringbus::stress {
@@ -22,10 +22,10 @@ struct Plan {
   std::size_t producers = 1, consumers = 1;
   std::size_t capacity = 64;
   std::size_t batch = 1;
-  bool random = false;              // lengths of batches, yields and sleeps
-  nanoseconds push_pause{0};        // after each batch
-  nanoseconds pop_pause{0};         // after each call that brought something
-  std::uint64_t stall_every = 0;    // messages of the consumer between two stops
+  bool random = false;            // lengths of batches, yields and sleeps
+  nanoseconds push_pause{0};      // after each batch
+  nanoseconds pop_pause{0};       // after each call that brought something
+  std::uint64_t stall_every = 0;  // messages of the consumer between two stops
 };
 
 Plan plan_of(const TrialOptions& options) {
@@ -33,23 +33,40 @@ Plan plan_of(const TrialOptions& options) {
   plan.capacity = options.capacity;
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   switch (options.pattern) {
-    case Pattern::kBatches: plan.batch = kBatch; break;
+    case Pattern::kBatches:
+      plan.batch = kBatch;
+      break;
     case Pattern::kBurst:
       plan.batch = kBatch;
       plan.push_pause = microseconds(10);
       break;
-    case Pattern::kHotspot: plan.producers = 4; break;
-    case Pattern::kManyToMany: plan.producers = plan.consumers = 2; break;
-    case Pattern::kSlowConsumer: plan.pop_pause = microseconds(2); break;
-    case Pattern::kStalledConsumer: plan.stall_every = std::max<std::uint64_t>(options.messages / 8, 1); break;
-    case Pattern::kOversubscribed: plan.producers = plan.consumers = 2 * std::min<std::size_t>(cores, 16); break;
-    case Pattern::kCapacity1: plan.capacity = 1; break;
-    case Pattern::kCapacity2: plan.capacity = 2; break;
+    case Pattern::kHotspot:
+      plan.producers = 4;
+      break;
+    case Pattern::kManyToMany:
+      plan.producers = plan.consumers = 2;
+      break;
+    case Pattern::kSlowConsumer:
+      plan.pop_pause = microseconds(2);
+      break;
+    case Pattern::kStalledConsumer:
+      plan.stall_every = std::max<std::uint64_t>(options.messages / 8, 1);
+      break;
+    case Pattern::kOversubscribed:
+      plan.producers = plan.consumers = 2 * std::min<std::size_t>(cores, 16);
+      break;
+    case Pattern::kCapacity1:
+      plan.capacity = 1;
+      break;
+    case Pattern::kCapacity2:
+      plan.capacity = 2;
+      break;
     case Pattern::kRandomPauses:
       plan.batch = kBatch;
       plan.random = true;
       break;
-    default: break;
+    default:
+      break;
   }
   return plan;
 }
@@ -58,9 +75,13 @@ template <std::size_t kBytes>
 class Stream final : public Crew {
  public:
   Stream(const QueueUnderTest& queue, const Plan& plan, const TrialOptions& options)
-      : Crew(plan.producers + plan.consumers), plan_(plan), seed_(options.seed),
-        each_(std::max<std::uint64_t>(options.messages / plan.producers, 1)), senders_(plan.producers),
-        receivers_(plan.consumers), arrivals_(plan.consumers, Arrivals(plan.producers, each_)) {
+      : Crew(plan.producers + plan.consumers),
+        plan_(plan),
+        seed_(options.seed),
+        each_(std::max<std::uint64_t>(options.messages / plan.producers, 1)),
+        senders_(plan.producers),
+        receivers_(plan.consumers),
+        arrivals_(plan.consumers, Arrivals(plan.producers, each_)) {
     // One queue for all where it serves so many; else one a producer.
     const bool shared = (plan.producers == 1 || queue.producers == Parties::kMany) &&
                         (plan.consumers == 1 || queue.consumers == Parties::kMany);
@@ -105,8 +126,8 @@ class Stream final : public Crew {
       bool any = false;
       for (std::size_t q = queues_.size() == 1 ? 0 : c; q < queues_.size(); q += plan_.consumers) {
         const std::size_t wanted = plan_.random ? 1 + random() % plan_.batch : plan_.batch;
-        const std::size_t count = wanted == 1 ? queues_[q]->try_pop(batch[0])
-                                              : queues_[q]->try_pop_n(std::span(batch).first(wanted));
+        const std::size_t count =
+            wanted == 1 ? queues_[q]->try_pop(batch[0]) : queues_[q]->try_pop_n(std::span(batch).first(wanted));
         ++me.calls;
         me.refusals += count == 0;
         for (std::size_t k = 0; k < count; ++k) take(me, arrivals, batch[k]);
@@ -169,13 +190,13 @@ class Stream final : public Crew {
   }
 
  private:
-  static constexpr std::int64_t kQuiet = 50'000'000;   // ns
+  static constexpr std::int64_t kQuiet = 50'000'000;  // ns
 
   struct alignas(128) Sender {
     std::atomic<std::uint64_t> sent{0};
     std::uint64_t calls = 0, refusals = 0;
-    std::int64_t blocked = 0, begin = 0, finish = 0;   // ns
-    std::vector<std::atomic<std::int64_t>> stamps;     // of every kStampEvery-th message
+    std::int64_t blocked = 0, begin = 0, finish = 0;  // ns
+    std::vector<std::atomic<std::int64_t>> stamps;    // of every kStampEvery-th message
   };
   struct alignas(128) Receiver {
     std::atomic<std::uint64_t> taken{0};
@@ -217,7 +238,8 @@ class Stream final : public Crew {
   void take(Receiver& me, Arrivals& arrivals, const Message<kBytes>& message) {
     const std::optional<Origin> origin = arrivals.take(message);
     if (!origin || origin->number % kStampEvery != 0) return;
-    const std::int64_t stamp = senders_[origin->producer].stamps[stamp_of(origin->number)].load(std::memory_order_relaxed);
+    const std::int64_t stamp =
+        senders_[origin->producer].stamps[stamp_of(origin->number)].load(std::memory_order_relaxed);
     me.transit.add(static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns() - stamp, 0)));
   }
   std::int64_t now_if_sampled(const Receiver& me, std::uint64_t taken) const {

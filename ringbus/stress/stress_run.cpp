@@ -39,9 +39,15 @@ std::vector<std::size_t> sizes_for(Pattern pattern, const StressOptions& options
 
 }  // namespace
 
-double StressRow::median() const { return quantile(rates, 0.5); }
-double StressRow::least() const { return quantile(rates, 0); }
-double StressRow::most() const { return quantile(rates, 1); }
+double StressRow::median() const {
+  return quantile(rates, 0.5);
+}
+double StressRow::least() const {
+  return quantile(rates, 0);
+}
+double StressRow::most() const {
+  return quantile(rates, 1);
+}
 
 std::vector<StressRow> run_stress(std::span<const QueueUnderTest> queues, const StressOptions& options) {
   std::vector<Pattern> patterns = options.patterns;
@@ -50,7 +56,7 @@ std::vector<StressRow> run_stress(std::span<const QueueUnderTest> queues, const 
 
   std::vector<StressRow> rows;
   struct Group {
-    std::size_t first, count;   // rows of one pattern and size
+    std::size_t first, count;  // rows of one pattern and size
   };
   std::vector<Group> groups;
   for (const Pattern pattern : patterns)

@@ -9,11 +9,11 @@
 namespace carousel::ringbus::stress {
 
 struct StressOptions {
-  std::vector<Pattern> patterns;               ///< empty: all
-  std::vector<std::size_t> message_bytes;      ///< empty: all sizes for streams, 64 for the others
+  std::vector<Pattern> patterns;           ///< empty: all
+  std::vector<std::size_t> message_bytes;  ///< empty: all sizes for streams, 64 for the others
   std::size_t repetitions = 3;
-  double seconds = 30;                         ///< in all, about: shared out over the trials
-  std::uint64_t messages = 1'000'000;          ///< of a trial, at most
+  double seconds = 30;                 ///< in all, about: shared out over the trials
+  std::uint64_t messages = 1'000'000;  ///< of a trial, at most
   std::size_t capacity = 64;
   std::uint64_t seed = 1;
   std::chrono::milliseconds stuck_after{2000};
@@ -23,11 +23,11 @@ struct StressOptions {
 
 /// A queue under a pattern, over all repetitions.
 struct StressRow {
-  std::size_t queue = 0;        ///< index of the queue
+  std::size_t queue = 0;  ///< index of the queue
   Pattern pattern{};
   std::size_t message_bytes = 0;
-  std::vector<double> rates;    ///< messages per second, a repetition each
-  TrialResult sum;              ///< counts and histograms added; fairness: the least; memory: the most
+  std::vector<double> rates;  ///< messages per second, a repetition each
+  TrialResult sum;            ///< counts and histograms added; fairness: the least; memory: the most
 
   double median() const;
   double least() const;

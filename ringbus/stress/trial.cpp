@@ -1,8 +1,7 @@
 #include "ringbus/stress/trial.h"
 
-#include <malloc.h>
-
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include "ringbus/stress/single_thread_check.h"
 #include "ringbus/stress/trials.h"
@@ -27,9 +26,14 @@ TrialResult run_sized(const QueueUnderTest& queue, const TrialOptions& options) 
   const std::size_t after = heap_bytes();
   TrialResult out;
   switch (options.pattern) {
-    case Pattern::kPingPong: out = run_ping_pong<kBytes>(queue, options); break;
-    case Pattern::kCirculation: out = run_circulation<kBytes>(queue, options); break;
-    default: out = run_stream<kBytes>(queue, options);
+    case Pattern::kPingPong:
+      out = run_ping_pong<kBytes>(queue, options);
+      break;
+    case Pattern::kCirculation:
+      out = run_circulation<kBytes>(queue, options);
+      break;
+    default:
+      out = run_stream<kBytes>(queue, options);
   }
   found += out.findings;
   out.findings = std::move(found);
@@ -49,15 +53,17 @@ void note_ending(Findings& findings, Crew::Ending ending, const TrialOptions& op
 }
 
 bool pattern_fits(const QueueUnderTest& queue, Pattern pattern) {
-  return pattern != Pattern::kManyToMany ||
-         (queue.producers == Parties::kMany && queue.consumers == Parties::kMany);
+  return pattern != Pattern::kManyToMany || (queue.producers == Parties::kMany && queue.consumers == Parties::kMany);
 }
 
 TrialResult run_trial(const QueueUnderTest& queue, const TrialOptions& options) {
   switch (options.message_bytes) {
-    case kSmall: return run_sized<kSmall>(queue, options);
-    case kLine: return run_sized<kLine>(queue, options);
-    default: return run_sized<kPacket>(queue, options);
+    case kSmall:
+      return run_sized<kSmall>(queue, options);
+    case kLine:
+      return run_sized<kLine>(queue, options);
+    default:
+      return run_sized<kPacket>(queue, options);
   }
 }
 

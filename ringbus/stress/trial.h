@@ -6,36 +6,36 @@
 #include <stop_token>
 
 #include "core/numeric/latency_histogram.h"
-#include "ringbus/stress/violations.h"
 #include "ringbus/stress/pattern.h"
 #include "ringbus/stress/queue_under_test.h"
+#include "ringbus/stress/violations.h"
 
 namespace carousel::ringbus::stress {
 
 /// One queue under one pattern, once.
 struct TrialOptions {
   Pattern pattern = Pattern::kStream;
-  std::size_t message_bytes = kLine;              ///< kSmall, kLine or kPacket
-  std::size_t capacity = 64;                      ///< unless the pattern says
-  std::uint64_t messages = 100'000;               ///< at most, over all producers
-  std::chrono::nanoseconds time = std::chrono::milliseconds(200);   ///< no message is sent later
-  std::chrono::milliseconds stuck_after{2000};    ///< nothing moved for so long
-  std::uint64_t seed = 1;                         ///< of pauses and lengths of batches
-  std::stop_token stop{};                         ///< ends it early
+  std::size_t message_bytes = kLine;                               ///< kSmall, kLine or kPacket
+  std::size_t capacity = 64;                                       ///< unless the pattern says
+  std::uint64_t messages = 100'000;                                ///< at most, over all producers
+  std::chrono::nanoseconds time = std::chrono::milliseconds(200);  ///< no message is sent later
+  std::chrono::milliseconds stuck_after{2000};                     ///< nothing moved for so long
+  std::uint64_t seed = 1;                                          ///< of pauses and lengths of batches
+  std::stop_token stop{};                                          ///< ends it early
 };
 
 struct TrialResult {
   std::size_t threads = 0;
-  std::uint64_t messages = 0;              ///< sent
-  double seconds = 0;                      ///< from the first push to the last pop
-  LatencyHistogram transit_ns;             ///< every 16th message, from the push that took it to its pop
-  LatencyHistogram round_trip_ns;          ///< ping_pong, circulation: until it is back
+  std::uint64_t messages = 0;      ///< sent
+  double seconds = 0;              ///< from the first push to the last pop
+  LatencyHistogram transit_ns;     ///< every 16th message, from the push that took it to its pop
+  LatencyHistogram round_trip_ns;  ///< ping_pong, circulation: until it is back
   std::uint64_t push_calls = 0, push_refusals = 0;
   std::uint64_t pop_calls = 0, pop_refusals = 0;
-  double blocked_seconds = 0;              ///< producers' time between a refusal and the next success, summed
-  double producer_seconds = 0;             ///< producers' time, summed
-  double fairness = 1;                     ///< least over most sent by a producer, when the first had sent its share
-  std::size_t memory_bytes = 0;            ///< of one queue, full once (what the C library's heap can tell)
+  double blocked_seconds = 0;    ///< producers' time between a refusal and the next success, summed
+  double producer_seconds = 0;   ///< producers' time, summed
+  double fairness = 1;           ///< least over most sent by a producer, when the first had sent its share
+  std::size_t memory_bytes = 0;  ///< of one queue, full once (what the C library's heap can tell)
   Findings findings;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ringbus/stress/worker_group.h"
 #include "ringbus/stress/trial.h"
+#include "ringbus/stress/worker_group.h"
 
 namespace carousel::ringbus::stress {
 

@@ -1,9 +1,9 @@
 #include "ringbus/stress/worker_group.h"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <thread>
+
+#include <sched.h>
 
 namespace carousel::ringbus::stress {
 
@@ -75,7 +75,7 @@ Crew::Ending Crew::run(const std::shared_ptr<Crew>& crew, const std::vector<std:
       continue;
     }
     if (Clock::now() - last_change < limits.stuck_after) continue;
-    if (stuck) break;   // they were asked to leave, and have not
+    if (stuck) break;  // they were asked to leave, and have not
     stuck = true;
     crew->end_ = true;
     last_change = Clock::now();

@@ -13,7 +13,9 @@
 namespace carousel::ringbus::stress {
 
 using Clock = std::chrono::steady_clock;
-inline std::int64_t now_ns() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }
+inline std::int64_t now_ns() {
+  return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
+}
 
 /// Pauses a thread without keeping the core from others.
 void pause_for(std::chrono::nanoseconds time);
@@ -42,7 +44,8 @@ class Crew {
     std::chrono::milliseconds stuck_after;
     std::stop_token stop;
   };
-  /// Runs one body a thread, on a core each as far as they go, started together, and watches them. After kNeverReturned the crew must not be read.
+  /// Runs one body a thread, on a core each as far as they go, started together, and watches them. After kNeverReturned
+  /// the crew must not be read.
   static Ending run(const std::shared_ptr<Crew>& crew, const std::vector<std::function<void()>>& bodies,
                     const Limits& limits);
 
@@ -54,7 +57,7 @@ class Crew {
 
   std::vector<Progress> progress_;
   std::atomic<bool> stop_sending_{false}, end_{false};
-  std::mutex mutex_;   // guards what follows
+  std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::size_t ready_ = 0, ended_ = 0;
 };

@@ -16,7 +16,8 @@ std::uint16_t directions_of(const TopologyConfig& config) {
 Topology::Topology(const TopologyConfig& config)
     : shape_(config.shape),
       resources_(static_cast<std::uint32_t>(config.resources)),
-      groups_(shape_ == TopologyShape::kHierarchical ? std::min(static_cast<std::uint32_t>(config.groups), resources_) : 0),
+      groups_(shape_ == TopologyShape::kHierarchical ? std::min(static_cast<std::uint32_t>(config.groups), resources_)
+                                                     : 0),
       directions_(directions_of(config)),
       visit_all_(config.visit == Visit::kAll) {
   if (resources_ == 1 || shape_ == TopologyShape::kIndependent) return;
@@ -106,11 +107,14 @@ std::uint32_t packets_in_flight(const TopologyConfig& config) {
   switch (config.flow) {
     // R resources with `depth` packets each against R links of `depth` places and a place in hand at each
     // resource: one place is always free, so some packet can always move.
-    case Flow::kCredits: return depth;
+    case Flow::kCredits:
+      return depth;
     // Any number is safe; as many as the links hold is all that can be of use.
-    case Flow::kBubble: return std::min(depth * resources, 256u);
+    case Flow::kBubble:
+      return std::min(depth * resources, 256u);
     // Enough to fill every link and every hand.
-    case Flow::kNone: return depth + 8;
+    case Flow::kNone:
+      return depth + 8;
   }
   return depth;
 }

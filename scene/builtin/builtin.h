@@ -12,8 +12,8 @@ namespace carousel::scene {
 
 /// A closed Cornell box: coloured walls, a ceiling light, a brushed metal box, a white box with a metal ball.
 Scene make_cornell();
-/// Spheres of many colours, metals and roughnesses on a ground, about `triangles` of them in one mesh; or, `procedural`,
-/// the same spheres as such.
+/// Spheres of many colours, metals and roughnesses on a ground, about `triangles` of them in one mesh; or,
+/// `procedural`, the same spheres as such.
 Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural = false);
 /// A height field of fractal noise coloured by height and slope, one mesh of about `triangles`.
 Scene make_terrain(std::int64_t triangles, std::int64_t seed);

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "scene/builtin/builtin.h"
-#include "scene/model/camera_pose.h"
 #include "scene/builtin/mesh_shapes.h"
+#include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
 

@@ -16,9 +16,7 @@ class HashRandom {
   float uniform() { return static_cast<float>(bits() >> 40) * 0x1p-24f; }
   float uniform(float lo, float hi) { return lo + (hi - lo) * uniform(); }
   /// In [0, count); count > 0. The bias is below count / 2^32.
-  std::uint32_t below(std::uint32_t count) {
-    return static_cast<std::uint32_t>(((bits() >> 32) * count) >> 32);
-  }
+  std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(((bits() >> 32) * count) >> 32); }
 
   /// A bijection of 64 bits without visible structure.
   static std::uint64_t mix(std::uint64_t z) {

@@ -6,9 +6,9 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "scene/builtin/builtin.h"
-#include "scene/model/camera_pose.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
+#include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
 
@@ -72,8 +72,7 @@ Scene make_instances(std::int64_t instances, std::int64_t seed) {
     Vec3 scale{random.uniform(0.45f, 1.0f), random.uniform(0.45f, 1.0f), random.uniform(0.45f, 1.0f)};
     if (k % 4 == 3) scale.x = -scale.x;
     instance.world_from_model.linear = rotation * Mat3(scale.x, 0, 0, 0, scale.y, 0, 0, 0, scale.z);
-    instance.world_from_model.translation = {radius * std::cos(angle), 0.75f + 1.6f * wave,
-                                             radius * std::sin(angle)};
+    instance.world_from_model.translation = {radius * std::cos(angle), 0.75f + 1.6f * wave, radius * std::sin(angle)};
     scene.instances.push_back(instance);
   }
 
@@ -92,8 +91,7 @@ Scene make_instances(std::int64_t instances, std::int64_t seed) {
   scene.sky.radiance = {0.45f, 0.56f, 0.72f};
 
   const float away = std::max(disc, 2.5f);
-  scene.cameras.push_back(
-      look_at({0.3f * away, 0.75f * away + 1, 1.55f * away}, {0, 0.8f, 0.08f * away}, 0.75f));
+  scene.cameras.push_back(look_at({0.3f * away, 0.75f * away + 1, 1.55f * away}, {0, 0.8f, 0.08f * away}, 0.75f));
   scene.cameras.back().name = "near";
   scene.cameras.push_back(look_at({60 * away, 30 * away, 75 * away}, {0, 1, 0}, 0.022f));
   scene.cameras.back().name = "100 radii away";

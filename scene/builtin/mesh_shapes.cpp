@@ -35,9 +35,8 @@ Icosphere icosahedron() {
   s.points = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
               {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
   for (Vec3& p : s.points) p = glm::normalize(p);
-  s.indices = {0, 11, 5,  0, 5,  1, 0, 1, 7, 0, 7,  10, 0, 10, 11, 1, 5, 9, 5, 11,
-               4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,  9,  4, 3,  4,  2, 3, 2, 6, 3,
-               6, 8,  3,  8, 9,  4, 9, 5, 2, 4, 11, 6,  2, 10, 8,  6, 7, 9, 8, 1};
+  s.indices = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4,  11, 10, 2,  10, 7, 6, 7, 1, 8,
+               3, 9,  4, 3, 4, 2, 3, 2, 6, 3, 6, 8,  3, 8,  9,  4, 9, 5, 2, 4,  11, 6,  2,  10, 8,  6, 7, 9, 8, 1};
   return s;
 }
 
@@ -92,9 +91,7 @@ void add_quad(Mesh& mesh, Vec3 a, Vec3 b, Vec3 c, Vec3 d, MaterialId material) {
 }
 
 void add_box(Mesh& mesh, Vec3 lo, Vec3 hi, MaterialId material) {
-  const auto corner = [&](int x, int y, int z) {
-    return Vec3{x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z};
-  };
+  const auto corner = [&](int x, int y, int z) { return Vec3{x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z}; };
   add_quad(mesh, corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1), material);
   add_quad(mesh, corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0), material);
   add_quad(mesh, corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0), material);
@@ -108,13 +105,11 @@ void add_icosphere(Mesh& mesh, Vec3 centre, float radius, int level, MaterialId 
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   for (const Vec3& p : unit.points) add_vertex(mesh, centre + radius * p, p);
   for (std::size_t i = 0; i < unit.indices.size(); i += 3) {
-    add_triangle(mesh, first + unit.indices[i], first + unit.indices[i + 1], first + unit.indices[i + 2],
-                 material);
+    add_triangle(mesh, first + unit.indices[i], first + unit.indices[i + 1], first + unit.indices[i + 2], material);
   }
 }
 
-void add_torus(Mesh& mesh, float major_radius, float minor_radius, int around, int across,
-               MaterialId material) {
+void add_torus(Mesh& mesh, float major_radius, float minor_radius, int around, int across, MaterialId material) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   const float tau = 2 * std::numbers::pi_v<float>;
   for (int i = 0; i < around; ++i) {
@@ -126,9 +121,7 @@ void add_torus(Mesh& mesh, float major_radius, float minor_radius, int around, i
       add_vertex(mesh, major_radius * out + minor_radius * normal, normal);
     }
   }
-  const auto at = [&](int i, int j) {
-    return first + static_cast<std::uint32_t>((i % around) * across + j % across);
-  };
+  const auto at = [&](int i, int j) { return first + static_cast<std::uint32_t>((i % around) * across + j % across); };
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < across; ++j) {
       add_triangle(mesh, at(i, j), at(i, j + 1), at(i + 1, j + 1), material);

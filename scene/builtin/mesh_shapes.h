@@ -22,8 +22,7 @@ void add_box(Mesh& mesh, Vec3 lo, Vec3 hi, MaterialId material);
 void add_icosphere(Mesh& mesh, Vec3 centre, float radius, int level, MaterialId material);
 
 /// A torus around y, 2 * around * across triangles, smooth normals.
-void add_torus(Mesh& mesh, float major_radius, float minor_radius, int around, int across,
-               MaterialId material);
+void add_torus(Mesh& mesh, float major_radius, float minor_radius, int around, int across, MaterialId material);
 
 /// A cone from y = 0 to y = height without its base, `around` triangles, smooth normals.
 void add_cone(Mesh& mesh, float radius, float height, int around, MaterialId material);

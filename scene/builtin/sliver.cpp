@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 
 #include "scene/builtin/builtin.h"
-#include "scene/model/camera_pose.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
+#include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
 

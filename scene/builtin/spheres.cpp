@@ -4,9 +4,9 @@
 #include <glm/geometric.hpp>
 
 #include "scene/builtin/builtin.h"
-#include "scene/model/camera_pose.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
+#include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
 
@@ -17,8 +17,7 @@ constexpr Vec3 kPalette[] = {{0.80f, 0.10f, 0.06f}, {0.90f, 0.36f, 0.05f}, {0.92
                              {0.30f, 0.55f, 0.10f}, {0.05f, 0.45f, 0.38f}, {0.06f, 0.25f, 0.62f},
                              {0.30f, 0.12f, 0.50f}, {0.85f, 0.83f, 0.78f}};
 // Reflectances of metals at normal incidence: gold, copper, silver, iron.
-constexpr Vec3 kMetals[] = {
-    {1.00f, 0.77f, 0.34f}, {0.96f, 0.64f, 0.54f}, {0.97f, 0.96f, 0.92f}, {0.56f, 0.57f, 0.58f}};
+constexpr Vec3 kMetals[] = {{1.00f, 0.77f, 0.34f}, {0.96f, 0.64f, 0.54f}, {0.97f, 0.96f, 0.92f}, {0.56f, 0.57f, 0.58f}};
 
 MaterialId add_material(Scene& scene, Vec3 color, float metallic, float roughness) {
   Material m;
@@ -62,8 +61,7 @@ Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural) {
   }
 
   const int level = level_for(triangles);
-  const std::int64_t count =
-      std::max<std::int64_t>(1, (triangles - 2 + triangles_of(level) / 2) / triangles_of(level));
+  const std::int64_t count = std::max<std::int64_t>(1, (triangles - 2 + triangles_of(level) / 2) / triangles_of(level));
   const auto side = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(count))));
   const float half = 0.5f * static_cast<float>(side);
 

@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "scene/builtin/builtin.h"
-#include "scene/model/camera_pose.h"
 #include "scene/builtin/hash_random.h"
+#include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
 
@@ -69,8 +69,7 @@ Vec4 color_of(float height, float slope, float grain) {
       snow{0.85f, 0.88f, 0.93f};
   const float h = height / kHeight + 0.05f * grain;
   Vec3 color = glm::mix(grass, meadow, glm::smoothstep(0.0f, 0.3f, h));
-  color =
-      glm::mix(color, rock, std::max(glm::smoothstep(0.28f, 0.42f, h), glm::smoothstep(0.2f, 0.42f, slope)));
+  color = glm::mix(color, rock, std::max(glm::smoothstep(0.28f, 0.42f, h), glm::smoothstep(0.2f, 0.42f, slope)));
   color = glm::mix(color, snow, glm::smoothstep(0.42f, 0.52f, h) * (1 - glm::smoothstep(0.3f, 0.5f, slope)));
   return Vec4(color * (1 + 0.15f * grain), 1);
 }
@@ -101,9 +100,7 @@ Scene make_terrain(std::int64_t triangles, std::int64_t seed) {
       mesh.positions.push_back({place(i), height_at(noise, place(i), place(j), step), place(j)});
     }
   }
-  const auto height = [&](std::uint32_t i, std::uint32_t j) {
-    return mesh.positions[std::size_t{j} * row + i].y;
-  };
+  const auto height = [&](std::uint32_t i, std::uint32_t j) { return mesh.positions[std::size_t{j} * row + i].y; };
   for (std::uint32_t j = 0; j < row; ++j) {
     for (std::uint32_t i = 0; i < row; ++i) {
       const std::uint32_t i0 = i > 0 ? i - 1 : 0, i1 = std::min(i + 1, cells);
@@ -112,8 +109,7 @@ Scene make_terrain(std::int64_t triangles, std::int64_t seed) {
       const float dz = (height(i, j1) - height(i, j0)) / (step * static_cast<float>(j1 - j0));
       const Vec3 normal = glm::normalize(Vec3{-dx, 1, -dz});
       mesh.normals.push_back(normal);
-      mesh.colors.push_back(
-          color_of(height(i, j), 1 - normal.y, noise(3.1f * place(i) + 40, 3.1f * place(j))));
+      mesh.colors.push_back(color_of(height(i, j), 1 - normal.y, noise(3.1f * place(i) + 40, 3.1f * place(j))));
     }
   }
   for (std::uint32_t j = 0; j < cells; ++j) {

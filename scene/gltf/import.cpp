@@ -9,19 +9,19 @@
 #include <vector>
 
 #include "core/system/error.h"
-#include "scene/model/camera_pose.h"
 #include "scene/gltf/buffers/accessor.h"
 #include "scene/gltf/buffers/buffers.h"
+#include "scene/gltf/buffers/draco.h"
+#include "scene/gltf/buffers/meshopt.h"
+#include "scene/gltf/buffers/model.h"
 #include "scene/gltf/document/checks.h"
 #include "scene/gltf/document/document.h"
-#include "scene/gltf/buffers/draco.h"
+#include "scene/gltf/document/schema.h"
 #include "scene/gltf/materials/images.h"
 #include "scene/gltf/materials/materials.h"
 #include "scene/gltf/meshes.h"
-#include "scene/gltf/buffers/meshopt.h"
-#include "scene/gltf/buffers/model.h"
 #include "scene/gltf/nodes.h"
-#include "scene/gltf/document/schema.h"
+#include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
 
@@ -46,8 +46,8 @@ void read_used_meshes(MeshReader& reader, DracoReader& draco, std::size_t file_m
   for (Instance& instance : scene.instances) instance.mesh = *ids[instance.mesh.value];
 }
 
-Scene import(std::span<const std::byte> bytes, const std::string& file,
-             std::optional<std::filesystem::path> folder, const WarningSink& warn, const ImageChoice& choice) {
+Scene import(std::span<const std::byte> bytes, const std::string& file, std::optional<std::filesystem::path> folder,
+             const WarningSink& warn, const ImageChoice& choice) {
   GltfDocument document = parse_document(bytes, file);
   check_extensions(document, warn);
   check_schema(document);
@@ -70,7 +70,8 @@ Scene import(std::span<const std::byte> bytes, const std::string& file,
     warn(file + ": " + std::to_string(meshes.skipped_primitives()) +
          " primitives skipped: points, lines or without positions");
   }
-  const bool empty = std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
+  const bool empty =
+      std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
   if (empty) document.fail("", "the scene shows no triangles");
   read_images(document, resources, model, images, choice, scene);
   if (scene.cameras.empty()) scene.cameras.push_back(fitted_camera(scene.bounds()));
@@ -97,8 +98,8 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, cons
   }
 }
 
-Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name,
-                            const WarningSink& warn, const ImageChoice& images) {
+Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name, const WarningSink& warn,
+                            const ImageChoice& images) {
   try {
     return import(bytes, name, std::nullopt, warn, images);
   } catch (const std::bad_alloc&) {

@@ -17,7 +17,7 @@ namespace carousel::scene {
 Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn = {}, const ImageChoice& images = {});
 
 /// The same from memory; `name` stands for the file in messages. Buffers and images must be embedded.
-Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name,
-                            const WarningSink& warn = {}, const ImageChoice& images = {});
+Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name, const WarningSink& warn = {},
+                            const ImageChoice& images = {});
 
 }  // namespace carousel::scene

@@ -101,8 +101,8 @@ struct MeshReader::Cache {
   Attributes attributes;
 };
 
-MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& model,
-                       const AccessorTable& accessors, ImportBudget& budget, MaterialId default_material)
+MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
+                       ImportBudget& budget, MaterialId default_material)
     : document_(document),
       model_(model),
       accessors_(accessors),
@@ -112,8 +112,7 @@ MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& mode
 
 MeshReader::~MeshReader() = default;
 
-const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitive& primitive,
-                                                        const std::string& path) {
+const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitive& primitive, const std::string& path) {
   if (cache_->key != primitive.attributes) {
     cache_->key.clear();
     cache_->attributes = read_attributes(primitive, path);
@@ -122,8 +121,7 @@ const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitiv
   return cache_->attributes;
 }
 
-MeshReader::Attributes MeshReader::picked(const Attributes& from,
-                                          const std::vector<std::uint32_t>& vertices) {
+MeshReader::Attributes MeshReader::picked(const Attributes& from, const std::vector<std::uint32_t>& vertices) {
   return {pick(from.positions, vertices), pick(from.normals, vertices), pick(from.uv0, vertices),
           pick(from.uv1, vertices), pick(from.colors, vertices)};
 }
@@ -170,12 +168,11 @@ void MeshReader::add_vertices(Mesh& mesh, const Attributes& more) {
   append(mesh.colors, more.colors, before, after, Vec4(1));
 }
 
-std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive& primitive,
-                                                      std::uint64_t vertices, const std::string& path) {
+std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive& primitive, std::uint64_t vertices,
+                                                      const std::string& path) {
   std::vector<std::uint32_t> order;
   const bool indexed = primitive.indices >= 0;
-  const std::string where =
-      indexed ? json_path(path, "indices") : json_path(json_path(path, "attributes"), "POSITION");
+  const std::string where = indexed ? json_path(path, "indices") : json_path(json_path(path, "attributes"), "POSITION");
   if (indexed) {
     const auto accessor = static_cast<std::size_t>(primitive.indices);
     accessors_.check_use(accessor, AccessorUse::kIndices, where);
@@ -193,8 +190,7 @@ std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive&
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   }
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0) {
-    document_.fail(
-        where, "a list of triangles needs a multiple of 3 vertices, found " + std::to_string(order.size()));
+    document_.fail(where, "a list of triangles needs a multiple of 3 vertices, found " + std::to_string(order.size()));
   }
   return as_triangle_list(primitive.mode, order);
 }
@@ -206,9 +202,8 @@ Mesh MeshReader::read(std::size_t index) {
   const auto usable = [](const tinygltf::Primitive& p) {
     return p.mode >= TINYGLTF_MODE_TRIANGLES && p.attributes.contains("POSITION");
   };
-  const bool any_normals = std::ranges::any_of(source.primitives, [&](const tinygltf::Primitive& p) {
-    return usable(p) && p.attributes.contains("NORMAL");
-  });
+  const bool any_normals = std::ranges::any_of(
+      source.primitives, [&](const tinygltf::Primitive& p) { return usable(p) && p.attributes.contains("NORMAL"); });
   std::map<std::map<std::string, int>, std::uint32_t> bases;  // first vertex of those taken as a whole
   for (std::size_t p = 0; p < source.primitives.size(); ++p) {
     const tinygltf::Primitive& primitive = source.primitives[p];
@@ -248,10 +243,9 @@ Mesh MeshReader::read(std::size_t index) {
     if (mesh.positions.size() > 0xffffffffu) document_.fail(path, "the mesh has more than 2^32 vertices");
     for (std::uint32_t& v : triangles) v += base;
     mesh.indices.insert(mesh.indices.end(), triangles.begin(), triangles.end());
-    mesh.triangle_materials.resize(mesh.triangle_count(),
-                                   primitive.material >= 0
-                                       ? MaterialId(static_cast<std::uint32_t>(primitive.material))
-                                       : default_material_);
+    mesh.triangle_materials.resize(
+        mesh.triangle_count(),
+        primitive.material >= 0 ? MaterialId(static_cast<std::uint32_t>(primitive.material)) : default_material_);
   }
   repair_normals(mesh);
   return mesh;

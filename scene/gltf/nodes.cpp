@@ -60,8 +60,8 @@ class NodeReader {
     const Json& sphere = json.at(pointer);
     const auto radius = sphere["radius"].get<float>();
     const std::uint32_t material = sphere.value("material", default_material_.value);
-    const auto [entry, fresh] = sphere_ids_.try_emplace(
-        {radius, material}, static_cast<std::uint32_t>(model_.meshes.size() + spheres_.size()));
+    const auto [entry, fresh] =
+        sphere_ids_.try_emplace({radius, material}, static_cast<std::uint32_t>(model_.meshes.size() + spheres_.size()));
     if (fresh) {
       Mesh mesh;
       mesh.name = node.name.empty() ? "sphere" : node.name;
@@ -90,8 +90,7 @@ class NodeReader {
       if (count && *count != accessors_.count(accessor)) {
         document_.fail(json_path(where, name), "accessor " + std::to_string(accessor) + " has " +
                                                    std::to_string(accessors_.count(accessor)) +
-                                                   " elements, other attributes have " +
-                                                   std::to_string(*count));
+                                                   " elements, other attributes have " + std::to_string(*count));
       }
       count = accessors_.count(accessor);
     }
@@ -146,8 +145,7 @@ class NodeReader {
       }
     } else {
       to.yfov = static_cast<float>(from.perspective.yfov);
-      if (from.perspective.aspectRatio > 0)
-        to.aspect_ratio = static_cast<float>(from.perspective.aspectRatio);
+      if (from.perspective.aspectRatio > 0) to.aspect_ratio = static_cast<float>(from.perspective.aspectRatio);
       to.znear = static_cast<float>(from.perspective.znear);
     }
     scene_.cameras.push_back(to);

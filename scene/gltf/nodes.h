@@ -16,6 +16,6 @@ namespace carousel::scene {
 /// numbering, equal ones shared. `default_material` stands where a sphere names none.
 /// Throws SceneError for transforms that cannot be used and for bad EXT_mesh_gpu_instancing attributes.
 std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                ImportBudget& budget, MaterialId default_material, Scene& scene);
+                             ImportBudget& budget, MaterialId default_material, Scene& scene);
 
 }  // namespace carousel::scene

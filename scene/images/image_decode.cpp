@@ -25,8 +25,7 @@ const char* format_of(std::span<const unsigned char> bytes) {
   constexpr std::array<unsigned char, 8> kPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   constexpr std::array<unsigned char, 3> kJpeg = {0xff, 0xd8, 0xff};
   if (bytes.size() > kPng.size() && std::memcmp(bytes.data(), kPng.data(), kPng.size()) == 0) return "png";
-  if (bytes.size() > kJpeg.size() && std::memcmp(bytes.data(), kJpeg.data(), kJpeg.size()) == 0)
-    return "jpeg";
+  if (bytes.size() > kJpeg.size() && std::memcmp(bytes.data(), kJpeg.data(), kJpeg.size()) == 0) return "jpeg";
   if (bytes.size() > 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 && std::memcmp(bytes.data() + 8, "WEBP", 4) == 0)
     return "webp";
   return nullptr;

@@ -11,8 +11,8 @@ namespace carousel::scene {
 namespace {
 
 std::uint32_t read_u32(std::span<const unsigned char> bytes, std::size_t at) {  // big-endian
-  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 |
-         std::uint32_t{bytes[at + 2]} << 8 | bytes[at + 3];
+  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 | std::uint32_t{bytes[at + 2]} << 8 |
+         bytes[at + 3];
 }
 
 /// CRC-32 as in annex D of the specification.

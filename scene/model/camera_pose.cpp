@@ -33,11 +33,10 @@ Camera fitted_camera(const Aabb& bounds) {
   const double slope = std::tan(0.5 * yfov) / margin;
   double distance = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    const DVec3 p = DVec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                          corner & 4 ? box.hi.z : box.lo.z) -
-                    DVec3(centre);
-    const double aside =
-        std::max(std::abs(glm::dot(p, DVec3(pose.right))), std::abs(glm::dot(p, DVec3(pose.up))));
+    const DVec3 p =
+        DVec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z) -
+        DVec3(centre);
+    const double aside = std::max(std::abs(glm::dot(p, DVec3(pose.right))), std::abs(glm::dot(p, DVec3(pose.up))));
     distance = std::max(distance, glm::dot(p, back) + aside / slope);
   }
   // Far enough for the camera to differ from the centre after rounding, near enough to stay finite.

@@ -10,9 +10,8 @@ bool has_light(const Scene& scene) {
   if (!scene.lights.empty()) return true;
   return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     const std::vector<MaterialId>& used = scene.meshes[instance.mesh.value].triangle_materials;
-    return std::any_of(used.begin(), used.end(), [&](MaterialId m) {
-      return scene.materials[m.value].emissive != Vec3(0.0f);
-    });
+    return std::any_of(used.begin(), used.end(),
+                       [&](MaterialId m) { return scene.materials[m.value].emissive != Vec3(0.0f); });
   });
 }
 

@@ -20,7 +20,7 @@ float solid_from(const Material& material) {
 }  // namespace
 
 Opacity::Opacity(const Scene& scene) : scene_(scene), least_(scene.materials.size(), 1.0f) {
-  std::vector<float> images(scene.images.size(), -1.0f);   // not looked at yet
+  std::vector<float> images(scene.images.size(), -1.0f);  // not looked at yet
   bool colors = false;
   for (const Mesh& mesh : scene.meshes) colors = colors || !mesh.colors.empty();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {

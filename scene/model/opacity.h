@@ -25,7 +25,7 @@ class Opacity {
 
  private:
   const Scene& scene_;
-  std::vector<float> least_;   // by material: factor times the least alpha of its texture; 1 for opaque ones
+  std::vector<float> least_;  // by material: factor times the least alpha of its texture; 1 for opaque ones
   bool any_ = false;
 };
 

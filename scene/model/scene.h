@@ -31,9 +31,9 @@ struct Texture {
 /// A texture as a material uses it.
 struct TextureUse {
   TextureId texture;
-  std::uint8_t uv_set = 0;             ///< 0 or 1
-  Vec2 offset{0, 0}, scale{1, 1};      ///< KHR_texture_transform: uv' = offset + R(rotation) * (scale * uv)
-  float rotation = 0;                  ///< radians; R(a) (u, v) = (cos a u + sin a v, -sin a u + cos a v)
+  std::uint8_t uv_set = 0;         ///< 0 or 1
+  Vec2 offset{0, 0}, scale{1, 1};  ///< KHR_texture_transform: uv' = offset + R(rotation) * (scale * uv)
+  float rotation = 0;              ///< radians; R(a) (u, v) = (cos a u + sin a v, -sin a u + cos a v)
 };
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
@@ -42,66 +42,66 @@ enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 /// of weight 0 is not there. Colours are linear.
 struct Material {
   std::string name;
-  Vec4 base_color{1};                                  ///< times the texture (sRGB) and the vertex colour
+  Vec4 base_color{1};  ///< times the texture (sRGB) and the vertex colour
   std::optional<TextureUse> base_color_texture;
   float metallic = 1, roughness = 1;
-  std::optional<TextureUse> metallic_roughness_texture;   ///< G roughness, B metallic, linear
-  Vec3 emissive{0};                                    ///< with emissive_strength multiplied in
-  std::optional<TextureUse> emissive_texture;          ///< sRGB
-  std::optional<TextureUse> normal_texture;            ///< tangent space, linear
+  std::optional<TextureUse> metallic_roughness_texture;  ///< G roughness, B metallic, linear
+  Vec3 emissive{0};                                      ///< with emissive_strength multiplied in
+  std::optional<TextureUse> emissive_texture;            ///< sRGB
+  std::optional<TextureUse> normal_texture;              ///< tangent space, linear
   float normal_scale = 1;
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
   bool unlit = false;
 
-  float ior = 1.5f;                                    ///< KHR_materials_ior; 0: infinite, or at least 1
-  struct Transmission {                                ///< KHR_materials_transmission
+  float ior = 1.5f;      ///< KHR_materials_ior; 0: infinite, or at least 1
+  struct Transmission {  ///< KHR_materials_transmission
     float weight = 0;
-    std::optional<TextureUse> texture;                 ///< R, linear
+    std::optional<TextureUse> texture;  ///< R, linear
   } transmission;
-  struct Volume {                                      ///< KHR_materials_volume
-    float thickness = 0;                               ///< 0: a thin wall, which does not refract
-    std::optional<TextureUse> thickness_texture;       ///< G, linear; rays measure the way themselves
-    Vec3 attenuation_color{1};                         ///< what is left after attenuation_distance
-    float attenuation_distance = std::numeric_limits<float>::infinity();   ///< scene units
+  struct Volume {                                 ///< KHR_materials_volume
+    float thickness = 0;                          ///< 0: a thin wall, which does not refract
+    std::optional<TextureUse> thickness_texture;  ///< G, linear; rays measure the way themselves
+    Vec3 attenuation_color{1};                    ///< what is left after attenuation_distance
+    float attenuation_distance = std::numeric_limits<float>::infinity();  ///< scene units
   } volume;
-  struct Specular {                                    ///< KHR_materials_specular
+  struct Specular {  ///< KHR_materials_specular
     float weight = 1;
     Vec3 color{1};
-    std::optional<TextureUse> texture;                 ///< A, linear
-    std::optional<TextureUse> color_texture;           ///< sRGB
+    std::optional<TextureUse> texture;        ///< A, linear
+    std::optional<TextureUse> color_texture;  ///< sRGB
   } specular;
-  struct Clearcoat {                                   ///< KHR_materials_clearcoat
+  struct Clearcoat {  ///< KHR_materials_clearcoat
     float weight = 0, roughness = 0;
-    std::optional<TextureUse> texture;                 ///< R, linear
-    std::optional<TextureUse> roughness_texture;       ///< G, linear
-    std::optional<TextureUse> normal_texture;          ///< without: the surface's own normal, unbent
+    std::optional<TextureUse> texture;            ///< R, linear
+    std::optional<TextureUse> roughness_texture;  ///< G, linear
+    std::optional<TextureUse> normal_texture;     ///< without: the surface's own normal, unbent
     float normal_scale = 1;
   } clearcoat;
-  struct Sheen {                                       ///< KHR_materials_sheen
+  struct Sheen {  ///< KHR_materials_sheen
     Vec3 color{0};
     float roughness = 0;
-    std::optional<TextureUse> color_texture;           ///< sRGB
-    std::optional<TextureUse> roughness_texture;       ///< A, linear
+    std::optional<TextureUse> color_texture;      ///< sRGB
+    std::optional<TextureUse> roughness_texture;  ///< A, linear
   } sheen;
-  struct Iridescence {                                 ///< KHR_materials_iridescence
+  struct Iridescence {  ///< KHR_materials_iridescence
     float weight = 0, ior = 1.3f;
-    float thickness_min = 100, thickness_max = 400;    ///< nanometres
-    std::optional<TextureUse> texture;                 ///< R, linear
-    std::optional<TextureUse> thickness_texture;       ///< G, linear
+    float thickness_min = 100, thickness_max = 400;  ///< nanometres
+    std::optional<TextureUse> texture;               ///< R, linear
+    std::optional<TextureUse> thickness_texture;     ///< G, linear
   } iridescence;
-  struct Anisotropy {                                  ///< KHR_materials_anisotropy
+  struct Anisotropy {  ///< KHR_materials_anisotropy
     float strength = 0;
-    float rotation = 0;                                ///< radians, counter-clockwise from the tangent
-    std::optional<TextureUse> texture;                 ///< RG direction, B strength, linear
+    float rotation = 0;                 ///< radians, counter-clockwise from the tangent
+    std::optional<TextureUse> texture;  ///< RG direction, B strength, linear
   } anisotropy;
 };
 
 /// A sphere as such, not triangulated, in model space; an instance may stretch it to an ellipsoid.
 struct Sphere {
   Vec3 center{0};
-  float radius = 1;                         ///< > 0, finite
+  float radius = 1;  ///< > 0, finite
   MaterialId material;
 };
 
@@ -109,12 +109,12 @@ struct Sphere {
 /// through the triangles first, so sphere i is primitive triangle_count() + i.
 struct Mesh {
   std::string name;
-  std::vector<Vec3> positions;              ///< finite
-  std::vector<Vec3> normals;                ///< empty (flat shading), or one unit vector a position
-  std::vector<Vec2> uv0, uv1;               ///< empty, or one a position
-  std::vector<Vec4> colors;                 ///< empty, or one a position; linear RGBA
-  std::vector<std::uint32_t> indices;       ///< 3 a triangle, each < positions.size()
-  std::vector<MaterialId> triangle_materials;   ///< one a triangle
+  std::vector<Vec3> positions;                 ///< finite
+  std::vector<Vec3> normals;                   ///< empty (flat shading), or one unit vector a position
+  std::vector<Vec2> uv0, uv1;                  ///< empty, or one a position
+  std::vector<Vec4> colors;                    ///< empty, or one a position; linear RGBA
+  std::vector<std::uint32_t> indices;          ///< 3 a triangle, each < positions.size()
+  std::vector<MaterialId> triangle_materials;  ///< one a triangle
   std::vector<Sphere> spheres;
 
   std::size_t triangle_count() const { return indices.size() / 3; }
@@ -140,23 +140,23 @@ struct Camera {
   Vec3 position{0};
   /// Orthonormal, right-handed: the camera looks along -back; up is towards the top of the image.
   Vec3 right{1, 0, 0}, up{0, 1, 0}, back{0, 0, 1};
-  float yfov = 0.8f;                     ///< radians, perspective
-  std::optional<float> aspect_ratio;     ///< perspective; informative, the image's own aspect is used
-  float xmag = 1, ymag = 1;              ///< half width and height in scene units, orthographic
+  float yfov = 0.8f;                  ///< radians, perspective
+  std::optional<float> aspect_ratio;  ///< perspective; informative, the image's own aspect is used
+  float xmag = 1, ymag = 1;           ///< half width and height in scene units, orthographic
   float znear = 0;
 };
 
 struct PunctualLight {
   enum class Kind : std::uint8_t { kPoint, kSpot, kDirectional } kind = Kind::kPoint;
-  Vec3 intensity{1};                     ///< colour times intensity: W/sr (point, spot), W/m^2 (directional)
+  Vec3 intensity{1};  ///< colour times intensity: W/sr (point, spot), W/m^2 (directional)
   Vec3 position{0};
-  Vec3 direction{0, 0, -1};              ///< unit, the way the light travels (spot, directional)
-  float range = 0;                       ///< 0: unlimited
+  Vec3 direction{0, 0, -1};  ///< unit, the way the light travels (spot, directional)
+  float range = 0;           ///< 0: unlimited
   float inner_cone_cos = 1, outer_cone_cos = 0.70710678f;
 };
 
 struct Sky {
-  Vec3 radiance{0};                      ///< constant over the sphere
+  Vec3 radiance{0};  ///< constant over the sphere
 };
 
 /// Everything an experiment sees; immutable once made. Materials has at least one entry.
@@ -168,7 +168,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<PunctualLight> lights;
-  std::vector<Camera> cameras;           ///< at least one: the file's, or one made from the bounds
+  std::vector<Camera> cameras;  ///< at least one: the file's, or one made from the bounds
   Sky sky;
 
   std::size_t unique_triangle_count() const;     ///< over meshes

@@ -36,8 +36,7 @@ Bsdf::Bsdf(const MaterialPoint& material, const Vec3& wo) : wo_(wo) {
 
   const float weight = schlick_weight(wo.z);
   const float specular = luminance(f0_ + (Vec3{1} - f0_) * weight) * view.metal;
-  const float matte =
-      luminance(albedo) * (1.0f - view.dielectric) + luminance(returned) * (1.0f - view.metal);
+  const float matte = luminance(albedo) * (1.0f - view.dielectric) + luminance(returned) * (1.0f - view.metal);
   const float all = specular + matte;
   // Never so little that a bright lobe is left to rare samples of the other.
   specular_share_ = all > 0.0f ? std::clamp(specular / all, 0.1f, 0.9f) : 0.5f;

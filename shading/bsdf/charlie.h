@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 
 #include "core/types/vec.h"
-#include "shading/math/exponential.h"
 #include "shading/bsdf/lambert.h"
+#include "shading/math/exponential.h"
 
 namespace carousel::shading {
 

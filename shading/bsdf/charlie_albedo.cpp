@@ -45,7 +45,8 @@ const CharlieAlbedo& CharlieAlbedo::table() {
 
 float CharlieAlbedo::directional(float cos_theta, float alpha) const {
   const float x = std::sqrt(std::clamp(cos_theta, 0.0f, 1.0f)) * (kSize - 1);
-  const float y = (std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) - kMinSheenRoughness) / (1.0f - kMinSheenRoughness) * (kSize - 1);
+  const float y =
+      (std::sqrt(std::clamp(alpha, 0.0f, 1.0f)) - kMinSheenRoughness) / (1.0f - kMinSheenRoughness) * (kSize - 1);
   const int c = std::min(int(x), kSize - 2), r = std::clamp(int(y), 0, kSize - 2);
   const float s = x - float(c), t = std::max(y - float(r), 0.0f);
   const float low = cells_[r][c] + s * (cells_[r][c + 1] - cells_[r][c]);

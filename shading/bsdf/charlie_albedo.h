@@ -15,7 +15,7 @@ class CharlieAlbedo {
  private:
   CharlieAlbedo();
   static constexpr int kSize = 32;
-  std::array<std::array<float, kSize>, kSize> cells_;   // [sqrt(alpha)][sqrt(cosine)]
+  std::array<std::array<float, kSize>, kSize> cells_;  // [sqrt(alpha)][sqrt(cosine)]
 };
 
 }  // namespace carousel::shading

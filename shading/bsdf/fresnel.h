@@ -17,12 +17,12 @@ inline float f0_of_eta(float eta) {
 
 /// What happens to light at a smooth boundary: `eta` is the index behind over the index before. A. J. Fresnel, 1823.
 struct Refraction {
-  float reflected = 1;   ///< share, unpolarised; 1 beyond the critical angle
-  float cosine = 0;      ///< of the refracted direction, positive; 0 beyond the critical angle
-  bool total = true;     ///< nothing is refracted
+  float reflected = 1;  ///< share, unpolarised; 1 beyond the critical angle
+  float cosine = 0;     ///< of the refracted direction, positive; 0 beyond the critical angle
+  bool total = true;    ///< nothing is refracted
 };
 inline Refraction refraction(float cos_incident, float eta) {
-  const float sine2 = (1.0f - cos_incident * cos_incident) / (eta * eta);   // W. Snell, 1621
+  const float sine2 = (1.0f - cos_incident * cos_incident) / (eta * eta);  // W. Snell, 1621
   if (!(sine2 < 1.0f)) return {};
   Refraction r;
   r.total = false;

@@ -22,7 +22,7 @@ Integral integrate(float cos_theta, float alpha) {
     for (int j = 0; j < kStrata; ++j) {
       // Closer together where microfacets are seen edge-on: there masking changes fastest.
       const float v = 1.0f - (float(j) + 0.5f) / kStrata, stretch = 2.0f * v;
-      const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};   // the other half is this one's mirror image
+      const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};  // the other half is this one's mirror image
       const Vec3 h = sample_visible_normal(wo, alpha, u);
       const float oh = glm::dot(wo, h);
       const Vec3 wi = 2.0f * oh * h - wo;
@@ -79,16 +79,14 @@ GgxAlbedo::GgxAlbedo() {
       const float x = std::max(float(c) / (kSize - 1), 0.01f);
       const Integral integral = integrate(x * x, alpha);
       split_[r][c] = {integral.full, integral.schlick};
-      directional_[r][c] = {integral.full,
-                            kDielectricF0 * (integral.full - integral.schlick) + integral.schlick};
+      directional_[r][c] = {integral.full, kDielectricF0 * (integral.full - integral.schlick) + integral.schlick};
     }
     const float metal = cosine_mean([&](float cos_theta) { return at(directional_[r], cos_theta).metal; });
     // The multiple-scattering term of bsdf.cpp for F0 = 0.04.
     const float fresnel = (20.0f * kDielectricF0 + 1.0f) / 21.0f;
     const float returned = fresnel * fresnel * metal / (1.0f - fresnel * (1.0f - metal));
     for (Pair& pair : directional_[r]) pair.dielectric += returned * (1.0f - pair.metal);
-    average_[r] = {metal,
-                   cosine_mean([&](float cos_theta) { return at(directional_[r], cos_theta).dielectric; })};
+    average_[r] = {metal, cosine_mean([&](float cos_theta) { return at(directional_[r], cos_theta).dielectric; })};
     average_split_[r] = {cosine_mean([&](float cos_theta) { return along(split_[r], cos_theta).full; }),
                          cosine_mean([&](float cos_theta) { return along(split_[r], cos_theta).schlick; })};
   }

@@ -71,7 +71,7 @@ Shares integrate(float cos_theta, float alpha, float eta) {
     for (int j = 0; j < kStrata; ++j) {
       // Closer together where microfacets are seen edge-on: there masking and refraction change fastest.
       const float v = 1.0f - (float(j) + 0.5f) / kStrata, stretch = 2.0f * v;
-      const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};   // the other half is this one's mirror image
+      const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};  // the other half is this one's mirror image
       sum.add(sample_visible_normal(wo, alpha, u), stretch / (kStrata * kStrata));
     }
   }

@@ -9,15 +9,15 @@
 #include "shading/bsdf/ggx.h"
 #include "shading/bsdf/ggx_albedo.h"
 #include "shading/bsdf/ggx_anisotropic.h"
-#include "shading/math/luminance.h"
 #include "shading/bsdf/refraction_lobe.h"
 #include "shading/bsdf/visible_normals.h"
+#include "shading/math/luminance.h"
 
 namespace carousel::shading {
 
 namespace {
 
-constexpr Vec3 kNowhere{1, 0, 0};   // along the surface: carries nothing
+constexpr Vec3 kNowhere{1, 0, 0};  // along the surface: carries nothing
 
 /// Share of light lost between microfacets that comes back by further ones: C. Kulla, A. Conty, 2017.
 Vec3 returned_share(const Vec3& f0, float f90, float average) {
@@ -99,8 +99,8 @@ void InterfaceBsdf<kTransmits>::glass_lobes() {
   // What the base takes is what the boundary does not send up: between the table's nodes at the critical angle that
   // would be wrong by a tenth.
   const bool table_will_do = !anisotropic_ && (point_.transmission == 1.0f || point_.eta > 1.0f);
-  const GlassAlbedo::Shares s = table_will_do ? point_.glass->directional(wo_.z, point_.alpha.x)
-                                              : glass_shares(wo_, point_.alpha, point_.eta);
+  const GlassAlbedo::Shares s =
+      table_will_do ? point_.glass->directional(wo_.z, point_.alpha.x) : glass_shares(wo_, point_.alpha, point_.eta);
   const Vec3 up = f0 * (s.reflected - s.reflected_w) + Vec3{f90 * s.reflected_w + s.total};
   const Vec3 down = Vec3{s.through} - f0 * (s.through - s.through_w) - Vec3{f90 * s.through_w};
   const Vec3 lost = glm::max(Vec3{1} - up - down, Vec3{0});
@@ -190,7 +190,8 @@ BsdfValue InterfaceBsdf<kTransmits>::reflected(const Vec3& wi) const {
     value.f_cos += (diffuse_ + multiple_) * wi.z;
   } else {
     const GgxAlbedo::Split light = GgxAlbedo::table().split(wi.z, point_.alpha.x);
-    const Vec3 coat = single_albedo(point_.dielectric_f0, point_.dielectric_f90, light) + returned_ * (1.0f - light.full);
+    const Vec3 coat =
+        single_albedo(point_.dielectric_f0, point_.dielectric_f90, light) + returned_ * (1.0f - light.full);
     value.f_cos += (diffuse_ * glm::max(Vec3{1} - coat, Vec3{0}) + multiple_ * (1.0f - light.full)) * wi.z;
   }
   value.pdf += above_share_ * cosine_pdf(wi.z);
@@ -200,7 +201,8 @@ BsdfValue InterfaceBsdf<kTransmits>::reflected(const Vec3& wi) const {
 template <bool kTransmits>
 BsdfValue InterfaceBsdf<kTransmits>::through(const Vec3& wi) const {
   const bool glass = point_.glass != nullptr;
-  const ThroughValue lobe = glass ? refracted_value(wo_, wi, point_.alpha, point_.eta) : thin_value(wo_, wi, point_.alpha);
+  const ThroughValue lobe =
+      glass ? refracted_value(wo_, wi, point_.alpha, point_.eta) : thin_value(wo_, wi, point_.alpha);
   BsdfValue value;
   if (lobe.pdf > 0.0f) {
     const Facet f = facet(glm::dot(wo_, lobe.h));

@@ -5,9 +5,9 @@
 
 #include <glm/common.hpp>
 
-#include "shading/math/exponential.h"
 #include "shading/bsdf/fresnel.h"
 #include "shading/bsdf/ggx.h"
+#include "shading/math/exponential.h"
 #include "shading/math/trigonometry.h"
 
 namespace carousel::shading {
@@ -23,16 +23,16 @@ Vec3 sensitivity(float path_nm, const Vec3& shift) {
   constexpr Gaussian kFits[4]{{5.4856e-13f, 1.6810e+06f, 4.3278e+09f},
                               {4.4201e-13f, 1.7953e+06f, 9.3046e+09f},
                               {5.2481e-13f, 2.2084e+06f, 6.6121e+09f},
-                              {9.7470e-14f, 2.2399e+06f, 4.5282e+09f}};   // X has a second one
+                              {9.7470e-14f, 2.2399e+06f, 4.5282e+09f}};  // X has a second one
   const float path = path_nm * 1e-9f;
   const float phase = 2.0f * kPi * path;
   const auto term = [&](const Gaussian& g, float turns) {
     return g.height * std::sqrt(2.0f * kPi * g.variance) * sin_cos_turns(g.position * path + turns).cos *
            exp_float(-phase * phase * g.variance);
   };
-  const Vec3 xyz = Vec3{term(kFits[0], shift.x) + term(kFits[3], shift.x), term(kFits[1], shift.y),
-                        term(kFits[2], shift.z)} *
-                   (1.0f / 1.0685e-7f);
+  const Vec3 xyz =
+      Vec3{term(kFits[0], shift.x) + term(kFits[3], shift.x), term(kFits[1], shift.y), term(kFits[2], shift.z)} *
+      (1.0f / 1.0685e-7f);
   return {3.2404542f * xyz.x - 1.5371385f * xyz.y - 0.4985314f * xyz.z,
           -0.9692660f * xyz.x + 1.8760108f * xyz.y + 0.0415560f * xyz.z,
           0.0556434f * xyz.x - 0.2040259f * xyz.y + 1.0572252f * xyz.z};
@@ -48,9 +48,9 @@ Vec3 film_reflectance(float cos_theta, float film_ior, float thickness_nm, const
   if (!(sine2 < 1.0f)) return Vec3{1};
   const float cos_film = std::sqrt(1.0f - sine2);
 
-  const float r12 = refraction(cos_theta, ior).reflected;   // Schlick's would not vanish with the film
+  const float r12 = refraction(cos_theta, ior).reflected;  // Schlick's would not vanish with the film
   const float t121 = 1.0f - r12;
-  const float phase21 = ior < 1.0f ? 0.0f : 0.5f;   // turns
+  const float phase21 = ior < 1.0f ? 0.0f : 0.5f;  // turns
   Vec3 r23, phase;
   for (int c = 0; c < 3; ++c) {
     const float root = std::sqrt(std::clamp(base_f0[c], 0.0f, 0.9999f));

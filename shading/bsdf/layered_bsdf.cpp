@@ -5,11 +5,11 @@
 
 #include "shading/bsdf/charlie.h"
 #include "shading/bsdf/charlie_albedo.h"
-#include "shading/math/shading_basis.h"
 #include "shading/bsdf/ggx.h"
 #include "shading/bsdf/ggx_albedo.h"
 #include "shading/bsdf/lambert.h"
 #include "shading/math/luminance.h"
+#include "shading/math/shading_basis.h"
 
 namespace carousel::shading {
 
@@ -77,10 +77,10 @@ bool Layers::sample(float& lobe, const Vec2& u, Vec3& wi) const {
   if (coat) {
     const Vec3 h = sample_visible_normal(coat_wo_, coat_alpha_, u);
     wi = Frame(point_.coat_normal).to_world(2.0f * glm::dot(coat_wo_, h) * h - coat_wo_);
-    if (!(wi.z > 0.0f)) wi = {1, 0, 0};   // must not be taken for the base's light from below
+    if (!(wi.z > 0.0f)) wi = {1, 0, 0};  // must not be taken for the base's light from below
     return true;
   }
-  const SinCos phi = sin_cos_turns(u.y);   // evenly over the hemisphere: the lobe lives at the horizon
+  const SinCos phi = sin_cos_turns(u.y);  // evenly over the hemisphere: the lobe lives at the horizon
   const float sine = std::sqrt(std::max(0.0f, 1.0f - u.x * u.x));
   wi = {sine * phi.cos, sine * phi.sin, u.x};
   return true;

@@ -33,9 +33,9 @@ class Layers {
   LayerPoint point_;
   Vec3 wo_, coat_wo_;
   float coat_alpha_, sheen_alpha_;
-  float coat_multiple_;      // the coat's light reflected several times, / pi
-  float below_coat_ = 1, below_ = 1;   // share of light that gets below the coat, below all layers
-  float coat_share_ = 0, sheen_share_ = 0;   // probabilities
+  float coat_multiple_;                     // the coat's light reflected several times, / pi
+  float below_coat_ = 1, below_ = 1;        // share of light that gets below the coat, below all layers
+  float coat_share_ = 0, sheen_share_ = 0;  // probabilities
 };
 
 /// glTF's clearcoat over sheen over any base. A layer takes from what lies below the share it reflects towards the

@@ -3,8 +3,8 @@
 // Integrals over the microfacet normals that are visible from one direction, for what has too many parameters for a
 // table: a Fibonacci lattice (I. Sloan, S. Joe, "Lattice methods for multiple integration", 1994, section 5.1), whose
 // points stand closer together where facets are seen edge-on, since there masking changes fastest. Against
-// 9,216 points the albedo of any two roughnesses, cosine 0.03 to 1, was off by 0.07 % in the mean and 0.5 % at most with
-// 144 of them. Total reflection begins so suddenly that it wants 610.
+// 9,216 points the albedo of any two roughnesses, cosine 0.03 to 1, was off by 0.07 % in the mean and 0.5 % at most
+// with 144 of them. Total reflection begins so suddenly that it wants 610.
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +19,8 @@ namespace carousel::shading {
 
 struct LatticePoint {
   float cos_azimuth, sin_azimuth;
-  float below;    ///< 1 - u.y of sample_visible_normal()
-  float weight;   ///< all together 1
+  float below;   ///< 1 - u.y of sample_visible_normal()
+  float weight;  ///< all together 1
 };
 /// 144 or 610 points; computed on first use, then read-only. Any thread.
 std::span<const LatticePoint> coarse_lattice();
@@ -28,7 +28,8 @@ std::span<const LatticePoint> fine_lattice();
 
 /// Calls visit(h, weight) for normals visible from `wo`, unit with wo.z > 0; the weights add up to 1.
 template <class Visit>
-void visit_visible_normals(std::span<const LatticePoint> lattice, const Vec3& wo, const Vec2& alpha, const Visit& visit) {
+void visit_visible_normals(std::span<const LatticePoint> lattice, const Vec3& wo, const Vec2& alpha,
+                           const Visit& visit) {
   const Vec3 stretched = glm::normalize(Vec3{wo.x * alpha.x, wo.y * alpha.y, wo.z});
   for (const LatticePoint& p : lattice) {
     const float z = p.below * (1.0f + stretched.z) - stretched.z;

@@ -9,8 +9,7 @@
 
 namespace carousel::shading {
 
-CameraRays::CameraRays(const scene::Camera& camera, const CameraConfig& lens, std::uint32_t width,
-                       std::uint32_t height)
+CameraRays::CameraRays(const scene::Camera& camera, const CameraConfig& lens, std::uint32_t width, std::uint32_t height)
     : camera_(camera),
       lens_radius_(0.5f * lens.aperture),
       focus_distance_(lens.focus_distance),

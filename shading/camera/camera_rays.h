@@ -14,8 +14,7 @@ namespace carousel::shading {
 /// aspect; orthographic keeps the camera's whole window in view.
 class CameraRays {
  public:
-  CameraRays(const scene::Camera& camera, const CameraConfig& lens, std::uint32_t width,
-             std::uint32_t height);
+  CameraRays(const scene::Camera& camera, const CameraConfig& lens, std::uint32_t width, std::uint32_t height);
 
   /// Half the size of the window that the picture shows: at distance 1, or in scene units if orthographic.
   Vec2 half_window() const { return {half_width_, half_height_}; }

@@ -11,8 +11,8 @@
 
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
-#include "shading/math/srgb.h"
 #include "shading/camera/tone_curve.h"
+#include "shading/math/srgb.h"
 
 namespace carousel::shading {
 
@@ -21,9 +21,7 @@ namespace {
 /// Encodes in memory, so that AtomicFile can do the writing. `format` is a file extension.
 void write(const std::filesystem::path& path, const std::string& format, const OIIO::ImageSpec& spec,
            OIIO::TypeDesc type, const void* pixels) {
-  auto fail = [&](const std::string& why) {
-    throw FileError(fmt::format("cannot encode {}: {}", path.string(), why));
-  };
+  auto fail = [&](const std::string& why) { throw FileError(fmt::format("cannot encode {}: {}", path.string(), why)); };
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create("image." + format, &memory);

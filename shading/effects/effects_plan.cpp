@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "shading/math/luminance.h"
-#include "shading/surface/material_effects.h"
 #include "shading/path/path_pool.h"
+#include "shading/surface/material_effects.h"
 #include "shading/surface/surface.h"
 
 namespace carousel::shading {
@@ -86,7 +86,8 @@ class Planner {
       call_materials(e, is_emissive);
     } else if (const auto kind = light_kind(effect)) {
       for (std::size_t i = 0; i < scene_.lights.size(); ++i)
-        call(e, scene_.lights[i].kind == *kind && max_component(scene_.lights[i].intensity) > 0, "light", std::to_string(i));
+        call(e, scene_.lights[i].kind == *kind && max_component(scene_.lights[i].intensity) > 0, "light",
+             std::to_string(i));
     } else if (effect == Effect::kSky) {
       call(e, max_component(scene_.sky.radiance) > 0, "sky", "");
     } else if (effect == Effect::kDepthOfField) {
@@ -120,7 +121,8 @@ class Planner {
     };
     bool lit = false;
     for (std::size_t i = 0; i < scene_.materials.size(); ++i) lit = lit || (reached_[i] && !scene_.materials[i].unlit);
-    const bool lights = any({Effect::kPointLights, Effect::kSpotLights, Effect::kDirectionalLights, Effect::kAreaLights});
+    const bool lights =
+        any({Effect::kPointLights, Effect::kSpotLights, Effect::kDirectionalLights, Effect::kAreaLights});
     PlannedEffect& shadow = at(Effect::kShadowRays);
     shadow.called_for = lit && lights;
     shadow.why = !lights ? "there is no light" : lit ? "lights and surfaces they shine on" : "no surface is lit";
@@ -128,7 +130,10 @@ class Planner {
     const bool found = lights || any({Effect::kSky, Effect::kUnlit});
     const bool deep = config_.image.max_depth > 1;
     bounce.called_for = deep && lit && found;
-    bounce.why = !deep ? "image.max_depth is 1" : !lit ? "no surface is lit" : found ? "surfaces send on light" : "there is no light to find";
+    bounce.why = !deep   ? "image.max_depth is 1"
+                 : !lit  ? "no surface is lit"
+                 : found ? "surfaces send on light"
+                         : "there is no light to find";
     shadow.callers = shadow.called_for ? 1 : 0;
     bounce.callers = bounce.called_for ? 1 : 0;
   }
@@ -142,8 +147,8 @@ class Planner {
       cost.cycles_per_hit = static_cast<std::uint32_t>(shading.cycles_per_effect);
     if (effect == Effect::kAlphaMask || effect == Effect::kAlphaBlend) {
       const bool by_shader = config_.testers.any_hit == TestersConfig::AnyHit::kShader;
-      cost.cycles_per_hit =
-          static_cast<std::uint32_t>(by_shader ? shading.cycles_per_any_hit : config_.testers.any_hit_unit.interval_cycles);
+      cost.cycles_per_hit = static_cast<std::uint32_t>(by_shader ? shading.cycles_per_any_hit
+                                                                 : config_.testers.any_hit_unit.interval_cycles);
     }
     if (effect == Effect::kShadowRays) {
       cost.rays_per_path = depth;

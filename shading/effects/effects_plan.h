@@ -13,31 +13,39 @@ namespace carousel::shading {
 
 /// What an effect costs where it occurs; all 0 where it is off.
 struct EffectCost {
-  std::uint32_t rays_per_path = 0;      ///< at most
-  std::uint32_t texture_reads = 0;      ///< filtered lookups at a hit, at most
-  std::uint32_t path_state_bytes = 0;   ///< a path in flight
-  std::uint32_t cycles_per_hit = 0;     ///< of a simulated shader worker or opacity unit, at a surface that has it
-  std::uint32_t cycles_per_path = 0;    ///< of simulated shader workers for its rays, at most; not the rays' tests
+  std::uint32_t rays_per_path = 0;     ///< at most
+  std::uint32_t texture_reads = 0;     ///< filtered lookups at a hit, at most
+  std::uint32_t path_state_bytes = 0;  ///< a path in flight
+  std::uint32_t cycles_per_hit = 0;    ///< of a simulated shader worker or opacity unit, at a surface that has it
+  std::uint32_t cycles_per_path = 0;   ///< of simulated shader workers for its rays, at most; not the rays' tests
 };
 
 /// Each takes `shading.cycles_per_effect` at a hit, in the cycle engine.
-inline constexpr std::array kExtraEffects{
-    Effect::kBaseColorTexture, Effect::kMetallicRoughnessTexture, Effect::kNormalMap, Effect::kTransmission,
-    Effect::kRefraction, Effect::kVolume, Effect::kIor, Effect::kSpecular, Effect::kClearcoat, Effect::kSheen,
-    Effect::kIridescence, Effect::kAnisotropy};
+inline constexpr std::array kExtraEffects{Effect::kBaseColorTexture,
+                                          Effect::kMetallicRoughnessTexture,
+                                          Effect::kNormalMap,
+                                          Effect::kTransmission,
+                                          Effect::kRefraction,
+                                          Effect::kVolume,
+                                          Effect::kIor,
+                                          Effect::kSpecular,
+                                          Effect::kClearcoat,
+                                          Effect::kSheen,
+                                          Effect::kIridescence,
+                                          Effect::kAnisotropy};
 
 struct PlannedEffect {
-  bool called_for = false;      ///< by what can be reached from the instances
-  bool on = false;              ///< computed: called for or `all`, and not left out of a list
-  std::uint32_t callers = 0;    ///< materials, lights or meshes that call for it
-  std::string why;              ///< which, or that nothing does
+  bool called_for = false;    ///< by what can be reached from the instances
+  bool on = false;            ///< computed: called for or `all`, and not left out of a list
+  std::uint32_t callers = 0;  ///< materials, lights or meshes that call for it
+  std::string why;            ///< which, or that nothing does
   EffectCost cost;
 };
 
 /// Which effects a frame computes, and why: `shading.effects`.
 struct EffectsPlan {
   std::array<PlannedEffect, kEffects> effects;
-  bool everything = false;   ///< `all`: nothing is specialised
+  bool everything = false;  ///< `all`: nothing is specialised
 
   const PlannedEffect& of(Effect effect) const { return effects[static_cast<std::size_t>(effect)]; }
   bool on(Effect effect) const { return of(effect).on; }

@@ -45,7 +45,8 @@ float sphere_flux(const scene::Scene& scene, std::uint32_t instance, std::uint32
 
 const scene::Material& material_of(const scene::Scene& scene, const scene::Mesh& mesh, std::uint32_t primitive) {
   const std::size_t triangles = mesh.triangle_count();
-  const MaterialId id = primitive < triangles ? mesh.triangle_materials[primitive] : mesh.spheres[primitive - triangles].material;
+  const MaterialId id =
+      primitive < triangles ? mesh.triangle_materials[primitive] : mesh.spheres[primitive - triangles].material;
   return scene.materials[id.value];
 }
 

@@ -6,11 +6,11 @@
 #include <glm/geometric.hpp>
 
 #include "core/numeric/octahedral.h"
-#include "shading/math/luminance.h"
 #include "shading/lights/punctual_light.h"
+#include "shading/math/luminance.h"
+#include "shading/math/trigonometry.h"
 #include "shading/surface/spawn_point.h"
 #include "shading/surface/surface.h"
-#include "shading/math/trigonometry.h"
 
 namespace carousel::shading {
 
@@ -37,7 +37,8 @@ LightSet::LightSet(const scene::Scene& scene, bool punctual, bool primitives) : 
   for (const scene::PunctualLight& light : scene.lights) {
     weights.push_back(punctual ? finite_weight(luminance(punctual_flux(light, radius))) : 0.0f);
   }
-  for (const EmissivePrimitive& light : primitives_.all()) weights.push_back(primitives ? finite_weight(light.flux) : 0.0f);
+  for (const EmissivePrimitive& light : primitives_.all())
+    weights.push_back(primitives ? finite_weight(light.flux) : 0.0f);
   choice_ = LightChoice(weights);
 }
 
@@ -45,19 +46,18 @@ LightSample LightSet::sample(const LightDraw& draw, const Vec3& origin, SpawnOff
   const std::uint32_t index = choice_.choose(draw.choice);
   const float probability = choice_.probability(index);
   if (index >= scene_.lights.size()) {
-    return sample_primitive(primitives_.all()[index - scene_.lights.size()], probability, draw.point, origin,
-                           offset);
+    return sample_primitive(primitives_.all()[index - scene_.lights.size()], probability, draw.point, origin, offset);
   }
   const PunctualSample light = sample_punctual(scene_.lights[index], origin);
   const bool directional = std::isinf(light.distance);
   return {directional ? light.to_light : scene_.lights[index].position - origin,
-          directional ? kInfinity : kShortOfLight, light.to_light, light.irradiance * (1.0f / probability),
-          0.0f};
+          directional ? kInfinity : kShortOfLight, light.to_light, light.irradiance * (1.0f / probability), 0.0f};
 }
 
 namespace {
 
-/// Uniform over the triangle, keeping strata compact: E. Heitz, "A low-distortion map between triangle and square", 2019.
+/// Uniform over the triangle, keeping strata compact: E. Heitz, "A low-distortion map between triangle and square",
+/// 2019.
 Vec2 point_of_triangle(const Vec2& u) {
   Vec2 b = u;
   if (b.y > b.x) {
@@ -80,7 +80,8 @@ bool is_sphere(const scene::Scene& scene, std::uint32_t instance, std::uint32_t 
   return primitive >= scene.meshes[scene.instances[instance].mesh.value].triangle_count();
 }
 
-/// The inverse of the density of sphere points: of two that lie opposite each other, the one on the viewer's side is taken.
+/// The inverse of the density of sphere points: of two that lie opposite each other, the one on the viewer's side is
+/// taken.
 float sphere_area(const TriangleGeometry& geometry, bool front) {
   return static_cast<float>(geometry.area) * (front ? 0.5f : 1.0f);
 }
@@ -92,7 +93,7 @@ bool faces(const TriangleGeometry& geometry, const Vec3& origin) {
 }  // namespace
 
 LightSample LightSet::sample_primitive(const EmissivePrimitive& light, float probability, const Vec2& u,
-                                      const Vec3& origin, SpawnOffset offset) const {
+                                       const Vec3& origin, SpawnOffset offset) const {
   const bool sphere = is_sphere(scene_, light.instance, light.primitive);
   Vec2 at = sphere ? point_of_sphere(u) : point_of_triangle(u);
   TriangleGeometry geometry = triangle_geometry(scene_, light.instance, light.primitive, at.x, at.y);

@@ -22,8 +22,8 @@ struct LightSample {
   float pdf = 0;      ///< density per solid angle; 0 for lights that no other ray can hit
 };
 
-/// Everything that next-event estimation chooses from: punctual lights and emissive triangles and spheres, in proportion
-/// to their flux. Immutable; any thread.
+/// Everything that next-event estimation chooses from: punctual lights and emissive triangles and spheres, in
+/// proportion to their flux. Immutable; any thread.
 class LightSet {
  public:
   /// Only what `punctual` and `primitives` let in is ever chosen.
@@ -38,8 +38,8 @@ class LightSet {
   float primitive_pdf(const Hit& hit, const TriangleGeometry& geometry, bool front, float cos_light) const;
 
  private:
-  LightSample sample_primitive(const EmissivePrimitive& light, float probability, const Vec2& u,
-                              const Vec3& origin, SpawnOffset offset) const;
+  LightSample sample_primitive(const EmissivePrimitive& light, float probability, const Vec2& u, const Vec3& origin,
+                               SpawnOffset offset) const;
 
   const scene::Scene& scene_;
   EmissivePrimitives primitives_;

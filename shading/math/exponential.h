@@ -14,7 +14,7 @@ inline float exp2_float(double x) {
   if (!(x > -126.0)) return 0.0f;
   if (x >= 128.0) return INFINITY;
   const double whole = std::floor(x + 0.5);
-  const double y = (x - whole) * 0.69314718055994530942;   // |y| <= ln(2) / 2
+  const double y = (x - whole) * 0.69314718055994530942;  // |y| <= ln(2) / 2
   double series = 1.0;
   for (int k = 9; k >= 1; --k) series = 1.0 + series * (y / k);
   const auto scale = std::bit_cast<double>((static_cast<std::uint64_t>(static_cast<std::int64_t>(whole) + 1023)) << 52);
@@ -25,12 +25,12 @@ inline float exp2_float(double x) {
 inline double log2_double(double x) {
   const auto bits = std::bit_cast<std::uint64_t>(x);
   auto exponent = static_cast<int>(bits >> 52) - 1023;
-  double m = std::bit_cast<double>((bits & 0x000fffffffffffffull) | 0x3ff0000000000000ull);   // 1 to 2
+  double m = std::bit_cast<double>((bits & 0x000fffffffffffffull) | 0x3ff0000000000000ull);  // 1 to 2
   if (m > 1.41421356237309504880) {
     m *= 0.5;
     ++exponent;
   }
-  const double r = (m - 1.0) / (m + 1.0), rr = r * r;   // |r| < 0.172
+  const double r = (m - 1.0) / (m + 1.0), rr = r * r;  // |r| < 0.172
   double series = 0.0;
   for (int k = 13; k >= 1; k -= 2) series = 1.0 / k + rr * series;
   return exponent + 2.0 * r * series * 1.44269504088896340736;

@@ -75,8 +75,7 @@ LightDraw Sampler::light(std::uint32_t pixel, std::uint32_t sample, std::uint32_
     return {words[0], {unit_float(words[1]), unit_float(words[2])}, unit_float(words[3])};
   }
   return {stratified(sample, pattern(key, index(Dimension::kLightChoice)), words[0]),
-          stratified(sample, pattern(key, index(Dimension::kLightU)), words[1], words[2]),
-          unit_float(words[3])};
+          stratified(sample, pattern(key, index(Dimension::kLightU)), words[1], words[2]), unit_float(words[3])};
 }
 
 DirectionDraw Sampler::direction(std::uint32_t pixel, std::uint32_t sample, std::uint32_t bounce) const {
@@ -95,9 +94,9 @@ Vec2 Sampler::stratified(std::uint32_t sample, std::uint32_t pattern, std::uint3
   const std::uint32_t s = permute(sample, samples_, pattern * 0x51633e2du);
   const std::uint32_t column = permute(s % columns_, columns_, pattern * 0x68bc21ebu);
   const std::uint32_t row = permute(s / columns_, rows_, pattern * 0x02e5be93u);
-  const float x = (static_cast<float>(column) +
-                   (static_cast<float>(row) + unit_float(jitter_x)) / static_cast<float>(rows_)) /
-                  static_cast<float>(columns_);
+  const float x =
+      (static_cast<float>(column) + (static_cast<float>(row) + unit_float(jitter_x)) / static_cast<float>(rows_)) /
+      static_cast<float>(columns_);
   const float y = (static_cast<float>(s) + unit_float(jitter_y)) / static_cast<float>(samples_);
   return {std::min(x, kBelowOne), std::min(y, kBelowOne)};
 }
@@ -117,8 +116,7 @@ std::uint32_t Sampler::pattern(const RandomKey& key, std::uint32_t dimension) co
     h *= 0xc2b2ae35u;
     return h ^ h >> 16;
   };
-  const std::uint32_t seed =
-      static_cast<std::uint32_t>(seed_) ^ static_cast<std::uint32_t>(seed_ >> 32) * 0x9e3779b9u;
+  const std::uint32_t seed = static_cast<std::uint32_t>(seed_) ^ static_cast<std::uint32_t>(seed_ >> 32) * 0x9e3779b9u;
   return mix(mix(seed + key.pixel * 0x9e3779b9u) + (key.bounce << 8 | dimension) * 0x7feb352du);
 }
 

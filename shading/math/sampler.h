@@ -39,8 +39,7 @@ class Sampler {
   DirectionDraw direction(std::uint32_t pixel, std::uint32_t sample, std::uint32_t bounce) const;
 
  private:
-  Vec2 stratified(std::uint32_t sample, std::uint32_t pattern, std::uint32_t jitter_x,
-                  std::uint32_t jitter_y) const;
+  Vec2 stratified(std::uint32_t sample, std::uint32_t pattern, std::uint32_t jitter_x, std::uint32_t jitter_y) const;
   std::uint32_t stratified(std::uint32_t sample, std::uint32_t pattern, std::uint32_t jitter) const;
   std::uint32_t pattern(const RandomKey& key, std::uint32_t dimension) const;
 

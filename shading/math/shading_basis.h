@@ -23,9 +23,7 @@ struct Frame {
   /// `t` is unit and at right angles to `n`.
   Frame(const Vec3& n, const Vec3& t) : tangent(t), bitangent(glm::cross(n, t)), normal(n) {}
 
-  Vec3 to_local(const Vec3& v) const {
-    return {glm::dot(v, tangent), glm::dot(v, bitangent), glm::dot(v, normal)};
-  }
+  Vec3 to_local(const Vec3& v) const { return {glm::dot(v, tangent), glm::dot(v, bitangent), glm::dot(v, normal)}; }
   Vec3 to_world(const Vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
 };
 

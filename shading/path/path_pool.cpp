@@ -7,8 +7,7 @@ namespace carousel::shading {
 PathPool::PathPool(std::size_t states, std::uint64_t paths, std::size_t shadow_slots, bool media)
     : shadow_slots_(shadow_slots), paths_(paths) {
   // Never more states than there are paths for them.
-  const auto count =
-      static_cast<std::size_t>(std::clamp<std::uint64_t>(paths, 1, std::max<std::size_t>(states, 1)));
+  const auto count = static_cast<std::size_t>(std::clamp<std::uint64_t>(paths, 1, std::max<std::size_t>(states, 1)));
   states_ = std::make_unique<PathState[]>(count);
   if (shadow_slots > 0) shadow_ = std::make_unique<Vec3[]>(count * shadow_slots);
   if (media) media_ = std::make_unique<std::uint32_t[]>(count);
@@ -19,8 +18,7 @@ PathPool::PathPool(std::size_t states, std::uint64_t paths, std::size_t shadow_s
 
 PathPool::Admission PathPool::admit(std::size_t max, std::vector<std::uint32_t>& indices) {
   const std::scoped_lock lock(mutex_);
-  const auto count =
-      static_cast<std::size_t>(std::min<std::uint64_t>({max, free_.size(), paths_ - admitted_}));
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>({max, free_.size(), paths_ - admitted_}));
   const Admission admission{admitted_, count};
   indices.insert(indices.end(), free_.rbegin(), free_.rbegin() + static_cast<std::ptrdiff_t>(count));
   free_.resize(free_.size() - count);

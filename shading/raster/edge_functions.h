@@ -15,8 +15,8 @@ namespace carousel::shading {
 class EdgeFunctions {
  public:
   struct Crossing {
-    double t, u, v;   ///< along the direction; weights of vertices 1 and 2
-    bool front;       ///< the ray sees the vertices counter-clockwise
+    double t, u, v;  ///< along the direction; weights of vertices 1 and 2
+    bool front;      ///< the ray sees the vertices counter-clockwise
   };
 
   /// Vertices relative to the eye.
@@ -25,9 +25,9 @@ class EdgeFunctions {
         plane_(glm::cross(p[1] - p[0], p[2] - p[0])),
         distance_(glm::dot(plane_, p[0])) {}
 
-  /// Where the line along `direction` crosses, in either direction; edges belong to the triangle. Two triangles that share
-  /// an edge evaluate it to the same number with opposite signs (each product and sum rounds alike), so no ray passes
-  /// between them.
+  /// Where the line along `direction` crosses, in either direction; edges belong to the triangle. Two triangles that
+  /// share an edge evaluate it to the same number with opposite signs (each product and sum rounds alike), so no ray
+  /// passes between them.
   std::optional<Crossing> cross(const DVec3& direction) const {
     const double a = glm::dot(direction, normals_[0]);
     const double b = glm::dot(direction, normals_[1]);

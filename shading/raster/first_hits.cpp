@@ -8,9 +8,9 @@
 
 #include "scene/model/opacity.h"
 #include "shading/camera/camera_rays.h"
+#include "shading/math/sampler.h"
 #include "shading/raster/edge_functions.h"
 #include "shading/raster/screen.h"
-#include "shading/math/sampler.h"
 
 namespace carousel::shading {
 
@@ -87,7 +87,8 @@ class Rasterizer {
     for (const scene::Sphere& sphere : mesh.spheres) {
       const PixelBox box = screen_.bounds(world_box(sphere, instance.world_from_model));
       for (std::uint32_t y = box.y0; y < box.y1; ++y) {
-        std::fill_n(&out_.left_to_rays[std::size_t{y} * screen_.width() + box.x0], box.empty() ? 0 : box.x1 - box.x0, 1);
+        std::fill_n(&out_.left_to_rays[std::size_t{y} * screen_.width() + box.x0], box.empty() ? 0 : box.x1 - box.x0,
+                    1);
       }
     }
     const auto triangles = static_cast<std::uint32_t>(mesh.triangle_count());
@@ -127,8 +128,7 @@ class Rasterizer {
     const PixelBox box = screen_.bounds(world);
     const scene::Mesh& mesh = scene_.meshes[scene_.instances[ref.instance].mesh.value];
     // Mirroring swaps the sides in world space; which one is the front, the mesh says.
-    const bool mirrored =
-        glm::determinant(DMat3(scene_.instances[ref.instance].world_from_model.linear)) < 0;
+    const bool mirrored = glm::determinant(DMat3(scene_.instances[ref.instance].world_from_model.linear)) < 0;
     const bool passes = any_hit_ != nullptr && opacity_.may_let_through(mesh, ref.primitive);
     const auto edges_from = [&](const Vec3& eye) {
       return EdgeFunctions({world[0] - DVec3(eye), world[1] - DVec3(eye), world[2] - DVec3(eye)});
@@ -144,7 +144,8 @@ class Rasterizer {
           ++counts.tested;
           const auto crossing = edges.cross(DVec3(ray.direction));
           if (!crossing) continue;
-          if (wishes_.cull == (crossing->front == mirrored ? RayWishes::Cull::kBack : RayWishes::Cull::kFront)) continue;
+          if (wishes_.cull == (crossing->front == mirrored ? RayWishes::Cull::kBack : RayWishes::Cull::kFront))
+            continue;
           const Hit hit{static_cast<float>(crossing->t), static_cast<float>(crossing->u),
                         static_cast<float>(crossing->v), ref.instance, ref.primitive};
           if (!(hit.t >= ray.tmin && hit.t <= ray.tmax)) continue;
@@ -184,7 +185,8 @@ class Rasterizer {
 
 FirstHits rasterize_first_hits(const scene::Scene& scene, const Config& config, const AnyHit* any_hit,
                                Executor& executor) {
-  const auto width = static_cast<std::uint32_t>(config.image.width), height = static_cast<std::uint32_t>(config.image.height);
+  const auto width = static_cast<std::uint32_t>(config.image.width),
+             height = static_cast<std::uint32_t>(config.image.height);
   const auto samples = static_cast<std::uint32_t>(config.image.samples);
   const scene::Camera& camera = scene.cameras.at(static_cast<std::size_t>(config.scene.camera));
   const CameraRays rays(camera, config.camera, width, height);

@@ -20,7 +20,9 @@ struct Window {
     hi_x = x <= hi_x ? hi_x : x;
     hi_y = y <= hi_y ? hi_y : y;
   }
-  bool proper() const { return std::isfinite(lo_x) && std::isfinite(lo_y) && std::isfinite(hi_x) && std::isfinite(hi_y); }
+  bool proper() const {
+    return std::isfinite(lo_x) && std::isfinite(lo_y) && std::isfinite(hi_x) && std::isfinite(hi_y);
+  }
 };
 
 /// Pixels of [lo, hi] in a row of `count`, with one to spare: rays are cast in single precision.
@@ -48,8 +50,7 @@ PixelBox Screen::bounds(std::span<const DVec3> points) const {
   }
   Window window;
   if (camera_.projection == scene::Camera::Projection::kOrthographic) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-      window.add(seen[i].x / half_window_.x, seen[i].y / half_window_.y);
+    for (std::size_t i = 0; i < points.size(); ++i) window.add(seen[i].x / half_window_.x, seen[i].y / half_window_.y);
   } else {
     // Rays start at znear; a little before it, since they do so in single precision.
     const double near = 0.9999 * static_cast<double>(camera_.znear);
@@ -58,9 +59,8 @@ PixelBox Screen::bounds(std::span<const DVec3> points) const {
     const auto count = static_cast<std::size_t>(
         std::count_if(seen, seen + points.size(), [&](const DVec3& p) { return p.z >= least; }));
     if (count < points.size()) {
-      const double most = std::max_element(seen, seen + points.size(), [](const DVec3& a, const DVec3& b) {
-                            return a.z < b.z;
-                          })->z;
+      const double most =
+          std::max_element(seen, seen + points.size(), [](const DVec3& a, const DVec3& b) { return a.z < b.z; })->z;
       if (most < -1e-6 * scale || (count == 0 && near > 0 && most < near)) return {};  // all of it behind
       if (!(near > 1e-9 * scale)) return all;
     }

@@ -28,7 +28,8 @@ bool AlphaTest::stops(const Ray& ray, std::uint32_t instance, std::uint32_t prim
   const float veil = alpha(scene_, point);
   // A ray meets a sphere twice, by the same number: where it does tells the one from the other.
   const bool sphere = point.mesh->positions.empty();
-  const std::uint32_t meeting = sphere ? std::bit_cast<std::uint32_t>(u) ^ 0x9e3779b9u * std::bit_cast<std::uint32_t>(v) : 0;
+  const std::uint32_t meeting =
+      sphere ? std::bit_cast<std::uint32_t>(u) ^ 0x9e3779b9u * std::bit_cast<std::uint32_t>(v) : 0;
   return veil >= 1.0f - scene::kAlphaTolerance || veil_chance(ray, instance, primitive ^ meeting) < veil;
 }
 

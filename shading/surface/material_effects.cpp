@@ -12,8 +12,8 @@ namespace {
 using scene::AlphaMode;
 using scene::Material;
 
-constexpr float kMirrorRoughness = 0.0316f;   // squared this is the least alpha of the GGX lobe
-constexpr float kStraight = 0.005f;           // an index this near to 1 does not refract
+constexpr float kMirrorRoughness = 0.0316f;  // squared this is the least alpha of the GGX lobe
+constexpr float kStraight = 0.005f;          // an index this near to 1 does not refract
 
 bool bright(const Vec3& color) {
   return color.x > 0 || color.y > 0 || color.z > 0;
@@ -61,8 +61,7 @@ bool calls_for(const Material& m, Effect effect) {
     case Effect::kIor:
       return m.ior != 1.5f && may_be_dielectric(m);
     case Effect::kSpecular:
-      return (s.weight != 1 || s.color != Vec3{1} || s.texture || s.color_texture) &&
-             may_be_dielectric(m);
+      return (s.weight != 1 || s.color != Vec3{1} || s.texture || s.color_texture) && may_be_dielectric(m);
     case Effect::kClearcoat:
       return m.clearcoat.weight > 0;
     case Effect::kSheen:
@@ -72,7 +71,7 @@ bool calls_for(const Material& m, Effect effect) {
     case Effect::kAnisotropy:
       return m.anisotropy.strength > 0;
     case Effect::kDoubleSided:
-      return m.double_sided && is_emissive(m);   // back sides are drawn anyway, but glow only if told
+      return m.double_sided && is_emissive(m);  // back sides are drawn anyway, but glow only if told
     default:
       return false;
   }
@@ -169,7 +168,8 @@ bool refracts(const Material& m) {
 
 bool absorbs(const Material& m) {
   const auto& v = m.volume;
-  return has_volume(m) && std::isfinite(v.attenuation_distance) && v.attenuation_distance > 0 && v.attenuation_color != Vec3{1};
+  return has_volume(m) && std::isfinite(v.attenuation_distance) && v.attenuation_distance > 0 &&
+         v.attenuation_color != Vec3{1};
 }
 
 std::vector<scene::TextureUse> textures_read(const Material& m) {

@@ -14,12 +14,12 @@ bool calls_for(const scene::Material& material, Effect effect);
 /// Afterwards it does not; what stands in its place: keep_effects(). Nothing for effects that are none of a material's.
 void take_off(Effect effect, scene::Material& material);
 
-bool has_layers(const scene::Material& material);      ///< clearcoat or sheen
-bool has_interface(const scene::Material& material);   ///< a boundary that glTF's core does not describe
-bool transmits(const scene::Material& material);       ///< lets light through somewhere
-bool has_volume(const scene::Material& material);      ///< and that into what it is the hull of
-bool refracts(const scene::Material& material);        ///< and that is of another index of refraction
-bool absorbs(const scene::Material& material);         ///< and that takes some of the light
+bool has_layers(const scene::Material& material);     ///< clearcoat or sheen
+bool has_interface(const scene::Material& material);  ///< a boundary that glTF's core does not describe
+bool transmits(const scene::Material& material);      ///< lets light through somewhere
+bool has_volume(const scene::Material& material);     ///< and that into what it is the hull of
+bool refracts(const scene::Material& material);       ///< and that is of another index of refraction
+bool absorbs(const scene::Material& material);        ///< and that takes some of the light
 
 /// Every texture that shading reads.
 std::vector<scene::TextureUse> textures_read(const scene::Material& material);

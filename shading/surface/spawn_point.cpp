@@ -62,13 +62,11 @@ double spawn_distance(const TriangleGeometry& g) {
   // |R^T n| . |e|, which is far less than |n| . |R| |e| where R shears.
   const DVec3 n = glm::abs(g.normal);
   const DVec3 model_n = glm::abs(glm::transpose(g.linear) * g.normal);
-  const DVec3 point = std::abs(g.weights[0]) * glm::abs(g.model[0]) +
-                      std::abs(g.weights[1]) * glm::abs(g.model[1]) +
+  const DVec3 point = std::abs(g.weights[0]) * glm::abs(g.model[0]) + std::abs(g.weights[1]) * glm::abs(g.model[1]) +
                       std::abs(g.weights[2]) * glm::abs(g.model[2]);
   double distance = gamma(7) * glm::dot(model_n, point);  // the barycentric point in float
-  distance +=
-      kernel_error(g, g.weights[0] * g.model[0] + g.weights[1] * g.model[1] + g.weights[2] * g.model[2]) *
-      glm::length(model_n);
+  distance += kernel_error(g, g.weights[0] * g.model[0] + g.weights[1] * g.model[1] + g.weights[2] * g.model[2]) *
+              glm::length(model_n);
 
   const bool identity = g.linear == DMat3(1.0) && g.translation == DVec3(0.0);
   if (identity) return distance;

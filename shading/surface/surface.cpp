@@ -42,8 +42,7 @@ Vec2 texture_coordinates(const TrianglePoint& p, const scene::TextureUse& use) {
   return transform_uv(use, p.mesh == &no_vertices() ? on_sphere(p) : Vec2{0, 0});
 }
 
-Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use,
-            Encoding encoding) {
+Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use, Encoding encoding) {
   return lookup(scene, use.texture, texture_coordinates(p, use), encoding);
 }
 
@@ -68,8 +67,7 @@ std::optional<TextureFrame> texture_frame(const TrianglePoint& p, const Triangle
   const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
   if (uvs.empty()) return std::nullopt;
   const Vec2 uv0 = transform_uv(use, uvs[p.vertices[0]]);
-  const Vec2 d1 = transform_uv(use, uvs[p.vertices[1]]) - uv0,
-             d2 = transform_uv(use, uvs[p.vertices[2]]) - uv0;
+  const Vec2 d1 = transform_uv(use, uvs[p.vertices[1]]) - uv0, d2 = transform_uv(use, uvs[p.vertices[2]]) - uv0;
   const float determinant = d1.x * d2.y - d1.y * d2.x;
   if (determinant == 0.0f) return std::nullopt;
   const Vec3 e1(g.linear * (g.model[1] - g.model[0])), e2(g.linear * (g.model[2] - g.model[0]));
@@ -91,11 +89,14 @@ Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeome
 
 }  // namespace
 
-TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
-                             float u, float v) {
+TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
+                             float v) {
   const scene::Mesh& mesh = scene.meshes[scene.instances[instance].mesh.value];
   if (primitive >= mesh.triangle_count()) {
-    return {&no_vertices(), &scene.materials[mesh.spheres[primitive - mesh.triangle_count()].material.value], {}, {1, u, v}};
+    return {&no_vertices(),
+            &scene.materials[mesh.spheres[primitive - mesh.triangle_count()].material.value],
+            {},
+            {1, u, v}};
   }
   const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t{primitive};
   return {&mesh,
@@ -164,8 +165,8 @@ bool is_emissive(const scene::Material& material) {
   return !material.unlit && max_component(material.emissive) > 0.0f;
 }
 
-Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g,
-                    const Vec3& facing, bool front, const Vec3& wo) {
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g, const Vec3& facing,
+                    bool front, const Vec3& wo) {
   const auto& map = p.material->normal_texture;
   return shading_normal(scene, p, g, facing, front, wo, map ? &*map : nullptr, p.material->normal_scale);
 }
@@ -177,8 +178,7 @@ std::optional<Vec3> texture_tangent(const TrianglePoint& p, const TriangleGeomet
   return frame->tangent;
 }
 
-Vec3 texture_color(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use,
-                   Encoding encoding) {
+Vec3 texture_color(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use, Encoding encoding) {
   return sample(scene, p, use, encoding);
 }
 
@@ -186,8 +186,8 @@ float texture_alpha(const scene::Scene& scene, const TrianglePoint& p, const sce
   return lookup_alpha(scene, use.texture, texture_coordinates(p, use));
 }
 
-Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g,
-                    const Vec3& facing, bool front, const Vec3& wo, const scene::TextureUse* map, float scale) {
+Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeometry& g, const Vec3& facing,
+                    bool front, const Vec3& wo, const scene::TextureUse* map, float scale) {
   Vec3 n = front ? facing : -facing;
   if (!p.mesh->normals.empty()) {
     n = normalized_or(transform_normal(Mat3(g.linear), g.mirrored, interpolate(p.mesh->normals, p)), n);

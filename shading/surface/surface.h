@@ -12,9 +12,9 @@
 
 namespace carousel::shading {
 
-/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours and no frame for
-/// normal maps; as texture coordinates it has its longitude (0 to 1 once around +y, from -z by way of -x) and its latitude
-/// (0 at +y, 1 at -y), in model space.
+/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours and no frame
+/// for normal maps; as texture coordinates it has its longitude (0 to 1 once around +y, from -z by way of -x) and its
+/// latitude (0 at +y, 1 at -y), in model space.
 struct TrianglePoint {
   const scene::Mesh* mesh;
   const scene::Material* material;
@@ -23,8 +23,8 @@ struct TrianglePoint {
 };
 
 /// `u` weighs vertex 1 and `v` vertex 2.
-TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
-                             float u, float v);
+TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
+                             float v);
 
 /// What the base colour texture, its factor and the vertex colour multiply to. For unlit materials all there
 /// is.

@@ -9,8 +9,8 @@
 #include "shading/bsdf/fresnel.h"
 #include "shading/bsdf/ggx.h"
 #include "shading/bsdf/iridescence.h"
-#include "shading/surface/material_effects.h"
 #include "shading/math/trigonometry.h"
+#include "shading/surface/material_effects.h"
 
 namespace carousel::shading {
 
@@ -64,7 +64,8 @@ Frame grain_frame(const SurfaceHit& hit, const Vec3& n) {
   return length2 > 1e-12f ? Frame(n, direction * (1.0f / std::sqrt(length2))) : Frame(n);
 }
 
-InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& material, const GlassTables& glass, float cosine) {
+InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& material, const GlassTables& glass,
+                               float cosine) {
   const scene::Material& m = *hit.point.material;
   InterfacePoint out;
   out.material = material;
@@ -79,16 +80,17 @@ InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& mater
   out.metal_f0 = material.base_color;
   if (const auto& film = m.iridescence; film.weight > 0.0f) {
     const float share = unit(film.weight * linear(hit, film.texture).x);
-    const float thickness = film.thickness_texture
-                                ? glm::mix(film.thickness_min, film.thickness_max, linear(hit, film.thickness_texture).y)
-                                : film.thickness_max;
+    const float thickness =
+        film.thickness_texture ? glm::mix(film.thickness_min, film.thickness_max, linear(hit, film.thickness_texture).y)
+                               : film.thickness_max;
     const auto under_film = [&](const Vec3& base) {
       return f0_of_reflectance(film_reflectance(cosine, film.ior, thickness, base), cosine);
     };
     out.dielectric_f0 = glm::mix(out.dielectric_f0, under_film(full_f0) * weight, share);
     out.metal_f0 = glm::mix(out.metal_f0, under_film(out.metal_f0), share);
   }
-  if (m.transmission.weight > 0.0f) out.transmission = unit(m.transmission.weight * linear(hit, m.transmission.texture).x);
+  if (m.transmission.weight > 0.0f)
+    out.transmission = unit(m.transmission.weight * linear(hit, m.transmission.texture).x);
   if (glass.outside != nullptr) {
     out.glass = hit.front ? glass.outside : glass.inside;
     out.eta = hit.front ? m.ior : 1.0f / m.ior;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "scene/model/scene.h"
-#include "shading/math/shading_basis.h"
 #include "shading/bsdf/interface_bsdf.h"
 #include "shading/bsdf/layered_bsdf.h"
+#include "shading/math/shading_basis.h"
 #include "shading/surface/surface.h"
 
 namespace carousel::shading {
@@ -20,17 +20,18 @@ struct SurfaceHit {
   const scene::Scene& scene;
   const TrianglePoint& point;
   const TriangleGeometry& geometry;
-  Vec3 facing;   ///< geometric normal on the viewer's side
-  Vec3 wo;       ///< unit, world
+  Vec3 facing;  ///< geometric normal on the viewer's side
+  Vec3 wo;      ///< unit, world
   bool front;
-  bool blurred;   ///< roughnesses are to be widened: widened_roughness()
+  bool blurred;  ///< roughnesses are to be widened: widened_roughness()
 };
 
 /// The frame to shade in: that of the shading normal `n`, turned along the grain if the material has one.
 Frame grain_frame(const SurfaceHit& hit, const Vec3& n);
 
 /// `material` is the point's, already widened; `cosine` that of wo and the shading normal.
-InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& material, const GlassTables& glass, float cosine);
+InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& material, const GlassTables& glass,
+                               float cosine);
 
 /// Clearcoat and sheen. None from inside of what refracts: they lie on the outside.
 LayerPoint layer_point(const SurfaceHit& hit, const Frame& frame, const GlassTables& glass);

@@ -81,8 +81,7 @@ Vec3 lookup(const scene::Scene& scene, TextureId id, const Vec2& uv, Encoding en
   const scene::Texture& texture = scene.textures[id.value];
   const scene::Image& image = scene.images[texture.image.value];
   if (image.width == 0 || image.height == 0) return Vec3{1};
-  return filtered(texture, image, uv,
-                  [&](std::uint32_t x, std::uint32_t y) { return texel(image, x, y, encoding); });
+  return filtered(texture, image, uv, [&](std::uint32_t x, std::uint32_t y) { return texel(image, x, y, encoding); });
 }
 
 float lookup_alpha(const scene::Scene& scene, TextureId id, const Vec2& uv) {

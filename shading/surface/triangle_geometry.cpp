@@ -32,8 +32,8 @@ TriangleGeometry sphere_geometry(const scene::Sphere& sphere, const scene::Affin
 
 }  // namespace
 
-TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
-                                   float u, float v) {
+TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
+                                   float v) {
   const scene::Instance& placed = scene.instances[instance];
   const scene::Mesh& mesh = scene.meshes[placed.mesh.value];
   const scene::Affine& world = placed.world_from_model;
@@ -56,8 +56,7 @@ TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t inst
   g.mirrored = determinant < 0.0;
   g.weights = {1.0 - double{u} - double{v}, double{u}, double{v}};
   g.position =
-      g.linear * (g.weights[0] * g.model[0] + g.weights[1] * g.model[1] + g.weights[2] * g.model[2]) +
-      g.translation;
+      g.linear * (g.weights[0] * g.model[0] + g.weights[1] * g.model[1] + g.weights[2] * g.model[2]) + g.translation;
 
   const DVec3 cross = glm::cross(g.linear * (g.model[1] - g.model[0]), g.linear * (g.model[2] - g.model[0]));
   const double length = glm::length(cross);

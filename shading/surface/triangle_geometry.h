@@ -21,12 +21,12 @@ struct TriangleGeometry {
   bool mirrored = false;          ///< the instance turns the winding; `normal` has that undone
 };
 
-/// Or of a sphere (scene::Mesh::spheres), whose front is its outside; `u` and `v` are then those of core/numeric/octahedral.h, and
-/// `area` is the world area to a unit of solid angle seen from its middle in model space, times 4 pi: the inverse of the
-/// density of points that are spread evenly over the unit sphere.
-/// `u` weighs vertex 1 and `v` vertex 2 of triangle `primitive`. An instance whose linear part is singular is
-/// traced in world space (its vertices rounded to float there), so that is the geometry returned for it.
-TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive,
-                                   float u, float v);
+/// Or of a sphere (scene::Mesh::spheres), whose front is its outside; `u` and `v` are then those of
+/// core/numeric/octahedral.h, and `area` is the world area to a unit of solid angle seen from its middle in model
+/// space, times 4 pi: the inverse of the density of points that are spread evenly over the unit sphere. `u` weighs
+/// vertex 1 and `v` vertex 2 of triangle `primitive`. An instance whose linear part is singular is traced in world
+/// space (its vertices rounded to float there), so that is the geometry returned for it.
+TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
+                                   float v);
 
 }  // namespace carousel::shading

@@ -1,6 +1,6 @@
 // Paths that start at hits which a rasteriser found (shading/raster/first_hits.h).
-#include "shading/tracer/path_tracer-inl.h"
 #include "shading/raster/first_hits.h"
+#include "shading/tracer/path_tracer-inl.h"
 
 namespace carousel::shading {
 

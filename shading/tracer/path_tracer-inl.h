@@ -2,18 +2,17 @@
 
 // The parts of PathTracer that are made for the effects they have: included by who chooses among them.
 
-#include "shading/tracer/path_tracer.h"
-
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 
 #include <glm/geometric.hpp>
 
-#include "shading/math/shading_basis.h"
 #include "shading/math/luminance.h"
+#include "shading/math/shading_basis.h"
 #include "shading/surface/material_effects.h"
 #include "shading/surface/spawn_point.h"
+#include "shading/tracer/path_tracer.h"
 
 namespace carousel::shading {
 
@@ -26,7 +25,9 @@ inline float balance(float own, float other) {
   return own / (own + other);
 }
 
-constexpr bool has_textures(SurfaceClass c) { return c != SurfaceClass::kPlain; }
+constexpr bool has_textures(SurfaceClass c) {
+  return c != SurfaceClass::kPlain;
+}
 constexpr bool transmits(SurfaceClass c) {
   return c == SurfaceClass::kTransmissive || c == SurfaceClass::kLayeredTransmissive || c == SurfaceClass::kAnything;
 }
@@ -103,8 +104,8 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
 
     if constexpr (kClass == SurfaceClass::kPlain || kClass == SurfaceClass::kTextured) {
       const Frame frame(normal);
-      scatter<kClass, kLights>(result, point, geometry, facing, front, frame, Bsdf(material, frame.to_local(wo)), worker,
-                               out, children);
+      scatter<kClass, kLights>(result, point, geometry, facing, front, frame, Bsdf(material, frame.to_local(wo)),
+                               worker, out, children);
     } else {
       const SurfaceHit surface{scene_, point, geometry, facing, wo, front, path.scattered};
       const GlassTables& glass = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())].glass;

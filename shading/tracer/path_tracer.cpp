@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "core/numeric/fixed_point.h"
+#include "shading/lights/sky.h"
 #include "shading/math/exponential.h"
 #include "shading/tracer/path_tracer-inl.h"
-#include "shading/lights/sky.h"
 
 namespace carousel::shading {
 
@@ -25,7 +25,9 @@ CameraConfig lens(CameraConfig camera, const EffectsPlan& plan) {
 }
 
 std::uint8_t flags_of(const RayWishes& wishes) {
-  const int cull = wishes.cull == RayWishes::Cull::kBack ? kRayCullBack : wishes.cull == RayWishes::Cull::kFront ? kRayCullFront : 0;
+  const int cull = wishes.cull == RayWishes::Cull::kBack    ? kRayCullBack
+                   : wishes.cull == RayWishes::Cull::kFront ? kRayCullFront
+                                                            : 0;
   return static_cast<std::uint8_t>(cull | (wishes.force_opaque ? kRayForceOpaque : 0));
 }
 
@@ -35,12 +37,12 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
                        std::size_t workers)
     : scene_(scene),
       plan_(plan_effects(scene, config)),
-      paths_(static_cast<std::uint64_t>(config.image.width) *
-             static_cast<std::uint64_t>(config.image.height) *
+      paths_(static_cast<std::uint64_t>(config.image.width) * static_cast<std::uint64_t>(config.image.height) *
              static_cast<std::uint64_t>(config.image.samples)),
       max_depth_(plan_.on(Effect::kBounceRays) ? u32(config.image.max_depth) : 1),
       spawn_(config.accuracy.spawn),
-      wishes_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays), flags_of(config.shading.shadow_rays)},
+      wishes_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays),
+              flags_of(config.shading.shadow_rays)},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
       order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
@@ -109,8 +111,7 @@ std::uint32_t PathTracer::extra_effects(const RayResult& result) const {
 
 void PathTracer::shade_shadow(const RayResult& result, Worker& worker) {
   if (result.hit.valid()) return;
-  add_radiance(pool_.state(result.tag.path), pool_.shadow_contribution(result.tag.path, result.tag.bounce),
-               worker);
+  add_radiance(pool_.state(result.tag.path), pool_.shadow_contribution(result.tag.path, result.tag.bounce), worker);
 }
 
 void PathTracer::shade_miss(const RayResult& result, Worker& worker) {
@@ -173,10 +174,10 @@ PathTracer::ShadeSurface PathTracer::shade_of(SurfaceClass surface, Lights light
 void PathTracer::choose_surfaces() {
   const std::vector<SurfaceClass> classes = surface_classes(scene_, plan_);
   const std::vector<std::uint32_t> effects = shading::extra_effects(scene_, plan_);
-  const Lights lights = media_                         ? Lights::kLampsAndMedia
-                        : plan_.on(Effect::kEmission)  ? Lights::kLamps
-                        : !lights_.empty()             ? Lights::kPunctual
-                                                       : Lights::kNone;
+  const Lights lights = media_                        ? Lights::kLampsAndMedia
+                        : plan_.on(Effect::kEmission) ? Lights::kLamps
+                        : !lights_.empty()            ? Lights::kPunctual
+                                                      : Lights::kNone;
   surfaces_.resize(scene_.materials.size());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const scene::Material& material = scene_.materials[i];
@@ -188,8 +189,8 @@ void PathTracer::choose_surfaces() {
     if (!surface.absorbs) continue;
     for (int c = 0; c < 3; ++c) {
       const float left = std::clamp(material.volume.attenuation_color[c], 1e-6f, 1.0f);
-      surface.absorption[c] =
-          static_cast<float>(-log2_double(double{left}) * 0.69314718055994530942) / material.volume.attenuation_distance;
+      surface.absorption[c] = static_cast<float>(-log2_double(double{left}) * 0.69314718055994530942) /
+                              material.volume.attenuation_distance;
     }
   }
 }

@@ -13,17 +13,17 @@
 #include "core/types/workload.h"
 #include "scene/model/scene.h"
 #include "shading/camera/camera_rays.h"
-#include "shading/effects/effects_plan.h"
 #include "shading/camera/film.h"
-#include "shading/lights/light_set.h"
-#include "shading/path/path_pool.h"
 #include "shading/camera/pixel_order.h"
-#include "shading/raster/first_hits.h"
-#include "shading/tracer/ray_recorder.h"
+#include "shading/effects/effects_plan.h"
+#include "shading/lights/light_set.h"
 #include "shading/math/sampler.h"
+#include "shading/path/path_pool.h"
+#include "shading/raster/first_hits.h"
 #include "shading/surface/surface.h"
-#include "shading/tracer/surface_class.h"
 #include "shading/surface/surface_layers.h"
+#include "shading/tracer/ray_recorder.h"
+#include "shading/tracer/surface_class.h"
 
 namespace carousel::shading {
 
@@ -32,16 +32,15 @@ namespace carousel::shading {
 /// from the fourth surface on. Image and hits digest are the same bits for any number of workers, any cutting
 /// of batches and any order. Each material is shaded by the least code that has all it calls for, chosen once
 /// (effects_plan.h). Shadow rays take what transmits for opaque: light gets through it by bounce rays alone, and at
-/// points of glass by shadow rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light from the sky,
-/// which only such rays find, is not seen there.
+/// points of glass by shadow rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light
+/// from the sky, which only such rays find, is not seen there.
 class PathTracer : public Workload {
  public:
-  /// Keeps a reference to `scene`, which has been through keep_effects() with config.shading.effects. At most `max_paths_in_flight` paths have rays out at a time, 1 if 0 is
-  /// given. Preconditions, which the config's ranges ensure: image.width, height and samples at least 1,
-  /// max_depth 1 to 255, width * height below 2^32.
-  /// Throws std::out_of_range if the scene has no camera `scene.camera`.
-  PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight,
-             std::size_t workers);
+  /// Keeps a reference to `scene`, which has been through keep_effects() with config.shading.effects. At most
+  /// `max_paths_in_flight` paths have rays out at a time, 1 if 0 is given. Preconditions, which the config's ranges
+  /// ensure: image.width, height and samples at least 1, max_depth 1 to 255, width * height below 2^32. Throws
+  /// std::out_of_range if the scene has no camera `scene.camera`.
+  PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight, std::size_t workers);
   ~PathTracer() override;
 
   /// Every completed ray is reported to `recorder`, which must outlive the tracing; null: none is. Call
@@ -93,9 +92,9 @@ class PathTracer : public Workload {
   struct Surface {
     ShadeSurface shade = nullptr;
     GlassTables glass;
-    Vec3 absorption{0};      ///< per scene unit, inside
+    Vec3 absorption{0};  ///< per scene unit, inside
     bool absorbs = false;
-    std::uint32_t effects = 0;   ///< extra_effects()
+    std::uint32_t effects = 0;  ///< extra_effects()
   };
 
   static ShadeSurface shade_of(SurfaceClass surface, Lights lights);
@@ -104,8 +103,8 @@ class PathTracer : public Workload {
   void choose_surfaces();
   template <SurfaceClass kClass, Lights kLights, class SomeBsdf>
   void scatter(const RayResult& result, const TrianglePoint& point, const TriangleGeometry& geometry,
-               const Vec3& facing, bool front, const Frame& frame, const SomeBsdf& bsdf, Worker& worker,
-               RayBatch& out, std::uint32_t& children);
+               const Vec3& facing, bool front, const Frame& frame, const SomeBsdf& bsdf, Worker& worker, RayBatch& out,
+               std::uint32_t& children);
   void absorb(const RayResult& result);
   Vec3 passed(std::uint32_t medium, float distance) const;
   void shade_miss(const RayResult& result, Worker& worker);
@@ -124,7 +123,7 @@ class PathTracer : public Workload {
   const scene::Scene& scene_;
   const EffectsPlan plan_;
   const std::uint64_t paths_;
-  const std::uint32_t max_depth_;   // 1 if there is nothing for bounce rays to find
+  const std::uint32_t max_depth_;  // 1 if there is nothing for bounce rays to find
   const SpawnOffset spawn_;
   const std::array<std::uint8_t, kRayKinds> wishes_;
   const Sampler sampler_;
@@ -132,7 +131,7 @@ class PathTracer : public Workload {
   const CameraRays camera_;
   const LightSet lights_;
   const bool media_;
-  std::vector<Surface> surfaces_;   // by material
+  std::vector<Surface> surfaces_;  // by material
   PathPool pool_;
   Film film_;
   std::unique_ptr<Worker[]> workers_;

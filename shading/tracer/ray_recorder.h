@@ -12,8 +12,7 @@ namespace carousel::shading {
 class RayRecorder {
  public:
   virtual ~RayRecorder() = default;
-  virtual void record(WorkerId worker, std::uint32_t pixel, std::uint32_t sample,
-                      const RayResult& result) = 0;
+  virtual void record(WorkerId worker, std::uint32_t pixel, std::uint32_t sample, const RayResult& result) = 0;
 };
 
 }  // namespace carousel::shading

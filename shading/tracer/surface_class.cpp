@@ -11,7 +11,8 @@ using scene::Material;
 
 std::string_view class_name(SurfaceClass surface) {
   constexpr std::array<std::string_view, kSurfaceClasses> kNames{
-      "unlit", "plain", "textured", "layered", "opaque", "layered_opaque", "transmissive", "layered_transmissive", "anything"};
+      "unlit",   "plain", "textured", "layered", "opaque", "layered_opaque", "transmissive", "layered_transmissive",
+      "anything"};
   return kNames[static_cast<std::size_t>(surface)];
 }
 
@@ -20,8 +21,7 @@ namespace {
 SurfaceClass surface_class(const Material& m, bool colors) {
   if (m.unlit) return SurfaceClass::kUnlit;
   const bool layers = has_layers(m);
-  if (transmits(m))
-    return layers ? SurfaceClass::kLayeredTransmissive : SurfaceClass::kTransmissive;
+  if (transmits(m)) return layers ? SurfaceClass::kLayeredTransmissive : SurfaceClass::kTransmissive;
   if (has_interface(m)) return layers ? SurfaceClass::kLayeredOpaque : SurfaceClass::kOpaque;
   if (layers) return SurfaceClass::kLayered;
   const bool textures = m.base_color_texture || m.metallic_roughness_texture || m.normal_texture || colors;

@@ -19,13 +19,10 @@ inline bool has_schema_type(const nlohmann::ordered_json& value, const std::stri
 
 /// Where `value` breaks `schema`: the keywords of JSON Schema that our schemas use, and no others.
 inline std::vector<std::string> schema_problems(const nlohmann::ordered_json& schema,
-                                                const nlohmann::ordered_json& value,
-                                                const std::string& path = "") {
+                                                const nlohmann::ordered_json& value, const std::string& path = "") {
   using Json = nlohmann::ordered_json;
   std::vector<std::string> problems;
-  const auto fail = [&](const std::string& what) {
-    problems.push_back(path + ": " + what + ": " + value.dump());
-  };
+  const auto fail = [&](const std::string& what) { problems.push_back(path + ": " + what + ": " + value.dump()); };
   const auto merge = [&](const std::vector<std::string>& more) {
     problems.insert(problems.end(), more.begin(), more.end());
   };
@@ -49,8 +46,7 @@ inline std::vector<std::string> schema_problems(const nlohmann::ordered_json& sc
     const double number = value;
     if (schema.contains("minimum") && number < schema["minimum"].get<double>()) fail("below the minimum");
     if (schema.contains("maximum") && number > schema["maximum"].get<double>()) fail("above the maximum");
-    if (schema.contains("exclusiveMinimum") && number <= schema["exclusiveMinimum"].get<double>())
-      fail("too small");
+    if (schema.contains("exclusiveMinimum") && number <= schema["exclusiveMinimum"].get<double>()) fail("too small");
   }
   if (value.is_string() && schema.contains("minLength") &&
       value.get<std::string>().size() < schema["minLength"].get<std::size_t>())
@@ -59,8 +55,7 @@ inline std::vector<std::string> schema_problems(const nlohmann::ordered_json& sc
     if (!schema.contains(combine)) continue;
     int matches = 0;
     for (const Json& one : schema[combine]) matches += schema_problems(one, value, path).empty();
-    if (matches == 0 || (matches > 1 && std::string(combine) == "oneOf"))
-      fail(std::string("breaks ") + combine);
+    if (matches == 0 || (matches > 1 && std::string(combine) == "oneOf")) fail(std::string("breaks ") + combine);
   }
   if (value.is_array()) {
     if (schema.contains("minItems") && value.size() < schema["minItems"].get<std::size_t>()) fail("too few");

@@ -20,8 +20,7 @@ std::string Node::found() const {
   std::string shown = text;
   if (shown.size() > kLongest) {
     std::size_t cut = kLongest;
-    while (cut > 0 && (static_cast<unsigned char>(shown[cut]) & 0xc0) == 0x80)
-      --cut;  // not inside a character
+    while (cut > 0 && (static_cast<unsigned char>(shown[cut]) & 0xc0) == 0x80) --cut;  // not inside a character
     shown = shown.substr(0, cut) + "...";
   }
   switch (kind) {
@@ -127,11 +126,9 @@ void apply_set(Node& root, std::string_view assignment, std::vector<ConfigIssue>
   try {
     std::vector<ConfigIssue> found;
     value = parse_yaml(assignment.substr(equals + 1), position.file, found);
-    for (ConfigIssue& issue : found)
-      issues.push_back({position, std::string(path), std::move(issue.message)});
+    for (ConfigIssue& issue : found) issues.push_back({position, std::string(path), std::move(issue.message)});
   } catch (const ConfigError& error) {
-    for (const ConfigIssue& issue : error.issues())
-      issues.push_back({position, std::string(path), issue.message});
+    for (const ConfigIssue& issue : error.issues()) issues.push_back({position, std::string(path), issue.message});
     return;
   }
   move_to(value, position);
@@ -142,8 +139,8 @@ void apply_set(Node& root, std::string_view assignment, std::vector<ConfigIssue>
     if (!next) {
       const std::string size = std::to_string(node->items.size());
       issues.push_back({position, std::string(path),
-                        "the list has " + size + " entries; expected an index from 0 to " + size +
-                            ", found '" + std::string(part) + "'"});
+                        "the list has " + size + " entries; expected an index from 0 to " + size + ", found '" +
+                            std::string(part) + "'"});
       return;
     }
     node = next;

@@ -23,9 +23,7 @@ std::size_t depth_of(const Node& node) {
 
 /// Length of the UTF-8 character at `at`, or 0 when it is none (overlong, a surrogate, cut short).
 std::size_t utf8_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
-  };
+  const auto byte = [&](std::size_t i) { return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u; };
   const auto follows = [&](std::size_t i) { return (byte(i) & 0xc0) == 0x80; };
   const unsigned b0 = byte(0), b1 = byte(1);
   if (b0 < 0x80) return 1;
@@ -77,8 +75,7 @@ void TreeBuilder::key(std::string text, SourcePosition position) {
     const SourcePosition& first = same->key_position;
     std::string message = "duplicate key";
     if (first.line > 0)
-      message +=
-          "; first given at line " + std::to_string(first.line) + ", column " + std::to_string(first.column);
+      message += "; first given at line " + std::to_string(first.line) + ", column " + std::to_string(first.column);
     issues_.push_back({position, path_of(text), std::move(message)});
   }
   map.have_key = true;
@@ -95,8 +92,7 @@ const Node& TreeBuilder::value(Node node) {
 
 void TreeBuilder::count(std::size_t nodes, const SourcePosition& position) {
   nodes_ += nodes;
-  if (nodes_ > kMaxNodes)
-    fail(position, "more than " + std::to_string(kMaxNodes) + " values, aliases expanded");
+  if (nodes_ > kMaxNodes) fail(position, "more than " + std::to_string(kMaxNodes) + " values, aliases expanded");
 }
 
 std::string TreeBuilder::path_of(std::string_view key) const {

@@ -22,14 +22,12 @@ std::string decimal_text(std::string_view text) {
   const bool minus = !text.empty() && text[0] == '-';
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
   if (all_of(text, "0123456789")) return (minus ? "-" : "") + std::string(text);
-  const bool hex = text.size() > 2 && text.substr(0, 2) == "0x",
-             octal = text.size() > 2 && text.substr(0, 2) == "0o";
+  const bool hex = text.size() > 2 && text.substr(0, 2) == "0x", octal = text.size() > 2 && text.substr(0, 2) == "0o";
   if (!hex && !octal) return {};
   const std::string_view digits = text.substr(2);
   if (!all_of(digits, hex ? "0123456789abcdefABCDEF" : "01234567")) return {};
   std::uint64_t value = 0;
-  const auto [end, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), value, hex ? 16 : 8);
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, hex ? 16 : 8);
   if (error != std::errc{} || end != digits.data() + digits.size()) return "99999999999999999999";
   return (minus ? "-" : "") + std::to_string(value);
 }
@@ -135,13 +133,11 @@ class YamlHandler final : public YAML::EventHandler {
   [[noreturn]] void fail_key(const SourcePosition& position, Node::Kind kind) {
     // yaml-cpp takes a bracket that is never closed for the beginning of a key.
     builder_.fail(position, std::string("expected a name as the key, found ") +
-                                (kind == Node::Kind::kSeq ? "a list" : "a map") +
-                                " (or is a bracket not closed?)");
+                                (kind == Node::Kind::kSeq ? "a list" : "a map") + " (or is a bracket not closed?)");
   }
 
   void begin(Node::Kind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
-    if (!tag.empty() && tag != "?" && tag != "!")
-      builder_.fail(at(mark), "tag '" + tag + "' has no meaning here");
+    if (!tag.empty() && tag != "?" && tag != "!") builder_.fail(at(mark), "tag '" + tag + "' has no meaning here");
     if (builder_.wants_key()) fail_key(at(mark), kind);
     builder_.begin(kind, at(mark));
     open_anchors_.push_back(anchor);

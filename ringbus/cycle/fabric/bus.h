@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/machine/cycle_machine.h"
 #include "ringbus/cycle/fabric/ports.h"
+#include "ringbus/cycle/machine/cycle_machine.h"
+#include "ringbus/cycle/time/agent.h"
 
 namespace carousel::ringbus::cycle {
 

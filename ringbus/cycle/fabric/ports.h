@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "ringbus/cycle/time/channel.h"
-#include "ringbus/results/cycle_result.h"
-#include "ringbus/cycle/time/fifo.h"
 #include "ringbus/cycle/fabric/token.h"
+#include "ringbus/cycle/time/channel.h"
+#include "ringbus/cycle/time/fifo.h"
 #include "ringbus/faults/link_fault_timer.h"
+#include "ringbus/results/cycle_result.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -21,7 +21,7 @@ template <class T>
 struct WireOf {
   Channel<T> packets;
   Channel<Credit> credits;
-  alignas(64) QueueLedger queue;   ///< the receiver's
+  alignas(64) QueueLedger queue;  ///< the receiver's
 };
 
 /// Where packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A place is
@@ -76,7 +76,8 @@ class OutPortOf {
       make_good(at);
       credits_ += faults_->acknowledge(at);
     }
-    if (faults_) [[unlikely]] make_good(now);
+    if (faults_) [[unlikely]]
+      make_good(now);
   }
   /// Sends one packet if it may; whether it did.
   bool send(Cycle now) {
@@ -119,11 +120,11 @@ class OutPortOf {
 
   bool empty() const { return queue_.empty(); }
   std::size_t in_hand() const { return queue_.size(); }
-  PacketId front() const { return queue_.front().token.packet; }   ///< of Tokens
+  PacketId front() const { return queue_.front().token.packet; }  ///< of Tokens
   const T& first() const { return queue_.front().token; }
   bool blocked() const { return blocked_since_ != kNever; }
-  Cycle busy() const { return busy_; }          ///< cycles in which the link moved something
-  Cycle stalled() const { return stalled_; }    ///< cycles in which a packet waited for a credit
+  Cycle busy() const { return busy_; }        ///< cycles in which the link moved something
+  Cycle stalled() const { return stalled_; }  ///< cycles in which a packet waited for a credit
   std::uint64_t packets() const { return packets_; }
   LinkFaultCounts faults() const { return faults_ ? faults_->counts() : LinkFaultCounts{}; }
 

@@ -7,8 +7,12 @@
 namespace carousel::ringbus::cycle {
 
 CycleMachine::CycleMachine(const Config& c, const accel::Accel& a, float scene_size)
-    : config(c), accel(a), topology(c.topology), memory(a, c.accuracy),
-      packets(make_packets(c, topology, packets_per_direction())), stores(make_ray_stores(c)),
+    : config(c),
+      accel(a),
+      topology(c.topology),
+      memory(a, c.accuracy),
+      packets(make_packets(c, topology, packets_per_direction())),
+      stores(make_ray_stores(c)),
       control(c, stores, Resource::initial_tests(c, a), scene_size) {}
 
 std::uint32_t CycleMachine::packets_per_direction() const {

@@ -5,8 +5,8 @@
 
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/time/clock.h"
 #include "ringbus/protocol/packet_pool.h"
 #include "ringbus/rays/ray_control.h"
 #include "ringbus/topology/topology.h"
@@ -31,8 +31,8 @@ struct CycleMachine {
   const accel::Accel& accel;
   Topology topology;
   ShapeMemory memory;
-  std::vector<Packet> packets;   ///< by owner, then direction
-  std::vector<std::unique_ptr<RayStore>> stores;   ///< by resource
+  std::vector<Packet> packets;                    ///< by owner, then direction
+  std::vector<std::unique_ptr<RayStore>> stores;  ///< by resource
   RayControl control;
 };
 

@@ -14,7 +14,8 @@ class LineCache {
  public:
   /// At least one set; the number of sets is rounded down to a power of two.
   LineCache(std::uint64_t bytes, std::uint64_t line_bytes, std::uint64_t ways)
-      : ways_(ways), sets_(std::bit_floor(std::max<std::uint64_t>(1, bytes / line_bytes / ways))),
+      : ways_(ways),
+        sets_(std::bit_floor(std::max<std::uint64_t>(1, bytes / line_bytes / ways))),
         lines_(sets_ * ways_, kEmpty) {}
 
   /// Whether `line` is there; it is then the last to go.
@@ -38,7 +39,7 @@ class LineCache {
  private:
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
   std::uint64_t ways_, sets_;
-  std::vector<std::uint64_t> lines_;   // by set, most recently used first
+  std::vector<std::uint64_t> lines_;  // by set, most recently used first
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -4,9 +4,13 @@
 
 namespace carousel::ringbus::cycle {
 
-Cycle Memory::request_latency(const MemoryConfig& config) { return way_there(config.dram_latency_cycles); }
+Cycle Memory::request_latency(const MemoryConfig& config) {
+  return way_there(config.dram_latency_cycles);
+}
 
-Cycle Memory::answer_latency(const MemoryConfig& config) { return way_back(config.dram_latency_cycles); }
+Cycle Memory::answer_latency(const MemoryConfig& config) {
+  return way_back(config.dram_latency_cycles);
+}
 
 Memory::Memory(const MemoryConfig& config, std::vector<Client> clients)
     : answer_latency_(answer_latency(config)),

@@ -13,7 +13,7 @@ namespace carousel::ringbus::cycle {
 class Memory final : public Agent {
  public:
   struct Client {
-    Channel<std::uint64_t>* requests = nullptr;   ///< line numbers
+    Channel<std::uint64_t>* requests = nullptr;  ///< line numbers
     Channel<std::uint64_t>* answers = nullptr;
   };
   static Cycle request_latency(const MemoryConfig& config);

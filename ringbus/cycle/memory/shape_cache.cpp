@@ -8,9 +8,13 @@
 
 namespace carousel::ringbus::cycle {
 
-Cycle ShapeCache::request_latency(const MemoryConfig& config) { return way_there(config.l2_latency_cycles); }
+Cycle ShapeCache::request_latency(const MemoryConfig& config) {
+  return way_there(config.l2_latency_cycles);
+}
 
-Cycle ShapeCache::answer_latency(const MemoryConfig& config) { return way_back(config.l2_latency_cycles); }
+Cycle ShapeCache::answer_latency(const MemoryConfig& config) {
+  return way_back(config.l2_latency_cycles);
+}
 
 ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, Channel<std::uint64_t>& to_memory,
                        Channel<std::uint64_t>& from_memory)

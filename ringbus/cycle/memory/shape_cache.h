@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/time/channel.h"
 #include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/messages/memory_messages.h"
+#include "ringbus/cycle/time/agent.h"
+#include "ringbus/cycle/time/channel.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -52,12 +52,12 @@ class ShapeCache final : public Agent {
   Cycle answer_latency_, memory_latency_;
   LineCache cache_;
   std::vector<Client> clients_;
-  std::vector<Cycle> last_answer_;   // answers of a client go out in order of time
+  std::vector<Cycle> last_answer_;  // answers of a client go out in order of time
   Channel<std::uint64_t>&to_memory_, &from_memory_;
   Cycle port_free_ = 0;
   std::vector<Pending> pending_;
   std::vector<std::uint32_t> free_pending_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> missing_;   // line to pending requests
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> missing_;  // line to pending requests
   Statistics statistics_;
 };
 

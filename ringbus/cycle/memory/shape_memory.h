@@ -15,12 +15,14 @@ struct ShapeSpan {
 };
 
 /// Where the acceleration structure lies: nodes first, each with its children's cull planes and the primitives it holds
-/// itself behind it, then leaves as they are laid out in the host's, then what is stored of each instance's transform, from a 64-byte border on.
+/// itself behind it, then leaves as they are laid out in the host's, then what is stored of each instance's transform,
+/// from a 64-byte border on.
 class ShapeMemory {
  public:
   ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
       : accel_(accel),
-        node_bytes_(sizeof(accel::Node) - (accel.spheres.empty() ? 0 : sizeof(accel::Node::plane) - sizeof(accel::NodeSpheres))),
+        node_bytes_(sizeof(accel::Node) -
+                    (accel.spheres.empty() ? 0 : sizeof(accel::Node::plane) - sizeof(accel::NodeSpheres))),
         blocks_at_((accel.nodes.size() * node_bytes_ + bytes_behind_nodes() + 63) / 64 * 64),
         instances_at_((blocks_at_ + accel.blocks.size() * sizeof(accel::TriangleBlock) + 63) / 64 * 64),
         instance_bytes_(accel::instance_bytes(accuracy)) {}
@@ -61,7 +63,7 @@ class ShapeMemory {
   }
 
   const accel::Accel& accel_;
-  std::vector<std::uint64_t> behind_before_;   // bytes, by node; empty when there are none
+  std::vector<std::uint64_t> behind_before_;  // bytes, by node; empty when there are none
   std::uint32_t node_bytes_;
   std::uint64_t blocks_at_, instances_at_;
   std::uint32_t instance_bytes_;

@@ -60,9 +60,9 @@ class StripFetches {
   }
 
   ShapePort port_;
-  std::vector<Fetch> fetches_;   // by tag
+  std::vector<Fetch> fetches_;  // by tag
   std::vector<std::uint32_t> free_tags_, arrived_;
-  std::unordered_map<std::uint64_t, std::uint32_t> under_way_;   // a strip's address to its tag
+  std::unordered_map<std::uint64_t, std::uint32_t> under_way_;  // a strip's address to its tag
 };
 
 }  // namespace carousel::ringbus::cycle

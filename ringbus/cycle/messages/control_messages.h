@@ -12,9 +12,9 @@ namespace carousel::ringbus::cycle {
 struct NewRays {
   std::vector<RayId> ids;
   enum class Order : std::uint8_t {
-    kTake,      ///< the rays
-    kDiscard,   ///< all work, and whatever packets come; and say when that is done
-    kGoOn,      ///< as before, without the one that stopped
+    kTake,     ///< the rays
+    kDiscard,  ///< all work, and whatever packets come; and say when that is done
+    kGoOn,     ///< as before, without the one that stopped
   } order = Order::kTake;
 };
 
@@ -23,9 +23,9 @@ struct CompletedRays {
   HitBatch rays;
   std::vector<std::uint32_t> slots;
   enum class Note : std::uint8_t {
-    kDone,       ///< the rays
-    kLastBeat,   ///< of a resource that has stopped: nothing will come from it any more
-    kDrained,    ///< none of its packets is under way, and nothing it asked for either
+    kDone,      ///< the rays
+    kLastBeat,  ///< of a resource that has stopped: nothing will come from it any more
+    kDrained,   ///< none of its packets is under way, and nothing it asked for either
   } note = Note::kDone;
 };
 

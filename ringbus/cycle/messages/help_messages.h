@@ -11,8 +11,8 @@ struct ShadeJob {
 
 /// From a resource whose testers fell idle or are needed again, or which has done its job.
 struct HelpNote {
-  bool shaded = false;   ///< the job is done
-  bool idle = false;     ///< and this is how things stand
+  bool shaded = false;  ///< the job is done
+  bool idle = false;    ///< and this is how things stand
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/types/workload.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/cycle/messages/side_ports.h"
+#include "ringbus/cycle/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -16,15 +16,19 @@ ShadeQueues::ShadeQueues(const ShadingConfig& config, std::uint64_t seed)
 
 std::size_t ShadeQueues::queue_for(const RayResult& ray) {
   switch (distribute_) {
-    case Distribute::kFifoFill: return 0;
-    case Distribute::kRoundRobin: return turn_++ % queues_.size();
+    case Distribute::kFifoFill:
+      return 0;
+    case Distribute::kRoundRobin:
+      return turn_++ % queues_.size();
     case Distribute::kRandom: {
-      const std::uint32_t which = std::uint32_t{ray.tag.bounce} << 16 | static_cast<std::uint32_t>(ray.tag.kind) << 8 | ray.tag.index;
+      const std::uint32_t which =
+          std::uint32_t{ray.tag.bounce} << 16 | static_cast<std::uint32_t>(ray.tag.kind) << 8 | ray.tag.index;
       const PhiloxKey key{static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)};
       const std::uint64_t word = philox4x32({ray.tag.path, which, 0, 0}, key)[0];
       return static_cast<std::size_t>(word * queues_.size() >> 32);
     }
-    case Distribute::kLoad: break;
+    case Distribute::kLoad:
+      break;
   }
   std::size_t best = 0;
   for (std::size_t w = 1; w < queues_.size(); ++w)

@@ -34,7 +34,7 @@ class ShadeQueues {
   ShadingConfig::Distribute distribute_;
   std::uint64_t seed_;
   std::vector<std::deque<RayResult>> queues_;
-  std::vector<std::size_t> in_hand_;   // by worker
+  std::vector<std::size_t> in_hand_;  // by worker
   std::size_t turn_ = 0, size_ = 0;
 };
 

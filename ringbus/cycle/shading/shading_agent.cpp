@@ -18,7 +18,8 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       shade_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_shade)),
       effect_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_effect)),
       any_hit_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_any_hit)),
-      load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
+      load_cycles_(
+          ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
       latency_(control_latency(machine.config)),
       slots_(static_cast<std::size_t>(machine.config.topology.resources * machine.config.rays.slots_per_resource)),
       group_(static_cast<std::size_t>(machine.config.packets.rays)),
@@ -28,10 +29,12 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       helpers_(clients_, latency_),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
-  if (machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<RetryLedger>();
+  if (machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
+    ledger_ = std::make_unique<RetryLedger>();
   for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
   const BundlesConfig& bundles = machine.config.bundles;
-  if (bundles.size > 0) gather_ = std::max(group_, std::min(slots_ / 4, static_cast<std::size_t>(bundles.size * bundles.builder.open)));
+  if (bundles.size > 0)
+    gather_ = std::max(group_, std::min(slots_ / 4, static_cast<std::size_t>(bundles.size * bundles.builder.open)));
 }
 
 Cycle ShadingAgent::next() const {
@@ -159,7 +162,7 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
     job.made = room();
     making_ += job.made;
     job.done = now + shade_cycles_ * job.made;
-    if (shade_cycles_ == 0) source_dry_ = true;   // until it has answered
+    if (shade_cycles_ == 0) source_dry_ = true;  // until it has answered
   } else {
     return false;
   }
@@ -174,7 +177,8 @@ void ShadingAgent::place(Cycle now) {
   const bool full = gathered_.size() >= gather_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
   bool placed = machine_.control.place_waiting();
   if (full || (last && !gathered_.empty())) {
-    if (machine_.config.bundles.size > 0) builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
+    if (machine_.config.bundles.size > 0)
+      builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
     machine_.control.submit(gathered_);
     if (ledger_) ledger_->add(gathered_);
     gathered_.clear();
@@ -220,7 +224,8 @@ void ShadingAgent::give_up(Cycle now) {
   give_up_at_ = kNever;
   stop_->noticed = now;
   const ResourceId stopped(stop_->resource);
-  if (!machine_.config.faults.resource.recover) throw SimulationError(missing_rays(stopped, ledger_->open(), completed_));
+  if (!machine_.config.faults.resource.recover)
+    throw SimulationError(missing_rays(stopped, ledger_->open(), completed_));
   if (const std::optional<RayResult> ray = helpers_.lose(clients_[stopped.value].jobs)) queues_.push(*ray);
   draining_ = clients_.size();
   order_all(NewRays::Order::kDiscard, now);
@@ -237,7 +242,8 @@ void ShadingAgent::restart(Cycle now) {
   rays_restarted_ = rays.size();
   paths_restarted_ = RetryLedger::paths_of(rays);
   if (rays.empty()) return;
-  if (machine_.config.bundles.size > 0) builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
+  if (machine_.config.bundles.size > 0)
+    builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
   machine_.control.submit(rays);
   send_groups(now);
 }

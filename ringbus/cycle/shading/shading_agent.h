@@ -9,28 +9,29 @@
 #include <vector>
 
 #include "core/types/workload.h"
-#include "ringbus/cycle/time/agent.h"
 #include "ringbus/cycle/machine/cycle_machine.h"
-#include "ringbus/results/cycle_result.h"
+#include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "ringbus/cycle/shading/shade_queues.h"
-#include "ringbus/cycle/messages/side_ports.h"
-#include "ringbus/results/trace.h"
+#include "ringbus/cycle/time/agent.h"
 #include "ringbus/faults/outstanding_rays.h"
+#include "ringbus/results/cycle_result.h"
+#include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
 
 /// Ray control and the pool of shader workers. A worker takes the ray that has waited longest in its queue, and needs
-/// shading.cycles_per_shade for it, as for making a camera ray, and cycles_per_effect for each effect besides; what resources ask about opacity comes first, and takes
-/// shading.cycles_per_any_hit each. What the workers have no hand free for goes to
-/// resources that have nothing to test, with `idle_resources_shade`. New rays gather until they fill a packet, or until
-/// no worker has anything to do, and are then given slots; with bundles they gather until they would fill those that
-/// the builder holds open, and go through it `builder.rays_per_cycle` a cycle. A record of 64 bytes needs its owner's load port for as
-/// many link widths as it has.
+/// shading.cycles_per_shade for it, as for making a camera ray, and cycles_per_effect for each effect besides; what
+/// resources ask about opacity comes first, and takes shading.cycles_per_any_hit each. What the workers have no hand
+/// free for goes to resources that have nothing to test, with `idle_resources_shade`. New rays gather until they fill a
+/// packet, or until no worker has anything to do, and are then given slots; with bundles they gather until they would
+/// fill those that the builder holds open, and go through it `builder.rays_per_cycle` a cycle. A record of 64 bytes
+/// needs its owner's load port for as many link widths as it has.
 ///
-/// Of a resource that has stopped it hears the last sign of life (which stands for regular ones, whose wires carry nothing
-/// else). So many cycles later it orders all resources to discard their work. Meanwhile what has come back is shaded and
-/// what that gives is gathered; when all resources are drained, the rays that have not come back are placed again.
+/// Of a resource that has stopped it hears the last sign of life (which stands for regular ones, whose wires carry
+/// nothing else). So many cycles later it orders all resources to discard their work. Meanwhile what has come back is
+/// shaded and what that gives is gathered; when all resources are drained, the rays that have not come back are placed
+/// again.
 class ShadingAgent final : public Agent {
  public:
   /// `clients` by resource.
@@ -69,7 +70,7 @@ class ShadingAgent final : public Agent {
   struct Job {
     Cycle done = 0;
     std::uint32_t worker = 0;
-    std::size_t made = 0;   // camera rays; 0: it shades `ray`, or finds out what lets rays through
+    std::size_t made = 0;  // camera rays; 0: it shades `ray`, or finds out what lets rays through
     RayResult ray;
     std::optional<Question> question{};
     bool operator>(const Job& o) const { return done != o.done ? done > o.done : worker > o.worker; }
@@ -97,23 +98,23 @@ class ShadingAgent final : public Agent {
   Trace trace_;
   Cycle shade_cycles_, effect_cycles_, any_hit_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
-  std::size_t gather_;                       // new rays that are worth giving slots
+  std::size_t gather_;  // new rays that are worth giving slots
   Cycle builder_rate_, builder_free_ = 0;
-  std::deque<Question> questions_;           // before any ray: they keep slots that could be free
+  std::deque<Question> questions_;  // before any ray: they keep slots that could be free
   ShadeQueues queues_;
   ShadeHelpers helpers_;
   std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;
-  std::vector<std::uint32_t> idle_;          // workers, the next one last
+  std::vector<std::uint32_t> idle_;  // workers, the next one last
   RayBatch gathered_;
   HitBatch shaded_;
   std::vector<RayGroup> groups_;
-  std::vector<Cycle> load_free_, last_sent_;   // by resource
+  std::vector<Cycle> load_free_, last_sent_;  // by resource
   bool source_finished_ = false, source_dry_ = false, started_ = false;
   std::size_t making_ = 0;
-  std::unique_ptr<RetryLedger> ledger_;      // where a resource may stop
+  std::unique_ptr<RetryLedger> ledger_;  // where a resource may stop
   std::optional<StopLedger> stop_;
   Cycle give_up_at_ = kNever;
-  std::size_t draining_ = 0;                 // resources that have not said that they are drained
+  std::size_t draining_ = 0;  // resources that have not said that they are drained
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;

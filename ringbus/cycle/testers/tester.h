@@ -4,10 +4,10 @@
 #include "core/config/config.h"
 #include "core/types/ids.h"
 #include "core/types/intersection_counts.h"
-#include "ringbus/results/cycle_result.h"
 #include "ringbus/cycle/testers/level_cycles.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/faults/resource_fault.h"
+#include "ringbus/results/cycle_result.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -15,8 +15,9 @@ namespace carousel::ringbus::cycle {
 /// been transformed, while the next one is, and its planes when its boxes have been; or its planes first, and then the
 /// boxes that are left. A matrix that is inverted first takes its passes through the transform unit ahead of the rays.
 /// Records of rays and bundles come from the store one after another if its port is narrow, each a cycle after it is
-/// asked for, and rays that leave a bundle are tested after it. Triangles and procedural primitives are tested like boxes,
-/// and beside them where a node holds both; then, with any_hit: inline, whether they let rays through is looked up.
+/// asked for, and rays that leave a bundle are tested after it. Triangles and procedural primitives are tested like
+/// boxes, and beside them where a node holds both; then, with any_hit: inline, whether they let rays through is looked
+/// up.
 struct Tester {
   using Order = CullPlanesConfig::Order;
   /// `reads_per_cycle`: as rays.reads_per_cycle.
@@ -38,7 +39,8 @@ struct Tester {
   Cycle strip(Cycle at, const TestCounts& counts, std::uint64_t reads = 0, std::uint64_t bundle_passes = 0) {
     const UnitBank::Reservation bundled = tested(bundle, store.reserve(at, reads_cost_ ? reads : 0), bundle_passes);
     const Cycle inverse = inverted(bundled.first, counts);
-    const UnitBank::Reservation moved = tested(transform, {inverse, std::max(inverse, bundled.last)}, counts.transforms);
+    const UnitBank::Reservation moved =
+        tested(transform, {inverse, std::max(inverse, bundled.last)}, counts.transforms);
     return std::max(boxes(moved, counts), primitives(moved, counts));
   }
 
@@ -54,8 +56,9 @@ struct Tester {
   Cycle ray(Cycle at, const TestCounts& counts) {
     const Cycle moved = transform.reserve_beside(inverted(at, counts), counts.transforms).last;
     const bool planes_first = order_ == Order::kPlanesFirst && counts.plane > 0;
-    const Cycle boxed = planes_first ? box.reserve_beside(plane.reserve_beside(moved, counts.plane).last, counts.box).last
-                                     : plane.reserve_beside(box.reserve_beside(moved, counts.box).last, counts.plane).last;
+    const Cycle boxed = planes_first
+                            ? box.reserve_beside(plane.reserve_beside(moved, counts.plane).last, counts.box).last
+                            : plane.reserve_beside(box.reserve_beside(moved, counts.box).last, counts.plane).last;
     const Cycle met = std::max(triangle.reserve_beside(moved, counts.triangle).last,
                                procedural.reserve_beside(moved, counts.procedural).last);
     return std::max(boxed, any_hit.reserve_beside(met, lookups(counts)).last);
@@ -74,7 +77,7 @@ struct Tester {
   }
 
   UnitBank box, triangle, plane, bundle, transform, procedural, any_hit;
-  UnitBank store;   ///< the port of the ray store
+  UnitBank store;  ///< the port of the ray store
 
  private:
   /// Tests for rays that come one after another from the bank before: the last of them is tested last.
@@ -84,7 +87,8 @@ struct Tester {
     return {own.first, before.last > before.first ? std::max(own.last, before.last + bank.latency()) : own.last};
   }
   Cycle boxes(const UnitBank::Reservation& moved, const TestCounts& counts) {
-    if (order_ == Order::kBoxFirst || counts.plane == 0) return tested(plane, tested(box, moved, counts.box), counts.plane).last;
+    if (order_ == Order::kBoxFirst || counts.plane == 0)
+      return tested(plane, tested(box, moved, counts.box), counts.plane).last;
     return tested(box, tested(plane, moved, counts.plane), counts.box).last;
   }
   Cycle primitives(const UnitBank::Reservation& moved, const TestCounts& counts) {

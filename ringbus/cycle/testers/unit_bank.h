@@ -16,8 +16,8 @@ class UnitBank {
         latency_(static_cast<Cycle>(config.latency_cycles)) {}
 
   struct Reservation {
-    Cycle first = 0;   ///< the first answer
-    Cycle last = 0;    ///< the last one
+    Cycle first = 0;  ///< the first answer
+    Cycle last = 0;   ///< the last one
   };
   /// Takes the bank for `tests`, as soon as it is free but not before `at`. None take no time.
   Reservation reserve(Cycle at, std::uint64_t tests) {
@@ -42,13 +42,13 @@ class UnitBank {
   }
 
   Cycle latency() const { return latency_; }
-  Cycle busy() const { return busy_; }          ///< cycles in which a test was started or could not be
+  Cycle busy() const { return busy_; }  ///< cycles in which a test was started or could not be
   std::uint64_t tests() const { return tests_; }
 
  private:
   Cycle units_, interval_, latency_;
   Cycle free_at_ = 0, busy_ = 0;
-  std::uint64_t tests_ = 0, spare_ = 0;   // spare: tests that could have been started with the last ones
+  std::uint64_t tests_ = 0, spare_ = 0;  // spare: tests that could have been started with the last ones
 };
 
 }  // namespace carousel::ringbus::cycle

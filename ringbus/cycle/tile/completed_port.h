@@ -26,7 +26,9 @@ class CompletedPort {
   }
 
   /// Behind the rays it has sent.
-  void tell(CompletedRays::Note note, Cycle now) { completed_.send(std::max(free_at_, now) + latency_, {{}, {}, note}); }
+  void tell(CompletedRays::Note note, Cycle now) {
+    completed_.send(std::max(free_at_, now) + latency_, {{}, {}, note});
+  }
 
  private:
   Channel<CompletedRays>& completed_;

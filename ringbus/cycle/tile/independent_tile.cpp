@@ -92,7 +92,8 @@ void IndependentTile::go_on(std::uint32_t slot, Cycle now) {
   }
   thread.strip = *next;
   const ShapeSpan transform = machine_.memory.transform(next->instance);
-  thread.fetches_transform = thread.walk.enters(next->instance) && transform.bytes > 0 && !fetches_.want(transform, slot, now);
+  thread.fetches_transform =
+      thread.walk.enters(next->instance) && transform.bytes > 0 && !fetches_.want(transform, slot, now);
   if (!thread.fetches_transform) want_strip(slot, now);
 }
 
@@ -119,8 +120,8 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   }
   Thread& thread = threads_[slot];
   stack_held_ -= thread.walk.stack_bytes().held;
-  const TestCounts counts = thread.walk.test(machine_.accel, thread.strip, 
-                                              {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
+  const TestCounts counts = thread.walk.test(machine_.accel, thread.strip,
+                                             {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
   if (ports_.questions != nullptr) thread.asks = counts.asked;
   const std::uint64_t held = thread.walk.stack_bytes().held;
   stack_held_ += held;
@@ -128,7 +129,12 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   stack_.ray_peak_bytes = std::max(stack_.ray_peak_bytes, held);
   tests_.push({tester_.ray(now, counts), next_turn_++, slot});
   const PacketMember member{thread.ray, 0};
-  record({.kind = EventKind::kTest, .resource = id_, .key = thread.strip, .rays = 1, .tests = counts, .members = {&member, 1}});
+  record({.kind = EventKind::kTest,
+          .resource = id_,
+          .key = thread.strip,
+          .rays = 1,
+          .tests = counts,
+          .members = {&member, 1}});
 }
 
 void IndependentTile::complete(std::uint32_t slot) {

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/machine/cycle_machine.h"
+#include "ringbus/cycle/memory/strip_fetches.h"
+#include "ringbus/cycle/testers/tester.h"
+#include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/time/state_clock.h"
-#include "ringbus/cycle/memory/strip_fetches.h"
-#include "ringbus/cycle/testers/tester.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -44,9 +44,9 @@ class IndependentTile final : public ResourceAgent {
   struct Thread {
     RayId ray;
     RayWalk walk;
-    accel::NodeKey strip;   // fetched or in test
-    bool fetches_transform; // first
-    std::uint64_t asks;     // of a shader worker, when it has been tested
+    accel::NodeKey strip;    // fetched or in test
+    bool fetches_transform;  // first
+    std::uint64_t asks;      // of a shader worker, when it has been tested
   };
   /// A ray in test. Of those that end at one time the one that began first goes on first.
   struct Test {
@@ -83,11 +83,11 @@ class IndependentTile final : public ResourceAgent {
   ShadeHelp help_;
 
   TransformAccount transforms_;
-  std::vector<Thread> threads_;   // by slot
+  std::vector<Thread> threads_;  // by slot
   std::priority_queue<Test, std::vector<Test>, std::greater<>> tests_;
-  std::vector<std::uint32_t> held_back_;   // slots of rays that are ready, but the resource shades
+  std::vector<std::uint32_t> held_back_;  // slots of rays that are ready, but the resource shades
   std::uint64_t next_turn_ = 0;
-  std::size_t active_ = 0;        // rays in slots
+  std::size_t active_ = 0;  // rays in slots
   HitBatch completed_;
   std::vector<std::uint32_t> freed_slots_;
   std::uint64_t stack_held_ = 0;

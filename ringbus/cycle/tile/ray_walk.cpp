@@ -9,7 +9,9 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-std::uint64_t entry_bytes(accel::NodeKey key) { return key.ref.is_inner() ? 4 : 12; }
+std::uint64_t entry_bytes(accel::NodeKey key) {
+  return key.ref.is_inner() ? 4 : 12;
+}
 
 }  // namespace
 
@@ -53,7 +55,7 @@ TestCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, const ac
   std::fill(std::begin(nearest), std::end(nearest), kInfinity);
   TestCounts tests;
   accel::test_strip(accel, key, ~0u, ray, {&mask, nearest, entry}, tests);
-  tests.transforms = 0;   // the kernel's own, for every strip
+  tests.transforms = 0;  // the kernel's own, for every strip
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
   if (!key.ref.is_inner() || mask == 0) return tests;
   std::uint64_t bytes = 0;

@@ -41,7 +41,7 @@ class RayWalk {
   void enter(std::uint32_t instance, std::uint32_t slot, TestCounts& tests);
 
   TransformAccount* transforms_;
-  std::vector<NextNode> stack_;   // and on top of it the nearest child
+  std::vector<NextNode> stack_;  // and on top of it the nearest child
   bool nearest_in_hand_ = false;
   std::uint32_t instance_ = kNoInstance;
   StackBytes bytes_;

@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/resource/collections/collection_store.h"
-#include "ringbus/cycle/time/agent.h"
-#include "ringbus/results/cycle_result.h"
 #include "ringbus/cycle/fabric/ports.h"
-#include "ringbus/results/trace.h"
+#include "ringbus/cycle/time/agent.h"
 #include "ringbus/packets/statistics_sink.h"
+#include "ringbus/resource/collections/collection_store.h"
+#include "ringbus/results/cycle_result.h"
+#include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
 

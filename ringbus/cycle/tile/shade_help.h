@@ -15,9 +15,7 @@ namespace carousel::ringbus::cycle {
 class ShadeHelp {
  public:
   ShadeHelp(const Config& config, const SidePorts& ports)
-      : jobs_(ports.jobs),
-        notes_(ports.help),
-        latency_(control_latency(config)) {}
+      : jobs_(ports.jobs), notes_(ports.help), latency_(control_latency(config)) {}
 
   /// Takes a job in, starts it if no test is under way, ends it. Whether any of these happened.
   bool step(Cycle now, bool testers_free) {
@@ -61,12 +59,12 @@ class ShadeHelp {
   Cycle next() const { return jobs_ == nullptr ? kNever : std::min(done_, jobs_->next()); }
 
  private:
-  Channel<ShadeJob>* jobs_;   // null: it does not help
+  Channel<ShadeJob>* jobs_;  // null: it does not help
   Channel<HelpNote>* notes_;
-  Cycle latency_, cycles_ = 0;   // cycles: of the job
+  Cycle latency_, cycles_ = 0;  // cycles: of the job
   Cycle done_ = kNever;
   bool waiting_ = false, shaded_ = false, stopped_ = false;
-  bool told_idle_ = true;   // as everybody is at first
+  bool told_idle_ = true;  // as everybody is at first
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -24,11 +24,11 @@ std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers
     note(*key);
     TestCounts tests = walk_.test(accel_, *key, ray);
     if (tests.transforms > 0 && !entered_.insert(key->instance).second)
-      tests.inversions = 0;   // another ray's visit has done it
+      tests.inversions = 0;  // another ray's visit has done it
     else if (tests.transforms > 0)
       account_.instances.push_back(key->instance);
     if (tests.plane > 0) cycles += step_.plane;
-    if (tests.box > 0) cycles += step_.box;   // none are left where planes, tested first, have culled all children
+    if (tests.box > 0) cycles += step_.box;  // none are left where planes, tested first, have culled all children
     if (tests.triangle > 0) cycles += step_.triangle;
     if (tests.procedural > 0) cycles += step_.procedural;
     if (tests.asked > 0) cycles += step_.any_hit;

@@ -21,9 +21,9 @@ class SubtreeWalk final : public SubtreeTracer {
     std::uint64_t box = 1, triangle = 1, procedural = 1, plane = 1, transform = 1, any_hit = 0;
   };
   struct Account {
-    std::uint64_t chain = 0;                 ///< cycles of the slowest ray
-    std::vector<accel::NodeKey> strips;      ///< read by any of them, once each, in order of the first reading
-    std::vector<std::uint32_t> instances;    ///< whose transform was read, in the same way
+    std::uint64_t chain = 0;               ///< cycles of the slowest ray
+    std::vector<accel::NodeKey> strips;    ///< read by any of them, once each, in order of the first reading
+    std::vector<std::uint32_t> instances;  ///< whose transform was read, in the same way
   };
   /// Keeps references.
   SubtreeWalk(const accel::Accel& accel, const StepCycles& step, TransformAccount& transforms)
@@ -41,8 +41,8 @@ class SubtreeWalk final : public SubtreeTracer {
   StepCycles step_;
   Account account_;
   RayWalk walk_;
-  std::unordered_set<std::uint32_t> entered_;   // instances by any of the rays
-  std::vector<std::uint32_t> seen_;   // by a hash of the strip: its place in account_.strips, plus one
+  std::unordered_set<std::uint32_t> entered_;  // instances by any of the rays
+  std::vector<std::uint32_t> seen_;            // by a hash of the strip: its place in account_.strips, plus one
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -12,8 +12,8 @@ SubtreeWalk::StepCycles step_cycles(const TestersConfig& testers) {
   const auto latency = [](const TesterUnits& units) { return static_cast<std::uint64_t>(units.latency_cycles); };
   // Where a shader worker is asked, a ray goes on meanwhile as if it had been stopped, or not, and waits at the end.
   const std::uint64_t any_hit = testers.any_hit == TestersConfig::AnyHit::kInline ? latency(testers.any_hit_unit) : 0;
-  return {latency(testers.box), latency(testers.triangle), latency(testers.procedural), latency(testers.plane),
-          latency(testers.transform), any_hit};
+  return {latency(testers.box),   latency(testers.triangle),  latency(testers.procedural),
+          latency(testers.plane), latency(testers.transform), any_hit};
 }
 
 }  // namespace
@@ -56,7 +56,9 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
 
 // ---- time
 
-Cycle Tile::next() const { return std::min(next_arrival(), next_beside_ring()); }
+Cycle Tile::next() const {
+  return std::min(next_arrival(), next_beside_ring());
+}
 
 // What is not later than the last step was done in it, or waits for one of the others.
 Cycle Tile::next_arrival() const {
@@ -80,7 +82,9 @@ Cycle Tile::next_beside_ring() const {
   return first;
 }
 
-bool Tile::wants_credit() const { return bubble_ && !issue_.empty() && issue_.front().ready(); }
+bool Tile::wants_credit() const {
+  return bubble_ && !issue_.empty() && issue_.front().ready();
+}
 
 Cycle Tile::next_in_hand() const {
   Cycle first = kNever;
@@ -100,7 +104,7 @@ bool Tile::handler_wanted() const {
 }
 
 void Tile::run(Cycle end) {
-  Cycle rest = next_beside_ring();   // what passes by does not change it
+  Cycle rest = next_beside_ring();  // what passes by does not change it
   for (;;) {
     const Cycle arrival = next_arrival(), now = std::min(arrival, rest);
     if (now >= end) return;
@@ -142,14 +146,16 @@ void Tile::step(Cycle now) {
   clock_.enter(state, now);
   help_.tell(now, state != TileState::kTesting && state != TileState::kMemory);
   next_here_ = next_in_hand();
-  may_send_ = wants_credit() || std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
+  may_send_ = wants_credit() ||
+              std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
 }
 
 TileState Tile::classify(Cycle now) const {
   if (help_.shading()) return TileState::kShading;
   bool fetching = false, computing = false;
   for (const Context& c : contexts_) {
-    computing |= c.phase == Context::Phase::kComputing || (c.phase == Context::Phase::kFetching && c.subtree && c.done > now);
+    computing |=
+        c.phase == Context::Phase::kComputing || (c.phase == Context::Phase::kFetching && c.subtree && c.done > now);
     fetching |= c.phase == Context::Phase::kFetching;
   }
   if (computing) return TileState::kTesting;
@@ -242,9 +248,9 @@ bool Tile::at_rest() const {
 
 std::string Tile::describe() const {
   if (at_rest()) return "";
-  std::string text = fmt::format("resource {}: {} collections with {} memberships, {} packets out, {} to be issued", id_.value,
-                                 resource_.collections().collections(), resource_.collections().memberships(),
-                                 resource_.packets_in_flight(), issue_.size());
+  std::string text = fmt::format("resource {}: {} collections with {} memberships, {} packets out, {} to be issued",
+                                 id_.value, resource_.collections().collections(),
+                                 resource_.collections().memberships(), resource_.packets_in_flight(), issue_.size());
   for (std::size_t exit = 0; exit < ports_.out.size(); ++exit)
     if (const std::string packet = blocked(exit); !packet.empty())
       text += fmt::format("; {} cannot leave, {} more behind it", packet, ports_.out[exit].in_hand() - 1);
@@ -258,7 +264,8 @@ std::string Tile::blocked(std::size_t exit) const {
   std::string text = fmt::format("packet {} of resource {}", out.front().value, packet.owner.value);
   if (!packet.members.empty()) {
     const RayIdLayout& layout = resource_.rays().layout();
-    text += fmt::format(" (first ray {}:{})", layout.owner(packet.members[0].ray).value, layout.slot(packet.members[0].ray));
+    text += fmt::format(" (first ray {}:{})", layout.owner(packet.members[0].ray).value,
+                        layout.slot(packet.members[0].ray));
   }
   return text;
 }

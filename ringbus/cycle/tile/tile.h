@@ -7,19 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/tile/completed_port.h"
-#include "ringbus/cycle/machine/cycle_machine.h"
 #include "ringbus/cycle/fabric/packet_size.h"
-#include "ringbus/cycle/tile/resource_agent.h"
-#include "ringbus/cycle/tile/shade_help.h"
-#include "ringbus/cycle/tile/round_trips.h"
+#include "ringbus/cycle/machine/cycle_machine.h"
 #include "ringbus/cycle/memory/shape_port.h"
-#include "ringbus/cycle/time/state_clock.h"
-#include "ringbus/cycle/tile/subtree_walk.h"
 #include "ringbus/cycle/testers/tester.h"
-#include "ringbus/results/trace.h"
-#include "ringbus/resource/resource.h"
+#include "ringbus/cycle/tile/completed_port.h"
+#include "ringbus/cycle/tile/resource_agent.h"
+#include "ringbus/cycle/tile/round_trips.h"
+#include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/tile/subtree_walk.h"
+#include "ringbus/cycle/time/state_clock.h"
 #include "ringbus/packets/statistics_sink.h"
+#include "ringbus/resource/resource.h"
+#include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -36,20 +36,20 @@ inline constexpr std::uint32_t kContextTag = 1u << 31;
 /// test context and a place in hand before it is taken, so that tests always end; a packet without rays takes its
 /// way meanwhile (fills the bubble).
 ///
-/// Of a resource that has stopped (`faults.resource`) only the ports are left: what comes in goes out by its way, a cycle
-/// each, packets of its own come to their end here, and memory and shading may answer to nobody.
+/// Of a resource that has stopped (`faults.resource`) only the ports are left: what comes in goes out by its way, a
+/// cycle each, packets of its own come to their end here, and memory and shading may answer to nobody.
 class Tile final : public ResourceAgent {
  public:
   struct Ports : SidePorts {
     std::vector<InPort> in;
-    std::vector<OutPort> out;                     ///< a ring: one a direction
-    std::vector<std::uint32_t> out_to;            ///< point to point and bus: by destination
+    std::vector<OutPort> out;           ///< a ring: one a direction
+    std::vector<std::uint32_t> out_to;  ///< point to point and bus: by destination
   };
 
   Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, TraceWindow window, Ports ports);
 
   Cycle next() const override;
-  bool polled() const override { return may_send_; }   // credits come back unannounced
+  bool polled() const override { return may_send_; }  // credits come back unannounced
   void run(Cycle end) override;
   std::string describe() const override;
 
@@ -67,21 +67,21 @@ class Tile final : public ResourceAgent {
   struct Context {
     enum class Phase : std::uint8_t { kFree, kFetching, kComputing } phase = Phase::kFree;
     PacketId packet;
-    Cycle done = 0;                       // kComputing: then; kFetching a subtree: of its tests
-    TestCounts counts;                    // of tests that begin when the shapes are there
-    std::uint32_t reads = 0;              // records for them
+    Cycle done = 0;           // kComputing: then; kFetching a subtree: of its tests
+    TestCounts counts;        // of tests that begin when the shapes are there
+    std::uint32_t reads = 0;  // records for them
     std::uint32_t bundle_passes = 0;
-    AnyHitQuestion question;              // asked when the tests are done
-    HitBatch completed;                   // handed over then, with the slots they leave
+    AnyHitQuestion question;  // asked when the tests are done
+    HitBatch completed;       // handed over then, with the slots they leave
     std::vector<std::uint32_t> freed_slots;
     bool subtree = false;
-    std::uint32_t outstanding = 0;        // fetches under way
-    std::vector<ShapeSpan> strips;        // a subtree's, yet to be fetched, last first
+    std::uint32_t outstanding = 0;  // fetches under way
+    std::vector<ShapeSpan> strips;  // a subtree's, yet to be fetched, last first
   };
   struct Issue {
     PacketId packet;
     std::uint32_t tag = 0;
-    std::uint32_t outstanding = 0;   // fetches under way
+    std::uint32_t outstanding = 0;  // fetches under way
 
     bool ready() const { return outstanding == 0; }
   };
@@ -152,28 +152,28 @@ class Tile final : public ResourceAgent {
   bool stays_, visit_all_, cuts_through_, fetch_by_resource_, bubble_;
 
   Cycle now_ = 0;
-  Cycle next_here_ = kNever;   // of tests and handler, as of the last step
-  bool may_send_ = false;      // likewise: something is in hand, or waits for credits
+  Cycle next_here_ = kNever;  // of tests and handler, as of the last step
+  bool may_send_ = false;     // likewise: something is in hand, or waits for credits
   Cycle handler_free_ = 0, handler_busy_ = 0;
   std::size_t next_in_ = 0, next_direction_ = 0;
-  std::vector<std::vector<PacketId>> free_;   // own packets at home, by direction
+  std::vector<std::vector<PacketId>> free_;  // own packets at home, by direction
   std::deque<Issue> issue_;
   std::uint32_t next_tag_ = 0;
   std::vector<Context> contexts_;
   std::deque<NewRays> waiting_;
   bool storage_full_ = false;
-  bool pauses_ = false;            // once, when so many rays are complete
+  bool pauses_ = false;  // once, when so many rays are complete
   std::uint64_t pause_after_ = 0;
-  bool stops_ = false;             // when so many rays are complete
-  bool stopped_ = false;           // for good
-  bool drains_ = false;            // another has, or it: until everything that was under way is gone
+  bool stops_ = false;    // when so many rays are complete
+  bool stopped_ = false;  // for good
+  bool drains_ = false;   // another has, or it: until everything that was under way is gone
   bool told_drained_ = false;
   std::uint64_t discarded_ = 0;
   std::size_t fetches_out_ = 0, questions_out_ = 0;
-  HitBatch done_;                              // to be handed over
+  HitBatch done_;  // to be handed over
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;
-  std::uint64_t passed_ = 0, passed_rays_ = 0;   // packets without rays here, and their members
+  std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   StateClock<TileState, kTileStates> clock_;
 };
 

@@ -1,12 +1,13 @@
 // A packet's tests at a resource: from its context's first cycle to its last, with the fetches in between.
-#include "ringbus/cycle/tile/tile.h"
-
 #include <algorithm>
+
+#include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
 
 bool Tile::testers_free() const {
-  return std::all_of(contexts_.begin(), contexts_.end(), [](const Context& c) { return c.phase == Context::Phase::kFree; });
+  return std::all_of(contexts_.begin(), contexts_.end(),
+                     [](const Context& c) { return c.phase == Context::Phase::kFree; });
 }
 
 Tile::Context* Tile::free_context() {
@@ -20,7 +21,9 @@ std::array<ShapeSpan, 2> Tile::shape_data(accel::NodeKey key, bool transform) co
   return {machine_.memory.strip(key), transform ? machine_.memory.transform(key.instance) : ShapeSpan{}};
 }
 
-bool Tile::lacks(const ShapeSpan& span) { return span.bytes > 0 && !shapes_.has(span); }
+bool Tile::lacks(const ShapeSpan& span) {
+  return span.bytes > 0 && !shapes_.has(span);
+}
 
 void Tile::begin_fetch(Context& context, const ShapeSpan& strip, Cycle now) {
   ++context.outstanding;
@@ -47,7 +50,8 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     context.done = tester_.walk(at, context.counts, walk_.account().chain, context.reads);
     context.strips.clear();
     for (const std::uint32_t instance : walk_.account().instances)
-      if (const ShapeSpan span = machine_.memory.transform(instance); !shapes_.has(span)) context.strips.push_back(span);
+      if (const ShapeSpan span = machine_.memory.transform(instance); !shapes_.has(span))
+        context.strips.push_back(span);
     for (const accel::NodeKey key : walk_.account().strips)
       if (const ShapeSpan strip = machine_.memory.strip(key); !shapes_.has(strip)) context.strips.push_back(strip);
     std::reverse(context.strips.begin(), context.strips.end());
@@ -60,7 +64,8 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     if (fetch_by_resource_)
       for (const ShapeSpan& span : shape_data(packet.key, context.counts.transforms > 0))
         if (lacks(span)) begin_fetch(context, span, at);
-    if (context.outstanding == 0) context.done = tester_.strip(at, context.counts, context.reads, context.bundle_passes);
+    if (context.outstanding == 0)
+      context.done = tester_.strip(at, context.counts, context.reads, context.bundle_passes);
   }
   if (context.outstanding > 0) context.phase = Context::Phase::kFetching;
 }

@@ -1,7 +1,7 @@
 // A packet's start: from a ready collection by the issue queue, where it waits for its shapes, to the handler.
-#include "ringbus/cycle/tile/tile.h"
-
 #include <algorithm>
+
+#include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -69,7 +69,8 @@ bool Tile::fill_issue(Cycle now) {
     }
     moved = true;
     Issue issue{*id, next_tag_};
-    const bool brings_shapes = packet.kind == PacketKind::kTest && !fetch_by_resource_ && !resource_.is_treelet(packet.key);
+    const bool brings_shapes =
+        packet.kind == PacketKind::kTest && !fetch_by_resource_ && !resource_.is_treelet(packet.key);
     if (brings_shapes) {
       // The issuer cannot know whether all rays have their copies, so it brings the transform in any case.
       for (const ShapeSpan& span : shape_data(packet.key, true)) {

@@ -1,7 +1,7 @@
 // A packet's way through a resource: in, past or through the handler, out, and home.
-#include "ringbus/cycle/tile/tile.h"
-
 #include <algorithm>
+
+#include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -1,7 +1,7 @@
 // What a resource does when one has stopped, itself or another.
-#include "ringbus/cycle/tile/tile.h"
-
 #include <algorithm>
+
+#include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -37,7 +37,7 @@ class Channel {
       tail_block_ = block;
     }
     tail_block_->items[place] = {arrival, std::move(thing)};
-    tail_.store(tail + 1, std::memory_order_release);   // publishes the item, and the block's link
+    tail_.store(tail + 1, std::memory_order_release);  // publishes the item, and the block's link
     if (arrival < *wake_) *wake_ = arrival;
   }
   /// The earliest arrival that was sent since it was last cleared is kept in `slot`, which is the sender's to write.
@@ -60,7 +60,7 @@ class Channel {
   std::size_t arrived(Cycle now) const {
     const std::size_t end = tail_.load(std::memory_order_acquire);
     if (head_ == end) return 0;
-    first();   // the head block is the one that holds it
+    first();  // the head block is the one that holds it
     const Block* block = head_block_;
     std::size_t at = head_;
     for (; at != end; ++at) {
@@ -95,14 +95,14 @@ class Channel {
   // The receiver's.
   alignas(64) mutable Block* head_block_;
   std::size_t head_ = 0;
-  mutable Cycle arrival_ = kNever;   // of the first thing, once it has been looked at
-  mutable bool emptied_ = false;   // the head block has been read to its end, and the next one not begun
+  mutable Cycle arrival_ = kNever;  // of the first thing, once it has been looked at
+  mutable bool emptied_ = false;    // the head block has been read to its end, and the next one not begun
   // The sender's.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
   Cycle unheard_ = kNever;
   Cycle* wake_ = &unheard_;
-  mutable std::atomic<Block*> spare_{nullptr};   // beside them: touched once a block only
+  mutable std::atomic<Block*> spare_{nullptr};  // beside them: touched once a block only
 };
 
 }  // namespace carousel::ringbus::cycle

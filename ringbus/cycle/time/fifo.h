@@ -30,8 +30,8 @@ class Fifo {
     items_ = std::move(larger);
   }
 
-  std::vector<T> items_ = std::vector<T>(2);   // their number is a power of two
-  std::size_t head_ = 0, tail_ = 0;            // ever growing
+  std::vector<T> items_ = std::vector<T>(2);  // their number is a power of two
+  std::size_t head_ = 0, tail_ = 0;           // ever growing
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -27,7 +27,7 @@ bool find_circle(const std::vector<Wait>& waits, std::uint32_t at, std::map<std:
 }  // namespace
 
 std::string wait_cycle(const std::vector<Wait>& waits) {
-  std::map<std::uint32_t, bool> open;   // node: still on the way
+  std::map<std::uint32_t, bool> open;  // node: still on the way
   for (const Wait& start : waits) {
     if (open.contains(start.from)) continue;
     std::vector<const Wait*> way;

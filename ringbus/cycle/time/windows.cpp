@@ -46,7 +46,8 @@ class Barrier {
   }
 
  private:
-  static constexpr std::chrono::nanoseconds kLongest = std::chrono::microseconds(100), kShortest = std::chrono::microseconds(1);
+  static constexpr std::chrono::nanoseconds kLongest = std::chrono::microseconds(100),
+                                            kShortest = std::chrono::microseconds(1);
 
   /// Whether the turn ended while the caller looked on.
   bool spun(std::size_t turn, std::chrono::nanoseconds at_most) const {
@@ -68,7 +69,12 @@ class WindowRun {
  public:
   WindowRun(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
             const std::function<bool(Cycle)>& go_on)
-      : parts_(parts), board_(board), lookahead_(lookahead), go_on_(go_on), barrier_(parts.size()), next_(parts.size()) {}
+      : parts_(parts),
+        board_(board),
+        lookahead_(lookahead),
+        go_on_(go_on),
+        barrier_(parts.size()),
+        next_(parts.size()) {}
 
   Cycle run() {
     {
@@ -99,7 +105,7 @@ class WindowRun {
         barrier_.wait(patience);
         for (const Next& other : next_) first = std::min(first, other.cycle);
       }
-      if (first == kNever || stop) break;   // everybody comes to the same conclusion
+      if (first == kNever || stop) break;  // everybody comes to the same conclusion
       run_window(agents, schedule, first + lookahead_);
       if (thread == 0) {
         reached_ = first;
@@ -168,7 +174,7 @@ class WindowRun {
   std::vector<Next> next_;
   std::atomic<bool> stop_{false};
   Cycle reached_ = 0;
-  std::mutex mutex_;   // guards error_
+  std::mutex mutex_;  // guards error_
   std::exception_ptr error_;
 };
 

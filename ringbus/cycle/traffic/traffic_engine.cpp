@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "core/system/error.h"
+#include "ringbus/cycle/time/windows.h"
 #include "ringbus/cycle/traffic/traffic_node.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
-#include "ringbus/cycle/time/windows.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
@@ -26,8 +26,9 @@ class TrafficRun {
       if (acknowledges()) acks_.push_back(std::make_unique<Channel<TrafficAck>>());
     }
     for (std::uint32_t r = 0; r < topology_.resources(); ++r)
-      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config, TrafficSource(config, ResourceId(r), plan_.gap),
-                                                     plan_.packets[r], plan_.window, ports_of(ResourceId(r))));
+      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config,
+                                                     TrafficSource(config, ResourceId(r), plan_.gap), plan_.packets[r],
+                                                     plan_.window, ports_of(ResourceId(r))));
   }
 
   TrafficResult run() {
@@ -35,7 +36,7 @@ class TrafficRun {
     const std::vector<std::vector<Agent*>> parts = share_out();
     auto last_report = start;
     bool stopped = false;
-    WakeBoard board(parts);   // whose agents are polled
+    WakeBoard board(parts);  // whose agents are polled
     run_windows(parts, board, link_latency(), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
@@ -116,7 +117,8 @@ class TrafficRun {
     std::vector<std::size_t> exits(nodes_.size());
     for (const Topology::Wire& wire : topology_.wires()) {
       const TrafficNode::Out& port = nodes_[wire.from.value]->out()[exits[wire.from.value]++];
-      out.links.push_back({wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[out.links.size()]->queue});
+      out.links.push_back(
+          {wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[out.links.size()]->queue});
       out.link_packets.push_back(port.packets());
       out.hops += port.packets();
     }
@@ -127,8 +129,8 @@ class TrafficRun {
   const RunOptions& options_;
   Topology topology_;
   TrafficPlan plan_;
-  std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;   // as the topology's
-  std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;     // beside them
+  std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as the topology's
+  std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;    // beside them
   std::vector<std::unique_ptr<TrafficNode>> nodes_;
 };
 

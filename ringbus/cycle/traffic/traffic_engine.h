@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/config/config.h"
-#include "ringbus/results/run_result.h"
 #include "ringbus/cycle/traffic/traffic_result.h"
+#include "ringbus/results/run_result.h"
 
 namespace carousel::ringbus {
 

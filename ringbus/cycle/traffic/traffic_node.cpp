@@ -113,7 +113,7 @@ void TrafficNode::pass(std::size_t d, Cycle now) {
       const TrafficToken token = in.take(now);
       if (!allowances_.empty()) acknowledge(token, d, now);
       deliver(token, now);
-      first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;   // the others first, the next time
+      first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;  // the others first, the next time
       continue;
     }
     Out& out = ports_.out[d];
@@ -125,7 +125,7 @@ void TrafficNode::pass(std::size_t d, Cycle now) {
       out.launch(token, now, token.skip > 0);
     } else {
       out.push(token, now, token.skip > 0);
-      out.send(now);   // does not, but counts the wait
+      out.send(now);  // does not, but counts the wait
       ++hands_;
     }
   }
@@ -153,7 +153,7 @@ void TrafficNode::inject(Cycle now) {
 
 void TrafficNode::deliver(const TrafficToken& token, Cycle tail) {
   sink_free_ = tail + flits_;
-  last_ = tail + eject_cycles_;   // the sink's packets come one after the other
+  last_ = tail + eject_cycles_;  // the sink's packets come one after the other
   ++delivered_;
   accepted_ += last_ >= window_.begin && last_ < window_.end;
   if (token.created >= window_.begin) latency_.add(last_ - token.created);
@@ -182,7 +182,7 @@ void TrafficNode::forward_acks(std::size_t a, Cycle end) {
 
 void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle now) {
   const std::size_t a = topology_.shape == TopologyShape::kBidirectional ? 1 - d : d;
-  forward_acks(a, now + 1);   // those that came earlier leave earlier
+  forward_acks(a, now + 1);  // those that came earlier leave earlier
   ports_.acks_out[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
 }
 
@@ -202,8 +202,8 @@ std::string TrafficNode::describe() const {
   for (std::size_t d = 0; d < ports_.out.size(); ++d) {
     const Out& out = ports_.out[d];
     if (!out.empty())
-      text += fmt::format("; a packet of resource {}, {} hops from its destination, waits for a place", out.first().source,
-                          out.first().skip + 1);
+      text += fmt::format("; a packet of resource {}, {} hops from its destination, waits for a place",
+                          out.first().source, out.first().skip + 1);
   }
   if (waiting_) text += fmt::format("; {} packets wait to get in", to_create_ + 1);
   return text.empty() ? text : fmt::format("resource {}", id_.value) + text;

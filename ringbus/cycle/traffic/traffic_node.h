@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "ringbus/cycle/time/agent.h"
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/cycle/fabric/ports.h"
+#include "ringbus/cycle/time/agent.h"
 #include "ringbus/cycle/traffic/traffic_route.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
 #include "ringbus/cycle/traffic/traffic_token.h"
@@ -42,10 +42,10 @@ class TrafficNode final : public Agent {
   using In = InPortOf<TrafficToken>;
   using Out = OutPortOf<TrafficToken>;
   struct Ports {
-    std::vector<In> in;     ///< a ring: by direction
-    std::vector<Out> out;   ///< a ring: by direction; point to point: by `out_to`
-    std::vector<std::uint32_t> out_to;            ///< point to point: by destination
-    std::vector<Channel<TrafficAck>*> acks_in, acks_out;   ///< by direction; empty where nobody waits for them
+    std::vector<In> in;                                   ///< a ring: by direction
+    std::vector<Out> out;                                 ///< a ring: by direction; point to point: by `out_to`
+    std::vector<std::uint32_t> out_to;                    ///< point to point: by destination
+    std::vector<Channel<TrafficAck>*> acks_in, acks_out;  ///< by direction; empty where nobody waits for them
   };
 
   /// `packets`: that it takes from the source.
@@ -57,13 +57,15 @@ class TrafficNode final : public Agent {
   std::string describe() const override;
 
   const std::vector<Out>& out() const { return ports_.out; }
-  const LatencyHistogram& latency() const { return latency_; }   ///< of measured packets delivered here
-  std::uint64_t flits() const { return flits_; }         ///< of a packet
+  const LatencyHistogram& latency() const { return latency_; }  ///< of measured packets delivered here
+  std::uint64_t flits() const { return flits_; }                ///< of a packet
   std::uint64_t delivered() const { return delivered_; }
-  std::uint64_t accepted() const { return accepted_; }   ///< delivered within the window
-  std::uint64_t offered() const { return offered_; }     ///< created within the window
-  std::uint64_t routers() const { return routers_; }     ///< that the packets offered had to visit, first and last included
-  Cycle last() const { return last_; }                   ///< when something was last delivered
+  std::uint64_t accepted() const { return accepted_; }  ///< delivered within the window
+  std::uint64_t offered() const { return offered_; }    ///< created within the window
+  std::uint64_t routers() const {
+    return routers_;
+  }                                     ///< that the packets offered had to visit, first and last included
+  Cycle last() const { return last_; }  ///< when something was last delivered
 
  private:
   Cycle next_here() const;
@@ -86,32 +88,32 @@ class TrafficNode final : public Agent {
   TrafficWindow window_;
   Cycle inject_cycles_, eject_cycles_, ack_latency_;
   std::uint16_t flits_;
-  std::uint32_t places_wanted_;   // in the next queue, to inject
+  std::uint32_t places_wanted_;  // in the next queue, to inject
 
   Cycle now_ = 0;
-  std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted down when a window begins
-  std::size_t hands_ = 0;         // ways out with something in hand
-  std::size_t first_in_ = 0;      // has the sink before the others
-  Cycle sink_free_ = 0;           // for the next packet's tail
+  std::vector<Cycle> arrivals_;  // the next ones, as ports_.in; noted down when a window begins
+  std::size_t hands_ = 0;        // ways out with something in hand
+  std::size_t first_in_ = 0;     // has the sink before the others
+  Cycle sink_free_ = 0;          // for the next packet's tail
 
-  bool eager_;                    // injects before it lets pass
+  bool eager_;  // injects before it lets pass
 
   // The packet to inject next; it need not have been created yet.
   bool waiting_ = false;
   TrafficRoute route_;
   std::size_t exit_ = 0;
-  Cycle ready_ = 0, inject_free_ = 0;   // not injected before
-  std::uint64_t to_create_;             // after it
+  Cycle ready_ = 0, inject_free_ = 0;  // not injected before
+  std::uint64_t to_create_;            // after it
   struct Allowance {
-    std::uint32_t left = 0;   // packets it may have on the way besides those it has
-    Fifo<Cycle> acks;         // when there will be one more
+    std::uint32_t left = 0;  // packets it may have on the way besides those it has
+    Fifo<Cycle> acks;        // when there will be one more
   };
-  std::vector<Allowance> allowances_;   // by direction; empty: any number
+  std::vector<Allowance> allowances_;  // by direction; empty: any number
   struct PassingAck {
     Cycle at = 0;
     TrafficAck ack;
   };
-  std::vector<Fifo<PassingAck>> passing_acks_;   // by their direction
+  std::vector<Fifo<PassingAck>> passing_acks_;  // by their direction
 
   LatencyHistogram latency_;
   std::uint64_t delivered_ = 0, accepted_ = 0, offered_ = 0, routers_ = 0;

@@ -4,7 +4,7 @@
 
 namespace carousel::ringbus::cycle {
 
-TrafficPlan::TrafficPlan(const Config& config) 
+TrafficPlan::TrafficPlan(const Config& config)
     : gap(traffic_gap(config.workload.traffic)), packets(static_cast<std::size_t>(config.topology.resources)) {
   const std::uint64_t resources = packets.size();
   std::vector<TrafficSource> sources;
@@ -25,9 +25,9 @@ TrafficPlan::TrafficPlan(const Config& config)
       while (sources[r].created() <= at) count(r);
   }
   while (left > 0) {
-    const auto next = std::min_element(sources.begin(), sources.end(), [](const TrafficSource& a, const TrafficSource& b) {
-      return a.created() < b.created();
-    });
+    const auto next =
+        std::min_element(sources.begin(), sources.end(),
+                         [](const TrafficSource& a, const TrafficSource& b) { return a.created() < b.created(); });
     window.end = next->created() + 1;
     count(static_cast<std::size_t>(next - sources.begin()));
   }

@@ -14,7 +14,7 @@ struct TrafficPlan {
   explicit TrafficPlan(const Config& config);
 
   GeometricGap gap;
-  std::vector<std::uint64_t> packets;   ///< by resource
+  std::vector<std::uint64_t> packets;  ///< by resource
   TrafficWindow window;
 };
 

@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "ringbus/results/cycle_result.h"
 #include "core/numeric/latency_histogram.h"
+#include "ringbus/results/cycle_result.h"
 
 namespace carousel::ringbus {
 
 /// What a network did with synthetic traffic. Latencies, offered and accepted load are of the window.
 struct TrafficResult {
-  bool complete = true;                      ///< false: stopped early
-  cycle::Cycle cycles = 0;                   ///< until the last packet was delivered
+  bool complete = true;     ///< false: stopped early
+  cycle::Cycle cycles = 0;  ///< until the last packet was delivered
   cycle::Cycle window_begin = 0, window_end = 0;
   std::uint64_t packets = 0, delivered = 0;  ///< in all
   std::uint64_t flits = 1;                   ///< of a packet
@@ -20,9 +20,9 @@ struct TrafficResult {
   std::uint64_t accepted = 0;                ///< packets delivered within the window
   std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
   std::uint64_t hops = 0;                    ///< links crossed by packets
-  LatencyHistogram latency;           ///< of the packets offered
+  LatencyHistogram latency;                  ///< of the packets offered
   std::vector<cycle::LinkLedger> links;
-  std::vector<std::uint64_t> link_packets;   ///< by link
+  std::vector<std::uint64_t> link_packets;  ///< by link
   double wall_seconds = 0;
   std::size_t threads = 1;
 

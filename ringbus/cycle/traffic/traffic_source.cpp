@@ -9,7 +9,9 @@ using Pattern = TrafficConfig::Pattern;
 // The words of a packet: 0 and 1 the time since the last one, 2 chances, 3 the destination.
 constexpr std::uint32_t kTrafficBlock = 0x74726166;
 
-double unit(std::uint32_t word) { return word * 0x1p-32; }
+double unit(std::uint32_t word) {
+  return word * 0x1p-32;
+}
 
 }  // namespace
 
@@ -77,11 +79,15 @@ void TrafficSource::advance() {
 
 ResourceId TrafficSource::destination() const {
   switch (pattern_) {
-    case Pattern::kTornado: return ResourceId((id_ + (resources_ + 1) / 2 - 1) % resources_);
-    case Pattern::kNeighbour: return ResourceId((id_ + 1) % resources_);
-    case Pattern::kHotspot: return unit(words_[2]) < chance_ ? hotspot_ : any();
+    case Pattern::kTornado:
+      return ResourceId((id_ + (resources_ + 1) / 2 - 1) % resources_);
+    case Pattern::kNeighbour:
+      return ResourceId((id_ + 1) % resources_);
+    case Pattern::kHotspot:
+      return unit(words_[2]) < chance_ ? hotspot_ : any();
     case Pattern::kUniform:
-    case Pattern::kBursty: break;
+    case Pattern::kBursty:
+      break;
   }
   return any();
 }

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "core/config/config.h"
-#include "core/types/ids.h"
 #include "core/numeric/rng.h"
+#include "core/types/ids.h"
 #include "ringbus/cycle/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -23,13 +23,13 @@ class GeometricGap {
   static constexpr int kStartBits = 8;
   /// Where to look for the gap of a random number, by its first bits.
   struct Start {
-    double power = 1;         // of (1 - rate), to the `gap`: not less than any such number
+    double power = 1;  // of (1 - rate), to the `gap`: not less than any such number
     Cycle gap = 0;
-    std::size_t levels = 0;   // powers_ that can lead from there to one of these numbers
+    std::size_t levels = 0;  // powers_ that can lead from there to one of these numbers
   };
   void descend(double least, std::size_t levels, double& power, Cycle& gap) const;
 
-  std::array<double, kPowers> powers_{};   // probability of no event in 2^i cycles
+  std::array<double, kPowers> powers_{};  // probability of no event in 2^i cycles
   std::array<Start, std::size_t{1} << kStartBits> starts_;
 };
 
@@ -58,13 +58,15 @@ class TrafficSource {
   std::uint32_t random() const { return words_[2]; }
 
  private:
-  ResourceId any() const { return ResourceId(static_cast<std::uint32_t>((std::uint64_t{words_[3]} * resources_) >> 32)); }
+  ResourceId any() const {
+    return ResourceId(static_cast<std::uint32_t>((std::uint64_t{words_[3]} * resources_) >> 32));
+  }
 
   TrafficConfig::Pattern pattern_;
   std::uint64_t seed_;
   std::uint32_t id_, resources_;
   ResourceId hotspot_;
-  double chance_;   // bursty: that a burst ends; hotspot: that a packet goes there
+  double chance_;  // bursty: that a burst ends; hotspot: that a packet goes there
   const GeometricGap* gap_;
   std::uint64_t index_ = 0;
   PhiloxCounter words_{};

@@ -10,14 +10,14 @@ namespace carousel::ringbus::cycle {
 struct TrafficToken {
   Cycle created = 0;
   std::uint16_t source = 0;
-  std::uint16_t skip = 0;          ///< resources to pass before its last one
-  std::uint16_t link_cycles = 1;   ///< its flits: the cycles for which it occupies a link
+  std::uint16_t skip = 0;         ///< resources to pass before its last one
+  std::uint16_t link_cycles = 1;  ///< its flits: the cycles for which it occupies a link
 };
 
 /// A packet has been delivered; its source may have another one on the way.
 struct TrafficAck {
   std::uint16_t source = 0;
-  std::uint16_t direction = 0;   ///< that the packet had
+  std::uint16_t direction = 0;  ///< that the packet had
 };
 
 }  // namespace carousel::ringbus::cycle

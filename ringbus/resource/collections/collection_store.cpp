@@ -8,7 +8,9 @@ namespace carousel::ringbus {
 namespace {
 
 // Eight buckets an octave; 27 octaves below the scene's size and 5 above.
-std::uint32_t octave_eighth(float x) { return std::bit_cast<std::uint32_t>(x > 0 ? x : 0.0f) >> 20; }
+std::uint32_t octave_eighth(float x) {
+  return std::bit_cast<std::uint32_t>(x > 0 ? x : 0.0f) >> 20;
+}
 
 }  // namespace
 
@@ -20,14 +22,17 @@ CollectionStore::CollectionStore(const Settings& settings) : settings_(settings)
 std::uint32_t CollectionStore::bucket(const Collection& c) const {
   constexpr std::uint32_t kLast = PriorityLists::kBuckets - 1;
   switch (settings_.policy) {
-    case Policy::kFullest: return kLast - std::min(kLast, c.count * 128 / settings_.ready);
-    case Policy::kDeepest: return std::min<std::uint32_t>(kLast, settings_.max_depth > c.depth ? settings_.max_depth - c.depth : 0);
+    case Policy::kFullest:
+      return kLast - std::min(kLast, c.count * 128 / settings_.ready);
+    case Policy::kDeepest:
+      return std::min<std::uint32_t>(kLast, settings_.max_depth > c.depth ? settings_.max_depth - c.depth : 0);
     case Policy::kNearest: {
       const std::uint32_t eighth = octave_eighth(c.entry);
       return eighth > nearest_base_ ? std::min(kLast, eighth - nearest_base_) : 0;
     }
     case Policy::kOldest:
-    case Policy::kNewest: return 0;
+    case Policy::kNewest:
+      return 0;
   }
   return 0;
 }

@@ -7,9 +7,9 @@
 
 #include "accel/structure/node.h"
 #include "core/config/config.h"
+#include "ringbus/rays/ray_id.h"
 #include "ringbus/resource/collections/collection_table.h"
 #include "ringbus/resource/collections/priority_lists.h"
-#include "ringbus/rays/ray_id.h"
 
 namespace carousel::ringbus {
 
@@ -20,19 +20,19 @@ using CollectionId = Id<struct CollectionTag>;
 class CollectionStore {
  public:
   struct Settings {
-    std::uint32_t block_rays = 32;    ///< packets.rays
+    std::uint32_t block_rays = 32;  ///< packets.rays
     std::uint32_t ready = 32;
     std::uint32_t capacity_blocks = 2048;
     Policy policy = Policy::kNearest;
     Select select = Select::kFullFirst;
-    float scene_size = 1;             ///< scale of entry distances, for `nearest`
-    int max_depth = 1;                ///< for `deepest`
+    float scene_size = 1;  ///< scale of entry distances, for `nearest`
+    int max_depth = 1;     ///< for `deepest`
   };
   struct Statistics {
     std::uint64_t created = 0;
-    std::uint64_t peak = 0;                ///< collections at once
-    std::uint64_t memberships_peak = 0;    ///< ray IDs at once
-    std::uint64_t spilled = 0;             ///< ray IDs put into blocks beyond the capacity
+    std::uint64_t peak = 0;              ///< collections at once
+    std::uint64_t memberships_peak = 0;  ///< ray IDs at once
+    std::uint64_t spilled = 0;           ///< ray IDs put into blocks beyond the capacity
     std::uint64_t blocks_peak = 0;
     std::uint64_t taken_blocks = 0;
     std::uint64_t taken_rays = 0;
@@ -74,7 +74,7 @@ class CollectionStore {
  private:
   struct Collection {
     accel::NodeKey key;
-    std::uint32_t head = 0, tail = 0;   // blocks
+    std::uint32_t head = 0, tail = 0;  // blocks
     std::uint32_t count = 0;
     float entry = 0;
     std::uint16_t depth = 0;
@@ -94,8 +94,8 @@ class CollectionStore {
   PriorityLists ready_, partial_;
   std::vector<Collection> collections_;
   std::vector<std::uint32_t> free_collections_;
-  std::vector<RayId> block_rays_;            // block_rays IDs a block
-  std::vector<std::uint32_t> next_block_;    // one a block
+  std::vector<RayId> block_rays_;          // block_rays IDs a block
+  std::vector<std::uint32_t> next_block_;  // one a block
   std::vector<std::uint32_t> free_blocks_;
   std::size_t blocks_used_ = 0, memberships_ = 0;
   Statistics statistics_;

@@ -127,24 +127,23 @@ AccessorTable::Accessor AccessorTable::parse(const Json& json, const std::string
   const std::size_t size = element_size(out.type, out.component);
   if (json.contains("bufferView")) {
     out.views.push_back(json["bufferView"].get<std::size_t>());
-    out.base =
-        locate(out.views.back(), json.value("byteOffset", std::uint64_t{0}), out.count, size, true, path);
+    out.base = locate(out.views.back(), json.value("byteOffset", std::uint64_t{0}), out.count, size, true, path);
   }
   if (!json.contains("sparse")) return out;
   const Json& sparse = json["sparse"];
   Sparse parsed;
   parsed.count = sparse["count"].get<std::uint64_t>();
   if (parsed.count > out.count) {
-    document_.fail(json_path(json_path(path, "sparse"), "count"), "expected at most the accessor's " +
-                                                                      std::to_string(out.count) + ", found " +
-                                                                      std::to_string(parsed.count));
+    document_.fail(
+        json_path(json_path(path, "sparse"), "count"),
+        "expected at most the accessor's " + std::to_string(out.count) + ", found " + std::to_string(parsed.count));
   }
   parsed.index_component = static_cast<Component>(sparse["indices"]["componentType"].get<int>());
   const auto part = [&](const char* key, std::size_t part_size) {
     const Json& entry = sparse[key];
     out.views.push_back(entry["bufferView"].get<std::size_t>());
-    return locate(out.views.back(), entry.value("byteOffset", std::uint64_t{0}), parsed.count, part_size,
-                  false, json_path(json_path(path, "sparse"), key));
+    return locate(out.views.back(), entry.value("byteOffset", std::uint64_t{0}), parsed.count, part_size, false,
+                  json_path(json_path(path, "sparse"), key));
   };
   parsed.indices = part("indices", size_of(parsed.index_component));
   parsed.values = part("values", size);
@@ -153,8 +152,7 @@ AccessorTable::Accessor AccessorTable::parse(const Json& json, const std::string
 }
 
 AccessorTable::Strided AccessorTable::locate(std::size_t view, std::uint64_t offset, std::uint64_t count,
-                                             std::size_t size, bool may_stride,
-                                             const std::string& path) const {
+                                             std::size_t size, bool may_stride, const std::string& path) const {
   const Json& json = document_.json["bufferViews"][view];
   const auto length = json["byteLength"].get<std::uint64_t>();
   const auto stride = may_stride ? json.value("byteStride", size) : size;
@@ -227,17 +225,16 @@ std::vector<float> AccessorTable::floats(std::size_t index, const std::string& p
   if (bad != out.end()) {
     const auto at = static_cast<std::size_t>(bad - out.begin());
     const auto width = static_cast<std::size_t>(accessors_[index].components);
-    document_.fail(path, "component " + std::to_string(at % width) + " of element " +
-                             std::to_string(at / width) + " of accessor " + std::to_string(index) + " is " +
+    document_.fail(path, "component " + std::to_string(at % width) + " of element " + std::to_string(at / width) +
+                             " of accessor " + std::to_string(index) + " is " +
                              (std::isnan(*bad) ? "NaN" : "infinite"));
   }
   return out;
 }
 
 std::vector<std::uint32_t> AccessorTable::integers(std::size_t index) const {
-  return read<std::uint32_t>(index, [](const unsigned char* from, const Accessor& accessor) {
-    return to_integer(from, accessor.component);
-  });
+  return read<std::uint32_t>(
+      index, [](const unsigned char* from, const Accessor& accessor) { return to_integer(from, accessor.component); });
 }
 
 }  // namespace carousel::scene

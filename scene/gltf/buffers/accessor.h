@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf/document/document.h"
 #include "scene/gltf/buffers/model.h"
+#include "scene/gltf/document/document.h"
 
 namespace carousel::scene {
 
@@ -94,8 +94,8 @@ class AccessorTable {
   };
 
   Accessor parse(const Json& json, const std::string& path) const;
-  Strided locate(std::size_t view, std::uint64_t offset, std::uint64_t count, std::size_t element_size,
-                 bool may_stride, const std::string& path) const;
+  Strided locate(std::size_t view, std::uint64_t offset, std::uint64_t count, std::size_t element_size, bool may_stride,
+                 const std::string& path) const;
   std::vector<std::uint32_t> sparse_indices(std::size_t accessor) const;
   template <class T, class Convert>
   std::vector<T> read(std::size_t accessor, const Convert& convert) const;

@@ -53,13 +53,11 @@ void AccessorTable::check_type(std::size_t index, AccessorUse use, const std::st
   }();
   const bool is_signed = accessor.component == Component::kByte || accessor.component == Component::kShort;
   const bool is_small = size_of(accessor.component) < 4;
-  const std::string found = "accessor " + std::to_string(index) + " has " +
-                            (accessor.normalized ? "normalised " : "") + accessor.type + " of " +
-                            name_of(accessor.component);
+  const std::string found = "accessor " + std::to_string(index) + " has " + (accessor.normalized ? "normalised " : "") +
+                            accessor.type + " of " + name_of(accessor.component);
   if (std::ranges::find(allowed.types, accessor.type) == allowed.types.end()) {
-    document_.fail(path, "expected " + allowed.types[0] +
-                             (allowed.types.size() > 1 ? " or " + allowed.types[1] : "") + " elements; " +
-                             found);
+    document_.fail(path, "expected " + allowed.types[0] + (allowed.types.size() > 1 ? " or " + allowed.types[1] : "") +
+                             " elements; " + found);
   }
   const bool core = use == AccessorUse::kIndices
                         ? !is_signed && accessor.component != Component::kFloat && !accessor.normalized

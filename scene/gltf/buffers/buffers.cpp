@@ -31,10 +31,8 @@ std::string percent_decoded(std::string_view text) {
 
 /// "http" of "http://..."; also the drive letter of a Windows path.
 std::string_view scheme_of(std::string_view uri) {
-  const std::size_t end =
-      uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+.-");
-  return end != std::string_view::npos && end > 0 && uri[end] == ':' ? uri.substr(0, end)
-                                                                     : std::string_view{};
+  const std::size_t end = uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+.-");
+  return end != std::string_view::npos && end > 0 && uri[end] == ':' ? uri.substr(0, end) : std::string_view{};
 }
 
 std::string shown(const std::string& uri) {
@@ -85,23 +83,20 @@ std::optional<Bytes> GltfResources::buffer(std::size_t index) const {
     return std::nullopt;
   }
   if (bytes.size() < length) {
-    document_.fail(
-        json_path(path, "byteLength"),
-        std::to_string(length) + " bytes are announced, the data has " + std::to_string(bytes.size()));
+    document_.fail(json_path(path, "byteLength"),
+                   std::to_string(length) + " bytes are announced, the data has " + std::to_string(bytes.size()));
   }
   return bytes;
 }
 
 Bytes GltfResources::image(std::size_t index) const {
   const std::string path = json_path(json_path("/images", index), "uri");
-  Bytes bytes =
-      read_uri(document_.json["images"][index]["uri"].get_ref<const std::string&>(), path, kMostImageBytes);
+  Bytes bytes = read_uri(document_.json["images"][index]["uri"].get_ref<const std::string&>(), path, kMostImageBytes);
   if (bytes.empty()) document_.fail(path, "holds no data");
   return bytes;
 }
 
-Bytes GltfResources::read_uri(const std::string& uri, const std::string& path,
-                              std::uint64_t most_bytes) const {
+Bytes GltfResources::read_uri(const std::string& uri, const std::string& path, std::uint64_t most_bytes) const {
   if (!uri.starts_with("data:")) return read_file(uri, path, most_bytes);
   const std::size_t comma = uri.find(',');
   if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64")) {
@@ -112,18 +107,15 @@ Bytes GltfResources::read_uri(const std::string& uri, const std::string& path,
   return std::move(*bytes);
 }
 
-Bytes GltfResources::read_file(const std::string& uri, const std::string& path,
-                               std::uint64_t most_bytes) const {
+Bytes GltfResources::read_file(const std::string& uri, const std::string& path, std::uint64_t most_bytes) const {
   if (const std::string_view scheme = scheme_of(uri); !scheme.empty()) {
     document_.fail(path, "'" + shown(uri) + "': " + std::string(scheme) +
                              ": addresses are not fetched; expected a data: URI or a relative path");
   }
   const std::string name = percent_decoded(uri);
-  if (name.empty() || name.find('\0') != std::string::npos)
-    document_.fail(path, "expected the path of a file");
+  if (name.empty() || name.find('\0') != std::string::npos) document_.fail(path, "expected the path of a file");
   if (name[0] == '/' || name[0] == '\\') {
-    document_.fail(
-        path, "'" + shown(uri) + "': absolute paths are refused; expected a path relative to the glTF file");
+    document_.fail(path, "'" + shown(uri) + "': absolute paths are refused; expected a path relative to the glTF file");
   }
   const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
   if (std::ranges::count(relative, std::filesystem::path("..")) > 2) {
@@ -133,8 +125,7 @@ Bytes GltfResources::read_file(const std::string& uri, const std::string& path,
   const std::filesystem::path full = *folder_ / relative;
   std::error_code error;
   // Only plain files: a pipe or a device would never end.
-  if (!std::filesystem::is_regular_file(full, error))
-    document_.fail(path, "'" + shown(uri) + "': no such file");
+  if (!std::filesystem::is_regular_file(full, error)) document_.fail(path, "'" + shown(uri) + "': no such file");
   const std::uintmax_t size = std::filesystem::file_size(full, error);
   std::ifstream stream(full, std::ios::binary);
   if (error || !stream) document_.fail(path, "'" + shown(uri) + "': cannot be read");

@@ -203,7 +203,8 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
                                         std::to_string(attribute->num_components()));
       }
       if (!copy_attribute(*attribute, mesh->num_points(), width, component, data)) {
-        document_.fail(target.path, "the compressed data does not fit " + std::string(name_of(component)) + " elements");
+        document_.fail(target.path,
+                       "the compressed data does not fit " + std::string(name_of(component)) + " elements");
       }
     }
     budget_.earn(data.size());

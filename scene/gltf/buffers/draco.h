@@ -19,10 +19,10 @@ class DracoReader {
   DracoReader(const GltfDocument& document, AccessorTable& accessors, ImportBudget& budget)
       : document_(document), accessors_(accessors), budget_(budget) {}
 
-  /// Gives the accessors of the mesh's compressed primitives their data; call before the mesh is read. A primitive whose
-  /// accessors all have data of their own (a fallback) is left as it is. Throws SceneError for streams that are broken,
-  /// announce more triangles or vertices than so few bytes can justify (before anything is allocated for them), hold
-  /// other numbers of elements than the accessors say, or lack an attribute.
+  /// Gives the accessors of the mesh's compressed primitives their data; call before the mesh is read. A primitive
+  /// whose accessors all have data of their own (a fallback) is left as it is. Throws SceneError for streams that are
+  /// broken, announce more triangles or vertices than so few bytes can justify (before anything is allocated for them),
+  /// hold other numbers of elements than the accessors say, or lack an attribute.
   void decode(std::size_t mesh);
 
  private:

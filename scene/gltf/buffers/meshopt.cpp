@@ -54,8 +54,8 @@ class MeshoptView {
   void check_parameters() const {
     const bool attributes = mode_ == "ATTRIBUTES";
     if (attributes ? stride_ % 4 != 0 : stride_ != 2 && stride_ != 4) {
-      fail("byteStride", std::string(attributes ? "expected a multiple of 4" : "expected 2 or 4") + " in mode " + mode_ +
-                             ", found " + std::to_string(stride_));
+      fail("byteStride", std::string(attributes ? "expected a multiple of 4" : "expected 2 or 4") + " in mode " +
+                             mode_ + ", found " + std::to_string(stride_));
     }
     if (mode_ == "TRIANGLES" && count_ % 3 != 0) {
       fail("count", "expected a multiple of 3 in mode TRIANGLES, found " + std::to_string(count_));

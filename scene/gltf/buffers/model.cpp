@@ -102,8 +102,8 @@ GltfModel read_model(const GltfDocument& document, const GltfResources& resource
                          [](const std::string& name, void*) { return name; }, read_address, nullptr, &feed});
   std::string error, warning;
   try {
-    if (reader.LoadASCIIFromString(&out.model, &error, &warning, text.data(),
-                                   static_cast<unsigned int>(text.size()), "")) {
+    if (reader.LoadASCIIFromString(&out.model, &error, &warning, text.data(), static_cast<unsigned int>(text.size()),
+                                   "")) {
       return out;
     }
   } catch (const SceneError&) {

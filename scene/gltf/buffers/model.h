@@ -16,9 +16,8 @@ namespace carousel::scene {
 /// A checked document as tinygltf reads it.
 struct GltfModel {
   tinygltf::Model model;
-  std::vector<bool>
-      buffer_has_data;           ///< one a buffer; a buffer without data holds one byte that means nothing
-  std::uint64_t bytes_read = 0;  ///< of buffers
+  std::vector<bool> buffer_has_data;  ///< one a buffer; a buffer without data holds one byte that means nothing
+  std::uint64_t bytes_read = 0;       ///< of buffers
 };
 
 /// Runs tinygltf over a document that passed check_schema and check_links. All bytes it gets are ours: files

@@ -69,8 +69,7 @@ class NestingScan {
     if (levels_.size() == kDeepestNesting) {
       std::string path;
       for (std::size_t i = 0; i < 6; ++i) {  // enough to find the place; the rest is more of the same
-        path = levels_[i].is_array ? json_path(path, levels_[i].index)
-                                   : json_path(path, levels_[i].key.substr(0, 64));
+        path = levels_[i].is_array ? json_path(path, levels_[i].index) : json_path(path, levels_[i].key.substr(0, 64));
       }
       document_.fail(path, "nested more than 128 levels deep (at byte " + std::to_string(at_) + ")");
     }
@@ -87,8 +86,7 @@ std::string_view split_glb(GltfDocument& document, std::span<const std::byte> by
   if (bytes.size() < 12)
     document.fail("", "GLB header is cut off: 12 bytes expected, " + std::to_string(bytes.size()) + " found");
   const std::uint32_t version = read_u32(bytes, 4), length = read_u32(bytes, 8);
-  if (version != 2)
-    document.fail("", "GLB container version " + std::to_string(version) + "; only version 2 is read");
+  if (version != 2) document.fail("", "GLB container version " + std::to_string(version) + "; only version 2 is read");
   if (length > bytes.size()) {
     document.fail("", "GLB header gives a length of " + std::to_string(length) + " bytes, the file has " +
                           std::to_string(bytes.size()));
@@ -101,8 +99,8 @@ std::string_view split_glb(GltfDocument& document, std::span<const std::byte> by
     const std::uint32_t size = read_u32(bytes, at), type = read_u32(bytes, at + 4);
     at += 8;
     if (size > length - at) {
-      document.fail("", "GLB chunk at byte " + std::to_string(at - 8) + " says " + std::to_string(size) +
-                            " bytes, " + std::to_string(length - at) + " are left");
+      document.fail("", "GLB chunk at byte " + std::to_string(at - 8) + " says " + std::to_string(size) + " bytes, " +
+                            std::to_string(length - at) + " are left");
     }
     if (chunk == 0 && type != kJsonChunk) document.fail("", "the first GLB chunk is not JSON");
     if (chunk == 0) text = {reinterpret_cast<const char*>(bytes.data()) + at, size};
@@ -116,8 +114,7 @@ std::string_view split_glb(GltfDocument& document, std::span<const std::byte> by
 void check_version(const GltfDocument& document) {
   const Json& json = document.json;
   const auto asset = json.find("asset");
-  if (asset == json.end() || !asset->is_object())
-    document.fail("/asset", "missing: this is not a glTF 2.0 file");
+  if (asset == json.end() || !asset->is_object()) document.fail("/asset", "missing: this is not a glTF 2.0 file");
   const auto check = [&](const char* key, bool required) {
     const std::string path = json_path("/asset", key);
     const auto entry = asset->find(key);
@@ -159,8 +156,8 @@ void GltfDocument::fail(const std::string& path, const std::string& message) con
 
 void ImportBudget::spend(std::uint64_t elements, const std::string& path) {
   if (elements > left_) {
-    document_.fail(path, "asks for " + std::to_string(elements) +
-                             " elements, more than a file of this size can justify");
+    document_.fail(path,
+                   "asks for " + std::to_string(elements) + " elements, more than a file of this size can justify");
   }
   left_ -= elements;
 }
@@ -171,8 +168,7 @@ GltfDocument parse_document(std::span<const std::byte> bytes, const std::string&
   if (bytes.empty()) document.fail("", "the file is empty");
   const bool glb = bytes.size() >= 4 && read_u32(bytes, 0) == kGlbMagic;
   const std::string_view text =
-      glb ? split_glb(document, bytes)
-          : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      glb ? split_glb(document, bytes) : std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   NestingScan(document, text).run();
   try {
     document.json = Json::parse(text);

@@ -25,13 +25,11 @@ void check_buffer_views(const GltfDocument& document) {
     const auto length = views[i]["byteLength"].get<std::uint64_t>();  // all at most 2^53: sums do not wrap
     if (offset + length > size) {
       document.fail(path, "bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
-                              " lie outside buffer " + std::to_string(buffer) + ", which has " +
-                              std::to_string(size));
+                              " lie outside buffer " + std::to_string(buffer) + ", which has " + std::to_string(size));
     }
     const int stride = views[i].value("byteStride", 0);
     if (stride % 4 != 0) {
-      document.fail(json_path(path, "byteStride"),
-                    "expected a multiple of 4, found " + std::to_string(stride));
+      document.fail(json_path(path, "byteStride"), "expected a multiple of 4, found " + std::to_string(stride));
     }
   }
 }
@@ -56,8 +54,8 @@ void check_details(const GltfDocument& document) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
       if (channels[c]["sampler"].get<std::size_t>() >= samplers) {
         document.fail(json_path(json_path(json_path(json_path("/animations", a), "channels"), c), "sampler"),
-                      "expected an index into this animation's samplers, which has " +
-                          std::to_string(samplers) + " entries, found " + channels[c]["sampler"].dump());
+                      "expected an index into this animation's samplers, which has " + std::to_string(samplers) +
+                          " entries, found " + channels[c]["sampler"].dump());
       }
     }
   }
@@ -120,8 +118,8 @@ void check_nodes(const GltfDocument& document) {
       const std::string path = json_path(json_path(json_path("/nodes", i), "children"), c);
       if (child == i) document.fail(path, node_name(i) + " is its own child: the nodes form a cycle");
       if (parents[child]) {
-        document.fail(path, node_name(child) + " has several parents: " + node_name(*parents[child]) +
-                                " and " + node_name(i));
+        document.fail(
+            path, node_name(child) + " has several parents: " + node_name(*parents[child]) + " and " + node_name(i));
       }
       parents[child] = i;
     }
@@ -146,8 +144,7 @@ void check_nodes(const GltfDocument& document) {
       const auto root = roots[r].get<std::size_t>();
       const std::string path = json_path(json_path(json_path("/scenes", s), "nodes"), r);
       if (parents[root])
-        document.fail(path,
-                      node_name(root) + " is not a root: it is a child of " + node_name(*parents[root]));
+        document.fail(path, node_name(root) + " is not a root: it is a child of " + node_name(*parents[root]));
       if (named[root]) document.fail(path, node_name(root) + " is named twice");
       named[root] = true;
     }

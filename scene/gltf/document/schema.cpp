@@ -27,8 +27,7 @@ std::string found(const Json& value) {
 
 /// 12 rather than 12.0 where a number is whole.
 std::string shown(double value) {
-  if (std::abs(value) < 1e15 && value == std::floor(value))
-    return std::to_string(static_cast<std::int64_t>(value));
+  if (std::abs(value) < 1e15 && value == std::floor(value)) return std::to_string(static_cast<std::int64_t>(value));
   return Json(value).dump();
 }
 
@@ -104,8 +103,7 @@ class Checker {
       case SchemaKind::kObject:
         return object(value, *rule.child, path);
       case SchemaKind::kObjects:
-        return each(value, path,
-                    [&](const Json& v, const std::string& p) { return object(v, *rule.child, p); });
+        return each(value, path, [&](const Json& v, const std::string& p) { return object(v, *rule.child, p); });
     }
     return {};
   }
@@ -120,8 +118,7 @@ class Checker {
   }
 
   Json name(const Json& value, const SchemaRule& rule, const std::string& path) const {
-    if (value.is_string() &&
-        std::ranges::find(rule.names, value.get_ref<const std::string&>()) != rule.names.end()) {
+    if (value.is_string() && std::ranges::find(rule.names, value.get_ref<const std::string&>()) != rule.names.end()) {
       return value;
     }
     std::string expected = "one of";
@@ -136,8 +133,7 @@ class Checker {
       if (v == std::floor(v) && v >= min && v <= max) return static_cast<std::int64_t>(v);
     }
     fail(value, path,
-         max >= 9e15 ? "an integer of at least " + shown(min)
-                     : "an integer from " + shown(min) + " to " + shown(max));
+         max >= 9e15 ? "an integer of at least " + shown(min) : "an integer from " + shown(min) + " to " + shown(max));
   }
 
   Json choice(const Json& value, const SchemaRule& rule, const std::string& path) const {

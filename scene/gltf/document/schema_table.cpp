@@ -91,8 +91,7 @@ const Schema kAccessor{index("bufferView", "/bufferViews"),
 
 // Textures and materials.
 const Schema kImage{text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
-const Schema kSampler{choice("magFilter", {9728, 9729}),
-                      choice("minFilter", {9728, 9729, 9984, 9985, 9986, 9987}),
+const Schema kSampler{choice("magFilter", {9728, 9729}), choice("minFilter", {9728, 9729, 9984, 9985, 9986, 9987}),
                       choice("wrapS", {33071, 33648, 10497}), choice("wrapT", {33071, 33648, 10497})};
 const Schema kOtherSource{index("source", "/images")};
 const Schema kTextureExtensions{object("EXT_texture_webp", kOtherSource), object("KHR_texture_basisu", kOtherSource)};
@@ -149,8 +148,9 @@ const Schema kMaterial{text("name"),
                        object("extensions", kMaterialExtensions)};
 
 // Meshes.
-const Schema kDracoPrimitive{index("bufferView", "/bufferViews", true),
-                             {.key = "attributes", .kind = K::kIntegerMap, .required = true, .min = 0, .max = kMostSparse}};
+const Schema kDracoPrimitive{
+    index("bufferView", "/bufferViews", true),
+    {.key = "attributes", .kind = K::kIntegerMap, .required = true, .min = 0, .max = kMostSparse}};
 const Schema kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDracoPrimitive)};
 const Schema kPrimitive{index_map("attributes", "/accessors"), index("indices", "/accessors"),
                         index("material", "/materials"), integer("mode", 0, 6),

@@ -11,19 +11,19 @@ using Schema = std::vector<SchemaRule>;
 enum class SchemaKind {
   kBoolean,
   kString,
-  kStrings,   ///< array of strings
-  kName,      ///< one of `names`
-  kInteger,   ///< in [min, max]
-  kChoice,    ///< one of `choices`
-  kNumber,    ///< finite in single precision, in [min, max]
-  kNumbers,   ///< array of `length` such numbers (0: any)
-  kIndex,     ///< into the array at JSON path `refers_to`
-  kIndices,   ///< array of such
-  kIndexMap,  ///< object of such
+  kStrings,     ///< array of strings
+  kName,        ///< one of `names`
+  kInteger,     ///< in [min, max]
+  kChoice,      ///< one of `choices`
+  kNumber,      ///< finite in single precision, in [min, max]
+  kNumbers,     ///< array of `length` such numbers (0: any)
+  kIndex,       ///< into the array at JSON path `refers_to`
+  kIndices,     ///< array of such
+  kIndexMap,    ///< object of such
   kIntegerMap,  ///< object of integers in [min, max]
-  kObject,    ///< with the rules of `child`
-  kObjects,   ///< array of such
-  kExtras,    ///< with the rules of `child` where it is an object; anything else is somebody else's
+  kObject,      ///< with the rules of `child`
+  kObjects,     ///< array of such
+  kExtras,      ///< with the rules of `child` where it is an object; anything else is somebody else's
 };
 
 /// What one key of a JSON object must look like.

@@ -4,7 +4,7 @@
 #pragma GCC diagnostic ignored "-Wextra"
 #pragma GCC diagnostic ignored "-Wpedantic"
 #pragma GCC diagnostic ignored "-Wshadow"
-#include <nlohmann/json.hpp>   // TINYGLTF_NO_INCLUDE_JSON leaves this to us
+#include <nlohmann/json.hpp>  // TINYGLTF_NO_INCLUDE_JSON leaves this to us
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>
 #pragma GCC diagnostic pop

@@ -37,7 +37,8 @@ void read_images(const GltfDocument& document, const GltfResources& resources, c
   scene.images.resize(file_images.size());
   for (std::size_t i = 0; i < file_images.size(); ++i) {
     const Json& image = document.json["images"][file_images[i]];
-    scene.images[i].name = image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
+    scene.images[i].name =
+        image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
   }
   const std::vector<bool> wanted = choice ? choice(scene) : std::vector<bool>(file_images.size(), true);
   for (std::size_t i = 0; i < file_images.size(); ++i) {

@@ -11,8 +11,8 @@
 namespace carousel::scene {
 
 /// Fills `scene.images`: image i is `file_images[i]` of the file. Only those that `choice` wants are looked for and
-/// decoded; the others keep a name and no pixels, whatever is wrong with them. Call when all else of the scene is there.
-/// Throws SceneError.
+/// decoded; the others keep a name and no pixels, whatever is wrong with them. Call when all else of the scene is
+/// there. Throws SceneError.
 void read_images(const GltfDocument& document, const GltfResources& resources, const GltfModel& model,
                  const std::vector<std::size_t>& file_images, const ImageChoice& choice, Scene& scene);
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "scene/gltf/materials/material_layers.h"
 #include "scene/gltf/document/numbers.h"
+#include "scene/gltf/materials/material_layers.h"
 #include "scene/gltf/materials/textures.h"
 
 namespace carousel::scene {

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/certificate/kernel_answers.h"
 #include "accel/box/double_slab.h"
-#include "accel/traverse/kernels.h"
 #include "accel/box/slab.h"
+#include "accel/certificate/kernel_answers.h"
+#include "accel/traverse/kernels.h"
 #include "core/config/enum_names.h"
 #include "tests/accel/traverse/simd_guard.h"
 

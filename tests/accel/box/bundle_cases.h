@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "accel/box/bundle.h"
+#include "accel/box/slab.h"
 #include "accel/certificate/adversarial_numbers.h"
 #include "accel/structure/cull_plane.h"
 #include "accel/structure/node.h"
 #include "accel/traverse/ray_check.h"
-#include "accel/box/slab.h"
 #include "core/types/aabb.h"
 #include "core/types/ray.h"
 
@@ -18,7 +18,9 @@ namespace carousel::accel {
 
 inline constexpr Aabb kUnit{{-1, -1, -1}, {1, 1, 1}};
 
-inline Ray ray(const Vec3& origin, const Vec3& direction, float end = kInfinity) { return {origin, 0, direction, end}; }
+inline Ray ray(const Vec3& origin, const Vec3& direction, float end = kInfinity) {
+  return {origin, 0, direction, end};
+}
 
 /// The record of these rays; the range of each ends at its tmax.
 inline BundleRecord record_of(const std::vector<Ray>& rays) {
@@ -60,16 +62,26 @@ template <class Random>
 Aabb neighbour(Aabb box, float size, Random& random) {
   const int axis = static_cast<int>(random.below(3));
   switch (random.below(7)) {
-    case 0: return box;
-    case 1: box.hi[axis] = box.lo[axis]; return box;
-    case 2: box.lo[axis] = box.hi[axis]; return box;
-    case 3: return {box.hi, box.hi};
+    case 0:
+      return box;
+    case 1:
+      box.hi[axis] = box.lo[axis];
+      return box;
+    case 2:
+      box.lo[axis] = box.hi[axis];
+      return box;
+    case 3:
+      return {box.hi, box.hi};
     case 4: {
       const Vec3 shift = random.in_box(Vec3{-size}, Vec3{size});
       return {box.lo + shift, box.hi + shift};
     }
-    case 5: box.lo[axis] = nudged(box.lo[axis], 2, random); break;
-    default: box.hi += random.in_box(Vec3{0}, Vec3{size}); break;
+    case 5:
+      box.lo[axis] = nudged(box.lo[axis], 2, random);
+      break;
+    default:
+      box.hi += random.in_box(Vec3{0}, Vec3{size});
+      break;
   }
   Aabb out;
   out.extend(box.lo);

@@ -13,9 +13,9 @@
 #include "accel/certificate/box_cases.h"
 #include "accel/certificate/exact_box.h"
 #include "core/config/enum_names.h"
-#include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/box/box_levels.h"
 #include "tests/accel/box/bundle_cases.h"
+#include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
 
@@ -68,7 +68,8 @@ TEST(BundleInterval, SignsMayBeMixed) {
   // Across the middle of a face, and about an axis beside the box.
   EXPECT_EQ(verdict({ray({0, 0, -4}, {-0.2f, 0.1f, 1}), ray({0, 0, -4}, {0.2f, -0.1f, 1})}, kUnit), Verdict::kAll);
   EXPECT_EQ(verdict({ray({3, 0, -4}, {-0.2f, 0.1f, 1}), ray({3, 0, -4}, {0.2f, -0.1f, 1})}, kUnit), Verdict::kMiss);
-  EXPECT_EQ(verdict({ray({3, 0, -4}, {-0.9f, 0.1f, 1}), ray({3, 0, -4}, {0.2f, -0.1f, 1})}, kUnit), Verdict::kUndecided);
+  EXPECT_EQ(verdict({ray({3, 0, -4}, {-0.9f, 0.1f, 1}), ray({3, 0, -4}, {0.2f, -0.1f, 1})}, kUnit),
+            Verdict::kUndecided);
   // From inside, wherever they go.
   EXPECT_EQ(verdict({ray({0, 0, 0}, {-1, 1, 1}), ray({0.5f, 0, 0}, {1, -1, -1})}, kUnit), Verdict::kAll);
   // One goes there, one goes away.
@@ -78,7 +79,8 @@ TEST(BundleInterval, SignsMayBeMixed) {
 TEST(BundleInterval, ZerosOfBothSignsAreDirectionsBesideTheBoxOrInIt) {
   for (const float first : {0.0f, -0.0f}) {
     for (const float second : {0.0f, -0.0f}) {
-      EXPECT_EQ(verdict({ray({1, 0, -4}, {first, 0, 1}), ray({-1, 0, -4}, {second, 0, 1})}, kUnit, true), Verdict::kAll);
+      EXPECT_EQ(verdict({ray({1, 0, -4}, {first, 0, 1}), ray({-1, 0, -4}, {second, 0, 1})}, kUnit, true),
+                Verdict::kAll);
       EXPECT_EQ(verdict({ray({2, 0, -4}, {first, 0, 1}), ray({3, 0, -4}, {second, 0, 1})}, kUnit), Verdict::kMiss);
       EXPECT_EQ(verdict({ray({-2, 0, -4}, {first, 0, 1}), ray({-3, 0, -4}, {second, 0, 1})}, kUnit), Verdict::kMiss);
       EXPECT_EQ(verdict({ray({0, 0, -4}, {first, 0, 1}), ray({3, 0, -4}, {second, 0, 1})}, kUnit), Verdict::kUndecided);
@@ -104,11 +106,11 @@ TEST(BundleInterval, AnUnusedLaneIsNeverHit) {
 }
 
 TEST(BundleInterval, GoesByTheLatestEndOfTheRays) {
-  const Vec3 eye{0, 0, -4}, ahead{0, 0, 1};   // 3 away
+  const Vec3 eye{0, 0, -4}, ahead{0, 0, 1};  // 3 away
   const float short_of = std::nextafter(3.0f, 0.0f);
   EXPECT_EQ(verdict({ray(eye, ahead, 3), ray(eye, ahead, 3)}, kUnit), Verdict::kAll);
   EXPECT_EQ(verdict({ray(eye, ahead, short_of), ray(eye, ahead, 1)}, kUnit), Verdict::kMiss);
-  EXPECT_EQ(verdict({ray(eye, ahead, 1), ray(eye, ahead, 3)}, kUnit), Verdict::kAll);   // as far as the record knows
+  EXPECT_EQ(verdict({ray(eye, ahead, 1), ray(eye, ahead, 3)}, kUnit), Verdict::kAll);  // as far as the record knows
   const Ray nearer = ray(eye + Vec3{0, 0, 0.5f}, ahead, short_of);
   EXPECT_EQ(verdict({ray(eye, ahead, short_of), nearer}, kUnit), Verdict::kUndecided);
 }
@@ -195,8 +197,10 @@ TEST(BundleInterval, OrdersDifferInWhatTheyTestAndInWhatTheyLeaveOpen) {
     std::uint8_t all, undecided;
     std::uint64_t tests;
   };
-  for (const Expected& e : {Expected{Order::kAllHitFirst, 0b001, 0b100, 5}, {Order::kAnyHitFirst, 0b001, 0b100, 5},
-                            {Order::kParallel, 0b001, 0b100, 6}, {Order::kAllHitOnly, 0b001, 0b110, 3},
+  for (const Expected& e : {Expected{Order::kAllHitFirst, 0b001, 0b100, 5},
+                            {Order::kAnyHitFirst, 0b001, 0b100, 5},
+                            {Order::kParallel, 0b001, 0b100, 6},
+                            {Order::kAllHitOnly, 0b001, 0b110, 3},
                             {Order::kAnyHitOnly, 0b101, 0, 3}}) {
     BundlesConfig config;
     config.order = e.order;
@@ -206,7 +210,7 @@ TEST(BundleInterval, OrdersDifferInWhatTheyTestAndInWhatTheyLeaveOpen) {
     EXPECT_EQ(answer.undecided, e.undecided) << enum_name(e.order);
     EXPECT_EQ(counts.bundle, e.tests) << enum_name(e.order);
     EXPECT_EQ(answer.entry[0], 3) << enum_name(e.order);
-    TestCounts all_lanes;   // lanes beyond the node's children are nobody's
+    TestCounts all_lanes;  // lanes beyond the node's children are nobody's
     EXPECT_EQ(test_bundle(accel, node, ~0u, record, config, all_lanes).all, e.all | 0b1000);
   }
 }
@@ -228,7 +232,9 @@ TEST(BundleInterval, OneRayGetsTheAnswerOfItsOwnTest) {
       const auto expect_same = [&](const auto& interval, const auto& box) {
         ASSERT_EQ(interval.all_hit(box), single.hit) << i << " " << level.name;
         ASSERT_EQ(interval.all_miss(box), !single.hit) << i << " " << level.name;
-        if (single.hit) { ASSERT_EQ(round_up(interval.entry(box)), single.entry) << i << " " << level.name; }
+        if (single.hit) {
+          ASSERT_EQ(round_up(interval.entry(box)), single.entry) << i << " " << level.name;
+        }
       };
       if (level.value == BoxLevel::kDouble) {
         expect_same(BundleInterval<double>(record, kFarWidening), planes_of<double>(c.box));
@@ -246,9 +252,9 @@ struct Share {
   double settled, alike;
 };
 
-/// The share of boxes that the tests of bundles of 32 rays with a common origin settle, and of those that all their rays
-/// hit or all miss. `spread` is of directions, either way, in half-sizes of the box as seen from there; bundles aim at
-/// the box and around it.
+/// The share of boxes that the tests of bundles of 32 rays with a common origin settle, and of those that all their
+/// rays hit or all miss. `spread` is of directions, either way, in half-sizes of the box as seen from there; bundles
+/// aim at the box and around it.
 Share share_settled(float spread, const BundlesConfig& config) {
   Random random(1000 * std::uint64_t{run_seed()} + 87);
   constexpr int kBundles = 20000;
@@ -284,7 +290,9 @@ TEST(BundleInterval, SettlesMostBoxesOfNarrowBundles) {
       std::cout << "spread " << spread << (strict ? ", strict: " : ": ") << share.settled << " settled of "
                 << share.alike << "\n";
       EXPECT_LE(share.settled, share.alike);
-      if (spread <= 0.03f) { EXPECT_GT(share.settled, 0.85) << spread; }
+      if (spread <= 0.03f) {
+        EXPECT_GT(share.settled, 0.85) << spread;
+      }
     }
   }
 }

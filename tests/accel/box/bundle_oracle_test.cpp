@@ -1,5 +1,5 @@
-// Nothing that a bundle's tests claim is wrong of one of its rays: judged by the box test of each ray at the same level,
-// and by big integers, over bundles and boxes made to be hard.
+// Nothing that a bundle's tests claim is wrong of one of its rays: judged by the box test of each ray at the same
+// level, and by big integers, over bundles and boxes made to be hard.
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -9,10 +9,10 @@
 
 #include "accel/box/bundle_intersect.h"
 #include "core/config/enum_names.h"
-#include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/box/box_levels.h"
 #include "tests/accel/box/bundle_cases.h"
 #include "tests/accel/box/exact_box_hit.h"
+#include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
 
@@ -23,7 +23,7 @@ using Order = BundlesConfig::Order;
 
 struct Claims {
   std::uint64_t bundles = 0, boxes = 0;
-  std::uint64_t misses = 0, all = 0, undecided = 0;   // boxes
+  std::uint64_t misses = 0, all = 0, undecided = 0;  // boxes
   std::uint64_t against_kernel = 0, against_exact = 0, late_entries = 0, undecided_rays = 0;
 };
 
@@ -59,7 +59,7 @@ Claims judge(BundlesConfig::Form form, std::uint64_t bundles, int reach, int pac
   for (; claims.bundles < bundles; ++claims.bundles) {
     const BundleCase c = bundle_case(random, reach, pace);
     BundleRecord record = record_of(c.rays);
-    if (random.below(8) == 0) record.tmax = kInfinity;   // out of date
+    if (random.below(8) == 0) record.tmax = kInfinity;  // out of date
     BundlesConfig config;
     config.form = form;
     config.order = static_cast<Order>(random.below(5));
@@ -87,7 +87,7 @@ Claims judge(BundlesConfig::Form form, std::uint64_t bundles, int reach, int pac
         if (exact) wrong(claims.against_exact, "a ray hits exactly, all are said to miss", describe());
       } else {
         ++claims.all;
-        const bool any_hit_only = config.order == Order::kAnyHitOnly;   // claims nothing of all
+        const bool any_hit_only = config.order == Order::kAnyHitOnly;  // claims nothing of all
         bool kernel = false, exact = false, late = false;
         for (const Ray& ray : c.rays) {
           const BoxAnswer single = box_answer(level, ray, box, record.tmax);
@@ -113,12 +113,14 @@ void expect_sound(BundlesConfig::Form form, std::uint64_t bundles, int reach, in
   EXPECT_EQ(claims.against_exact, 0u);
   EXPECT_EQ(claims.late_entries, 0u);
   EXPECT_EQ(claims.undecided_rays, 0u);
-  EXPECT_GT(claims.misses, claims.boxes / 10);   // or nothing was claimed
+  EXPECT_GT(claims.misses, claims.boxes / 10);  // or nothing was claimed
   EXPECT_GT(claims.all, claims.boxes / 10);
   EXPECT_GT(claims.undecided, claims.boxes / 20);
 }
 
-std::uint64_t bundles() { return static_cast<std::uint64_t>(adversarial_cases()); }
+std::uint64_t bundles() {
+  return static_cast<std::uint64_t>(adversarial_cases());
+}
 
 TEST(BundleOracle, IntervalsClaimNothingThatIsWrongOfARay) {
   expect_sound(BundlesConfig::Form::kInterval, bundles() / 2, 20, 10, 84);

@@ -6,10 +6,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "accel/box/bundle_interval.h"
 #include "accel/box/bundle_intersect.h"
-#include "accel/certificate/adversarial_numbers.h"
+#include "accel/box/bundle_interval.h"
 #include "accel/box/slab.h"
+#include "accel/certificate/adversarial_numbers.h"
 #include "core/config/enum_names.h"
 #include "tests/accel/box/bundle_cases.h"
 #include "tests/accel/traverse/test_rays.h"
@@ -46,8 +46,12 @@ TEST(BundleSilhouette, HasFourEdgesWhereOneFaceIsSeenAndSixOfMore) {
     Vec3 eye;
     int edges;
   };
-  for (const Expected& e : {Expected{{0, 0, -4}, 4}, {{0, 4, 0}, 4}, {{-4, 0, -4}, 6}, {{4, 3, -4}, 6},
-                            {{-4, -4, -4}, 6}, {{0, 0, 0}, 0}}) {
+  for (const Expected& e : {Expected{{0, 0, -4}, 4},
+                            {{0, 4, 0}, 4},
+                            {{-4, 0, -4}, 6},
+                            {{4, 3, -4}, 6},
+                            {{-4, -4, -4}, 6},
+                            {{0, 0, 0}, 0}}) {
     for (const Edges edges : {Edges::kSerial, Edges::kParallel}) {
       const BundleAnswer answer = test(towards({0.2f, 0.3f, 0.25f}, e.eye), Order::kAllHitOnly, edges);
       EXPECT_EQ(answer.all, 1) << e.eye.x << " " << e.eye.y << " " << e.eye.z;
@@ -57,7 +61,7 @@ TEST(BundleSilhouette, HasFourEdgesWhereOneFaceIsSeenAndSixOfMore) {
 }
 
 TEST(BundleSilhouette, OneAfterAnotherStopsAtTheFirstEdgeThatDecides) {
-  const std::vector<Ray> past = towards({-3, 2.5f, 0}, {-4, -4, -4});   // leaves y before it enters x
+  const std::vector<Ray> past = towards({-3, 2.5f, 0}, {-4, -4, -4});  // leaves y before it enters x
   for (const Order order : {Order::kAnyHitOnly, Order::kAllHitOnly}) {
     const BundleAnswer serial = test(past, order, Edges::kSerial), parallel = test(past, order, Edges::kParallel);
     EXPECT_EQ(serial.edges, 1) << enum_name(order);
@@ -112,7 +116,7 @@ TEST(BundleSilhouette, LeavesWhatItIsNotForToIntervals) {
   const BundleAnswer mixed = test({ray({0, 0, -4}, {-0.1f, 0, 1}), ray({0, 0, -4}, {0.1f, 0, 1})}, Order::kAllHitOnly);
   EXPECT_EQ(mixed.all, 1);
   EXPECT_EQ(mixed.edges, 0);
-  EXPECT_EQ(test({ray({-4, -4, -4}, {1, 1, 1})}, Order::kAllHitOnly).edges, 0);   // one ray
+  EXPECT_EQ(test({ray({-4, -4, -4}, {1, 1, 1})}, Order::kAllHitOnly).edges, 0);  // one ray
 }
 
 // The slab test finds boxes hit where all distances are below the least float.
@@ -139,7 +143,8 @@ TEST(BundleSilhouette, SettlesWhatIntervalsSettle) {
   const BoxPlanes<float> unit = planes_of<float>(kUnit);
   int boxes = 0, by_interval = 0, by_silhouette = 0;
   for (int i = 0; i < 100000; ++i) {
-    const Vec3 eye = random.uniform(2, 30) * Vec3(random_direction(random)), apart = Vec3{random.below(2) ? 0.0f : 0.1f};
+    const Vec3 eye = random.uniform(2, 30) * Vec3(random_direction(random)),
+               apart = Vec3{random.below(2) ? 0.0f : 0.1f};
     const Vec3 aim = random.in_box(Vec3{-2}, Vec3{2});
     std::vector<Ray> rays;
     for (int k = 0; k < 16; ++k) {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/accel/box/box_levels.h"
 #include "accel/certificate/exact_box.h"
+#include "tests/accel/box/box_levels.h"
 
 namespace carousel::accel {
 namespace {
@@ -20,8 +20,12 @@ Ray ray(const Vec3& origin, const Vec3& direction, float tmin = 0) {
   r.tmin = tmin;
   return r;
 }
-float up(float x) { return std::nextafter(x, kInfinity); }
-float down(float x) { return std::nextafter(x, -kInfinity); }
+float up(float x) {
+  return std::nextafter(x, kInfinity);
+}
+float down(float x) {
+  return std::nextafter(x, -kInfinity);
+}
 
 // What has to come out at every level, exact arithmetic being of the same mind.
 void expect_hit(const Ray& r, const Aabb& box, float entry, float tmax = kInfinity) {
@@ -71,7 +75,7 @@ TEST(HardBox, AlongAnEdge) {
 TEST(HardBox, ThroughACornerOnly) {
   expect_hit(ray({-2, -2, 0}, {1, 1, 1}), {{-1, -1, 1}, {1, 1, 3}}, 1);
   expect_hit(ray({-3, 1, 0}, {2, 1, 0.5f}), {{-1, 2, 0.5f}, {1, 2, 1}}, 1);
-  expect_hit(ray({2, -2, 0}, {-1, 1, 0}), {{0, -2, 0}, {1, -1, 0}}, 1);     // in at one corner, out at it
+  expect_hit(ray({2, -2, 0}, {-1, 1, 0}), {{0, -2, 0}, {1, -1, 0}}, 1);  // in at one corner, out at it
   expect_miss(ray({2, -2, 0}, {-1, 1 + 0x1p-10f, 0}), {{0, -2, 0}, {1, -1, 0}});
 }
 
@@ -123,7 +127,7 @@ TEST(HardBox, OriginOnTheExitFaceLeaving) {
       r.origin[axis] = sign;
       r.direction[axis] = sign;
       expect_hit(r, kUnit, 0);
-      r.tmin = kDenormal;   // anything later is outside
+      r.tmin = kDenormal;  // anything later is outside
       expect_miss(r, kUnit);
     }
 }
@@ -131,8 +135,8 @@ TEST(HardBox, OriginOnTheExitFaceLeaving) {
 TEST(HardBox, FlatBox) {
   const Aabb flat{{-1, -1, 0}, {1, 1, 0}};
   expect_hit(ray({0, 0, -1}, {0, 0, 1}), flat, 1);
-  expect_hit(ray({-2, 0, 0}, {1, 0, 0}), flat, 1);        // in its plane
-  expect_hit(ray({-2, 1, 0}, {1, 0, -0.0f}), flat, 1);    // along its edge
+  expect_hit(ray({-2, 0, 0}, {1, 0, 0}), flat, 1);      // in its plane
+  expect_hit(ray({-2, 1, 0}, {1, 0, -0.0f}), flat, 1);  // along its edge
   expect_hit(ray({0, 0, 0}, {1, 1, 1}), flat, 0);
   expect_miss(ray({-2, 0, kDenormal}, {1, 0, 0}), flat);
 }
@@ -144,8 +148,12 @@ TEST(HardBox, PointBox) {
   expect_miss(ray({-2, 0.001f, 0.001f}, {1, 1e-9f, 0}), {Vec3{0}, Vec3{0}});
 }
 
-TEST(HardBox, TmaxExactlyOnTheEntryFace) { expect_hit(ray({0, 0, -3}, {0, 0, 1}), kUnit, 2, 2.0f); }
-TEST(HardBox, TmaxOneUlpShortOfTheEntryFace) { expect_miss(ray({0, 0, -3}, {0, 0, 1}), kUnit, down(2)); }
+TEST(HardBox, TmaxExactlyOnTheEntryFace) {
+  expect_hit(ray({0, 0, -3}, {0, 0, 1}), kUnit, 2, 2.0f);
+}
+TEST(HardBox, TmaxOneUlpShortOfTheEntryFace) {
+  expect_miss(ray({0, 0, -3}, {0, 0, 1}), kUnit, down(2));
+}
 
 TEST(HardBox, TminOnAndOneUlpPastTheExit) {
   expect_hit(ray({0, 0, -3}, {0, 0, 1}, 4), kUnit, 4);
@@ -167,7 +175,7 @@ TEST(HardBox, TmaxInfiniteWithAZeroComponent) {
 }
 
 TEST(HardBox, ProductsThatUnderflow) {
-  const float s = 0x1p-83f;   // 1e-25
+  const float s = 0x1p-83f;  // 1e-25
   const Aabb box{Vec3{-s}, Vec3{s}};
   expect_hit(ray(Vec3{-3 * s, -3 * s, -3 * s}, Vec3{s, s, s}), {Vec3{-2 * s}, Vec3{2 * s}}, 1);
   expect_miss(ray({-3 * s, 2 * s, 0}, {s, 0, 0}), box);
@@ -180,7 +188,7 @@ TEST(HardBox, ProductsThatUnderflow) {
 }
 
 TEST(HardBox, ProductsThatOverflow) {
-  const float s = 0x1p83f;   // 1e25
+  const float s = 0x1p83f;  // 1e25
   const Aabb box{Vec3{-2 * s}, Vec3{2 * s}};
   expect_hit(ray(Vec3{-3 * s}, Vec3{s}), box, 1);
   expect_miss(ray({-3 * s, 4 * s, 0}, {s, 0, 0}), box);
@@ -212,7 +220,8 @@ TEST(HardBox, DenormalDirection) {
                   !ExactBox(ray({sign, 0, -3}, {sign * tiny, 0, 1}), kUnit, kInfinity).hit())
           << level.name;
       // Nothing but a denormal component: entered at 2e40, later than every float.
-      EXPECT_TRUE(box_answer_everywhere(level.value, ray({-3 * sign, 0, 0}, {sign * tiny, 0, 0}), kUnit).hit) << level.name;
+      EXPECT_TRUE(box_answer_everywhere(level.value, ray({-3 * sign, 0, 0}, {sign * tiny, 0, 0}), kUnit).hit)
+          << level.name;
     }
   }
   // Entered at 1e37, which is a float.

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "accel/traverse/kernels.h"
+#include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "tests/accel/structure/test_scenes.h"
 
 namespace carousel::accel {
 namespace {
@@ -20,7 +20,9 @@ bool hits(const Ray& ray, const Aabb& box) {
   float entry;
   return hits(ray, box, entry);
 }
-Ray ray(const Vec3& origin, const Vec3& direction, float tmin = 0) { return {origin, tmin, direction, kInfinity}; }
+Ray ray(const Vec3& origin, const Vec3& direction, float tmin = 0) {
+  return {origin, tmin, direction, kInfinity};
+}
 
 const Aabb kUnit{Vec3{-1}, Vec3{1}};
 
@@ -56,9 +58,9 @@ TEST(Slab, RayBesideBoxWithZeroComponentMisses) {
 }
 
 TEST(Slab, FlatAndPointBoxesAreHit) {
-  EXPECT_TRUE(hits(ray({0, 0, -1}, {0, 0, 1}), {{-1, -1, 0}, {1, 1, 0}}));       // face on
-  EXPECT_TRUE(hits(ray({-2, 0, 0}, {1, 0, 0}), {{-1, -1, 0}, {1, 1, 0}}));       // edge on
-  EXPECT_TRUE(hits(ray({-2, 0, 0}, {1, 0, 0}), {{0, 0, 0}, {0, 0, 0}}));         // a point, dead on
+  EXPECT_TRUE(hits(ray({0, 0, -1}, {0, 0, 1}), {{-1, -1, 0}, {1, 1, 0}}));  // face on
+  EXPECT_TRUE(hits(ray({-2, 0, 0}, {1, 0, 0}), {{-1, -1, 0}, {1, 1, 0}}));  // edge on
+  EXPECT_TRUE(hits(ray({-2, 0, 0}, {1, 0, 0}), {{0, 0, 0}, {0, 0, 0}}));    // a point, dead on
   EXPECT_TRUE(hits(ray({1, 2, 3}, {1, 2, 3}), {{2, 4, 6}, {2, 4, 6}}));
   EXPECT_FALSE(hits(ray({-2, 0.001f, 0.001f}, {1, 1e-9f, 0}), {{0, 0, 0}, {0, 0, 0}}));
 }
@@ -96,7 +98,7 @@ TEST(Slab, EmptyLanesAreNeverHitWhateverTheRay) {
     record.hit.t = kInfinity;
     if (!std::isfinite(r.direction.x + r.direction.y + r.direction.z)) continue;
     accel.nodes.push_back(node);
-    accel.nodes[0].count = 8;   // so that the lanes count as children
+    accel.nodes[0].count = 8;  // so that the lanes count as children
     std::uint8_t mask = 0xff;
     float nearest[kMaxWidth] = {};
     TestCounts counts;
@@ -111,7 +113,7 @@ TEST(Slab, DenormalDirectionsAreConservative) {
   EXPECT_TRUE(hits(ray({1, 0, -3}, {tiny, 0, 1}), kUnit));
   EXPECT_TRUE(hits(ray({-1, 0, -3}, {-tiny, 0, 1}), kUnit));
   float entry = 0;
-  EXPECT_TRUE(hits(ray({0, 0, -3}, {0, 0, tiny}), kUnit, entry));   // 2 / tiny is beyond every float
+  EXPECT_TRUE(hits(ray({0, 0, -3}, {0, 0, tiny}), kUnit, entry));  // 2 / tiny is beyond every float
 }
 
 // Their reciprocal overflows, but the distance to a near plane need not.
@@ -120,7 +122,7 @@ TEST(Slab, DenormalDirectionsEnterNoLaterThanExactly) {
     for (const float sign : {-1.0f, 1.0f}) {
       Ray r = ray(Vec3{0}, Vec3{0});
       r.origin[axis] = -1.001f * sign;
-      r.direction[axis] = 2e-39f * sign;   // enters at 5e35
+      r.direction[axis] = 2e-39f * sign;  // enters at 5e35
       float entry = 0;
       EXPECT_TRUE(hits(r, kUnit, entry, 1e38f));
       EXPECT_LE(entry, 0.5e36f);
@@ -168,7 +170,7 @@ bool exactly_hit(const Ray& r, const Aabb& box) {
         if (r.origin[i] < box.lo[i] || r.origin[i] > box.hi[i]) return false;
         continue;
       }
-      if (plane(i, false) * r.direction[i] < 0) return false;   // behind
+      if (plane(i, false) * r.direction[i] < 0) return false;  // behind
       if (r.direction[j] == 0) continue;
       if (plane(i, true) * std::fabs(r.direction[j]) * (r.direction[i] < 0 ? -1 : 1) >
           plane(j, false) * std::fabs(r.direction[i]) * (r.direction[j] < 0 ? -1 : 1))
@@ -180,7 +182,9 @@ bool exactly_hit(const Ray& r, const Aabb& box) {
 
 TEST(Slab, MissesNoBoxTheExactRayMeets) {
   Random random(3);
-  const auto grid = [&] { return std::ldexp(static_cast<float>(static_cast<int>(random.below(1u << 17)) - (1 << 16)), -16); };
+  const auto grid = [&] {
+    return std::ldexp(static_cast<float>(static_cast<int>(random.below(1u << 17)) - (1 << 16)), -16);
+  };
   int exact = 0, edge = 0;
   for (int i = 0; i < 300000; ++i) {
     Aabb box;
@@ -195,7 +199,7 @@ TEST(Slab, MissesNoBoxTheExactRayMeets) {
     if (r.direction == Vec3{0} || !exactly_hit(r, box)) continue;
     ++exact;
     ASSERT_TRUE(hits(r, box)) << i;
-    Ray beside = r;   // nudged by a unit: about half still hit
+    Ray beside = r;  // nudged by a unit: about half still hit
     beside.direction[static_cast<int>(random.below(3))] *= 1 + 0x1p-23f;
     if (!exactly_hit(beside, box)) continue;
     ++edge;
@@ -234,7 +238,8 @@ TEST(Slab, EveryLaneOfEveryTargetEqualsScalar) {
       std::fill(nearest, nearest + kMaxWidth, kInfinity);
       TestCounts counts;
       const std::uint32_t lanes = i % 4 ? ~0u : 0x55u;
-      test_strip(accel, {kNoInstance, NodeRef::inner(0)}, lanes, {&record, nullptr, 1}, {&mask, nearest, entries}, counts);
+      test_strip(accel, {kNoInstance, NodeRef::inner(0)}, lanes, {&record, nullptr, 1}, {&mask, nearest, entries},
+                 counts);
       for (int lane = 0; lane < node.count; ++lane) {
         float entry;
         const bool hit = hits(record.ray, boxes[lane], entry, record.hit.t) && (lanes >> lane & 1);

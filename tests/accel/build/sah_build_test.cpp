@@ -98,7 +98,7 @@ TEST(SahBuild, KeepsDepthWhenAllCentroidsCoincide) {
     const float size = static_cast<float>(i % 7);
     boxes[i] = {Vec3{-size}, Vec3{size}};
   }
-  EXPECT_LE(build_and_check(boxes, 1).depth, 15);   // halves: log2 of 5000 and one
+  EXPECT_LE(build_and_check(boxes, 1).depth, 15);  // halves: log2 of 5000 and one
 }
 
 TEST(SahBuild, KeepsDepthOnExponentiallySpacedPoints) {
@@ -132,12 +132,12 @@ TEST(SahBuild, SeparatesTwoClusters) {
 }
 
 TEST(SahBuild, IsTheSameForEveryExecutor) {
-  const std::vector<Aabb> boxes = random_boxes(200000, 6);   // large enough for parallel nodes and binning
+  const std::vector<Aabb> boxes = random_boxes(200000, 6);  // large enough for parallel nodes and binning
   std::vector<std::unique_ptr<Executor>> executors;
   executors.push_back(make_sequential_executor());
   executors.push_back(make_jthread_executor(2));
   executors.push_back(make_jthread_executor(4));
-#ifndef __SANITIZE_THREAD__   // Debian's TBB is not instrumented and would be reported
+#ifndef __SANITIZE_THREAD__  // Debian's TBB is not instrumented and would be reported
   executors.push_back(make_tbb_executor(2));
   executors.push_back(make_tbb_executor(4));
 #endif

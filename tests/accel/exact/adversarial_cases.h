@@ -13,6 +13,8 @@ inline int adversarial_cases() {
 }
 
 /// Rays in all that are compared with another tracer's.
-inline std::size_t oracle_rays() { return static_cast<std::size_t>(adversarial_cases()); }
+inline std::size_t oracle_rays() {
+  return static_cast<std::size_t>(adversarial_cases());
+}
 
 }  // namespace carousel::accel

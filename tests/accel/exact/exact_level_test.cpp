@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "accel/certificate/triangle_oracle.h"
 #include "core/config/enum_names.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/primitive/adversarial_triangles.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
-#include "accel/certificate/triangle_oracle.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -41,7 +41,7 @@ TEST(ExactLevel, LosesAndInventsNothingInRoundedBoxes) {
   int hits = 0, wrong = 0;
   for (int i = 0; i < cases; ++i) {
     const auto kind = static_cast<TriangleCaseKind>(i % kTriangleCaseKinds);
-    if (kind == TriangleCaseKind::kScaledGrid || kind == TriangleCaseKind::kWildExponents) continue;   // the next test's
+    if (kind == TriangleCaseKind::kScaledGrid || kind == TriangleCaseKind::kWildExponents) continue;  // the next test's
     TriangleCase c = triangle_case(kind, random);
     if (c.ray.direction == Vec3{0}) continue;
     const TriangleOracle oracle(c.ray, c.corners);
@@ -51,7 +51,8 @@ TEST(ExactLevel, LosesAndInventsNothingInRoundedBoxes) {
     for (const BoxLevel box : {BoxLevel::kConservative, BoxLevel::kDouble}) {
       const Hit hit = trace_one(exact_level(scene, box), RayRequest{c.ray, {}});
       hits += hit.valid();
-      if (hit.valid() != exact && ++wrong <= 3) ADD_FAILURE() << enum_name(box) << " " << text(c) << (exact ? "lost" : "invented");
+      if (hit.valid() != exact && ++wrong <= 3)
+        ADD_FAILURE() << enum_name(box) << " " << text(c) << (exact ? "lost" : "invented");
     }
   }
   EXPECT_EQ(wrong, 0) << "CAROUSEL_SEED=" << run_seed();
@@ -63,8 +64,10 @@ TEST(ExactLevel, LosesAndInventsNothingAtAnyExponentInDoubleBoxes) {
   const int cases = adversarial_cases() / 40;
   int hits = 0, wrong = 0;
   for (int i = 0; i < cases; ++i) {
-    const TriangleCase c = triangle_case(i % 2 ? TriangleCaseKind::kScaledGrid : TriangleCaseKind::kWildExponents, random);
-    if (c.ray.direction == Vec3{0} || !std::isfinite(c.ray.direction.x + c.ray.direction.y + c.ray.direction.z)) continue;
+    const TriangleCase c =
+        triangle_case(i % 2 ? TriangleCaseKind::kScaledGrid : TriangleCaseKind::kWildExponents, random);
+    if (c.ray.direction == Vec3{0} || !std::isfinite(c.ray.direction.x + c.ray.direction.y + c.ray.direction.z))
+      continue;
     const TriangleOracle oracle(c.ray, c.corners);
     if (at_an_end(oracle)) continue;
     const bool exact = in_range(oracle);

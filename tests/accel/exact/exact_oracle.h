@@ -44,7 +44,8 @@ class ExactOracle {
           triangle.world[k] = DMat3(m.linear) * DVec3(triangle.model[k]) + DVec3(m.translation);
         }
         triangle.centre = (triangle.world[0] + triangle.world[1] + triangle.world[2]) / 3.0;
-        for (const DVec3& p : triangle.world) triangle.radius = std::max(triangle.radius, glm::length(p - triangle.centre));
+        for (const DVec3& p : triangle.world)
+          triangle.radius = std::max(triangle.radius, glm::length(p - triangle.centre));
         triangles_.push_back(triangle);
       }
       frames_.push_back(frame);
@@ -93,7 +94,7 @@ class ExactOracle {
   struct Triangle {
     std::uint32_t instance, primitive;
     std::array<Vec3, 3> model;
-    std::array<DVec3, 3> world;   // rounded; for sizes, never for decisions
+    std::array<DVec3, 3> world;  // rounded; for sizes, never for decisions
     DVec3 centre;
     double radius;
   };
@@ -101,13 +102,13 @@ class ExactOracle {
     std::size_t first = 0;
     bool identity = true;
     DVec3 translation{0};
-    DMat3 model_from_world{1};   // directions; rounded
+    DMat3 model_from_world{1};  // directions; rounded
     double condition = 1;
   };
   /// Exact signs: the ray's line against the three edges, and the plane.
   struct Sides {
-    std::array<double, 3> volume;   // rounded values whose signs are exact; positive inside
-    int facing;                     // sign of normal . direction
+    std::array<double, 3> volume;  // rounded values whose signs are exact; positive inside
+    int facing;                    // sign of normal . direction
     bool inside;
   };
 
@@ -119,7 +120,7 @@ class ExactOracle {
     const auto bits = static_cast<std::int64_t>(std::ldexp(mantissa, 24));
     return Int(bits) << (exponent - 24 + scale);
   }
-  static Int integer(double x) {   // truncated: offsets need no last bit
+  static Int integer(double x) {  // truncated: offsets need no last bit
     if (x == 0) return 0;
     int exponent;
     const double mantissa = std::frexp(x, &exponent);
@@ -210,9 +211,9 @@ class ExactOracle {
   // largest component (Woop, Benthin, Wald 2013), where the corners may lie farther apart than along the ray.
   double t_slack(const Triangle& t, const DVec3& o, const DVec3& d, double delta) const {
     const DVec3 e1 = t.world[1] - t.world[0], e2 = t.world[2] - t.world[0];
-    const double facing = std::fabs(glm::dot(glm::cross(e1, e2), d));   // twice the area seen, times |d|
-    const double longest = std::max({glm::length(glm::cross(d, e1)), glm::length(glm::cross(d, e2)),
-                                     glm::length(glm::cross(d, e2 - e1))});
+    const double facing = std::fabs(glm::dot(glm::cross(e1, e2), d));  // twice the area seen, times |d|
+    const double longest =
+        std::max({glm::length(glm::cross(d, e1)), glm::length(glm::cross(d, e2)), glm::length(glm::cross(d, e2 - e1))});
     const double thin = facing > 0 ? std::min(1.0, 4 * delta * longest / facing) : 1.0;
     const DMat3& to_model = frames_[t.instance].model_from_world;
     const DVec3 along = to_model * d, a = to_model * e1, b = to_model * e2, size = glm::abs(along);

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {
 namespace {
@@ -43,7 +43,7 @@ TEST(ExactOracle, RefusesWrongAnswers) {
     EXPECT_GT(hits, 300u);
     EXPECT_GT(missed, hits * 99 / 100);
     EXPECT_GT(beside, hits * 99 / 100);
-    EXPECT_GT(off, hits * 95 / 100);   // a grazing ray may meet its triangle anywhere
+    EXPECT_GT(off, hits * 95 / 100);  // a grazing ray may meet its triangle anywhere
     EXPECT_GT(invented, misses * 99 / 100);
   }
 }

@@ -15,8 +15,8 @@
 #include "core/config/enum_names.h"
 #include "tests/accel/exact/exact_oracle.h"
 #include "tests/accel/structure/placements.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -24,7 +24,9 @@ namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
 
-Rational rational(double x) { return Rational(x); }
+Rational rational(double x) {
+  return Rational(x);
+}
 Rational rational(const Dyadic& x) {
   Rational r(x.integer());
   const Rational power(Dyadic::Int(1) << std::abs(x.exponent()));
@@ -70,13 +72,14 @@ TEST(Dyadic, RatiosRoundToTheNearest) {
     const float x = random.uniform(-3, 3), y = random.uniform(1, 2);
     const int shift = static_cast<int>(random.below(160)) - 155;
     Dyadic n(std::ldexp(double{x}, i % 2 ? shift : 0)), d(y);
-    if (i % 3 == 0) d = Dyadic(1), n = Dyadic(double{x}) + Dyadic(std::ldexp(double(i % 6 ? 1 : -1), -25));   // ties among them
+    if (i % 3 == 0)
+      d = Dyadic(1), n = Dyadic(double{x}) + Dyadic(std::ldexp(double(i % 6 ? 1 : -1), -25));  // ties among them
     if (i % 5 == 0) n = n * Dyadic(1.0 / 3), d = d * Dyadic(-1.1);
     if (n.sign() == 0) continue;
     expect_nearest<float>(n, d, rounded_ratio<float>(n, d));
     expect_nearest<double>(n, d, rounded_ratio<double>(n, d));
   }
-  EXPECT_EQ(rounded_ratio<float>(Dyadic(std::ldexp(1.0, -149)), Dyadic(2.0)), 0.0f);    // a tie with 0, even
+  EXPECT_EQ(rounded_ratio<float>(Dyadic(std::ldexp(1.0, -149)), Dyadic(2.0)), 0.0f);  // a tie with 0, even
   EXPECT_EQ(rounded_ratio<float>(Dyadic(std::ldexp(3.0, -149)), Dyadic(2.0)), std::ldexp(2.0f, -149));
   EXPECT_EQ(rounded_ratio<float>(Dyadic(1e300), Dyadic(1.0)), kInfinity);
 }
@@ -100,7 +103,8 @@ class SlowReference {
           t.p[v] = exact(m.translation);
           for (std::size_t row = 0; row < 3; ++row)
             for (int c = 0; c < 3; ++c)
-              t.p[v][row] += Rational(m.linear[c][static_cast<int>(row)]) * Rational(mesh.positions[mesh.indices[3 * k + v]][c]);
+              t.p[v][row] +=
+                  Rational(m.linear[c][static_cast<int>(row)]) * Rational(mesh.positions[mesh.indices[3 * k + v]][c]);
         }
         t.n = cross(sub(t.p[1], t.p[0]), sub(t.p[2], t.p[0]));
         triangles_.push_back(t);
@@ -117,13 +121,14 @@ class SlowReference {
       if (facing == 0) continue;
       // Inside by solving for the crossing point first: another road than the volumes of exact_crossing.
       const Rational t = dot(triangle.n, sub(a, o)) / facing;
-      if (t < Rational(ray.tmin) || (std::isfinite(ray.tmax) && t > Rational(ray.tmax)) || (out.t && t > *out.t)) continue;
+      if (t < Rational(ray.tmin) || (std::isfinite(ray.tmax) && t > Rational(ray.tmax)) || (out.t && t > *out.t))
+        continue;
       const Vec x{o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
       if (dot(triangle.n, cross(sub(b, a), sub(x, a))) < 0 || dot(triangle.n, cross(sub(c, b), sub(x, b))) < 0 ||
           dot(triangle.n, cross(sub(a, c), sub(x, c))) < 0)
         continue;
       if (out.t && *out.t == t)
-        out.tie = true;   // the first in order stays
+        out.tie = true;  // the first in order stays
       else
         out = {triangle.instance, triangle.primitive, t, false};
     }
@@ -152,7 +157,7 @@ TEST(ExactReference, AgreesWithFractions) {
   for (const auto& builtin : kEnumNames<BuiltinScene>) {
     scene::Scene scene = small_builtin(builtin.value, 60, 3);
     for (scene::Mesh& mesh : scene.meshes) mesh.indices.resize(std::min<std::size_t>(mesh.indices.size(), 3 * 40));
-    if (builtin.value == BuiltinScene::kInstances)   // one that is baked
+    if (builtin.value == BuiltinScene::kInstances)  // one that is baked
       scene.instances[1].world_from_model.linear[2] = scene.instances[1].world_from_model.linear[0];
     const Accel accel = build_sequential(scene);
     const ExactReference reference(scene, accel);
@@ -172,7 +177,7 @@ TEST(ExactReference, AgreesWithFractions) {
     }
   }
   EXPECT_GT(hits, 100u);
-  EXPECT_GT(ties, 5u);   // rays at shared edges and vertices
+  EXPECT_GT(ties, 5u);  // rays at shared edges and vertices
 }
 
 // The filter must be sure of what is so only, however large or small the numbers, and of most of it.
@@ -184,8 +189,11 @@ TEST(ExactReference, FilterIsNeverWrong) {
     std::array<Vec3, 3> p;
     for (Vec3& v : p) v = size * random.in_box(Vec3{-1}, Vec3{1});
     scene::Affine m;
-    if (i % 3) m = {Mat3(random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1})), size * (i % 5 ? 1.0f : 1e5f) * random.in_box(Vec3{-1}, Vec3{1})};
-    const DVec3 a = DMat3(m.linear) * DVec3(p[0]) + DVec3(m.translation), b = DMat3(m.linear) * DVec3(p[1]) + DVec3(m.translation);
+    if (i % 3)
+      m = {Mat3(random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1})),
+           size * (i % 5 ? 1.0f : 1e5f) * random.in_box(Vec3{-1}, Vec3{1})};
+    const DVec3 a = DMat3(m.linear) * DVec3(p[0]) + DVec3(m.translation),
+                b = DMat3(m.linear) * DVec3(p[1]) + DVec3(m.translation);
     const double s = i % 4 ? random.uniform() : 0;
     const Vec3 from(a + double{size} * DVec3(random.in_box(Vec3{-3}, Vec3{3})));
     // At an edge or vertex, or anywhere near.
@@ -221,14 +229,19 @@ TEST(ExactReference, OracleExplainsWhereTheTracerDiffers) {
     const Accel accel = build_sequential(scene);
     const ExactReference reference(scene, accel);
     const ExactOracle oracle(scene);
-    RayBatch rays;   // the oracle knows whole rays from outside the surface
-    for (const RayRequest& r : whole_rays(scene, static_cast<std::size_t>(scaled(4000, "CAROUSEL_CASES")), run_seed() + 730))
-      if (rays.size() % 6 != 4) rays.push_back(r); else rays.push_back(ray_to(r.ray.origin - r.ray.direction, r.ray.direction));
+    RayBatch rays;  // the oracle knows whole rays from outside the surface
+    for (const RayRequest& r :
+         whole_rays(scene, static_cast<std::size_t>(scaled(4000, "CAROUSEL_CASES")), run_seed() + 730))
+      if (rays.size() % 6 != 4)
+        rays.push_back(r);
+      else
+        rays.push_back(ray_to(r.ray.origin - r.ray.direction, r.ray.direction));
     std::size_t others = 0, hits = 0;
     std::vector<double> ulps;
     for (const RayResult& r : trace(accel, rays)) {
       const ExactHit exact = reference.closest(r.ray);
-      if (exact.hit.valid() && r.hit.valid() && exact.hit.instance == r.hit.instance && exact.hit.primitive == r.hit.primitive) {
+      if (exact.hit.valid() && r.hit.valid() && exact.hit.instance == r.hit.instance &&
+          exact.hit.primitive == r.hit.primitive) {
         ++hits;
         ulps.push_back(std::fabs(r.hit.t - exact.t) / (std::nextafter(exact.hit.t, kInfinity) - exact.hit.t));
         continue;

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include "accel/certificate/triangle_oracle.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/primitive/adversarial_triangles.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "accel/certificate/triangle_oracle.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -32,9 +32,9 @@ TEST_P(ExactTriangle, DecidesAndRoundsAsBigIntegersDo) {
                                          oracle.v_is_nearest(crossing.v))))
       continue;
     if (++wrong <= 3)
-      ADD_FAILURE() << "CAROUSEL_SEED=" << run_seed() << " case " << i << ": " << text(c) << (hit ? " hit at " : " missed ")
-                    << std::hexfloat << crossing.t << " " << crossing.u << " " << crossing.v << ", exactly "
-                    << (oracle.hit() ? "a hit" : "a miss");
+      ADD_FAILURE() << "CAROUSEL_SEED=" << run_seed() << " case " << i << ": " << text(c)
+                    << (hit ? " hit at " : " missed ") << std::hexfloat << crossing.t << " " << crossing.u << " "
+                    << crossing.v << ", exactly " << (oracle.hit() ? "a hit" : "a miss");
   }
   std::cout << cases << " cases, " << hits << " hits, " << misses << " misses\n";
   EXPECT_EQ(wrong, 0);
@@ -51,12 +51,14 @@ TEST(ExactTriangleEdges, SharedEdgeIsHitInBoth) {
   Random random(71);
   int both = 0;
   for (int i = 0; i < 30000; ++i) {
-    const auto grid = [&] { return Vec3{static_cast<float>(random.below(17)) - 8, static_cast<float>(random.below(17)) - 8,
-                                        static_cast<float>(random.below(17)) - 8}; };
+    const auto grid = [&] {
+      return Vec3{static_cast<float>(random.below(17)) - 8, static_cast<float>(random.below(17)) - 8,
+                  static_cast<float>(random.below(17)) - 8};
+    };
     const Vec3 a = grid(), b = grid(), left = grid(), right = grid(), from = grid();
     Ray ray;
     ray.origin = from;
-    ray.direction = 0.5f * (a + b) - from;   // exact on this grid
+    ray.direction = 0.5f * (a + b) - from;  // exact on this grid
     NearestCrossing one, other;
     const bool hit = exact_triangle(ray, {a, b, left}, one);
     if (TriangleOracle(ray, {b, a, right}).hit()) {

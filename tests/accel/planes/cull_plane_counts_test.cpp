@@ -9,9 +9,9 @@
 #include "core/config/enum_names.h"
 #include "core/types/cull_counts.h"
 #include "tests/accel/planes/plane_rays.h"
+#include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "tests/accel/structure/test_scenes.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -130,7 +130,10 @@ TEST(CullPlaneCounts, AreTheSameOnEverySimdTarget) {
       for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kInstances}) {
         const scene::Scene scene = small_builtin(builtin, 3000, 60);
         const RayBatch rays = plane_grazing_rays(scene, 5000, run_seed() + 3);
-        const Accel accel = with_planes(scene, {.count = 5, .nodes = Nodes::kAll, .shared_normals = shared, .order = order,
+        const Accel accel = with_planes(scene, {.count = 5,
+                                                .nodes = Nodes::kAll,
+                                                .shared_normals = shared,
+                                                .order = order,
                                                 .levels = CullPlanesConfig::Levels::kAll});
         select_simd_target(targets.front());
         const Traced first = traced(accel, rays);
@@ -141,7 +144,8 @@ TEST(CullPlaneCounts, AreTheSameOnEverySimdTarget) {
           EXPECT_EQ(run.tests, first.tests) << enum_name(target);
           EXPECT_EQ(run.culls, first.culls) << enum_name(target);
           for (std::size_t i = 0; i < rays.size(); ++i)
-            ASSERT_EQ(std::memcmp(&run.records[i].hit, &first.records[i].hit, sizeof(Hit)), 0) << enum_name(target) << " ray " << i;
+            ASSERT_EQ(std::memcmp(&run.records[i].hit, &first.records[i].hit, sizeof(Hit)), 0)
+                << enum_name(target) << " ray " << i;
         }
       }
   EXPECT_GT(culled, 10000u);

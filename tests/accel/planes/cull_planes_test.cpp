@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "accel/planes/cull_plane_clip.h"
 #include "accel/exact/dyadic.h"
+#include "accel/planes/cull_plane_clip.h"
 #include "tests/accel/exact/adversarial_cases.h"
-#include "tests/accel/traverse/brute_force_answers.h"
 #include "tests/accel/planes/plane_rays.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/brute_force_answers.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -61,7 +61,9 @@ std::vector<HardMesh> hard_meshes() {
   return all;
 }
 
-bool same_bits(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof(Hit)) == 0; }
+bool same_bits(const Hit& a, const Hit& b) {
+  return std::memcmp(&a, &b, sizeof(Hit)) == 0;
+}
 
 /// Rays in all; CAROUSEL_ORACLE_RAYS asks for more.
 // One triangle a leaf and eight planes everywhere: nothing else holds a ray up. Where every triangle has planes of its
@@ -103,7 +105,9 @@ void expect_none_lost(const AccuracyConfig& accuracy, std::size_t total) {
   EXPECT_GT(counts.culled, total / 4);
 }
 
-TEST(CullPlanes, LoseNoHitThatIsFoundWithoutThem) { expect_none_lost({}, oracle_rays()); }
+TEST(CullPlanes, LoseNoHitThatIsFoundWithoutThem) {
+  expect_none_lost({}, oracle_rays());
+}
 
 TEST(CullPlanes, LoseNoHitOfExactTriangles) {
   AccuracyConfig accuracy;
@@ -204,7 +208,7 @@ TEST(CullPlanes, ShareTheirNormalsAmongSiblings) {
   std::size_t bytes = 0, shared = 0;
   for (const Node& node : accel.nodes) {
     const CullPlane* plane = accel.planes.data() + node.first_plane;
-    const CullPlane* first = plane;   // the first lane's that has any
+    const CullPlane* first = plane;  // the first lane's that has any
     int normals = 0;
     for (int lane = 0; lane < node.count; ++lane) {
       const int count = plane_count(node, lane);
@@ -224,20 +228,21 @@ TEST(CullPlanes, ShareTheirNormalsAmongSiblings) {
 
 /// Half of a square's box is empty; the other triangle is far away, so that there is a node.
 TEST(CullPlanes, CullFromTheFrontFromBehindAndInParallel) {
-  const scene::Scene scene = scene_of(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5f}, {50, 50, 50}, {51, 50, 50}, {50, 51, 50}}));
+  const scene::Scene scene =
+      scene_of(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5f}, {50, 50, 50}, {51, 50, 50}, {50, 51, 50}}));
   const Accel accel = with_planes(scene, 8, Nodes::kLeaves, 1);
   const auto counts_of = [&](const Vec3& from, const Vec3& direction) {
     HitBatch hits;
     TestCounts counts;
     trace_depth_first(accel, {ray_to(from, direction)}, hits, counts);
-    EXPECT_EQ(counts.triangle, 1 - counts.culled);   // the box is hit
+    EXPECT_EQ(counts.triangle, 1 - counts.culled);  // the box is hit
     EXPECT_GT(counts.plane, 0u);
     return counts;
   };
   EXPECT_EQ(counts_of({0.2f, 0.2f, -1}, {0, 0, 1}).culled, 0u);
-  EXPECT_EQ(counts_of({0.9f, 0.9f, -1}, {0, 0, 1}).culled, 1u);            // along the plane through the long edge
-  EXPECT_EQ(counts_of({0.8f, 2.2f, -0.5f}, {0, -1, 0.5f}).culled, 1u);     // comes in through it too late
-  EXPECT_EQ(counts_of({0.8f, 0.8f, 0.2f}, {1, 0.2f, 0.1f}).culled, 1u);    // went out of it behind the origin
+  EXPECT_EQ(counts_of({0.9f, 0.9f, -1}, {0, 0, 1}).culled, 1u);          // along the plane through the long edge
+  EXPECT_EQ(counts_of({0.8f, 2.2f, -0.5f}, {0, -1, 0.5f}).culled, 1u);   // comes in through it too late
+  EXPECT_EQ(counts_of({0.8f, 0.8f, 0.2f}, {1, 0.2f, 0.1f}).culled, 1u);  // went out of it behind the origin
 }
 
 // Issue 6 expects 23, 34, 49 and 56 % of the triangle tests to be avoided at four triangles a leaf; how many there are

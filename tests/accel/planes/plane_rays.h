@@ -30,22 +30,25 @@ inline RayBatch plane_grazing_rays(const scene::Scene& scene, std::size_t count,
     Vec3 from = edge + away * (random.below(2) ? size * std::exp2(random.uniform(-8, 10)) : glm::length(p[1] - p[0])),
          to = edge;
     switch (random.below(6)) {
-      case 0: to = p[0]; break;
-      case 1: break;
-      case 2:   // in the triangle's plane, past a corner or through the middle
+      case 0:
+        to = p[0];
+        break;
+      case 1:
+        break;
+      case 2:  // in the triangle's plane, past a corner or through the middle
         from = p[0] + random.uniform(-9, 9) * (p[1] - p[0]) + random.uniform(-9, 9) * (p[2] - p[0]);
         break;
-      case 3: {   // along an axis
+      case 3: {  // along an axis
         const int axis = static_cast<int>(random.below(3));
         from = to;
         from[axis] += (random.below(2) ? 1 : -1) * size * random.uniform();
         break;
       }
-      case 4:   // off the surface, or across it
+      case 4:  // off the surface, or across it
         from = edge;
         to = edge + away;
         break;
-      case 5:   // along an edge and on
+      case 5:  // along an edge and on
         from = p[0] + random.uniform(-9, 0) * (p[1] - p[0]);
         to = p[1];
         break;

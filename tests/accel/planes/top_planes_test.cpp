@@ -5,15 +5,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "accel/planes/cull_plane_clip.h"
 #include "accel/exact/dyadic.h"
+#include "accel/planes/cull_plane_clip.h"
 #include "core/config/enum_names.h"
 #include "tests/accel/exact/adversarial_cases.h"
-#include "tests/accel/traverse/brute_force_answers.h"
-#include "tests/accel/structure/placements.h"
 #include "tests/accel/planes/plane_rays.h"
-#include "tests/accel/traverse/test_rays.h"
+#include "tests/accel/structure/placements.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/brute_force_answers.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/support/publish.h"
 #include "tests/support/random_runs.h"
 
@@ -58,7 +58,8 @@ std::vector<Placed> placed_scenes(std::uint64_t seed) {
     all.push_back({name, std::move(scene)});
   };
   const auto turned = [&](const DVec3& scale, const Vec3& reach) {
-    return rotate_scale_translate(random_direction(random), 360.0 * random.uniform(), scale, DVec3(random.in_box(-reach, reach)));
+    return rotate_scale_translate(random_direction(random), 360.0 * random.uniform(), scale,
+                                  DVec3(random.in_box(-reach, reach)));
   };
   const auto flip = [&] { return random.below(2) ? 1.0 : -1.0; };
   scene_with("turned", 20, [&] { return turned(DVec3(1), Vec3(10)); });
@@ -73,14 +74,17 @@ std::vector<Placed> placed_scenes(std::uint64_t seed) {
   });
   scene_with("anything", 20, [&] { return placement_case(random); });
   scene_with("beside plain ones", 20, [&] {
-    if (random.below(3) == 0) return scene::Affine{Mat3(1.0f), random.below(2) ? Vec3(0) : random.in_box(Vec3(-5), Vec3(5))};
-    if (random.below(6) == 0) return scene::Affine{Mat3(DMat3(1, 0, 0, 0, 1, 0, 0, 0, 0) * rotation({1, 1, 0}, 30)), Vec3(1, 2, 3)};
+    if (random.below(3) == 0)
+      return scene::Affine{Mat3(1.0f), random.below(2) ? Vec3(0) : random.in_box(Vec3(-5), Vec3(5))};
+    if (random.below(6) == 0)
+      return scene::Affine{Mat3(DMat3(1, 0, 0, 0, 1, 0, 0, 0, 0) * rotation({1, 1, 0}, 30)), Vec3(1, 2, 3)};
     return turned(DVec3(1, 2, 0.5), Vec3(5));
   });
   // Model coordinates that the translation takes back: what is left is small, what is rounded is not.
   scene::Scene back = empty_scene();
   const Vec3 at(1e4f, 0, -1e4f);
-  const std::uint32_t far[] = {add_mesh(back, icosphere(1, at)), add_mesh(back, soup({at, at + Vec3(1, 0, 0.2f), at + Vec3(0, 1, 0.7f)}))};
+  const std::uint32_t far[] = {add_mesh(back, icosphere(1, at)),
+                               add_mesh(back, soup({at, at + Vec3(1, 0, 0.2f), at + Vec3(0, 1, 0.7f)}))};
   for (int i = 0; i < 12; ++i) {
     scene::Affine m = turned(DVec3(1), Vec3(3));
     m.translation -= m.linear * at;
@@ -90,8 +94,9 @@ std::vector<Placed> placed_scenes(std::uint64_t seed) {
   return all;
 }
 
-Accel built(const scene::Scene& scene, const CullPlanesConfig& planes, TransformLevel transform = TransformLevel::kTwoStep,
-            std::int64_t leaf = 1, TriangleLevel triangle = TriangleLevel::kWatertight) {
+Accel built(const scene::Scene& scene, const CullPlanesConfig& planes,
+            TransformLevel transform = TransformLevel::kTwoStep, std::int64_t leaf = 1,
+            TriangleLevel triangle = TriangleLevel::kWatertight) {
   BvhConfig bvh;
   bvh.leaf_triangles = leaf;
   AccuracyConfig accuracy;
@@ -120,8 +125,8 @@ void count_losses(const Accel& plain, const Accel& planes, const RayBatch& rays,
     if (std::memcmp(&got[i].hit, &expected[i].hit, sizeof(Hit)) == 0) continue;
     const Ray& r = rays[i].ray;
     if (++out.lost == 1)
-      out.example = fmt::format("origin {:a} {:a} {:a} direction {:a} {:a} {:a}: instance {} t {} became {}", r.origin.x,
-                                r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z,
+      out.example = fmt::format("origin {:a} {:a} {:a} direction {:a} {:a} {:a}: instance {} t {} became {}",
+                                r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z,
                                 expected[i].hit.instance, expected[i].hit.t, got[i].hit.t);
   }
 }
@@ -134,7 +139,9 @@ TEST(TopPlanes, LoseNoHitOfInstancesAnywhere) {
   for (const TransformLevel level : kBoundedLevels)
     for (const Placed& placed : scenes) {
       ++turn;
-      const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .shared_normals = turn % 3 == 2,
+      const CullPlanesConfig config{.count = 8,
+                                    .nodes = Nodes::kAll,
+                                    .shared_normals = turn % 3 == 2,
                                     .fit = turn % 2 == 0 ? Fit::kBoxes : Fit::kVertices,
                                     .levels = turn % 4 == 0 ? Levels::kAll : Levels::kTlas};
       const Accel plain = built(placed.scene, {}, level), planes = built(placed.scene, config, level);
@@ -142,10 +149,13 @@ TEST(TopPlanes, LoseNoHitOfInstancesAnywhere) {
       std::size_t left = total / (std::size(kBoundedLevels) * scenes.size()) + 1;
       for (std::uint64_t batch = 0; left > 0; ++batch) {
         const std::size_t count = std::min<std::size_t>(left, 10000);
-        count_losses(plain, planes, plane_grazing_rays(placed.scene, count, std::uint64_t{run_seed()} << 32 | turn << 16 | batch), losses);
+        count_losses(plain, planes,
+                     plane_grazing_rays(placed.scene, count, std::uint64_t{run_seed()} << 32 | turn << 16 | batch),
+                     losses);
         left -= count;
       }
-      EXPECT_EQ(losses.lost, 0u) << placed.name << ", " << enum_name(level) << ", CAROUSEL_SEED=" << run_seed() << ": " << losses.example;
+      EXPECT_EQ(losses.lost, 0u) << placed.name << ", " << enum_name(level) << ", CAROUSEL_SEED=" << run_seed() << ": "
+                                 << losses.example;
       EXPECT_GT(losses.culled, losses.hits / 50) << placed.name << ", " << enum_name(level);
       sum.hits += losses.hits;
       sum.lost += losses.lost;
@@ -219,7 +229,9 @@ TEST(TopPlanes, CutOffNoVertexWhereItStandsExactly) {
   for (const Placed& placed : placed_scenes(run_seed() + 702))
     for (const Fit fit : {Fit::kVertices, Fit::kBoxes})
       for (const bool shared : {false, true}) {
-        const Accel accel = built(placed.scene, {.count = 8, .nodes = Nodes::kAll, .shared_normals = shared, .fit = fit, .levels = Levels::kTlas});
+        const Accel accel =
+            built(placed.scene,
+                  {.count = 8, .nodes = Nodes::kAll, .shared_normals = shared, .fit = fit, .levels = Levels::kTlas});
         for (const Node& node : accel.nodes) {
           EXPECT_TRUE(node.above_instances || node.plane_counts == 0);
           const CullPlane* plane = accel.planes.data() + node.first_plane;
@@ -227,12 +239,13 @@ TEST(TopPlanes, CutOffNoVertexWhereItStandsExactly) {
             for (int i = 0; i < plane_count(node, lane); ++i, ++plane, ++planes)
               each_instance_below(accel, node.child[lane], [&](std::uint32_t index) {
                 const scene::Instance& instance = placed.scene.instances[index];
-                if (accel.instances[index].transform.identity) return;   // baked, or as CullPlanes.* have it
+                if (accel.instances[index].transform.identity) return;  // baked, or as CullPlanes.* have it
                 const scene::Affine& m = instance.world_from_model;
                 for (const Vec3& p : placed.scene.meshes[instance.mesh.value].positions) {
                   Dyadic beyond = -Dyadic(plane->distance);
                   for (int row = 0; row < 3; ++row) {
-                    Dyadic at = Dyadic(m.translation[row]) - Dyadic(plane_centre(node.plane[row][lane], node.plane[row + 3][lane]));
+                    Dyadic at = Dyadic(m.translation[row]) -
+                                Dyadic(plane_centre(node.plane[row][lane], node.plane[row + 3][lane]));
                     for (int c = 0; c < 3; ++c) at = at + Dyadic(m.linear[c][row]) * Dyadic(p[c]);
                     beyond = beyond + Dyadic(plane->normal[row]) * at;
                   }
@@ -250,7 +263,7 @@ TEST(TopPlanes, StandOnlyWhereTheyAreWanted) {
   for (const Levels levels : {Levels::kBlas, Levels::kTlas, Levels::kAll})
     for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll}) {
       const Accel accel = built(scene, {.count = 3, .nodes = nodes, .levels = levels}, TransformLevel::kTwoStep, 4);
-      std::size_t seen[2][2] = {}, count = 0;   // above or below, inner or not
+      std::size_t seen[2][2] = {}, count = 0;  // above or below, inner or not
       for (const Node& node : accel.nodes)
         for (int lane = 0; lane < node.count; ++lane) {
           count += static_cast<std::size_t>(plane_count(node, lane));
@@ -283,7 +296,8 @@ TEST(TopPlanes, GiveTheAnswersOfBruteForceAndSpareTransforms) {
       trace_depth_first(built(scene, {}, level, 2), rays, hits, without);
       EXPECT_GT(with.culled, 0u);
       EXPECT_LT(with.transforms, without.transforms);
-      std::cout << fmt::format("{}, {} planes: {} of {} transforms\n", enum_name(level), count, with.transforms, without.transforms);
+      std::cout << fmt::format("{}, {} planes: {} of {} transforms\n", enum_name(level), count, with.transforms,
+                               without.transforms);
     }
   }
 }

@@ -10,13 +10,16 @@
 namespace carousel::accel {
 
 inline constexpr const char* kTriangleCaseNames[kTriangleCaseKinds] = {
-    "Random", "EdgeAimed", "CornerAimed", "Grid", "ScaledGrid", "WildExponents", "Sliver", "Degenerate", "EdgeOn", "OnSurface"};
+    "Random",        "EdgeAimed", "CornerAimed", "Grid",   "ScaledGrid",
+    "WildExponents", "Sliver",    "Degenerate",  "EdgeOn", "OnSurface"};
 
 /// With every bit, to be seen again.
 inline std::string text(const TriangleCase& c) {
   std::ostringstream out;
   out << std::hexfloat;
-  const auto put = [&](const char* name, const Vec3& v) { out << name << " " << v.x << " " << v.y << " " << v.z << "; "; };
+  const auto put = [&](const char* name, const Vec3& v) {
+    out << name << " " << v.x << " " << v.y << " " << v.z << "; ";
+  };
   put("origin", c.ray.origin);
   put("direction", c.ray.direction);
   for (const Vec3& corner : c.corners) put("corner", corner);

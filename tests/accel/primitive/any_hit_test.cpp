@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "accel/exact/exact_triangle.h"
+#include "tests/accel/structure/passing_scenes.h"
 #include "tests/accel/traverse/brute_force_answers.h"
 #include "tests/accel/traverse/levels.h"
-#include "tests/accel/structure/passing_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/support/random_runs.h"
 
@@ -68,7 +68,8 @@ TEST(AnyHit, IsAskedOnlyWhereSomethingMayPass) {
   EXPECT_EQ(counts.asked, never.asked());
   for (const RayResult& r : hits)
     if (r.hit.valid())
-      EXPECT_EQ(scene.meshes[0].triangle_materials[r.hit.primitive], MaterialId(0)) << "the others let everything through";
+      EXPECT_EQ(scene.meshes[0].triangle_materials[r.hit.primitive], MaterialId(0))
+          << "the others let everything through";
 
   for (RayRequest& ray : rays) ray.tag.flags = kRayForceOpaque;
   const std::uint64_t before = never.asked();
@@ -80,7 +81,8 @@ TEST(AnyHit, AnswersKeepTheirWishes) {
   const scene::Scene scene = passing_scene(BuiltinScene::kTerrain, 0, 1);
   RayBatch rays = mixed_rays(scene, 60, 5);
   for (RayRequest& ray : rays) ray.tag.flags = kRayCullBack | kRayForceOpaque;
-  for (const RayResult& r : trace(build_sequential(scene), rays)) EXPECT_EQ(r.tag.flags, kRayCullBack | kRayForceOpaque);
+  for (const RayResult& r : trace(build_sequential(scene), rays))
+    EXPECT_EQ(r.tag.flags, kRayCullBack | kRayForceOpaque);
 }
 
 // A closed ball seen from without: its near half shows its front, its far half its back, mirrored or not.

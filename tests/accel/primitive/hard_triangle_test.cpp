@@ -7,12 +7,12 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "accel/certificate/triangle_oracle.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/primitive/adversarial_triangles.h"
+#include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/levels.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "tests/accel/structure/test_scenes.h"
-#include "accel/certificate/triangle_oracle.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -25,10 +25,12 @@ AccuracyConfig level(TriangleLevel triangle, BoxLevel box = BoxLevel::kConservat
   return accuracy;
 }
 const std::vector<AccuracyConfig>& safe_levels() {
-  static const std::vector<AccuracyConfig> levels{
-      level(TriangleLevel::kWatertight), level(TriangleLevel::kDouble), level(TriangleLevel::kExact),
-      level(TriangleLevel::kWatertight, BoxLevel::kDouble), level(TriangleLevel::kDouble, BoxLevel::kDouble),
-      level(TriangleLevel::kExact, BoxLevel::kDouble)};
+  static const std::vector<AccuracyConfig> levels{level(TriangleLevel::kWatertight),
+                                                  level(TriangleLevel::kDouble),
+                                                  level(TriangleLevel::kExact),
+                                                  level(TriangleLevel::kWatertight, BoxLevel::kDouble),
+                                                  level(TriangleLevel::kDouble, BoxLevel::kDouble),
+                                                  level(TriangleLevel::kExact, BoxLevel::kDouble)};
   return levels;
 }
 Accel at_level(const scene::Scene& scene, const AccuracyConfig& accuracy) {
@@ -80,7 +82,7 @@ std::size_t misses(const Accel& accel, const RayBatch& rays) {
 }
 
 TEST(HardTriangle, ClosedSpheresLeakNothing) {
-  constexpr std::size_t kRays = 100'000;   // a mesh: half a million
+  constexpr std::size_t kRays = 100'000;  // a mesh: half a million
   std::vector<std::size_t> leaks(safe_levels().size() + 1);
   for (const ClosedMesh& mesh : closed_meshes()) {
     const RayBatch rays = rays_at_edges(mesh, kRays, 60 + 100 * std::uint64_t{run_seed()});
@@ -91,9 +93,10 @@ TEST(HardTriangle, ClosedSpheresLeakNothing) {
     }
     leaks.back() += misses(at_level(mesh.scene, level(TriangleLevel::kFast)), rays);
   }
-  for (std::size_t l = 0; l < safe_levels().size(); ++l) std::cout << text(safe_levels()[l]) << ": " << leaks[l] << ", ";
+  for (std::size_t l = 0; l < safe_levels().size(); ++l)
+    std::cout << text(safe_levels()[l]) << ": " << leaks[l] << ", ";
   std::cout << "fast and conservative: " << leaks.back() << " leaks in " << kRays * closed_meshes().size() << " rays\n";
-  EXPECT_GT(leaks.back(), 1000u);   // or the rays were not hard
+  EXPECT_GT(leaks.back(), 1000u);  // or the rays were not hard
 }
 
 TEST(HardTriangle, SpheresOfAnySizeLeakNothing) {
@@ -142,12 +145,14 @@ TEST(HardTriangle, SliversAMillionTimesAsLongAsWide) {
   constexpr std::size_t kSlivers = 40, kRaysEach = 500;
   for (std::size_t s = 0; s < kSlivers; ++s) {
     const Vec3 a = random.in_box(Vec3{-1}, Vec3{1}), along = random.in_box(Vec3{-1}, Vec3{1});
-    const Vec3 across = 1e-6f * glm::length(along) * glm::normalize(glm::cross(along, random.in_box(Vec3{-1}, Vec3{1})));
+    const Vec3 across =
+        1e-6f * glm::length(along) * glm::normalize(glm::cross(along, random.in_box(Vec3{-1}, Vec3{1})));
     const std::array<Vec3, 3> p{a, a + along, a + 0.5f * along + across};
     RayBatch rays;
     for (std::size_t i = 0; i < kRaysEach; ++i) {
       const Vec3 from = random.in_box(Vec3{-3}, Vec3{3});
-      rays.push_back(ray_to(from, nudged(p[0] + random.uniform() * along + random.uniform() * across - from, 1, random)));
+      rays.push_back(
+          ray_to(from, nudged(p[0] + random.uniform() * along + random.uniform() * across - from, 1, random)));
     }
     const scene::Scene scene = scene_of(soup({p[0], p[1], p[2]}));
     for (const auto& triangle : kEnumNames<TriangleLevel>) {
@@ -163,7 +168,8 @@ TEST(HardTriangle, SliversAMillionTimesAsLongAsWide) {
   }
   std::cout << exact_hits << " hits; ";
   for (const auto& l : kEnumNames<TriangleLevel>)
-    std::cout << l.name << ": " << missed[static_cast<int>(l.value)] << " missed, " << invented[static_cast<int>(l.value)] << " invented; ";
+    std::cout << l.name << ": " << missed[static_cast<int>(l.value)] << " missed, "
+              << invented[static_cast<int>(l.value)] << " invented; ";
   std::cout << "\n";
   EXPECT_GT(exact_hits, 2000u);
   EXPECT_EQ(missed[static_cast<int>(TriangleLevel::kExact)], 0u);
@@ -217,7 +223,9 @@ TEST(HardTriangle, HitExactlyAtTminAndTmaxAndOneUlpOff) {
   const float two = 2, up = std::nextafter(two, 3.0f), down = std::nextafter(two, 1.0f);
   for (const AccuracyConfig& accuracy : triangle_and_box_levels()) {
     const Accel accel = at_level(scene, accuracy);
-    const auto hit = [&](float tmin, float tmax) { return trace_one(accel, ray_to({0, 0, -2}, {0, 0, 1}, tmin, tmax)); };
+    const auto hit = [&](float tmin, float tmax) {
+      return trace_one(accel, ray_to({0, 0, -2}, {0, 0, 1}, tmin, tmax));
+    };
     for (const Hit& h : {hit(two, kInfinity), hit(0, two), hit(two, two), hit(down, up)}) {
       EXPECT_TRUE(h.valid()) << text(accuracy);
       EXPECT_EQ(h.t, two) << text(accuracy);
@@ -233,11 +241,14 @@ TEST(HardTriangle, TwoSharingAnEdgeSeenEdgeOn) {
   const int cases = std::min(20000, adversarial_cases() / 50);
   for (int i = 0; i < cases; ++i) {
     // A ray in both planes or nearly so, through the middle of the edge that they share.
-    const Vec3 a = random.in_box(Vec3{-1}, Vec3{1}), b = random.in_box(Vec3{-1}, Vec3{1}), left = random.in_box(Vec3{-1}, Vec3{1});
-    const Vec3 right = a + b - left, aim = 0.5f * (a + b);   // a parallelogram
-    const Vec3 from = nudged(aim + random.uniform(0.5f, 3) * (right - left) + random.uniform(-1, 1) * (b - a), 2, random);
+    const Vec3 a = random.in_box(Vec3{-1}, Vec3{1}), b = random.in_box(Vec3{-1}, Vec3{1}),
+               left = random.in_box(Vec3{-1}, Vec3{1});
+    const Vec3 right = a + b - left, aim = 0.5f * (a + b);  // a parallelogram
+    const Vec3 from =
+        nudged(aim + random.uniform(0.5f, 3) * (right - left) + random.uniform(-1, 1) * (b - a), 2, random);
     const RayRequest request = ray_to(from, nudged(aim - from, i % 2, random));
-    const bool exact = TriangleOracle(request.ray, {a, b, left}).hit() || TriangleOracle(request.ray, {b, a, right}).hit();
+    const bool exact =
+        TriangleOracle(request.ray, {a, b, left}).hit() || TriangleOracle(request.ray, {b, a, right}).hit();
     hits += exact;
     const scene::Scene scene = scene_of(soup({a, b, left, b, a, right}));
     for (const auto& triangle : kEnumNames<TriangleLevel>) {
@@ -249,7 +260,8 @@ TEST(HardTriangle, TwoSharingAnEdgeSeenEdgeOn) {
     }
   }
   std::cout << hits << " of " << cases << " hit; ";
-  for (const auto& l : kEnumNames<TriangleLevel>) std::cout << l.name << ": " << missed[static_cast<int>(l.value)] << " missed; ";
+  for (const auto& l : kEnumNames<TriangleLevel>)
+    std::cout << l.name << ": " << missed[static_cast<int>(l.value)] << " missed; ";
   std::cout << "\n";
   EXPECT_GT(hits, 100u);
 }

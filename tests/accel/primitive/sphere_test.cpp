@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 
 #include "core/numeric/octahedral.h"
 #include "tests/accel/traverse/test_rays.h"
@@ -20,7 +20,8 @@ TEST(Sphere, IsMetWhereArithmeticOf113BitsSays) {
   Random random(run_seed());
   int hits = 0, near_misses = 0;
   for (int i = 0; i < 100000; ++i) {
-    const float far = std::exp2(static_cast<float>(random.below(40)) - 10), radius = std::exp2(static_cast<float>(random.below(20)) - 10);
+    const float far = std::exp2(static_cast<float>(random.below(40)) - 10),
+                radius = std::exp2(static_cast<float>(random.below(20)) - 10);
     const Vec3 centre = random.in_box(Vec3{-1}, Vec3{1}) * far;
     const Vec3 origin = centre + random.in_box(Vec3{-1}, Vec3{1}) * far;
     // Half are aimed at the rim.
@@ -38,7 +39,7 @@ TEST(Sphere, IsMetWhereArithmeticOf113BitsSays) {
     const Quad rim = a > 0 ? discriminant / (a * radius * radius) : Quad(0);
     SphereCrossing crossing;
     const bool met = cross_sphere(origin, d, centre, radius, crossing);
-    const double reach = glm::length(DVec3(origin) - DVec3(centre)) / radius;   // its square weighs on the rounding
+    const double reach = glm::length(DVec3(origin) - DVec3(centre)) / radius;  // its square weighs on the rounding
     const double unsure = 0x1p-48 * (1 + reach * reach);
     if (abs(rim) < unsure) {
       ++near_misses;

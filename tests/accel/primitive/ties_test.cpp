@@ -8,8 +8,8 @@
 #include "accel/traverse/kernels.h"
 #include "accel/traverse/ray_check.h"
 #include "accel/traverse/verifying_workload.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {
 namespace {
@@ -103,7 +103,8 @@ TEST(Ties, EveryOrderOfVisitsGivesSameHit) {
     RayRecord record;
     start_record(ray, record);
     TestCounts counts;
-    for (const int i : order) test_strip(accel, leaves[static_cast<std::size_t>(i)], ~0u, {&record, nullptr, 1}, {}, counts);
+    for (const int i : order)
+      test_strip(accel, leaves[static_cast<std::size_t>(i)], ~0u, {&record, nullptr, 1}, {}, counts);
     ASSERT_TRUE(same_result({ray.ray, record.hit, ray.tag}, {ray.ray, expected, ray.tag}));
     ++orders;
   } while (std::next_permutation(order.begin(), order.end()));

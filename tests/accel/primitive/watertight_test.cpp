@@ -8,9 +8,9 @@
 
 #include "accel/traverse/brute_force.h"
 #include "accel/traverse/verifying_workload.h"
+#include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "tests/accel/structure/test_scenes.h"
 
 namespace carousel::accel {
 namespace {
@@ -81,7 +81,7 @@ TEST(Watertight, GridAlignedBoxLeaksNothing) {
   const scene::Scene scene = scene_of(box);
   const Accel accel = build_sequential(scene);
   EXPECT_EQ(leaks(scene, accel, 100000, Vec3{0}, 0.5f, 34), 0u);
-  RayBatch along;   // along the axes, through vertices and edges
+  RayBatch along;  // along the axes, through vertices and edges
   for (int axis = 0; axis < 3; ++axis) {
     for (const float sign : {-1.0f, 1.0f}) {
       for (int i = -2 * kSteps; i <= 2 * kSteps; ++i) {
@@ -148,7 +148,8 @@ TEST(Watertight, EveryLaneOfEveryTargetGivesSameBits) {
 TEST(Watertight, BothWindingsAndMirrorsHit) {
   Random random(36);
   for (int i = 0; i < 5000; ++i) {
-    const Vec3 a = random.in_box(Vec3{-1}, Vec3{1}), b = random.in_box(Vec3{-1}, Vec3{1}), c = random.in_box(Vec3{-1}, Vec3{1});
+    const Vec3 a = random.in_box(Vec3{-1}, Vec3{1}), b = random.in_box(Vec3{-1}, Vec3{1}),
+               c = random.in_box(Vec3{-1}, Vec3{1});
     const Vec3 from = random.in_box(Vec3{-3}, Vec3{3});
     const float u = random.uniform(0.1f, 0.8f), v = random.uniform(0.05f, 0.9f - u);
     const Vec3 n = glm::cross(b - a, c - a), d = a + u * (b - a) + v * (c - a) - from;

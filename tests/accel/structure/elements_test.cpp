@@ -1,15 +1,15 @@
 // Bounding spheres and mixed nodes: the same hits as of every primitive tested in turn, whatever bounds them.
 #include <cmath>
 
-#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 
+#include "accel/planes/cull_planes.h"
 #include "accel/structure/bounding_spheres.h"
 #include "accel/structure/cull_plane.h"
-#include "accel/planes/cull_planes.h"
+#include "tests/accel/structure/passing_scenes.h"
 #include "tests/accel/traverse/brute_force_answers.h"
 #include "tests/accel/traverse/levels.h"
-#include "tests/accel/structure/passing_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/support/random_runs.h"
 
@@ -29,7 +29,8 @@ Accel build_with(const scene::Scene& scene, Elements elements, std::int64_t mixe
 
 TEST(Elements, GiveOneAnswer) {
   const HashedStop stop(0.4);
-  for (const BuiltinScene builtin : {BuiltinScene::kSpheres, BuiltinScene::kTerrain, BuiltinScene::kInstances, BuiltinScene::kSliver}) {
+  for (const BuiltinScene builtin :
+       {BuiltinScene::kSpheres, BuiltinScene::kTerrain, BuiltinScene::kInstances, BuiltinScene::kSliver}) {
     const scene::Scene scene = passing_scene(builtin, 12, run_seed());
     const BruteForceAnswers brute(scene, wishing_rays(scene, 1200, run_seed() + 1), {}, &stop);
     for (const Elements elements : {Elements::kBoxes, Elements::kSpheres}) {
@@ -73,7 +74,7 @@ TEST(Elements, SpheresLoseNothingThatBoxesFind) {
       const Accel boxes = build_with(scene, Elements::kBoxes, 0), spheres = build_with(scene, Elements::kSpheres, 0);
       RayBatch batch = mixed_rays(scene, static_cast<std::size_t>(rays), run_seed() + 5);
       Random random(run_seed());
-      for (std::size_t i = 0; i < batch.size(); i += 5) {   // from afar, aimed as well as floats can
+      for (std::size_t i = 0; i < batch.size(); i += 5) {  // from afar, aimed as well as floats can
         Ray& ray = batch[i].ray;
         const float away = std::exp2(random.uniform(0, 16));
         const Vec3 target = ray.origin + ray.direction;
@@ -83,11 +84,13 @@ TEST(Elements, SpheresLoseNothingThatBoxesFind) {
       }
       const HitBatch expected = trace(boxes, batch), got = trace(spheres, batch);
       for (std::size_t i = 0; i < batch.size(); ++i) {
-        ASSERT_TRUE(same_result(expected[i], got[i])) << "ray " << i << " of " << enum_name(builtin) << " scale " << scale << " seed " << run_seed() << std::hexfloat
-            << " o " << batch[i].ray.origin.x << ' ' << batch[i].ray.origin.y << ' ' << batch[i].ray.origin.z << " d "
-            << batch[i].ray.direction.x << ' ' << batch[i].ray.direction.y << ' ' << batch[i].ray.direction.z << " from "
-            << batch[i].ray.tmin << " to " << batch[i].ray.tmax << ": boxes " << expected[i].hit.t << ' '
-            << expected[i].hit.primitive << ", spheres " << got[i].hit.t << ' ' << got[i].hit.primitive;
+        ASSERT_TRUE(same_result(expected[i], got[i]))
+            << "ray " << i << " of " << enum_name(builtin) << " scale " << scale << " seed " << run_seed()
+            << std::hexfloat << " o " << batch[i].ray.origin.x << ' ' << batch[i].ray.origin.y << ' '
+            << batch[i].ray.origin.z << " d " << batch[i].ray.direction.x << ' ' << batch[i].ray.direction.y << ' '
+            << batch[i].ray.direction.z << " from " << batch[i].ray.tmin << " to " << batch[i].ray.tmax << ": boxes "
+            << expected[i].hit.t << ' ' << expected[i].hit.primitive << ", spheres " << got[i].hit.t << ' '
+            << got[i].hit.primitive;
         hits += expected[i].hit.valid();
       }
     }

@@ -6,8 +6,8 @@
 
 #include "core/types/any_hit.h"
 #include "scene/builtin/hash_random.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {
 
@@ -70,7 +70,8 @@ inline scene::Scene passing_scene(BuiltinScene builtin, std::uint32_t balls, std
 /// The mix of rays with all wishes among them.
 inline RayBatch wishing_rays(const scene::Scene& scene, std::size_t count, std::uint64_t seed) {
   RayBatch rays = mixed_rays(scene, count, seed);
-  for (std::size_t i = 0; i < rays.size(); ++i) rays[i].tag.flags = static_cast<std::uint8_t>((i * 2654435761u >> 20) & kRayWishes);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    rays[i].tag.flags = static_cast<std::uint8_t>((i * 2654435761u >> 20) & kRayWishes);
   return rays;
 }
 

@@ -1,14 +1,13 @@
 // What the finished two-level structure promises to whoever walks it.
-#include "accel/build/build.h"
-#include "accel/structure/accel.h"
-
 #include <cstring>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "tests/accel/traverse/test_rays.h"
+#include "accel/build/build.h"
+#include "accel/structure/accel.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {
 namespace {
@@ -48,7 +47,7 @@ class Walk {
     return triangles;
   }
 
-  std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;   // (instance, primitive)
+  std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;  // (instance, primitive)
   int deepest = 0;
 
  private:
@@ -59,7 +58,7 @@ class Walk {
       const TriangleBlock& block = accel_.blocks.at(key.ref.first_block() + b);
       for (int lane = 0; lane < kBlockTriangles; ++lane) {
         if (block.primitive[lane] == kNoPrimitive) continue;
-        EXPECT_EQ(triangles, b * kBlockTriangles + static_cast<std::uint32_t>(lane));   // dense
+        EXPECT_EQ(triangles, b * kBlockTriangles + static_cast<std::uint32_t>(lane));  // dense
         ++triangles;
         found.insert({key.instance, block.primitive[lane]});
         for (int k = 0; box != nullptr && k < 3; ++k) {
@@ -97,7 +96,7 @@ TEST(Structure, HoldsEveryTriangleOfEveryInstanceOnce) {
 }
 
 TEST(Structure, MaxDepthBoundsEveryPathOnAdversarialInput) {
-  std::vector<Vec3> corners;   // triangles at exponentially falling distances, and many in one place
+  std::vector<Vec3> corners;  // triangles at exponentially falling distances, and many in one place
   for (int i = 0; i < 120; ++i) {
     const float x = std::ldexp(1.0f, -i);
     corners.insert(corners.end(), {Vec3{x, 0, 0}, Vec3{x, x, 0}, Vec3{x, 0, x}});
@@ -111,7 +110,7 @@ TEST(Structure, MaxDepthBoundsEveryPathOnAdversarialInput) {
     EXPECT_EQ(walk.found.size(), scene.instanced_triangle_count());
     EXPECT_LE(walk.deepest, accel.max_depth);
     EXPECT_LE(accel.max_depth, 76);
-    EXPECT_FALSE(trace(accel, mixed_rays(scene, 2000, 51)).empty());   // and no stack overflows
+    EXPECT_FALSE(trace(accel, mixed_rays(scene, 2000, 51)).empty());  // and no stack overflows
   }
 }
 
@@ -120,7 +119,7 @@ TEST(Structure, IsTheSameForEveryExecutor) {
   const Accel expected = build_sequential(scene);
   std::vector<std::unique_ptr<Executor>> executors;
   executors.push_back(make_jthread_executor(3));
-#ifndef __SANITIZE_THREAD__   // Debian's TBB is not instrumented and would be reported
+#ifndef __SANITIZE_THREAD__  // Debian's TBB is not instrumented and would be reported
   executors.push_back(make_tbb_executor(3));
 #endif
   for (const auto& executor : executors) {

@@ -7,8 +7,8 @@
 #include "accel/traverse/exact_reference.h"
 #include "core/config/enum_names.h"
 #include "tests/accel/structure/placements.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/support/publish.h"
 #include "tests/support/random_runs.h"
 
@@ -73,8 +73,10 @@ TEST(HardInstance, UnitTriangleAMillionAwayIsNotLost) {
       scene_of(soup({{-0.5f, -0.3f, 0}, {0.5f, -0.3f, 0.1f}, {0, 0.6f, 0}}),
                rotate_scale_translate({1, 2, 3}, 40, {1, 1, 1}, 1e6 * glm::normalize(DVec3{0.6, -0.55, 0.58})));
   const RayBatch batch = rays_at_insides(scene, rays, run_seed() + 530);
-  std::string table = fmt::format("\nUnit triangle a million units away, {} rays aimed at it from 5 units, seed {}:\n\n| level "
-                                  "| lost | t off by more than 1e-4 |\n|---|---:|---:|\n", rays, run_seed() + 530);
+  std::string table = fmt::format(
+      "\nUnit triangle a million units away, {} rays aimed at it from 5 units, seed {}:\n\n| level "
+      "| lost | t off by more than 1e-4 |\n|---|---:|---:|\n",
+      rays, run_seed() + 530);
   for (const auto& level : kEnumNames<TransformLevel>) {
     const Compared aimed = compare(scene, level.value, batch);
     table += fmt::format("| {} | {} | {} |\n", level.name, aimed.lost, aimed.other_t);
@@ -102,7 +104,8 @@ TEST(HardInstance, MirroredInstancesAreHitWhereTheyAre) {
 // A flattened instance is traced as world-space triangles at every level: they lie in its plane to a rounding.
 TEST(HardInstance, SingularInstancesAreBakedAndHit) {
   scene::Scene scene = icosphere_scene(1);
-  scene.instances[0].world_from_model = {Mat3(DMat3(1, 0, 0, 0, 1, 0, 0, 0, 0) * rotation({1, 1, 0}, 30)), {10, 20, 30}};
+  scene.instances[0].world_from_model = {Mat3(DMat3(1, 0, 0, 0, 1, 0, 0, 0, 0) * rotation({1, 1, 0}, 30)),
+                                         {10, 20, 30}};
   for (const auto& level : kEnumNames<TransformLevel>) {
     const Accel accel = build_at(scene, level.value);
     EXPECT_EQ(accel.baked_instances, 1u);
@@ -110,12 +113,13 @@ TEST(HardInstance, SingularInstancesAreBakedAndHit) {
     std::size_t hits = 0;
     Random random(run_seed() + 550);
     for (int i = 0; i < 2000; ++i) {
-      const Vec3 from = Vec3{10, 20, 33} + random.in_box(Vec3{-2}, Vec3{2}), at = Vec3{10, 20, 30} + random.in_box({-0.6f, -0.6f, 0}, {0.6f, 0.6f, 0});
+      const Vec3 from = Vec3{10, 20, 33} + random.in_box(Vec3{-2}, Vec3{2}),
+                 at = Vec3{10, 20, 30} + random.in_box({-0.6f, -0.6f, 0}, {0.6f, 0.6f, 0});
       const RayRequest ray = ray_to(from, at - from);
       const ExactHit exact = reference.closest(ray.ray);
       const Hit hit = trace_one(accel, ray);
       ASSERT_TRUE(exact.hit.valid());
-      EXPECT_TRUE(exact.tie) << i;   // front and back of the ball have been laid onto each other
+      EXPECT_TRUE(exact.tie) << i;  // front and back of the ball have been laid onto each other
       ASSERT_TRUE(hit.valid());
       EXPECT_NEAR(hit.t, exact.t, 1e-5 * exact.t);
       ++hits;
@@ -150,9 +154,11 @@ TEST(HardInstance, CoincidentInstancesGiveTheFirst) {
 // Turned tiles have rounded translations, so some exact gaps and overlaps; those do not count.
 TEST(HardInstance, AbuttingInstancesLeaveNoGap) {
   const int rays = scaled(30000, "CAROUSEL_CASES");
-  std::string table = fmt::format("\nA floor of 8 by 8 square instances, {} rays aimed at seams, seed {}; leaks where the exact ray "
-                                  "hits:\n\n| level | upright | turned | upright, 1e5 away | turned, 1e5 away |\n|---|---:|---:|"
-                                  "---:|---:|\n", rays, run_seed() + 570);
+  std::string table = fmt::format(
+      "\nA floor of 8 by 8 square instances, {} rays aimed at seams, seed {}; leaks where the exact ray "
+      "hits:\n\n| level | upright | turned | upright, 1e5 away | turned, 1e5 away |\n|---|---:|---:|"
+      "---:|---:|\n",
+      rays, run_seed() + 570);
   for (const auto& level : kEnumNames<TransformLevel>) {
     table += fmt::format("| {} |", level.name);
     for (const double distance : {0.0, 1e5}) {

@@ -33,7 +33,8 @@ inline std::vector<TransformMethod> transform_methods() {
              make_transform(m, t, TransformLevel::kInverseMatrix);
              return inverse_matrix_fma(t.inverse_linear, t.translation, p);
            }},
-          at_level("two_step", TransformLevel::kTwoStep), at_level("two_step_double", TransformLevel::kTwoStepDouble),
+          at_level("two_step", TransformLevel::kTwoStep),
+          at_level("two_step_double", TransformLevel::kTwoStepDouble),
           at_level("transpose_if_rotation", TransformLevel::kTransposeIfRotation)};
 }
 
@@ -45,11 +46,12 @@ struct TransformErrors {
   void add(const Vec3& got, const QuadInverse::Vec& exact) {
     const double size = QuadInverse::norm(exact), off = QuadInverse::distance(got, exact);
     worst_absolute = std::max(worst_absolute, off);
-    if (size > 0) relative.push_back(off / size);   // exactly at T there is nothing to be relative to
+    if (size > 0) relative.push_back(off / size);  // exactly at T there is nothing to be relative to
   }
   double median() {
     if (relative.empty()) return 0;
-    std::nth_element(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2), relative.end());
+    std::nth_element(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2),
+                     relative.end());
     return relative[relative.size() / 2];
   }
   double worst() const { return relative.empty() ? 0 : *std::max_element(relative.begin(), relative.end()); }

@@ -6,12 +6,12 @@
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
-#include "accel/traverse/brute_force.h"
 #include "accel/box/slab.h"
+#include "accel/traverse/brute_force.h"
 #include "accel/traverse/verifying_workload.h"
 #include "core/config/enum_names.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {
 namespace {
@@ -19,8 +19,10 @@ namespace {
 scene::Affine random_affine(Random& random) {
   scene::Affine m;
   for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r) m.linear[c][r] = std::ldexp(random.uniform(-1, 1), static_cast<int>(random.below(9)) - 4);
-  for (int r = 0; r < 3; ++r) m.translation[r] = std::ldexp(random.uniform(-1, 1), static_cast<int>(random.below(20)) - 4);
+    for (int r = 0; r < 3; ++r)
+      m.linear[c][r] = std::ldexp(random.uniform(-1, 1), static_cast<int>(random.below(9)) - 4);
+  for (int r = 0; r < 3; ++r)
+    m.translation[r] = std::ldexp(random.uniform(-1, 1), static_cast<int>(random.below(20)) - 4);
   return m;
 }
 
@@ -41,7 +43,7 @@ TEST(Transform, KeepsTheMeaningOfT) {
   ASSERT_TRUE(make_transform({Mat3(4.0f), {1, 2, 3}}, t));
   const Ray moved = t.to_model({{1, 2, 7}, 0.25f, {0, 0, 8}, 5});
   EXPECT_EQ(moved.origin, (Vec3{0, 0, 1}));
-  EXPECT_EQ(moved.direction, (Vec3{0, 0, 2}));   // not renormalised
+  EXPECT_EQ(moved.direction, (Vec3{0, 0, 2}));  // not renormalised
   EXPECT_EQ(moved.tmin, 0.25f);
   EXPECT_EQ(moved.tmax, 5);
 }
@@ -70,7 +72,7 @@ TEST(Transform, TwoStepsKeepDigitsNearTheTranslation) {
       if (size > 0) worst = std::max(worst, std::fabs(got[row] - exact) / size);
     }
   }
-  EXPECT_LT(worst, 3.0e-7);   // gamma(5)
+  EXPECT_LT(worst, 3.0e-7);  // gamma(5)
 }
 
 TEST(Transform, SingularAndOverflowingOnesMustBeBaked) {
@@ -116,7 +118,7 @@ TEST(WorldBox, PrunesNoHitOfTheModel) {
     if (std::fabs(glm::determinant(DMat3(m.linear))) < 1e-3) continue;
     scene.instances[0].world_from_model = m;
     const Accel accel = build_sequential(scene);
-    Accel open = accel;   // the same with a world box no ray can miss
+    Accel open = accel;  // the same with a world box no ray can miss
     for (int axis = 0; axis < 3; ++axis) {
       open.instances[0].world.lo[axis] = -std::numeric_limits<float>::max();
       open.instances[0].world.hi[axis] = std::numeric_limits<float>::max();
@@ -151,7 +153,7 @@ TEST(WorldBox, HoldsWhatEveryLevelsTransformReaches) {
       InstanceTransform t;
       if (!make_transform(m, t, level.value)) continue;
       const Aabb box = world_box(m, model, level.value), tight = world_box(m, model, TransformLevel::kTwoStepDouble);
-      Vec3 corner;   // the outermost along some axis
+      Vec3 corner;  // the outermost along some axis
       const int axis = static_cast<int>(random.below(3));
       for (int a = 0; a < 3; ++a) corner[a] = m.linear[a][axis] < 0 ? model.lo[a] : model.hi[a];
       const Vec3 from = random.in_box(tight.lo, tight.hi);
@@ -176,7 +178,8 @@ TEST(WorldBox, HoldsWhatEveryLevelsTransformReaches) {
 }
 
 TEST(Transform, TransposesRotationsAndReflectionsOnly) {
-  const Mat3 turned{{0.8f, 0.6f, 0}, {-0.6f, 0.8f, 0}, {0, 0, 1}}, mirrored{{0.8f, 0.6f, 0}, {0.6f, -0.8f, 0}, {0, 0, 1}};
+  const Mat3 turned{{0.8f, 0.6f, 0}, {-0.6f, 0.8f, 0}, {0, 0, 1}},
+      mirrored{{0.8f, 0.6f, 0}, {0.6f, -0.8f, 0}, {0, 0, 1}};
   EXPECT_TRUE(is_rotation(turned));
   EXPECT_TRUE(is_rotation(mirrored));
   for (const float factor : {1 - 4e-7f, 1 + 4e-7f}) EXPECT_FALSE(is_rotation(factor * turned));
@@ -212,7 +215,7 @@ TEST(Transform, EveryLevelIsTracedAsBruteForceDoes) {
 
 TEST(Transform, OneMatrixThatOverflowsMustBeBaked) {
   InstanceTransform t;
-  const scene::Affine far{Mat3(1e-10f), Vec3{1e30f}};   // R^-1 T is beyond float, T is not
+  const scene::Affine far{Mat3(1e-10f), Vec3{1e30f}};  // R^-1 T is beyond float, T is not
   EXPECT_TRUE(make_transform(far, t, TransformLevel::kTwoStep));
   EXPECT_FALSE(make_transform(far, t, TransformLevel::kInverseMatrix));
 }

@@ -14,7 +14,8 @@ class BruteForceAnswers {
   BruteForceAnswers(const scene::Scene& scene, const RayBatch& rays, const AccuracyConfig& accuracy = {},
                     const AnyHit* any_hit = nullptr)
       : rays_(rays) {
-    for (const RayRequest& ray : rays) expected_.push_back({ray.ray, brute_force(scene, ray, accuracy, any_hit), ray.tag});
+    for (const RayRequest& ray : rays)
+      expected_.push_back({ray.ray, brute_force(scene, ray, accuracy, any_hit), ray.tag});
   }
   /// How many answers of the structure are others, one ray after another and interleaved.
   std::size_t differences(const Accel& accel) const {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/brute_force_answers.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "tests/accel/structure/test_scenes.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -21,16 +21,26 @@ void expect_equal_for_every_tree(const scene::Scene& scene, std::size_t rays) {
       EXPECT_EQ(brute.differences(build_sequential(scene, width, leaf)), 0u) << "width " << width << " leaf " << leaf;
 }
 
-TEST(BruteForce, AgreesOnCornellForEveryTree) { expect_equal_for_every_tree(small_builtin(BuiltinScene::kCornell), 1200); }
-TEST(BruteForce, AgreesOnSpheresForEveryTree) { expect_equal_for_every_tree(small_builtin(BuiltinScene::kSpheres), 1200); }
-TEST(BruteForce, AgreesOnTerrainForEveryTree) { expect_equal_for_every_tree(small_builtin(BuiltinScene::kTerrain), 1200); }
-TEST(BruteForce, AgreesOnInstancesForEveryTree) { expect_equal_for_every_tree(small_builtin(BuiltinScene::kInstances), 600); }
-TEST(BruteForce, AgreesOnSliverForEveryTree) { expect_equal_for_every_tree(small_builtin(BuiltinScene::kSliver), 1200); }
+TEST(BruteForce, AgreesOnCornellForEveryTree) {
+  expect_equal_for_every_tree(small_builtin(BuiltinScene::kCornell), 1200);
+}
+TEST(BruteForce, AgreesOnSpheresForEveryTree) {
+  expect_equal_for_every_tree(small_builtin(BuiltinScene::kSpheres), 1200);
+}
+TEST(BruteForce, AgreesOnTerrainForEveryTree) {
+  expect_equal_for_every_tree(small_builtin(BuiltinScene::kTerrain), 1200);
+}
+TEST(BruteForce, AgreesOnInstancesForEveryTree) {
+  expect_equal_for_every_tree(small_builtin(BuiltinScene::kInstances), 600);
+}
+TEST(BruteForce, AgreesOnSliverForEveryTree) {
+  expect_equal_for_every_tree(small_builtin(BuiltinScene::kSliver), 1200);
+}
 
 TEST(BruteForce, AgreesOnEverySimdTarget) {
   const std::vector<SimdTarget> targets = usable_simd_targets();
 #if defined(__x86_64__)
-  EXPECT_GE(targets.size(), 3u);   // at least two baselines beside auto, or the test shows nothing
+  EXPECT_GE(targets.size(), 3u);  // at least two baselines beside auto, or the test shows nothing
 #endif
   for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kInstances, BuiltinScene::kSliver}) {
     const scene::Scene scene = small_builtin(builtin, 200, 6);
@@ -88,12 +98,12 @@ TEST(BruteForce, AgreesOnSingularMirroredAndSkewedInstances) {
   };
   place({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0});
   place({-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 0});
-  place({1, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 2, 0});         // flattened: singular
-  place({1, 1, 0}, {1, 1, 0}, {0, 0, 1}, {2, 2, 0});         // rank 2
-  place({0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 2});         // a point
+  place({1, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 2, 0});  // flattened: singular
+  place({1, 1, 0}, {1, 1, 0}, {0, 0, 1}, {2, 2, 0});  // rank 2
+  place({0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 2});  // a point
   place({1, 0.9f, 0}, {0, 1e-3f, 0}, {0.3f, 0, -2}, {2, 0, 2});
-  place({1e-30f, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 2, 2});    // invertible in double; the inverse fits a float
-  place({1e-39f, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 2, 2});    // its inverse does not
+  place({1e-30f, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 2, 2});  // invertible in double; the inverse fits a float
+  place({1e-39f, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 2, 2});  // its inverse does not
   const Accel accel = build_sequential(scene);
   EXPECT_EQ(accel.baked_instances, 4u);
   const BruteForceAnswers brute(scene, mixed_rays(scene, 1500, 15));
@@ -111,12 +121,13 @@ TEST(BruteForce, AgreesOnSpheresInSkewedInstances) {
     const float far = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 100.0f : 3000.0f;
     Mat3 linear(1);
     for (int c = 0; c < 3; ++c) linear[c] += random.in_box(Vec3{-0.7f}, Vec3{0.7f});
-    if (i % 4 == 0) linear[1] *= i % 8 == 0 ? 1e-3f : 1e-30f;   // nearly flat
+    if (i % 4 == 0) linear[1] *= i % 8 == 0 ? 1e-3f : 1e-30f;  // nearly flat
     add_instance(scene, mesh, {linear, far * random.in_box(Vec3{-1}, Vec3{1})});
   }
   const BruteForceAnswers brute(scene, mixed_rays(scene, 3000, run_seed()));
   EXPECT_GT(brute.hits(), 100u) << "CAROUSEL_SEED=" << run_seed();
-  for (const std::int64_t width : {2, 8}) EXPECT_EQ(brute.differences(build_sequential(scene, width)), 0u) << "CAROUSEL_SEED=" << run_seed();
+  for (const std::int64_t width : {2, 8})
+    EXPECT_EQ(brute.differences(build_sequential(scene, width)), 0u) << "CAROUSEL_SEED=" << run_seed();
 }
 
 TEST(BruteForce, AgreesOnDegenerateTriangles) {

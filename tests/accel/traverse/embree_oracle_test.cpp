@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/accel/exact/adversarial_cases.h"
-#include "tests/accel/traverse/embree_peer.h"
 #include "tests/accel/exact/exact_oracle.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/embree_peer.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::accel {
@@ -43,14 +43,14 @@ void expect_explained(const scene::Scene& scene, std::size_t rays) {
       if (unexplained <= 3)
         ADD_FAILURE() << "CAROUSEL_SEED=" << run_seed() << " within 50000 rays of ray " << begin << std::hexfloat
                       << ": origin " << r.origin.x << " " << r.origin.y << " " << r.origin.z << " direction "
-                      << r.direction.x << " " << r.direction.y << " " << r.direction.z << "\n ours " << ours.hit.t << " "
-                      << static_cast<int>(ours.hit.instance) << " " << ours.hit.primitive << "\n Embree " << theirs.t
-                      << " " << static_cast<int>(theirs.instance) << " " << theirs.primitive
+                      << r.direction.x << " " << r.direction.y << " " << r.direction.z << "\n ours " << ours.hit.t
+                      << " " << static_cast<int>(ours.hit.instance) << " " << ours.hit.primitive << "\n Embree "
+                      << theirs.t << " " << static_cast<int>(theirs.instance) << " " << theirs.primitive
                       << (they ? " (right)" : " (wrong too)");
     }
   }
-  std::cout << rays << " rays, " << hits << " hits, " << disagree << " disagreements: " << ties << " ties, " << embree_wrong
-            << " decided for us, " << unexplained << " unexplained\n";
+  std::cout << rays << " rays, " << hits << " hits, " << disagree << " disagreements: " << ties << " ties, "
+            << embree_wrong << " decided for us, " << unexplained << " unexplained\n";
   EXPECT_EQ(unexplained, 0u);
   EXPECT_GT(hits, rays / 4);
 }

@@ -36,8 +36,18 @@ class EmbreePeer {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit q{};
-    q.ray = {ray.origin.x, ray.origin.y, ray.origin.z, ray.tmin, ray.direction.x, ray.direction.y, ray.direction.z,
-             0, ray.tmax, ~0u, 0, 0};
+    q.ray = {ray.origin.x,
+             ray.origin.y,
+             ray.origin.z,
+             ray.tmin,
+             ray.direction.x,
+             ray.direction.y,
+             ray.direction.z,
+             0,
+             ray.tmax,
+             ~0u,
+             0,
+             0};
     q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_.get(), &context, &q);
     if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
@@ -62,8 +72,8 @@ class EmbreePeer {
   Scene mesh_scene(const scene::Mesh& mesh) const {
     Scene s = new_scene();
     Geometry g(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(g.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 12, mesh.positions.size()));
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(g.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size()));
     for (const Vec3& p : mesh.positions)
       for (int a = 0; a < 3; ++a) *vertices++ = p[a];
     auto* indices = static_cast<std::uint32_t*>(

@@ -1,15 +1,16 @@
 // Every level of the triangle and the box test: scalar code, every SIMD target and every tree give the same bits.
+#include "tests/accel/traverse/levels.h"
+
 #include <array>
 #include <bit>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/brute_force_answers.h"
-#include "tests/accel/traverse/levels.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "tests/accel/structure/test_scenes.h"
 
 namespace carousel::accel {
 namespace {
@@ -17,8 +18,8 @@ namespace {
 class Levels : public testing::TestWithParam<AccuracyConfig> {};
 
 TEST_P(Levels, AgreeWithBruteForceForEveryTree) {
-  for (const BuiltinScene builtin : {BuiltinScene::kCornell, BuiltinScene::kTerrain, BuiltinScene::kInstances,
-                                     BuiltinScene::kSliver}) {
+  for (const BuiltinScene builtin :
+       {BuiltinScene::kCornell, BuiltinScene::kTerrain, BuiltinScene::kInstances, BuiltinScene::kSliver}) {
     const scene::Scene scene = small_builtin(builtin, 250, 6);
     const BruteForceAnswers brute(scene, mixed_rays(scene, 500, 41), GetParam());
     EXPECT_GT(brute.hits(), 120u);
@@ -59,7 +60,8 @@ TEST_P(Levels, AgreeOnRaysOfAnyBits) {
   for (const SimdTarget target : usable_simd_targets()) {
     const SimdGuard guard;
     select_simd_target(target);
-    for (const std::int64_t width : {2, 8}) EXPECT_EQ(brute.differences(build_sequential(scene, width, 4, GetParam())), 0u);
+    for (const std::int64_t width : {2, 8})
+      EXPECT_EQ(brute.differences(build_sequential(scene, width, 4, GetParam())), 0u);
   }
 }
 

@@ -44,7 +44,8 @@ inline std::array<Vec3, 3> random_triangle(const scene::Scene& scene, Random& ra
   const scene::Instance& instance = scene.instances[random.below(static_cast<std::uint32_t>(scene.instances.size()))];
   const scene::Mesh& mesh = scene.meshes[instance.mesh.value];
   const std::uint32_t primitive = random.below(static_cast<std::uint32_t>(mesh.triangle_count() + mesh.spheres.size()));
-  const scene::Sphere* const sphere = primitive < mesh.triangle_count() ? nullptr : &mesh.spheres[primitive - mesh.triangle_count()];
+  const scene::Sphere* const sphere =
+      primitive < mesh.triangle_count() ? nullptr : &mesh.spheres[primitive - mesh.triangle_count()];
   std::array<Vec3, 3> p;
   for (std::uint32_t k = 0; k < 3; ++k) {
     if (sphere != nullptr)
@@ -68,10 +69,15 @@ inline RayBatch mixed_rays(const scene::Scene& scene, std::size_t count, std::ui
     const Vec3 from = random.in_box(lo, hi);
     RayRequest r = ray_to(from, random.in_box(bounds.lo, bounds.hi) - from);
     switch (i % 6) {
-      case 0: break;
-      case 1: r.ray.direction = p[0] - from; break;                                     // at a vertex
-      case 2: r.ray.direction = p[0] + random.uniform() * (p[1] - p[0]) - from; break;  // at an edge
-      case 3: {                                                                         // along an axis
+      case 0:
+        break;
+      case 1:
+        r.ray.direction = p[0] - from;
+        break;  // at a vertex
+      case 2:
+        r.ray.direction = p[0] + random.uniform() * (p[1] - p[0]) - from;
+        break;   // at an edge
+      case 3: {  // along an axis
         const int axis = static_cast<int>(random.below(3));
         r.ray.origin = p[0];
         r.ray.origin[axis] = from[axis];
@@ -79,11 +85,11 @@ inline RayBatch mixed_rays(const scene::Scene& scene, std::size_t count, std::ui
         r.ray.direction[axis] = from[axis] > bounds.centre()[axis] ? -1.0f : 1.0f;
         break;
       }
-      case 4:   // from a surface
+      case 4:  // from a surface
         r.ray.origin = (p[0] + p[1] + p[2]) * (1.0f / 3);
         r.ray.direction = from - r.ray.origin;
         break;
-      case 5:   // a piece of a ray
+      case 5:  // a piece of a ray
         r.ray.tmin = random.uniform();
         r.ray.tmax = r.ray.tmin + random.uniform();
         break;
@@ -113,6 +119,8 @@ inline HitBatch trace(const Accel& accel, const RayBatch& rays) {
   return hits;
 }
 
-inline Hit trace_one(const Accel& accel, const RayRequest& ray) { return trace(accel, {ray})[0].hit; }
+inline Hit trace_one(const Accel& accel, const RayRequest& ray) {
+  return trace(accel, {ray})[0].hit;
+}
 
 }  // namespace carousel::accel

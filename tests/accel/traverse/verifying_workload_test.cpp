@@ -4,9 +4,9 @@
 
 #include "accel/traverse/kernels.h"
 #include "core/system/error.h"
+#include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
-#include "tests/accel/structure/test_scenes.h"
 
 namespace carousel::accel {
 namespace {
@@ -62,7 +62,7 @@ TEST_F(VerifyingWorkloadTest, FindsEveryKindOfPlantedFault) {
     RayResult wrong = r;
     wrong.hit.t = std::nextafter(r.hit.t, 0.0f);
     if (r.tag.kind == RayKind::kShadow) {
-      EXPECT_EQ(mismatches(wrong), 0u);   // only occluded or visible is known
+      EXPECT_EQ(mismatches(wrong), 0u);  // only occluded or visible is known
       wrong.hit.instance = r.hit.valid() ? kNoInstance : 0;
       EXPECT_EQ(mismatches(wrong), 1u);
       ++shadow;
@@ -74,7 +74,7 @@ TEST_F(VerifyingWorkloadTest, FindsEveryKindOfPlantedFault) {
     wrong.hit.primitive ^= 1;
     EXPECT_EQ(mismatches(wrong), 1u);
     wrong = r;
-    wrong.hit.u = -r.hit.u;   // a sign bit, zeros included
+    wrong.hit.u = -r.hit.u;  // a sign bit, zeros included
     EXPECT_EQ(mismatches(wrong), 1u);
     wrong = r;
     wrong.hit.v += 0.5f;

@@ -15,19 +15,22 @@ constexpr const char* kConfig =
     "scene: {builtin: instances, instances: 20}\nimage: {width: 24, height: 24, samples: 1, max_depth: 3}\n"
     "topology: {resources: 2}\nrays: {slots_per_resource: 64}\n";
 
-const Json& level(const Json& report, const std::string& triangle, const std::string& box, const std::string& transform) {
+const Json& level(const Json& report, const std::string& triangle, const std::string& box,
+                  const std::string& transform) {
   for (const Json& row : report.at("levels"))
     if (row.at("triangle") == triangle && row.at("box") == box && row.at("transform") == transform) return row;
   throw std::runtime_error("no row " + triangle + " " + box + " " + transform);
 }
 
 std::uint64_t wrong(const Json& errors) {
-  return errors.at("missed").get<std::uint64_t>() + errors.at("extra").get<std::uint64_t>() + errors.at("other").get<std::uint64_t>();
+  return errors.at("missed").get<std::uint64_t>() + errors.at("extra").get<std::uint64_t>() +
+         errors.at("other").get<std::uint64_t>();
 }
 
 void finds_the_leaks_of_the_fast_level_and_none_of_the_watertight_ones(const Json& report) {
   EXPECT_GT(level(report, "fast", "plain", "two_step").at("leaks"), 0);
-  for (const auto& [triangle, box] : {std::pair{"watertight", "conservative"}, {"double", "double"}, {"exact", "double"}}) {
+  for (const auto& [triangle, box] :
+       {std::pair{"watertight", "conservative"}, {"double", "double"}, {"exact", "double"}}) {
     const Json& row = level(report, triangle, box, "two_step");
     EXPECT_EQ(row.at("leaks"), 0) << triangle;
     EXPECT_EQ(row.at("hard").at("edges").at("missed"), 0) << triangle;
@@ -63,8 +66,9 @@ void times_modelled_cycles_and_pictures_are_there(const Json& report) {
     EXPECT_EQ(row.at("picture").at("pixels"), 24 * 24);
   }
   // The machine waits for its shaders; its testers work longer all the same.
-  EXPECT_GT(level(report, "double", "double", "two_step").at("modelled_tester_cycles_per_ray").get<double>(),
-            2 * level(report, "watertight", "conservative", "two_step").at("modelled_tester_cycles_per_ray").get<double>());
+  EXPECT_GT(
+      level(report, "double", "double", "two_step").at("modelled_tester_cycles_per_ray").get<double>(),
+      2 * level(report, "watertight", "conservative", "two_step").at("modelled_tester_cycles_per_ray").get<double>());
   EXPECT_GE(report.at("sampling").at("rows").size(), 6u);
   EXPECT_NEAR(report.at("sampling").at("slope").get<double>(), -0.5, 0.2);
 }
@@ -73,7 +77,8 @@ void times_modelled_cycles_and_pictures_are_there(const Json& report) {
 TEST(AccuracyCommand, MeasuresWhatEachLevelGetsWrongAndCosts) {
   const Program program;
   program.write("a.yaml", kConfig);
-  const Outcome outcome = program.run({"accuracy", "a.yaml", "--rays", "2000", "--hard-rays", "4000", "--repetitions", "2"});
+  const Outcome outcome =
+      program.run({"accuracy", "a.yaml", "--rays", "2000", "--hard-rays", "4000", "--repetitions", "2"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json report = Json::parse(program.read("out/a/accuracy.json"));
   finds_the_leaks_of_the_fast_level_and_none_of_the_watertight_ones(report);

@@ -33,13 +33,11 @@ TEST(CheckCommand, ATopologyThatCanDeadlockEndsWithStatus2) {
 
 TEST(CheckCommand, WhatDoesNotFitTheMachineIsRefusedBeforeItIsLoaded) {
   const Program program;
-  program.write(
-      "a.yaml",
-      "scene: {builtin: cornell}\ntopology: {resources: 256}\nrays:\n  slots_per_resource: 4194304\n");
+  program.write("a.yaml",
+                "scene: {builtin: cornell}\ntopology: {resources: 256}\nrays:\n  slots_per_resource: 4194304\n");
   const Outcome outcome = program.run({"check", "a.yaml"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("a.yaml:4:23: rays.slots_per_resource: expected what fits into the machine's"));
+  EXPECT_THAT(outcome.err, HasSubstr("a.yaml:4:23: rays.slots_per_resource: expected what fits into the machine's"));
 }
 
 TEST(MemoryNeed, NamesTheKeyThatWeighsMost) {
@@ -57,8 +55,7 @@ TEST(MemoryNeed, NamesTheKeyThatWeighsMost) {
 
 TEST(MemoryNeed, KeepingHitsCounts) {
   const Config config = parse_config("scene: {builtin: cornell}\n", "m.yaml");
-  EXPECT_GT(app::estimate_before_scene(config, true).total(),
-            app::estimate_before_scene(config, false).total());
+  EXPECT_GT(app::estimate_before_scene(config, true).total(), app::estimate_before_scene(config, false).total());
 }
 
 }  // namespace

@@ -87,10 +87,12 @@ TEST(CycleRun, NamesWhatLimitsTheMachine) {
 
 TEST(CycleRun, EndsWithStatusOneWhenItIsStuck) {
   const Program program;
-  program.write("a.yaml", std::string(kConfig) +
-                              "packets: {rays: 2}\ncollections: {ready: 2, when_full: spill}\nmemory: {fetch_ahead: 16}\n");
-  const std::vector<std::string> stuck{"run", "a.yaml", "--quiet", "--set", "topology.flow=none", "--set", "topology.link.depth=1"};
-  EXPECT_EQ(program.run(stuck).status, 2);   // refused unless forced
+  program.write("a.yaml",
+                std::string(kConfig) +
+                    "packets: {rays: 2}\ncollections: {ready: 2, when_full: spill}\nmemory: {fetch_ahead: 16}\n");
+  const std::vector<std::string> stuck{
+      "run", "a.yaml", "--quiet", "--set", "topology.flow=none", "--set", "topology.link.depth=1"};
+  EXPECT_EQ(program.run(stuck).status, 2);  // refused unless forced
   std::vector<std::string> forced = stuck;
   forced.push_back("--force");
   const Outcome outcome = program.run(forced);

@@ -4,8 +4,8 @@
 #include "core/types/effect.h"
 #include "report/run/report_json.h"
 #include "tests/app/support/program.h"
-#include "tests/support/json_schema_check.h"
 #include "tests/scene/gltf/gltf_builder.h"
+#include "tests/support/json_schema_check.h"
 
 namespace carousel {
 namespace {
@@ -43,8 +43,9 @@ TEST(EffectsRun, AllGivesTheSamePictureOnBothEnginesAndTheReportSaysWhatAutoSave
 
 TEST(EffectsRun, AProofRunsItAgainWithAllAndSaysWhatWasSpared) {
   const Program program;
-  program.write("small.yaml", "scene: {builtin: cornell}\nimage: {width: 16, height: 12, samples: 1}\n"
-                              "engine: {kind: cycle, what_if: false}\nverify: effects\n");
+  program.write("small.yaml",
+                "scene: {builtin: cornell}\nimage: {width: 16, height: 12, samples: 1}\n"
+                "engine: {kind: cycle, what_if: false}\nverify: effects\n");
   const Outcome outcome = program.run({"run", "small.yaml"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("all effects  hits the same   image the same"));
@@ -53,8 +54,8 @@ TEST(EffectsRun, AProofRunsItAgainWithAllAndSaysWhatWasSpared) {
   const Json& proof = report["shading"]["proof"];
   EXPECT_EQ(proof["same_hits"], true);
   EXPECT_EQ(proof["same_image"], true);
-  EXPECT_EQ(proof["rays_spared"], 0);          // a lamp lights the box: nothing is sent in vain
-  EXPECT_GT(proof["cycles_spared"], 1000);     // plain walls ask for nothing that they have not
+  EXPECT_EQ(proof["rays_spared"], 0);       // a lamp lights the box: nothing is sent in vain
+  EXPECT_GT(proof["cycles_spared"], 1000);  // plain walls ask for nothing that they have not
   EXPECT_GT(report["host"]["all_effects_seconds"], 0);
 
   EXPECT_EQ(program.run({"run", "small.yaml", "--set", "shading.effects=all"}).status, 2);
@@ -96,7 +97,7 @@ TEST(EffectsRun, InspectSaysWhatASceneCallsFor) {
   for (const Json& effect : json["effects"]) {
     EXPECT_EQ(effect["on"], effect["called_for"]) << effect["name"];
     if (effect["name"] == "shadow_rays") {
-      EXPECT_EQ(effect["cost"]["cycles_per_path"], 4 * 20);   // default depth and cycles
+      EXPECT_EQ(effect["cost"]["cycles_per_path"], 4 * 20);  // default depth and cycles
     }
   }
   EXPECT_EQ(program.run({"inspect", "none.glb"}).status, 2);

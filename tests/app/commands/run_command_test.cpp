@@ -55,9 +55,14 @@ TEST(RunCommand, GoesOnWithoutAResourceThatStops) {
   ASSERT_EQ(program.run({"run", "small.yaml", "--out", "whole"}).status, 0);
   const Json whole = Json::parse(program.read("whole/report.json"));
   for (const std::string engine : {"native", "cycle"}) {
-    std::vector<std::string> run{"run", "small.yaml", "--out", "out", "--set", "engine.kind=" + engine, "--set",
-                                 "engine.what_if=false", "--set", "rays.slots_per_resource=64", "--set",
-                                 "faults.resource.kind=stop", "--set", "faults.resource.number=1", "--set", "faults.resource.after_rays=20"};
+    std::vector<std::string> run{"run",   "small.yaml",
+                                 "--out", "out",
+                                 "--set", "engine.kind=" + engine,
+                                 "--set", "engine.what_if=false",
+                                 "--set", "rays.slots_per_resource=64",
+                                 "--set", "faults.resource.kind=stop",
+                                 "--set", "faults.resource.number=1",
+                                 "--set", "faults.resource.after_rays=20"};
     if (engine == "cycle") run.insert(run.end(), {"--set", "faults.compare=true"});
     const Outcome outcome = program.run(run);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -69,7 +74,9 @@ TEST(RunCommand, GoesOnWithoutAResourceThatStops) {
     EXPECT_EQ(report["faults"]["stop"]["resource"], 1);
     if (engine == "cycle") {
       EXPECT_EQ(report["faults"]["same_hits"], true);
-      EXPECT_EQ(report["engine"]["cycles"].get<std::int64_t>(), report["faults"]["cycles_without"].get<std::int64_t>() + report["faults"]["cycles_lost"].get<std::int64_t>());
+      EXPECT_EQ(
+          report["engine"]["cycles"].get<std::int64_t>(),
+          report["faults"]["cycles_without"].get<std::int64_t>() + report["faults"]["cycles_lost"].get<std::int64_t>());
     }
     run.insert(run.end(), {"--set", "faults.resource.recover=false"});
     const Outcome lost = program.run(run);
@@ -90,7 +97,8 @@ TEST(RunCommand, TheRasteriserLeavesTheRestToASimulatedMachine) {
   ASSERT_EQ(with({"native"}).status, 0);
   const Outcome outcome = with({"cycle", "--set", "engine.kind=cycle", "--set", "verify=reference"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const Json native = Json::parse(program.read("native/report.json")), cycle = Json::parse(program.read("cycle/report.json"));
+  const Json native = Json::parse(program.read("native/report.json")),
+             cycle = Json::parse(program.read("cycle/report.json"));
   EXPECT_EQ(cycle["digest"], native["digest"]);
   EXPECT_EQ(cycle["rays"]["by_kind"]["camera"], 0);
   EXPECT_EQ(cycle["raster"], native["raster"]);
@@ -126,8 +134,8 @@ TEST(RunCommand, DumpedRaysReadBackToTheSameHits) {
   const Program program;
   program.write("small.yaml", kSmall);
   ASSERT_EQ(program.run({"run", "small.yaml", "--hits", "--dump-rays", "rays.csv", "--out", "a"}).status, 0);
-  const Outcome again = program.run({"run", "small.yaml", "--hits", "--set", "workload={rays_from: rays.csv}",
-                                     "--out", "b", "--set", "verify=reference"});
+  const Outcome again = program.run({"run", "small.yaml", "--hits", "--set", "workload={rays_from: rays.csv}", "--out",
+                                     "b", "--set", "verify=reference"});
   ASSERT_EQ(again.status, 0) << again.err;
   const std::string hits = program.read("a/hits.csv");
   EXPECT_GT(hits.size(), 1000u);
@@ -151,8 +159,7 @@ TEST(RunCommand, WrongInputsAreNamedAndEndWithStatus2) {
   program.write("bad.yaml", "scene: {builtin: cornell}\nimage: {width: 0}\npackets: {size: 3}\n");
   Outcome outcome = program.run({"run", "bad.yaml"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("error: bad.yaml:2:16: image.width: expected an integer from 1 to 16384"));
+  EXPECT_THAT(outcome.err, HasSubstr("error: bad.yaml:2:16: image.width: expected an integer from 1 to 16384"));
   EXPECT_THAT(outcome.err, HasSubstr("error: bad.yaml:3:11: packets.size: unknown key"));
   EXPECT_THAT(outcome.out, IsEmpty());
 
@@ -171,8 +178,7 @@ TEST(RunCommand, WrongInputsAreNamedAndEndWithStatus2) {
 
   outcome = program.run({"run", "small.yaml", "--set", "collections.capacity=64"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("--set collections.capacity=64: collections.capacity: expected at least"));
+  EXPECT_THAT(outcome.err, HasSubstr("--set collections.capacity=64: collections.capacity: expected at least"));
 
   program.write("rays.csv", "ray,kind\n");
   outcome = program.run({"run", "small.yaml", "--set", "workload={rays_from: rays.csv}"});
@@ -218,8 +224,7 @@ TEST(RunCommand, AnInterruptLeavesAPartialReport) {
   const Program program;
   program.write("long.yaml", "scene: {builtin: cornell}\nimage: {width: 256, height: 256, samples: 65536}\n");
   const pid_t pid = program.start({"run", "long.yaml"});
-  for (int i = 0; i < 600 && !catches_interrupts(pid); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  for (int i = 0; i < 600 && !catches_interrupts(pid); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   kill(pid, SIGINT);
   const Outcome outcome = program.wait(pid);

@@ -14,15 +14,16 @@ using testing::HasSubstr;
 
 TEST(StressCommand, TriesQueuesAndLeavesResults) {
   const Program program;
-  const Outcome outcome = program.run({"stress", "--seconds", "0.5", "--messages", "2000", "--repetitions", "2", "--queue",
-                                       "spsc_ring,mpmc_ring,mutex", "--pattern", "stream,ping_pong,many_to_many"});
+  const Outcome outcome =
+      program.run({"stress", "--seconds", "0.5", "--messages", "2000", "--repetitions", "2", "--queue",
+                   "spsc_ring,mpmc_ring,mutex", "--pattern", "stream,ping_pong,many_to_many"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("nothing lost, doubled, reordered or torn; nothing stuck"));
   EXPECT_THAT(outcome.out, HasSubstr("ping_pong, 64 bytes, 2 threads, capacity 64"));
   EXPECT_THAT(outcome.out, HasSubstr("files: out/stress/stress.json"));
   const Json json = Json::parse(program.read("out/stress/stress.json"));
   EXPECT_EQ(schema_problems(report::report_schema()["$defs"]["stress"], json), std::vector<std::string>{});
-  ASSERT_EQ(json["rows"].size(), 3u * 3 + 3 + 2);   // spsc_ring does not fit many_to_many; stream has three sizes
+  ASSERT_EQ(json["rows"].size(), 3u * 3 + 3 + 2);  // spsc_ring does not fit many_to_many; stream has three sizes
   for (const Json& row : json["rows"]) {
     EXPECT_GT(row["messages"].get<int>(), 0);
     EXPECT_GT(row["rate_median"].get<double>(), 0);
@@ -34,9 +35,12 @@ TEST(StressCommand, TriesQueuesAndLeavesResults) {
 
 TEST(StressCommand, TriesQueuesInsideTheRing) {
   const Program program;
-  program.write("a.yaml", "scene: {builtin: cornell}\nimage: {width: 16, height: 16, samples: 1}\ntopology: {resources: 3, link: {depth: 4}}\n");
-  const Outcome outcome = program.run({"stress", "a.yaml", "--seconds", "0.1", "--messages", "500", "--repetitions", "2", "--queue",
-                                       "spsc_ring,mutex", "--pattern", "stream", "--depths", "1,4", "--json"});
+  program.write("a.yaml",
+                "scene: {builtin: cornell}\nimage: {width: 16, height: 16, samples: 1}\ntopology: {resources: 3, link: "
+                "{depth: 4}}\n");
+  const Outcome outcome =
+      program.run({"stress", "a.yaml", "--seconds", "0.1", "--messages", "500", "--repetitions", "2", "--queue",
+                   "spsc_ring,mutex", "--pattern", "stream", "--depths", "1,4", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json json = Json::parse(outcome.out);
   EXPECT_EQ(schema_problems(report::report_schema()["$defs"]["stress"], json), std::vector<std::string>{});

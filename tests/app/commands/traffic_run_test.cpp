@@ -13,7 +13,8 @@ using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 
 const char* const kTraffic =
-    "engine: {kind: cycle}\ntopology: {shape: bidirectional}\nworkload: {traffic: {pattern: uniform, rate: 0.1, packets: 20000}}\n";
+    "engine: {kind: cycle}\ntopology: {shape: bidirectional}\nworkload: {traffic: {pattern: uniform, rate: 0.1, "
+    "packets: 20000}}\n";
 
 TEST(TrafficRun, NeedsNoSceneAndLeavesAReport) {
   const Program program;
@@ -31,7 +32,9 @@ TEST(TrafficRun, NeedsNoSceneAndLeavesAReport) {
   EXPECT_NEAR(report["traffic"]["accepted"].get<double>(), 0.1, 0.005);
 
   // The resolved configuration gives the same, on any number of threads.
-  ASSERT_EQ(program.run({"run", "out/net/config.resolved.yaml", "--out", "b", "--set", "engine.threads=3", "--quiet"}).status, 0);
+  ASSERT_EQ(
+      program.run({"run", "out/net/config.resolved.yaml", "--out", "b", "--set", "engine.threads=3", "--quiet"}).status,
+      0);
   Json again = Json::parse(program.read("b/report.json"));
   EXPECT_EQ(again["host"]["threads"], 3);
   EXPECT_EQ(again["traffic"], report["traffic"]);
@@ -41,9 +44,9 @@ TEST(TrafficRun, NeedsNoSceneAndLeavesAReport) {
 TEST(TrafficRun, ASetKeyTakesEffect) {
   const Program program;
   program.write("net.yaml", kTraffic);
-  const Outcome outcome = program.run({"run", "net.yaml", "--json", "--set", "workload.traffic.pattern=neighbour", "--set",
-                                       "workload.traffic.rate=0.02", "--set", "workload.traffic.inject_cycles=3", "--set",
-                                       "workload.traffic.eject_cycles=3"});
+  const Outcome outcome = program.run({"run", "net.yaml", "--json", "--set", "workload.traffic.pattern=neighbour",
+                                       "--set", "workload.traffic.rate=0.02", "--set",
+                                       "workload.traffic.inject_cycles=3", "--set", "workload.traffic.eject_cycles=3"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json report = Json::parse(outcome.out);
   EXPECT_EQ(report["traffic"]["latency"]["mean"], 10.0);

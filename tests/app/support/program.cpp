@@ -48,8 +48,7 @@ pid_t Program::start(const std::vector<std::string>& arguments) const {
 Outcome Program::wait(pid_t pid) const {
   int status = 0;
   waitpid(pid, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read("stdout.txt"),
-          read("stderr.txt")};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read("stdout.txt"), read("stderr.txt")};
 }
 
 Outcome Program::run(const std::vector<std::string>& arguments) const {

@@ -40,8 +40,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:1: a second document; a configuration is one YAML document"},
         BadConfig{"Syntax", SCENE "image: {width: 5\n", "test.yaml:3:1: end of map flow not found"},
         BadConfig{"NotAMap", "- 1\n- 2\n", "test.yaml:1:1: expected a map, found a list"},
-        BadConfig{"SchemaVersion", "schema_version: 2\n" SCENE,
-                  "test.yaml:1:17: schema_version: expected 1, found 2"},
+        BadConfig{"SchemaVersion", "schema_version: 2\n" SCENE, "test.yaml:1:17: schema_version: expected 1, found 2"},
         BadConfig{"SectionIsText", SCENE "image: big\n", "test.yaml:2:8: image: expected a map, found 'big'"},
         BadConfig{"SectionIsEmpty", SCENE "image:\n", "test.yaml:2:1: image: expected a map, found nothing"},
         BadConfig{"FractionForInteger", SCENE "image: {width: 2.5}\n",
@@ -56,43 +55,38 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"RealOutOfRange", SCENE "camera: {focus_distance: 0}\n",
                   "test.yaml:2:26: camera.focus_distance: expected a number above 0 to 1e+09 (scene units), "
                   "found 0"},
-        BadConfig{"RasterWithALens", SCENE "primary: raster\ncamera: {aperture: 0.5}\n",
-                  "test.yaml:3:20: camera.aperture: primary: raster needs a pinhole; expected 0, or primary: rays, found "
-                  "0.5"},
+        BadConfig{
+            "RasterWithALens", SCENE "primary: raster\ncamera: {aperture: 0.5}\n",
+            "test.yaml:3:20: camera.aperture: primary: raster needs a pinhole; expected 0, or primary: rays, found "
+            "0.5"},
         BadConfig{"RasterWithoutACamera", SCENE "primary: raster\nworkload: {rays_from: a.csv}\n",
                   "test.yaml:2:10: primary: this workload has no camera; expected rays, found raster"},
-        BadConfig{
-            "NotANumber", SCENE "camera: {aperture: .nan}\n",
-            "test.yaml:2:20: camera.aperture: expected a number from 0 to 1e+06 (scene units), found nan"},
-        BadConfig{
-            "Infinite", SCENE "camera: {aperture: .inf}\n",
-            "test.yaml:2:20: camera.aperture: expected a number from 0 to 1e+06 (scene units), found inf"},
+        BadConfig{"NotANumber", SCENE "camera: {aperture: .nan}\n",
+                  "test.yaml:2:20: camera.aperture: expected a number from 0 to 1e+06 (scene units), found nan"},
+        BadConfig{"Infinite", SCENE "camera: {aperture: .inf}\n",
+                  "test.yaml:2:20: camera.aperture: expected a number from 0 to 1e+06 (scene units), found inf"},
         BadConfig{"OldStyleSwitch", SCENE "cull_planes: {shared_normals: yes}\n",
                   "test.yaml:2:31: cull_planes.shared_normals: expected true or false, found 'yes'"},
-        BadConfig{
-            "EnumName", SCENE "topology: {shape: rign}\n",
-            "test.yaml:2:19: topology.shape: expected one of ring, bidirectional, multi_ring, hierarchical, "
-            "point_to_point, bus, central, independent, found 'rign'; did you mean 'ring'?"},
+        BadConfig{"EnumName", SCENE "topology: {shape: rign}\n",
+                  "test.yaml:2:19: topology.shape: expected one of ring, bidirectional, multi_ring, hierarchical, "
+                  "point_to_point, bus, central, independent, found 'rign'; did you mean 'ring'?"},
         BadConfig{"Threads", SCENE "engine: {threads: many}\n",
                   "test.yaml:2:19: engine.threads: expected auto or an integer from 1 to 1024 (threads), "
                   "found 'many'"},
         BadConfig{"ColorOfTwo", "scene: {builtin: cornell, sky: {color: [1, 2]}}\n",
                   "test.yaml:1:40: scene.sky.color: expected a list of 3 numbers, found a list"},
-        BadConfig{
-            "ColorNegative", "scene: {builtin: cornell, sky: {color: [1, 2, -3]}}\n",
-            "test.yaml:1:47: scene.sky.color: expected a number from 0 to 1e+06 (linear RGB), found -3"},
-        BadConfig{
-            "BareUnits", SCENE "testers: {triangle: 0}\n",
-            "test.yaml:2:21: testers.triangle: expected a map or an integer from 1 to 1024 (units), found 0"},
+        BadConfig{"ColorNegative", "scene: {builtin: cornell, sky: {color: [1, 2, -3]}}\n",
+                  "test.yaml:1:47: scene.sky.color: expected a number from 0 to 1e+06 (linear RGB), found -3"},
+        BadConfig{"BareUnits", SCENE "testers: {triangle: 0}\n",
+                  "test.yaml:2:21: testers.triangle: expected a map or an integer from 1 to 1024 (units), found 0"},
         BadConfig{"OverrideWithoutResource", SCENE "topology: {overrides: [{testers: {box: 2}}]}\n",
                   "test.yaml:2:24: topology.overrides.0: expected the key 'resource'"},
         BadConfig{"OverridesIsMap", SCENE "topology: {overrides: {resource: 1}}\n",
                   "test.yaml:2:23: topology.overrides: expected a list, found a map"},
         BadConfig{"EmptyFileName", "scene: {file: ''}\n",
                   "test.yaml:1:15: scene.file: expected a text that is not empty, found ''"},
-        BadConfig{
-            "WorkloadName", SCENE "workload: ray\n",
-            "test.yaml:2:11: workload: expected rays, {rays_from: FILE} or {traffic: {...}}, found 'ray'"},
+        BadConfig{"WorkloadName", SCENE "workload: ray\n",
+                  "test.yaml:2:11: workload: expected rays, {rays_from: FILE} or {traffic: {...}}, found 'ray'"},
         BadConfig{"WorkloadBoth", SCENE "workload: {rays_from: a.csv, traffic: {}}\n",
                   "test.yaml:2:11: workload: expected rays, {rays_from: FILE} or {traffic: {...}}"},
         BadConfig{"WorkloadKey", SCENE "workload: {ray_from: a.csv, rays_from: b.csv}\n",
@@ -123,32 +117,35 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"CyclePlacement", SCENE "engine: {kind: cycle}\nrays: {placement: addressed}\n",
                   "test.yaml:3:19: rays.placement: the cycle engine has no addressed; expected balanced or "
                   "round_robin"},
+        BadConfig{"Shape", SCENE "topology: {shape: bus}\n",
+                  "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
+                  "point_to_point"},
+        BadConfig{"CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
+                  "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
+                  "multi_ring, hierarchical, point_to_point, bus or independent"},
         BadConfig{
-            "Shape", SCENE "topology: {shape: bus}\n",
-            "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
-            "point_to_point"},
+            "InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\n",
+            "test.yaml:2:27: accuracy.instance_data: transform: two_step subtracts the translation first; expected "
+            "forward or rt, found inverse"},
         BadConfig{
-            "CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
-            "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
-            "multi_ring, hierarchical, point_to_point, bus or independent"},
-        BadConfig{"InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\n",
-                  "test.yaml:2:27: accuracy.instance_data: transform: two_step subtracts the translation first; expected "
-                  "forward or rt, found inverse"},
-        BadConfig{"TwoStepsForOneMatrix", SCENE "accuracy: {transform: inverse_matrix, instance_data: rt}\n",
-                  "test.yaml:2:54: accuracy.instance_data: transform: inverse_matrix has the translation multiplied in; "
-                  "expected forward or inverse, found rt"},
-        BadConfig{"ForwardInvertedAtBuild", SCENE "accuracy: {instance_data: forward, invert: build}\n",
-                  "test.yaml:2:44: accuracy.invert: instance_data: forward stores nothing inverted; expected visit, found "
-                  "build"},
+            "TwoStepsForOneMatrix", SCENE "accuracy: {transform: inverse_matrix, instance_data: rt}\n",
+            "test.yaml:2:54: accuracy.instance_data: transform: inverse_matrix has the translation multiplied in; "
+            "expected forward or inverse, found rt"},
+        BadConfig{
+            "ForwardInvertedAtBuild", SCENE "accuracy: {instance_data: forward, invert: build}\n",
+            "test.yaml:2:44: accuracy.invert: instance_data: forward stores nothing inverted; expected visit, found "
+            "build"},
         BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\n",
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
                   "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
         BadConfig{"CullPlaneOrder", SCENE "cull_planes: {order: planes}\n",
                   "test.yaml:2:22: cull_planes.order: expected one of box_first, planes_first, found 'planes'"},
-        BadConfig{"TopPlanesOfInverseMatrices", SCENE "cull_planes: {count: 2, levels: tlas}\naccuracy: {transform: inverse_matrix}\n",
-                  "test.yaml:3:23: accuracy.transform: cull planes above the instances could lose hits of inverse_matrix; "
-                  "expected two_step, two_step_double or transpose_if_rotation, or cull_planes.levels: blas"},
+        BadConfig{
+            "TopPlanesOfInverseMatrices",
+            SCENE "cull_planes: {count: 2, levels: tlas}\naccuracy: {transform: inverse_matrix}\n",
+            "test.yaml:3:23: accuracy.transform: cull planes above the instances could lose hits of inverse_matrix; "
+            "expected two_step, two_step_double or transpose_if_rotation, or cull_planes.levels: blas"},
         BadConfig{"CullPlanesOfFastTriangles", SCENE "cull_planes: {count: 2}\naccuracy: {triangle: fast}\n",
                   "test.yaml:3:22: accuracy.triangle: cull planes could lose hits of fast; expected watertight or "
                   "exact, or cull_planes.count: 0"},
@@ -192,11 +189,11 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:33: shading.idle_resources_shade: true is not built yet; expected false"},
         BadConfig{"TrafficNative", "workload: {traffic: {rate: 0.5}}\nengine: {kind: native}\n",
                   "test.yaml:2:16: engine.kind: workload: traffic runs in virtual time; expected cycle, found native"},
-        BadConfig{"TrafficRate", "engine: {kind: cycle}\nworkload: {traffic: {rate: 0}}\n",
-                  "test.yaml:2:28: workload.traffic.rate: expected a number above 0 to 1 (packets per resource and cycle), "
-                  "found 0"},
-        BadConfig{"TrafficHotspot",
-                  "engine: {kind: cycle}\nworkload: {traffic: {pattern: hotspot, hotspot: 8}}\n",
+        BadConfig{
+            "TrafficRate", "engine: {kind: cycle}\nworkload: {traffic: {rate: 0}}\n",
+            "test.yaml:2:28: workload.traffic.rate: expected a number above 0 to 1 (packets per resource and cycle), "
+            "found 0"},
+        BadConfig{"TrafficHotspot", "engine: {kind: cycle}\nworkload: {traffic: {pattern: hotspot, hotspot: 8}}\n",
                   "test.yaml:2:49: workload.traffic.hotspot: expected a resource from 0 to 7, found 8"},
         BadConfig{"TrafficBurst", "engine: {kind: cycle}\nworkload: {traffic: {pattern: bursty, rate: 0.9}}\n",
                   "test.yaml:2:45: workload.traffic.rate: bursts of 8 packets make at most 0.8889 packets per cycle, "
@@ -225,16 +222,17 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:49: topology.overrides.0.resource: expected a resource from 0 to 1, found 2"},
         BadConfig{"FaultOutside", SCENE "topology: {resources: 2}\nfaults: {resource: {kind: pause, number: 2}}\n",
                   "test.yaml:3:42: faults.resource.number: expected a resource from 0 to 1, found 2"},
-        BadConfig{"StopAlone", SCENE "topology: {resources: 1}\nfaults: {resource: {kind: stop}}\n",
-                  "test.yaml:2:23: topology.resources: where one stops another has to go on; expected at least 2, found 1"},
+        BadConfig{
+            "StopAlone", SCENE "topology: {resources: 1}\nfaults: {resource: {kind: stop}}\n",
+            "test.yaml:2:23: topology.resources: where one stops another has to go on; expected at least 2, found 1"},
         BadConfig{"FaultsComparedOnTheWallClock", SCENE "faults: {compare: true, links: {drop: 0.1}}\n",
-                  "test.yaml:2:19: faults.compare: on the wall clock two runs differ by more than faults cost; expected false, or "
+                  "test.yaml:2:19: faults.compare: on the wall clock two runs differ by more than faults cost; "
+                  "expected false, or "
                   "engine.kind: cycle"},
         BadConfig{"OverrideTwice", SCENE "topology: {overrides: [{resource: 2}, {resource: 2}]}\n",
                   "test.yaml:2:50: topology.overrides.1.resource: resource 2 has an override already"},
-        BadConfig{
-            "VaryUnknown", SCENE "vary: {packets.ray: [1, 2]}\n",
-            "test.yaml:2:21: vary.packets.ray: unknown key 'packets.ray'; did you mean 'packets.rays'?"}),
+        BadConfig{"VaryUnknown", SCENE "vary: {packets.ray: [1, 2]}\n",
+                  "test.yaml:2:21: vary.packets.ray: unknown key 'packets.ray'; did you mean 'packets.rays'?"}),
     [](const auto& bad) { return bad.param.name; });
 
 TEST(ConfigRules, FlowNoneIsPermittedByForce) {
@@ -243,10 +241,9 @@ TEST(ConfigRules, FlowNoneIsPermittedByForce) {
 }
 
 TEST(ConfigRules, AFieldThatCannotBeReadIsNotJudgedByItsDefault) {
-  EXPECT_THAT(
-      texts(issues_of("scene: {builtin: 5}\n")),
-      testing::ElementsAre("test.yaml:1:18: scene.builtin: expected one of cornell, spheres, terrain, "
-                           "instances, sliver, found 5"));
+  EXPECT_THAT(texts(issues_of("scene: {builtin: 5}\n")),
+              testing::ElementsAre("test.yaml:1:18: scene.builtin: expected one of cornell, spheres, terrain, "
+                                   "instances, sliver, found 5"));
 }
 
 }  // namespace

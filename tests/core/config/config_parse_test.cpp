@@ -1,9 +1,8 @@
-#include "core/config/load.h"
-
 #include <fstream>
 
 #include <gtest/gtest.h>
 
+#include "core/config/load.h"
 #include "core/config/write.h"
 #include "tests/core/config/config_issues.h"
 
@@ -74,8 +73,7 @@ TEST(ConfigParse, ReadsHexadecimalNumbers) {
 }
 
 TEST(ConfigParse, ExpandsAliases) {
-  const Config config =
-      parse_config("scene: {builtin: cornell}\ntesters: {box: &t {units: 3}, plane: *t}\n", "a.yaml");
+  const Config config = parse_config("scene: {builtin: cornell}\ntesters: {box: &t {units: 3}, plane: *t}\n", "a.yaml");
   EXPECT_EQ(config.testers.plane.units, 3);
 }
 
@@ -116,8 +114,7 @@ TEST(ConfigParse, LoadsAFileAndNamesItInErrors) {
     load_config(path, {});
     FAIL();
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find(path + ":1:18: scene.builtin:"), std::string::npos)
-        << error.what();
+    EXPECT_NE(std::string(error.what()).find(path + ":1:18: scene.builtin:"), std::string::npos) << error.what();
   }
 }
 

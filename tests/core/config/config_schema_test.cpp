@@ -1,9 +1,8 @@
-#include "core/config/schema.h"
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/config/load.h"
+#include "core/config/schema.h"
 #include "core/config/write.h"
 #include "tests/core/config/random_config.h"
 #include "tests/support/json_schema_check.h"

@@ -1,8 +1,7 @@
-#include "core/config/tree/tree.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/config/tree/tree.h"
 #include "tests/core/config/config_issues.h"
 
 namespace carousel {
@@ -34,8 +33,7 @@ TEST(ConfigTree, ABraceAloneDoesNotMakeJson) {
 }
 
 TEST(ConfigTree, JsonValuesHavePositions) {
-  const config::Node root =
-      tree("{\"a\": [1, -2.5e3,\n \"x\\\"y\\\\\", null],\n  \"b\"  :{\"c\":true}}", "t.json");
+  const config::Node root = tree("{\"a\": [1, -2.5e3,\n \"x\\\"y\\\\\", null],\n  \"b\"  :{\"c\":true}}", "t.json");
   const auto at = [](const config::Node& node) { return node.position.text(); };
   EXPECT_EQ(at(root), "t.json:1:1");
   EXPECT_EQ(at(root.find("a")->items[0]), "t.json:1:8");
@@ -48,9 +46,8 @@ TEST(ConfigTree, JsonValuesHavePositions) {
 }
 
 TEST(ConfigTree, JsonErrorsHavePositions) {
-  EXPECT_THAT(
-      json_issues("{\"scene\": {\"builtin\": \"cornell\"},\n \"image\": {\"width\": 0}}"),
-      ElementsAre("test.json:2:21: image.width: expected an integer from 1 to 16384 (pixels), found 0"));
+  EXPECT_THAT(json_issues("{\"scene\": {\"builtin\": \"cornell\"},\n \"image\": {\"width\": 0}}"),
+              ElementsAre("test.json:2:21: image.width: expected an integer from 1 to 16384 (pixels), found 0"));
   EXPECT_THAT(json_issues("{\"scene\": {\"builtin\": \"cornell\"},\n \"scene\": {}}"),
               ElementsAre("test.json:2:2: scene: duplicate key; first given at line 1, column 2"));
   EXPECT_THAT(json_issues("{\"scene\":\n  {\"builtin\" \"cornell\"}}"),
@@ -70,9 +67,9 @@ TEST(ConfigTree, YamlScalarsFollowTheCoreSchema) {
   using K = config::Node::Kind;
   std::vector<K> kinds;
   for (const config::Node& item : root.items) kinds.push_back(item.kind);
-  EXPECT_THAT(kinds, ElementsAre(K::kNull, K::kNull, K::kBool, K::kString, K::kInt, K::kInt, K::kInt,
-                                 K::kFloat, K::kFloat, K::kFloat, K::kFloat, K::kFloat, K::kString,
-                                 K::kString, K::kString, K::kString));
+  EXPECT_THAT(kinds,
+              ElementsAre(K::kNull, K::kNull, K::kBool, K::kString, K::kInt, K::kInt, K::kInt, K::kFloat, K::kFloat,
+                          K::kFloat, K::kFloat, K::kFloat, K::kString, K::kString, K::kString, K::kString));
   EXPECT_EQ(root.items[4].text, "15");
   EXPECT_EQ(root.items[6].text, "-1");
 }
@@ -84,8 +81,7 @@ TEST(ConfigTree, DeepNestingIsAnErrorAndNoCrash) {
   EXPECT_THAT(json_issues(json_open), ElementsAre("test.json:1:42: nested more than 32 deep"));
   std::string keys;
   for (int i = 0; i < 5000; ++i) keys += "{a: ";
-  EXPECT_THAT(texts(issues_of(keys + std::string(5000, '}'))),
-              ElementsAre(HasSubstr("nested more than 32 deep")));
+  EXPECT_THAT(texts(issues_of(keys + std::string(5000, '}'))), ElementsAre(HasSubstr("nested more than 32 deep")));
   std::string path = "a";
   for (int i = 0; i < 5000; ++i) path += ".a";
   EXPECT_FALSE(issues_of("scene: {builtin: cornell}", {path + "=1"}).empty());
@@ -103,8 +99,7 @@ TEST(ConfigTree, AliasesCannotExplode) {
 }
 
 TEST(ConfigTree, LargeFilesAreRefused) {
-  EXPECT_THAT(texts(issues_of(std::string((1 << 20) + 1, ' '))),
-              ElementsAre("test.yaml: larger than 1048576 bytes"));
+  EXPECT_THAT(texts(issues_of(std::string((1 << 20) + 1, ' '))), ElementsAre("test.yaml: larger than 1048576 bytes"));
 }
 
 TEST(ConfigTree, AByteOrderMarkIsSkipped) {

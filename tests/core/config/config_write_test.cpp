@@ -1,9 +1,8 @@
-#include "core/config/write.h"
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/config/load.h"
+#include "core/config/write.h"
 #include "tests/core/config/random_config.h"
 
 namespace carousel {

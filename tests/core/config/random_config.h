@@ -55,8 +55,8 @@ class RandomFiller {
                                          " "};
     value = kTexts[pick(std::size(kTexts))];
   }
-  void field_or_auto(std::string_view, std::optional<std::int64_t>& value, config::IntRange range,
-                     const char*, const char*) {
+  void field_or_auto(std::string_view, std::optional<std::int64_t>& value, config::IntRange range, const char*,
+                     const char*) {
     value.reset();
     if (pick(2) == 1) field("", value.emplace(), range, "", "");
   }
@@ -103,9 +103,7 @@ class RandomFiller {
   }
 
  private:
-  std::size_t pick(std::size_t count) {
-    return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
-  }
+  std::size_t pick(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_); }
   double real(config::RealRange range) {
     switch (pick(4)) {
       case 0:

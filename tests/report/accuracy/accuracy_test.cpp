@@ -21,8 +21,8 @@ AccuracyRow row(const std::string& triangle, double time, std::uint64_t wrong, b
 }
 
 TEST(AccuracyFrontier, HoldsWhatNothingBeatsInBoth) {
-  std::vector<AccuracyRow> rows{row("fast", 10, 5, false), row("slow", 30, 0, true), row("slower", 40, 0, true),
-                                row("bad", 20, 7, false), row("middle", 20, 2, false), row("even", 20, 2, false)};
+  std::vector<AccuracyRow> rows{row("fast", 10, 5, false), row("slow", 30, 0, true),    row("slower", 40, 0, true),
+                                row("bad", 20, 7, false),  row("middle", 20, 2, false), row("even", 20, 2, false)};
   mark_frontier(rows);
   std::vector<std::string> names;
   for (const AccuracyRow& r : rows)
@@ -32,7 +32,8 @@ TEST(AccuracyFrontier, HoldsWhatNothingBeatsInBoth) {
 
 TEST(AccuracyVerdict, NamesTheFastestSafeLevelAndWhatItCosts) {
   const std::vector<AccuracyRow> rows{row("fast", 10, 5, false), row("slower", 40, 0, true), row("slow", 30, 0, true)};
-  EXPECT_THAT(accuracy_verdict(rows), testing::HasSubstr("slow + box + two_step at 30 ns a ray, +200 % over the fastest"));
+  EXPECT_THAT(accuracy_verdict(rows),
+              testing::HasSubstr("slow + box + two_step at 30 ns a ray, +200 % over the fastest"));
   EXPECT_THAT(accuracy_verdict({row("fast", 10, 5, false)}), testing::HasSubstr("No combination is safe"));
   EXPECT_THAT(accuracy_verdict({row("fast", 10, 0, true)}), testing::HasSubstr("also the fastest"));
   EXPECT_EQ(accuracy_verdict({}), "");
@@ -42,7 +43,7 @@ TEST(AccuracySlope, IsThatOfAPowerLaw) {
   std::vector<SamplingRow> rows;
   for (const std::uint64_t n : {1, 4, 16, 64}) rows.push_back({n, 3 / std::sqrt(double(n)), 0});
   EXPECT_NEAR(log_log_slope(rows), -0.5, 1e-12);
-  rows.push_back({256, 0, 0});   // no error at all has no logarithm
+  rows.push_back({256, 0, 0});  // no error at all has no logarithm
   EXPECT_NEAR(log_log_slope(rows), -0.5, 1e-12);
   EXPECT_EQ(log_log_slope({{4, 1, 0}}), 0);
 }

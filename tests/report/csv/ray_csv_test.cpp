@@ -135,10 +135,8 @@ TEST(RayCsv, RefusesBadRowsAllTogether) {
 
 TEST(RayCsv, RefusesAMissingHeader) {
   EXPECT_THAT(problems(""), ElementsAre(HasSubstr("r.csv:1: expected the header ray,kind,")));
-  EXPECT_THAT(problems("0,camera,0,0,0,0,0,1,0,inf\n"),
-              ElementsAre(HasSubstr("r.csv:1:1: expected the header")));
-  EXPECT_THAT(problems("ray,kind,ox,oy,oz,dx,dz,dy,tmin,tmax\n"),
-              ElementsAre(HasSubstr("r.csv:1:22: expected")));
+  EXPECT_THAT(problems("0,camera,0,0,0,0,0,1,0,inf\n"), ElementsAre(HasSubstr("r.csv:1:1: expected the header")));
+  EXPECT_THAT(problems("ray,kind,ox,oy,oz,dx,dz,dy,tmin,tmax\n"), ElementsAre(HasSubstr("r.csv:1:22: expected")));
 }
 
 TEST(RayCsv, StopsAfterTheFirstProblems) {

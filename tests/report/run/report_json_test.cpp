@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/json_schema_check.h"
 #include "tests/report/run/sample_report.h"
+#include "tests/support/json_schema_check.h"
 
 namespace carousel::report {
 namespace {
@@ -12,9 +12,8 @@ using Json = nlohmann::ordered_json;
 
 TEST(ReportJson, HasTheKeysOfTheContract) {
   const Json json = report_json(sample_report());
-  for (const char* key :
-       {"schema_version", "carousel", "config", "scene", "engine", "rays", "throughput", "tests", "packets",
-        "collections", "resources", "links", "shading", "verify", "digest", "host"})
+  for (const char* key : {"schema_version", "carousel", "config", "scene", "engine", "rays", "throughput", "tests",
+                          "packets", "collections", "resources", "links", "shading", "verify", "digest", "host"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["rays"]["by_kind"]["bounce"], 300);
   EXPECT_EQ(json["tests"]["triangle"]["per_ray"], 2.25);
@@ -62,8 +61,8 @@ void expect_units(const Json& schema, const std::string& path) {
       const std::string child = path + "." + key;
       EXPECT_TRUE(value.contains("description")) << child;
       const bool number = value["type"] == "integer" || value["type"] == "number";
-      const bool plain = key.ends_with("fraction") || key == "fullness_mean" || key == "resource" ||
-                         key == "from" || key == "to" || key == "schema_version";
+      const bool plain = key.ends_with("fraction") || key == "fullness_mean" || key == "resource" || key == "from" ||
+                         key == "to" || key == "schema_version";
       EXPECT_TRUE(!number || plain || value.contains("unit")) << child;
       expect_units(value, child);
     }

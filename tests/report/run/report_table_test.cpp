@@ -14,14 +14,14 @@ using testing::Not;
 
 TEST(ReportTable, SaysWhatHappened) {
   const std::string table = report_table(sample_report());
-  EXPECT_THAT(
-      table,
-      HasSubstr("scene        cornell: 1,234,567 triangles, 5 instances   64 x 32 pixels, 4 samples\n"));
+  EXPECT_THAT(table, HasSubstr("scene        cornell: 1,234,567 triangles, 5 instances   64 x 32 pixels, 4 samples\n"));
   EXPECT_THAT(table, HasSubstr("engine       native: 2 resources, ring on 4 threads, 2 shader workers\n"));
   EXPECT_THAT(table, HasSubstr("rays         1,000 emitted   990 completed   10 lost\n"));
-  EXPECT_THAT(table, HasSubstr("raster       9 triangles seen 8 times by tiles   5 hits   3 left to rays   250.0 ms\n"));
+  EXPECT_THAT(table,
+              HasSubstr("raster       9 triangles seen 8 times by tiles   5 hits   3 left to rays   250.0 ms\n"));
   EXPECT_THAT(table, HasSubstr("tests        per ray: box 8.50   triangle 2.25   transform 1.00\n"));
-  EXPECT_THAT(table, HasSubstr("cull planes  640 planes, 42.5 bytes a node, found in 125.0 ms   300 of 790 children culled\n"));
+  EXPECT_THAT(
+      table, HasSubstr("cull planes  640 planes, 42.5 bytes a node, found in 125.0 ms   300 of 790 children culled\n"));
   EXPECT_THAT(table, HasSubstr("spared: 85 nodes   180 leaves of 605 triangles   35 transforms   30 boxes\n"));
   EXPECT_THAT(table, HasSubstr("25.0 % of them local where seen"));
   EXPECT_THAT(table, HasSubstr("link 7   slots 0"));

@@ -37,15 +37,16 @@ TEST(BundleUnits, EdgesOfASilhouetteArePasses) {
 
 TEST(BundleUnits, RaysThatLeaveABundleAreTestedAfterIt) {
   Tester tester(bundle_testers());
-  EXPECT_EQ(tester.strip(10, counts(32, 8), 33, 8), 10u + 7u + 3u + 4u);   // the last to leave, the last to be tested
+  EXPECT_EQ(tester.strip(10, counts(32, 8), 33, 8), 10u + 7u + 3u + 4u);  // the last to leave, the last to be tested
   Tester many(bundle_testers());
-  EXPECT_EQ(many.strip(10, counts(256, 2), 33, 2), 10u + 3u + 31u + 4u);   // 32 cycles of boxes from the first answer on
+  EXPECT_EQ(many.strip(10, counts(256, 2), 33, 2), 10u + 3u + 31u + 4u);  // 32 cycles of boxes from the first answer on
 }
 
 TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
   Tester wide(bundle_testers()), narrow(bundle_testers(), kOrder, 2);
   EXPECT_EQ(wide.strip(0, counts(8, 0), 10), 4u);
-  EXPECT_EQ(narrow.strip(0, counts(8, 0), 10), 5u + 4u);   // five cycles of reading, the last record a cycle after the fifth
+  EXPECT_EQ(narrow.strip(0, counts(8, 0), 10),
+            5u + 4u);  // five cycles of reading, the last record a cycle after the fifth
   EXPECT_EQ(narrow.store.busy(), 5u);
   EXPECT_EQ(wide.store.busy(), 0u);
   EXPECT_EQ(narrow.strip(8, counts(8, 0), 2), 8u + 1u + 4u);

@@ -91,13 +91,13 @@ TEST(PlaneBytes, StandBehindTheirNodesWithoutOverlap) {
 
 TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
   MemoryConfig config;
-  config.shape_buffer_kib = 4;   // 16 places
+  config.shape_buffer_kib = 4;  // 16 places
   ShapeBuffer buffer(config);
   const ShapeSpan node{4096, 256 + 8 * 4 * 16};
   buffer.keep(node);
   EXPECT_TRUE(buffer.has(node));
   for (std::uint64_t i = 1; i <= 8; ++i) buffer.keep({4096 + i * 1024, node.bytes});
-  EXPECT_FALSE(buffer.has(node));   // nine such nodes are 27 places
+  EXPECT_FALSE(buffer.has(node));  // nine such nodes are 27 places
 }
 
 TEST(PlaneUnits, AreLiftedWhereThereAreAny) {

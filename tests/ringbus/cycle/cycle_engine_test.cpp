@@ -49,7 +49,8 @@ TEST(CycleEngine, TakesTheSameCyclesOnAnyNumberOfThreads) {
       cell.threads = threads;
       const Outcome together = run_cell(scene, cell);
       ASSERT_EQ(together.fault, "") << "seed " << seed << ": " << cell.text();
-      EXPECT_EQ(together.result.threads, std::min<std::size_t>(threads, static_cast<std::size_t>(cell.config.topology.resources)));
+      EXPECT_EQ(together.result.threads,
+                std::min<std::size_t>(threads, static_cast<std::size_t>(cell.config.topology.resources)));
       EXPECT_TRUE(*together.result.cycle == *alone.result.cycle) << "seed " << seed << ": " << cell.text();
       EXPECT_TRUE(together.result.resources == alone.result.resources) << "seed " << seed << ": " << cell.text();
     }
@@ -60,7 +61,9 @@ TEST(CycleEngine, LedgersAddUp) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
   std::uint64_t transforms = 0, jobs = 0, waited = 0;
   const auto count = static_cast<std::uint32_t>(cell_count(40));
-  const auto go_on = [&](std::uint32_t done) { return done < count || ((jobs == 0 || transforms == 0) && done < 20 * count); };
+  const auto go_on = [&](std::uint32_t done) {
+    return done < count || ((jobs == 0 || transforms == 0) && done < 20 * count);
+  };
   for (std::uint32_t seed = run_seed(); go_on(seed - run_seed()); ++seed) {
     const Cell cell = random_cell(seed + 1000);
     const Outcome out = run_cell(scene, cell);
@@ -119,18 +122,27 @@ class Conservation {
 
   void follow(const cycle::Step& step) {
     switch (step.kind) {
-      case cycle::StepKind::kPlace: placed_ += step.rays; break;
-      case cycle::StepKind::kNewRays: joined_ += step.rays; break;
-      case cycle::StepKind::kComplete: completed_ += step.rays; break;
-      case cycle::StepKind::kShade: shaded_ += step.rays; break;
-      case cycle::StepKind::kTestedRay: break;
+      case cycle::StepKind::kPlace:
+        placed_ += step.rays;
+        break;
+      case cycle::StepKind::kNewRays:
+        joined_ += step.rays;
+        break;
+      case cycle::StepKind::kComplete:
+        completed_ += step.rays;
+        break;
+      case cycle::StepKind::kShade:
+        shaded_ += step.rays;
+        break;
+      case cycle::StepKind::kTestedRay:
+        break;
       case cycle::StepKind::kIssue:
         ASSERT_TRUE(out_.emplace(step.packet, step.rays).second) << cycle::step_text(step);
         break;
       default: {
         const auto packet = out_.find(step.packet);
         ASSERT_TRUE(packet != out_.end()) << cycle::step_text(step);
-        if (step.rays == 0) packet->second = 0;   // it carried memberships, and has been to their home
+        if (step.rays == 0) packet->second = 0;  // it carried memberships, and has been to their home
         ASSERT_EQ(packet->second, step.rays) << cycle::step_text(step);
         if (step.kind == cycle::StepKind::kRetire) out_.erase(packet);
       }
@@ -146,7 +158,7 @@ class Conservation {
 
  private:
   std::uint64_t slots_, placed_ = 0, joined_ = 0, completed_ = 0, shaded_ = 0;
-  std::map<std::uint32_t, std::uint32_t> out_;   // rays by packet
+  std::map<std::uint32_t, std::uint32_t> out_;  // rays by packet
 };
 
 TEST(CycleEngine, ConservesRaysAndPacketsAtEveryStep) {
@@ -159,7 +171,8 @@ TEST(CycleEngine, ConservesRaysAndPacketsAtEveryStep) {
     const Outcome out = run_cell(scene, cell);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
     ASSERT_EQ(out.fault, "");
-    Conservation conservation(static_cast<std::uint64_t>(cell.config.rays.slots_per_resource * cell.config.topology.resources));
+    Conservation conservation(
+        static_cast<std::uint64_t>(cell.config.rays.slots_per_resource * cell.config.topology.resources));
     for (const cycle::Step& step : out.result.cycle->steps) ASSERT_NO_FATAL_FAILURE(conservation.follow(step));
     conservation.expect_all(scene.rays());
     epochs += out.result.cycle->epochs.digests.size();

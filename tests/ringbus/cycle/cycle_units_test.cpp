@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/memory/memory.h"
-#include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/memory/shape_cache.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 
@@ -47,7 +47,7 @@ TEST(UnitBank, NoTestsTakeNoTime) {
 // ---- caches and memory
 
 TEST(LineCache, LeastRecentlyUsedGoesFirst) {
-  LineCache cache(2 * 64, 64, 2);   // one set of two ways
+  LineCache cache(2 * 64, 64, 2);  // one set of two ways
   cache.insert(1);
   cache.insert(2);
   EXPECT_TRUE(cache.touch(1));
@@ -58,7 +58,7 @@ TEST(LineCache, LeastRecentlyUsedGoesFirst) {
 }
 
 TEST(LineCache, SetsDoNotShareWays) {
-  LineCache cache(4 * 64, 64, 2);   // two sets of two
+  LineCache cache(4 * 64, 64, 2);  // two sets of two
   for (const std::uint64_t line : {0, 2, 4}) cache.insert(line);
   cache.insert(1);
   EXPECT_FALSE(cache.touch(0));
@@ -70,7 +70,7 @@ TEST(LineCache, SetsDoNotShareWays) {
 MemoryConfig memory_config() {
   MemoryConfig c;
   c.line_bytes = 64;
-  c.dram_bytes_per_cycle = 16;   // 4 cycles a line
+  c.dram_bytes_per_cycle = 16;  // 4 cycles a line
   c.dram_latency_cycles = 101;
   c.l2_kib = 1;
   c.ways = 4;
@@ -124,7 +124,7 @@ TEST(ShapeCache, AHitTakesItsLatencyAndACycleForEachLine) {
 TEST(ShapeCache, AMissWaitsForItsLastLineAndIsAskedForOnce) {
   CacheBench bench;
   bench.ask(0, {10, 2, 1});
-  bench.ask(0, {11, 1, 2});   // line 11 is on its way
+  bench.ask(0, {11, 1, 2});  // line 11 is on its way
   bench.cache.run(50);
   const Cycle in = ShapeCache::request_latency(bench.config), out = ShapeCache::answer_latency(bench.config);
   EXPECT_EQ(bench.down.next(), in + 1 + Memory::request_latency(bench.config));
@@ -144,7 +144,9 @@ TEST(ShapeCache, AMissWaitsForItsLastLineAndIsAskedForOnce) {
 
 // ---- links
 
-Token packet(std::uint32_t id, std::uint16_t cycles) { return {PacketId(id), 0, cycles, 1}; }
+Token packet(std::uint32_t id, std::uint16_t cycles) {
+  return {PacketId(id), 0, cycles, 1};
+}
 
 TEST(Ports, TailArrivesAfterLatencyAndWidths) {
   Wire wire;
@@ -185,7 +187,7 @@ TEST(Ports, ACreditNeedsTheLinksLatencyToGetBack) {
   EXPECT_EQ(in.next(), 4u);
   EXPECT_FALSE(out.send(1));
   EXPECT_TRUE(out.blocked());
-  in.take(6);   // held for two cycles
+  in.take(6);  // held for two cycles
   EXPECT_EQ(out.next(false), 10u);
   out.take_credits(9);
   EXPECT_FALSE(out.send(9));
@@ -213,7 +215,7 @@ TEST(Ports, QueueLedgerIsWhatCountingEveryCycleGives) {
       for (std::uint32_t n = random() % 3; n > 0 && in.next() <= now; --n, ++taken) in.take(now);
     const auto come = static_cast<std::uint64_t>(
         std::count_if(arrivals.begin(), arrivals.end(), [&](Cycle at) { return at <= now; }));
-    counted += come - taken;   // in the queue from now to now + 1
+    counted += come - taken;  // in the queue from now to now + 1
     most = std::max(most, come - taken);
   }
   EXPECT_EQ(wire.queue.packet_cycles, counted);
@@ -226,10 +228,10 @@ TEST(Ports, OpenLeavesTheReceiverPlaces) {
   OutPort out(wire, 4, 2, 1);
   EXPECT_TRUE(out.open(0, 2));
   out.launch(packet(1, 2), 0, false);
-  EXPECT_FALSE(out.open(1, 1));   // the link is busy
+  EXPECT_FALSE(out.open(1, 1));  // the link is busy
   EXPECT_EQ(out.opens(1), 2u);
   EXPECT_TRUE(out.open(2, 1));
-  EXPECT_FALSE(out.open(2, 2));   // one place left
+  EXPECT_FALSE(out.open(2, 2));  // one place left
   EXPECT_EQ(out.opens(2), kNever);
 }
 

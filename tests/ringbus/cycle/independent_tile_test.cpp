@@ -13,14 +13,17 @@ namespace {
 class LoneTile {
  public:
   LoneTile(TestScene& scene, const Config& config)
-      : config_(config), machine_(config_, scene.accel(config_.bvh), scene.size()), scene_(scene),
+      : config_(config),
+        machine_(config_, scene.accel(config_.bvh), scene.size()),
+        scene_(scene),
         tile_(ResourceId(0), machine_, true, TraceWindow{}, {&new_rays_, &completed_, &fetch_, &fetched_}) {}
 
   /// Loads the scene's rays [first, first + count), at cycle 0; `copies` times each.
   void load(std::size_t first, std::size_t count, int copies = 1) {
     RayBatch all, rays;
     scene_.new_workload()->generate(WorkerId(0), first + count, all);
-    for (int i = 0; i < copies; ++i) rays.insert(rays.end(), all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
+    for (int i = 0; i < copies; ++i)
+      rays.insert(rays.end(), all.begin() + static_cast<std::ptrdiff_t>(first), all.end());
     machine_.control.submit(rays);
     std::vector<RayGroup> groups;
     machine_.control.collect(ResourceId(0), groups);
@@ -75,7 +78,9 @@ Config independent_machine() {
   return c;
 }
 
-Cycle in_state(const TileResult& tile, TileState state) { return tile.states[static_cast<std::size_t>(state)]; }
+Cycle in_state(const TileResult& tile, TileState state) {
+  return tile.states[static_cast<std::size_t>(state)];
+}
 
 TEST(IndependentTile, OneRayTakesTheSumOfItsLatencies) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 50, 1);
@@ -110,7 +115,7 @@ TEST(IndependentTile, AsksForAStripOnceHoweverManyWantIt) {
   EXPECT_EQ(ten.completed, 10u);
   EXPECT_EQ(ten.fetches, one.fetches);
   EXPECT_EQ(ten.statistics().tests.box, 10 * one.statistics().tests.box);
-  EXPECT_GE(ten.last_completed, one.last_completed);   // nobody has a strip before it is there
+  EXPECT_GE(ten.last_completed, one.last_completed);  // nobody has a strip before it is there
   // The ten take turns in the units: at each strip the last begins nine cycles after the first at most.
   const Cycle strips = one.result().box.busy + one.result().triangle.busy;
   EXPECT_LE(ten.last_completed, one.last_completed + 9 * strips + 9 * sizeof(RayRecord) / 16);
@@ -123,7 +128,7 @@ TEST(IndependentTile, FewTestsOfSeveralRaysShareACycle) {
   LoneTile one(scene, wide), ten(scene, wide);
   one.load(0, 1);
   one.run(100);
-  ten.load(0, 1, 10);   // all at the same strips at the same time, eight boxes each
+  ten.load(0, 1, 10);  // all at the same strips at the same time, eight boxes each
   ten.run(100);
   EXPECT_EQ(ten.statistics().tests.box, 10 * one.statistics().tests.box);
   EXPECT_EQ(ten.result().box.busy, one.result().box.busy);
@@ -165,7 +170,7 @@ TEST(IndependentTile, TestsWhatOrderedTraversalTests) {
 }
 
 TEST(IndependentTile, StackLedgersAddUp) {
-  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 600, 0);   // closest hits only
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 600, 0);  // closest hits only
   Cell cell;
   cell.config = independent_machine();
   cell.config.topology.resources = 3;
@@ -173,7 +178,7 @@ TEST(IndependentTile, StackLedgersAddUp) {
   ASSERT_EQ(out.fault, "");
   for (const TileResult& tile : out.result.cycle->tiles) {
     EXPECT_GT(tile.stack.pushed_bytes, 0u);
-    EXPECT_EQ(tile.stack.popped_bytes, tile.stack.pushed_bytes);   // no ray leaves before its stack is empty
+    EXPECT_EQ(tile.stack.popped_bytes, tile.stack.pushed_bytes);  // no ray leaves before its stack is empty
     EXPECT_GE(tile.stack.ray_peak_bytes, 4u);
     EXPECT_GT(tile.stack.peak_bytes, tile.stack.ray_peak_bytes);
     EXPECT_LE(tile.stack.peak_bytes, tile.stack.pushed_bytes);

@@ -19,12 +19,14 @@ std::vector<RayRecord> records_of(TestScene& scene) {
   return records;
 }
 
-std::uint64_t entry_bytes(accel::NodeKey key) { return key.ref.is_inner() ? 32 / 8 : 96 / 8; }
+std::uint64_t entry_bytes(accel::NodeKey key) {
+  return key.ref.is_inner() ? 32 / 8 : 96 / 8;
+}
 
 TEST(RayWalk, PushesAllChildrenHitButTheNearest) {
   TestScene scene(builtin_scene(BuiltinScene::kCornell, 0, 0), 400, 3);
   BvhConfig large_leaves;
-  large_leaves.leaf_triangles = 16;   // so that the root has some
+  large_leaves.leaf_triangles = 16;  // so that the root has some
   const accel::Accel& accel = scene.accel(large_leaves);
   std::vector<RayRecord> records = records_of(scene);
   int several = 0, leaves = 0;

@@ -43,7 +43,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   Wires wires;
   ShadeHelp help(config, wires.ports());
   help.tell(0, true);
-  EXPECT_EQ(wires.notes.next(), kNever);   // everybody is idle at first
+  EXPECT_EQ(wires.notes.next(), kNever);  // everybody is idle at first
   help.tell(3, false);
   expect_note(wires, 3 + kLatency, false, false);
   help.tell(4, false);
@@ -51,12 +51,12 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
 
   wires.jobs.send(10, {kShade});
   EXPECT_EQ(help.next(), 10u);
-  EXPECT_TRUE(help.step(10, false));   // a test is under way
+  EXPECT_TRUE(help.step(10, false));  // a test is under way
   EXPECT_TRUE(help.holds());
   EXPECT_FALSE(help.shading());
   EXPECT_FALSE(help.step(12, false));
   help.tell(12, true);
-  EXPECT_EQ(wires.notes.next(), kNever);   // not with a job in hand
+  EXPECT_EQ(wires.notes.next(), kNever);  // not with a job in hand
   EXPECT_TRUE(help.step(15, true));
   EXPECT_TRUE(help.shading());
   EXPECT_EQ(help.next(), 15 + kShade);
@@ -162,14 +162,15 @@ TEST(Distribute, LoadIsBetterThanChance) {
     Config config = helping_machine();
     config.shading.workers = 8;
     config.shading.cycles_per_shade = 300;
-    config.rays.slots_per_resource = 2;   // too few rays to keep every queue filled whatever happens
+    config.rays.slots_per_resource = 2;  // too few rays to keep every queue filled whatever happens
     config.shading.distribute = distribute;
     const Outcome out = run_with(scene, config, TopologyShape::kRing, false);
     EXPECT_EQ(out.fault, "");
     return out.result.cycle->cycles;
   };
   using D = ShadingConfig::Distribute;
-  const Cycle fifo = cycles(D::kFifoFill), load = cycles(D::kLoad), turns = cycles(D::kRoundRobin), chance = cycles(D::kRandom);
+  const Cycle fifo = cycles(D::kFifoFill), load = cycles(D::kLoad), turns = cycles(D::kRoundRobin),
+              chance = cycles(D::kRandom);
   EXPECT_LT(fifo, chance);
   EXPECT_LT(load, chance);
   EXPECT_NE(turns, fifo);

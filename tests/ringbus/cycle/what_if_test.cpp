@@ -1,8 +1,9 @@
 // The verdict names the bottleneck: each is planted in turn in a machine that has plenty of everything else; and on
 // random machines the class it names, from the first rays only, is the one whose lift gains most in the whole run.
+#include "ringbus/cycle/what_if.h"
+
 #include <gtest/gtest.h>
 
-#include "ringbus/cycle/what_if.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {
@@ -33,8 +34,14 @@ struct Plant {
 
 std::vector<Plant> plants() {
   return {
-      {"box_tests", [](Config& c) { c.testers.box = {1, 8, 8}; }},
-      {"triangle_tests", [](Config& c) { c.testers.triangle = {1, 40, 40}; }},
+      {"box_tests",
+       [](Config& c) {
+         c.testers.box = {1, 8, 8};
+       }},
+      {"triangle_tests",
+       [](Config& c) {
+         c.testers.triangle = {1, 40, 40};
+       }},
       {"handling", [](Config& c) { c.packets.ids_per_cycle = 1, c.packets.rays = c.collections.ready = 128; }},
       {"link_bandwidth", [](Config& c) { c.topology.link.bytes_per_cycle = 1; }},
       {"memory_bandwidth", [](Config& c) { c.memory.dram_bytes_per_cycle = 1, c.memory.l2_kib = 1; }},
@@ -62,7 +69,8 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
   for (const Plant& plant : plants()) {
     Config config = generous_machine();
     plant.make(config);
-    const Bottleneck found = find_bottleneck(config, scene.accel(config.bvh), scene.size(), factory(scene), 4000, on_threads(1));
+    const Bottleneck found =
+        find_bottleneck(config, scene.accel(config.bvh), scene.size(), factory(scene), 4000, on_threads(1));
     ASSERT_FALSE(found.gains.empty());
     std::string all;
     for (const Gain& gain : found.gains) all += fmt::format("\n  {} {:+.3f}", gain.name, gain.gain);
@@ -78,9 +86,11 @@ TEST(WhatIf, LiftsWhatTheMachineHas) {
   };
   Config c = generous_machine();
   c.topology.link.latency_cycles = 4;
-  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"}) EXPECT_TRUE(has(c, name)) << name;
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"})
+    EXPECT_TRUE(has(c, name)) << name;
   c.topology.shape = TopologyShape::kIndependent;
-  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"}) EXPECT_FALSE(has(c, name)) << name;
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"})
+    EXPECT_FALSE(has(c, name)) << name;
   EXPECT_TRUE(has(c, "memory_latency"));
 }
 
@@ -122,17 +132,20 @@ TEST(WhatIf, PredictsRandomMachines) {
     const std::uint32_t seed = run_seed() + static_cast<std::uint32_t>(i);
     const Config config = random_machine(seed);
     const accel::Accel& accel = scene.accel(config.bvh);
-    const Bottleneck predicted = find_bottleneck(config, accel, scene.size(), factory(scene), pilot_paths(config), on_threads(1));
+    const Bottleneck predicted =
+        find_bottleneck(config, accel, scene.size(), factory(scene), pilot_paths(config), on_threads(1));
     const Bottleneck whole = find_bottleneck(config, accel, scene.size(), factory(scene), 12000, on_threads(1));
     const Gain& named = predicted.gains.front();
-    const auto truth = std::find_if(whole.gains.begin(), whole.gains.end(), [&](const Gain& g) { return g.name == named.name; });
+    const auto truth =
+        std::find_if(whole.gains.begin(), whole.gains.end(), [&](const Gain& g) { return g.name == named.name; });
     ASSERT_NE(truth, whole.gains.end());
     const bool best = truth->gain >= whole.gains.front().gain - 0.02;
     const bool close = std::abs(named.gain - truth->gain) <= 0.1;
-    if (best && close) ++right;
+    if (best && close)
+      ++right;
     else
-      std::printf("seed %u: named %s, predicted %+.3f, found %+.3f; best %s %+.3f\n", seed, named.name.c_str(), named.gain,
-                  truth->gain, whole.gains.front().name.c_str(), whole.gains.front().gain);
+      std::printf("seed %u: named %s, predicted %+.3f, found %+.3f; best %s %+.3f\n", seed, named.name.c_str(),
+                  named.gain, truth->gain, whole.gains.front().name.c_str(), whole.gains.front().gain);
   }
   EXPECT_GE(right * 10, machines * 9) << "of " << machines << " machines, first seed " << run_seed();
 }

@@ -27,7 +27,8 @@ class Ticker final : public Agent {
 };
 
 /// One agent a thread, the last of which fails.
-std::vector<std::vector<Agent*>> parts_of(std::vector<std::unique_ptr<Ticker>>& agents, std::size_t threads, Cycle fails_at) {
+std::vector<std::vector<Agent*>> parts_of(std::vector<std::unique_ptr<Ticker>>& agents, std::size_t threads,
+                                          Cycle fails_at) {
   std::vector<std::vector<Agent*>> parts(threads);
   for (std::size_t t = 0; t < threads; ++t)
     parts[t].push_back(agents.emplace_back(std::make_unique<Ticker>(t + 1 == threads ? fails_at : kNever)).get());
@@ -60,7 +61,8 @@ TEST(Windows, AStopEndsAllThreads) {
 /// Sends to another; runs only when it is told.
 class Listener final : public Agent {
  public:
-  Listener(Channel<int>& in, Channel<int>& out, Cycle latency, bool starts) : in_(in), out_(out), latency_(latency), starts_(starts) {}
+  Listener(Channel<int>& in, Channel<int>& out, Cycle latency, bool starts)
+      : in_(in), out_(out), latency_(latency), starts_(starts) {}
 
   Cycle next() const override { return starts_ ? 1 : in_.next(); }
   bool polled() const override { return false; }

@@ -10,7 +10,9 @@
 namespace carousel::ringbus {
 namespace {
 
-ScatterWorkload rays_into(const Aabb& bounds) { return ScatterWorkload(bounds, 300, 3, 6 + run_seed(), 50.0f); }
+ScatterWorkload rays_into(const Aabb& bounds) {
+  return ScatterWorkload(bounds, 300, 3, 6 + run_seed(), 50.0f);
+}
 
 std::string engine_digest(const Config& c, const accel::Accel& accel, const Aabb& bounds) {
   const float size = std::sqrt(glm::dot(bounds.extent(), bounds.extent()));
@@ -22,7 +24,7 @@ std::string engine_digest(const Config& c, const accel::Accel& accel, const Aabb
 
 TEST(AccuracyIdentity, EveryTransformLevelHasOneDigest) {
   scene::Scene scene = builtin_scene(BuiltinScene::kInstances, 0, 400);
-  for (std::size_t i = 0; i < scene.instances.size(); i += 2) {   // every other one without its scale: a rotation
+  for (std::size_t i = 0; i < scene.instances.size(); i += 2) {  // every other one without its scale: a rotation
     Mat3& linear = scene.instances[i].world_from_model.linear;
     for (int c = 0; c < 3; ++c) linear[c] = Vec3(glm::normalize(DVec3(linear[c])));
   }
@@ -47,7 +49,7 @@ TEST(AccuracyIdentity, EveryTransformLevelHasOneDigest) {
       }
     }
   }
-  EXPECT_EQ(digests.size(), kEnumNames<TransformLevel>.size());   // each level is an arithmetic of its own
+  EXPECT_EQ(digests.size(), kEnumNames<TransformLevel>.size());  // each level is an arithmetic of its own
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What lets rays through, spheres and rays' wishes: one digest, in the tracer, on the native ring and on the cycle engine,
-// wherever it is asked.
+// What lets rays through, spheres and rays' wishes: one digest, in the tracer, on the native ring and on the cycle
+// engine, wherever it is asked.
 #include <gtest/gtest.h>
 
 #include "accel/build/build.h"
@@ -35,8 +35,12 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
   EXPECT_GT(procedural, 1000u);
 }
 
-TEST(AnyHitIdentity, NativeRingGivesTheTracersDigest) { expect_one_digest(machine_factors(), 5); }
-TEST(AnyHitIdentity, CycleEngineGivesTheTracersDigest) { expect_one_digest(cycle_factors(), 6); }
+TEST(AnyHitIdentity, NativeRingGivesTheTracersDigest) {
+  expect_one_digest(machine_factors(), 5);
+}
+TEST(AnyHitIdentity, CycleEngineGivesTheTracersDigest) {
+  expect_one_digest(cycle_factors(), 6);
+}
 
 TEST(AnyHitIdentity, BundlesChangeNothing) {
   const accel::HashedStop stop(0.4);
@@ -57,7 +61,7 @@ TEST(AnyHitIdentity, BundlesChangeNothing) {
 
 // One resource, one context, nothing else to wait for: the time that asking takes is the trip and the worker's.
 TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
-  const accel::HashedStop never(0);   // every ray asks at each triangle of the veil in front of it
+  const accel::HashedStop never(0);  // every ray asks at each triangle of the veil in front of it
   scene::Scene veils = accel::empty_scene();
   veils.materials[0].alpha_mode = scene::AlphaMode::kBlend;
   veils.materials[0].base_color.a = 0.5f;

@@ -1,7 +1,7 @@
 // With bundles or without: one digest, on the native ring and on the cycle engine, however they are made, tested, split
 // and made again; nothing is lost, and every rare path is seen to have been taken.
-#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 
 #include "accel/build/build.h"
 #include "tests/accel/structure/test_scenes.h"
@@ -24,12 +24,14 @@ std::vector<Factor> bundle_factors() {
       factor("lifetime", all(BundlesConfig::Lifetime{}),
              [](Cell& c, BundlesConfig::Lifetime v) { c.config.bundles.lifetime = v; }),
       factor("split", all(BundlesConfig::Split{}), [](Cell& c, BundlesConfig::Split v) { c.config.bundles.split = v; }),
-      factor("sources", all(BundlesConfig::Sources{}), [](Cell& c, BundlesConfig::Sources v) { c.config.bundles.sources = v; }),
+      factor("sources", all(BundlesConfig::Sources{}),
+             [](Cell& c, BundlesConfig::Sources v) { c.config.bundles.sources = v; }),
       factor<I>("min rays", {2, 3}, [](Cell& c, I v) { c.config.bundles.min_rays = v; }),
       factor<I>("depth", {0, 2, 255}, [](Cell& c, I v) { c.config.bundles.split_below.depth = v; }),
       factor<double>("box", {0, 0.2}, [](Cell& c, double v) { c.config.bundles.split_below.box_size = v; }),
       factor<double>("spread", {0, 0, 0.5}, [](Cell& c, double v) { c.config.bundles.split_above.spread = v; }),
-      factor<double>("silhouette", {0, 0, 1}, [](Cell& c, double v) { c.config.bundles.split_above.silhouette_area = v; }),
+      factor<double>("silhouette", {0, 0, 1},
+                     [](Cell& c, double v) { c.config.bundles.split_above.silhouette_area = v; }),
       factor("at instances", all(BundlesConfig::AtInstances{}),
              [](Cell& c, BundlesConfig::AtInstances v) { c.config.bundles.at_instances = v; }),
       factor("hint", all(BundlesConfig::Hint{}), [](Cell& c, BundlesConfig::Hint v) { c.config.bundles.hint = v; }),
@@ -37,10 +39,12 @@ std::vector<Factor> bundle_factors() {
       factor<I>("age", {3, 64}, [](Cell& c, I v) { c.config.bundles.builder.age = v; }),
       factor("similarity", all(Builder::Similarity{}),
              [](Cell& c, Builder::Similarity v) { c.config.bundles.builder.similarity = v; }),
-      factor("measure", all(Builder::Measure{}), [](Cell& c, Builder::Measure v) { c.config.bundles.builder.measure = v; }),
+      factor("measure", all(Builder::Measure{}),
+             [](Cell& c, Builder::Measure v) { c.config.bundles.builder.measure = v; }),
       // Scattered rays are hardly alike: what counts here is that they come together at all.
       factor<double>("threshold", {0.3, 100}, [](Cell& c, double v) { c.config.bundles.builder.threshold = v; }),
-      factor<bool>("same origin", {false, false, true}, [](Cell& c, bool v) { c.config.bundles.builder.same_origin = v; }),
+      factor<bool>("same origin", {false, false, true},
+                   [](Cell& c, bool v) { c.config.bundles.builder.same_origin = v; }),
       factor<bool>("same signs", {false, true}, [](Cell& c, bool v) { c.config.bundles.builder.same_signs = v; }),
   };
 }
@@ -63,18 +67,19 @@ Cell draw(std::mt19937& random, const std::vector<Factor>& machine, const std::v
 }
 
 std::string text(const BundlesConfig& b) {
-  return fmt::format("size {} {} {}{} {} split {} from {} min {} below {} {} above {} {} {} {} open {} age {} {} {} {}{}{}", b.size, enum_name(b.form),
-                     enum_name(b.order), b.strict ? " strict" : "", enum_name(b.lifetime), enum_name(b.split),
-                     enum_name(b.sources), b.min_rays, b.split_below.depth, b.split_below.box_size, b.split_above.spread,
-                     b.split_above.silhouette_area, enum_name(b.at_instances), enum_name(b.hint), b.builder.open,
-                     b.builder.age, enum_name(b.builder.similarity), enum_name(b.builder.measure), b.builder.threshold,
-                     b.builder.same_origin ? " same origin" : "", b.builder.same_signs ? " same signs" : "");
+  return fmt::format(
+      "size {} {} {}{} {} split {} from {} min {} below {} {} above {} {} {} {} open {} age {} {} {} {}{}{}", b.size,
+      enum_name(b.form), enum_name(b.order), b.strict ? " strict" : "", enum_name(b.lifetime), enum_name(b.split),
+      enum_name(b.sources), b.min_rays, b.split_below.depth, b.split_below.box_size, b.split_above.spread,
+      b.split_above.silhouette_area, enum_name(b.at_instances), enum_name(b.hint), b.builder.open, b.builder.age,
+      enum_name(b.builder.similarity), enum_name(b.builder.measure), b.builder.threshold,
+      b.builder.same_origin ? " same origin" : "", b.builder.same_signs ? " same signs" : "");
 }
 
 void expect_one_digest(const std::vector<Factor>& machine, std::uint32_t number, int cells) {
   const std::vector<Factor> bundles = bundle_factors();
   BundleCounts sum;
-  const auto some = static_cast<std::uint64_t>(cells);   // scattered rays seldom all hit a box
+  const auto some = static_cast<std::uint64_t>(cells);  // scattered rays seldom all hit a box
   const auto seen = [&] { return std::min({sum.formed, sum.all, sum.none, sum.split, sum.taken_apart}) > some; };
   for (TestScene& scene : scenes()) {
     std::mt19937 random(number + 7919 * run_seed());
@@ -82,7 +87,8 @@ void expect_one_digest(const std::vector<Factor>& machine, std::uint32_t number,
       Cell cell = draw(random, machine, bundles);
       if (cell.config.engine.kind == EngineKind::kCycle) cell.threads = 1 + static_cast<std::size_t>(i % 2);
       const Outcome outcome = run_cell(scene, cell);
-      EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << text(cell.config.bundles) << "; " << cell.text();
+      EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << text(cell.config.bundles) << "; "
+                                   << cell.text();
       for (const BundleCounts& at_depth : outcome.sum.bundles) sum += at_depth;
     }
   }
@@ -93,8 +99,12 @@ void expect_one_digest(const std::vector<Factor>& machine, std::uint32_t number,
   EXPECT_GT(sum.taken_apart, some);
 }
 
-TEST(BundlesIdentity, NativeRingGivesTheTracersDigest) { expect_one_digest(machine_factors(), 5, cell_count(120)); }
-TEST(BundlesIdentity, CycleEngineGivesTheTracersDigest) { expect_one_digest(cycle_factors(), 6, cell_count(40)); }
+TEST(BundlesIdentity, NativeRingGivesTheTracersDigest) {
+  expect_one_digest(machine_factors(), 5, cell_count(120));
+}
+TEST(BundlesIdentity, CycleEngineGivesTheTracersDigest) {
+  expect_one_digest(cycle_factors(), 6, cell_count(40));
+}
 
 /// A grid of rays down onto a scene, hardly spread.
 class Beam final : public Workload {
@@ -135,7 +145,8 @@ std::uint64_t settled_in_beam(const scene::Scene& scene, const BundlesConfig& bu
   const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
   const float scene_size = glm::length(scene.bounds().extent());
   Beam beam(scene.bounds(), 64), reference(scene.bounds(), 64);
-  const RunResult result = (engine == EngineKind::kCycle ? run_cycle : run_native)(config, accel, scene_size, beam, on_threads(1));
+  const RunResult result =
+      (engine == EngineKind::kCycle ? run_cycle : run_native)(config, accel, scene_size, beam, on_threads(1));
   accel::run_reference(accel, reference);
   EXPECT_EQ(beam.digest().hex(), reference.digest().hex()) << text(bundles);
   std::uint64_t lanes = 0;
@@ -199,7 +210,7 @@ TEST(BundlesIdentity, TheLeastStorageIsEnough) {
       c.rays.slots_per_resource = 4096;
       c.packets.rays = 1;
       c.collections.ready = 4;
-      c.collections.policy = Policy::kOldest;   // breadth first fills it
+      c.collections.policy = Policy::kOldest;  // breadth first fills it
       c.bundles.size = size;
       c.bundles.order = order;
       c.bundles.builder.threshold = 100;

@@ -18,11 +18,12 @@ inline std::vector<std::vector<int>> covering_array(const std::vector<int>& leve
     int a, b;
   };
   const std::size_t n = levels.size();
-  std::vector<std::vector<std::vector<char>>> open(n * n);   // [f * n + g][level of f][level of g], f < g
+  std::vector<std::vector<std::vector<char>>> open(n * n);  // [f * n + g][level of f][level of g], f < g
   std::vector<Pair> pairs;
   for (std::size_t f = 0; f < n; ++f) {
     for (std::size_t g = f + 1; g < n; ++g) {
-      open[f * n + g].assign(static_cast<std::size_t>(levels[f]), std::vector<char>(static_cast<std::size_t>(levels[g]), 1));
+      open[f * n + g].assign(static_cast<std::size_t>(levels[f]),
+                             std::vector<char>(static_cast<std::size_t>(levels[g]), 1));
       for (int a = 0; a < levels[f]; ++a)
         for (int b = 0; b < levels[g]; ++b) pairs.push_back({f, g, a, b});
     }

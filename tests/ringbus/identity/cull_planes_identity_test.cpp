@@ -18,14 +18,16 @@ std::vector<CullPlanesConfig> all_planes() {
   for (const std::int64_t count : {1, 2, 4, 8})
     for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll})
       for (const Fit fit : {Fit::kVertices, Fit::kBoxes})
-        all.push_back({count, nodes, all.size() % 3 == 2, fit, all.size() % 5 < 2 ? PlaneOrder::kPlanesFirst : PlaneOrder::kBoxFirst,
+        all.push_back({count, nodes, all.size() % 3 == 2, fit,
+                       all.size() % 5 < 2 ? PlaneOrder::kPlanesFirst : PlaneOrder::kBoxFirst,
                        std::array{Levels::kAll, Levels::kBlas, Levels::kTlas, Levels::kAll}[all.size() % 4]});
   return all;
 }
 
 std::string text(const CullPlanesConfig& planes) {
-  return fmt::format("{} planes, nodes {}, fit {}, levels {}, {}{}", planes.count, enum_name(planes.nodes), enum_name(planes.fit),
-                     enum_name(planes.levels), enum_name(planes.order), planes.shared_normals ? ", shared" : "");
+  return fmt::format("{} planes, nodes {}, fit {}, levels {}, {}{}", planes.count, enum_name(planes.nodes),
+                     enum_name(planes.fit), enum_name(planes.levels), enum_name(planes.order),
+                     planes.shared_normals ? ", shared" : "");
 }
 
 std::vector<TestScene> scenes() {
@@ -49,7 +51,8 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
       } while (!possible(cell_of(factors, row).config));
       Cell cell = cell_of(factors, row);
       cell.config.cull_planes = planes;
-      if (cell.config.engine.kind == EngineKind::kCycle) cell.threads = 1;   // threads: tests/ringbus/identity/identity_test.cpp
+      if (cell.config.engine.kind == EngineKind::kCycle)
+        cell.threads = 1;  // threads: tests/ringbus/identity/identity_test.cpp
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << text(planes) << ": " << cell.text();
       culled += outcome.sum.tests.culled;
@@ -74,8 +77,12 @@ TEST(CullPlanesIdentity, TracerGivesOneDigest) {
     }
   EXPECT_GT(culled, 1000u);
 }
-TEST(CullPlanesIdentity, NativeRingGivesTheTracersDigest) { expect_one_digest(machine_factors(), 3); }
-TEST(CullPlanesIdentity, CycleEngineGivesTheTracersDigest) { expect_one_digest(cycle_factors(), 4); }
+TEST(CullPlanesIdentity, NativeRingGivesTheTracersDigest) {
+  expect_one_digest(machine_factors(), 3);
+}
+TEST(CullPlanesIdentity, CycleEngineGivesTheTracersDigest) {
+  expect_one_digest(cycle_factors(), 4);
+}
 
 }  // namespace
 }  // namespace carousel::ringbus

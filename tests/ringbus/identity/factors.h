@@ -32,7 +32,8 @@ std::vector<E> all(E) {
 /// Every way a native machine can be arranged that must not show in the hits (DESIGN.md section 3).
 inline std::vector<Factor> machine_factors() {
   using I = std::int64_t;
-  const std::vector<TopologyShape> shapes{TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint};
+  const std::vector<TopologyShape> shapes{TopologyShape::kRing, TopologyShape::kBidirectional,
+                                          TopologyShape::kPointToPoint};
   const std::vector<Flow> flows{Flow::kCredits, Flow::kBubble};
   return {
       factor<I>("resources", {1, 2, 5, 16}, [](Cell& c, I v) { c.config.topology.resources = v; }),
@@ -77,9 +78,10 @@ inline std::vector<Factor> cycle_factors() {
       factor<int>("engine", {0}, [](Cell& c, int) { c.config.engine.kind = EngineKind::kCycle; }),
       factor("placement", std::vector{Placement::kBalanced, Placement::kRoundRobin},
              [](Cell& c, Placement v) { c.config.rays.placement = v; }),
-      factor("shape", std::vector{TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kMultiRing,
-                                  TopologyShape::kHierarchical, TopologyShape::kPointToPoint, TopologyShape::kBus,
-                                  TopologyShape::kIndependent},
+      factor("shape",
+             std::vector{TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kMultiRing,
+                         TopologyShape::kHierarchical, TopologyShape::kPointToPoint, TopologyShape::kBus,
+                         TopologyShape::kIndependent},
              [](Cell& c, TopologyShape v) { c.config.topology.shape = v; }),
       factor<I>("groups", {1, 3}, [](Cell& c, I v) { c.config.topology.groups = c.config.topology.rings = v; }),
       factor<I>("contexts", {1, 3}, [](Cell& c, I v) { c.config.testers.contexts = v; }),

@@ -1,4 +1,6 @@
 // What the rasteriser finds against what rays find, and against exact arithmetic where the two differ.
+#include "shading/raster/first_hits.h"
+
 #include <array>
 #include <iostream>
 
@@ -15,9 +17,8 @@
 #include "scene/builtin/mesh_shapes.h"
 #include "shading/surface/alpha_test.h"
 #include "shading/tracer/path_tracer.h"
-#include "shading/raster/first_hits.h"
-#include "tests/support/random_runs.h"
 #include "tests/ringbus/identity/factors.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::ringbus {
 namespace {
@@ -29,13 +30,16 @@ Config picture(std::int64_t width, std::int64_t height, std::int64_t samples) {
 }
 
 std::vector<Ray> camera_rays(const scene::Scene& scene, const Config& config) {
-  const auto width = static_cast<std::uint32_t>(config.image.width), height = static_cast<std::uint32_t>(config.image.height);
+  const auto width = static_cast<std::uint32_t>(config.image.width),
+             height = static_cast<std::uint32_t>(config.image.height);
   const auto samples = static_cast<std::uint32_t>(config.image.samples);
-  const shading::CameraRays camera(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), config.camera, width, height);
+  const shading::CameraRays camera(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), config.camera,
+                                   width, height);
   const shading::Sampler sampler(static_cast<std::uint64_t>(config.image.seed), samples);
   std::vector<Ray> rays;
   for (std::uint32_t pixel = 0; pixel < width * height; ++pixel)
-    for (std::uint32_t s = 0; s < samples; ++s) rays.push_back(camera.ray(pixel % width, pixel / width, sampler.camera(pixel, s)));
+    for (std::uint32_t s = 0; s < samples; ++s)
+      rays.push_back(camera.ray(pixel % width, pixel / width, sampler.camera(pixel, s)));
   return rays;
 }
 
@@ -75,10 +79,10 @@ void expect_same_first_hits(const scene::Scene& scene, const Config& config, con
       ++ties;
     } else {
       ++rounded;
-      EXPECT_TRUE(same(found, truth.hit)) << name << " sample " << i << ": raster " << found.instance << ' ' << found.primitive
-                                          << " t " << found.t << ", rays " << expected.instance << ' ' << expected.primitive
-                                          << " t " << expected.t << ", exactly " << truth.hit.instance << ' '
-                                          << truth.hit.primitive << " t " << truth.t;
+      EXPECT_TRUE(same(found, truth.hit))
+          << name << " sample " << i << ": raster " << found.instance << ' ' << found.primitive << " t " << found.t
+          << ", rays " << expected.instance << ' ' << expected.primitive << " t " << expected.t << ", exactly "
+          << truth.hit.instance << ' ' << truth.hit.primitive << " t " << truth.t;
     }
   }
   EXPECT_GT(hits, traced.size() / 10) << name << ": nothing to see";
@@ -90,9 +94,10 @@ void expect_same_first_hits(const scene::Scene& scene, const Config& config, con
 }
 
 TEST(FirstHits, AreThoseOfRays) {
-  for (const auto& [builtin, name] : {std::pair(BuiltinScene::kCornell, "cornell"), std::pair(BuiltinScene::kTerrain, "terrain"),
-                                      std::pair(BuiltinScene::kSpheres, "spheres"), std::pair(BuiltinScene::kInstances, "instances"),
-                                      std::pair(BuiltinScene::kSliver, "sliver")}) {
+  for (const auto& [builtin, name] :
+       {std::pair(BuiltinScene::kCornell, "cornell"), std::pair(BuiltinScene::kTerrain, "terrain"),
+        std::pair(BuiltinScene::kSpheres, "spheres"), std::pair(BuiltinScene::kInstances, "instances"),
+        std::pair(BuiltinScene::kSliver, "sliver")}) {
     const scene::Scene scene = builtin_scene(builtin, 20000, 60);
     expect_same_first_hits(scene, picture(96, 70, 3), name);
   }
@@ -151,7 +156,9 @@ TEST(FirstHits, WithWhatLetsRaysThrough) {
   accel.any_hit = &alpha;
   for (const auto cull : {RayWishes::Cull::kNone, RayWishes::Cull::kBack, RayWishes::Cull::kFront}) {
     config.shading.camera_rays.cull = cull;
-    const std::uint8_t flags = cull == RayWishes::Cull::kBack ? kRayCullBack : cull == RayWishes::Cull::kFront ? kRayCullFront : 0;
+    const std::uint8_t flags = cull == RayWishes::Cull::kBack    ? kRayCullBack
+                               : cull == RayWishes::Cull::kFront ? kRayCullFront
+                                                                 : 0;
     const auto raster = shading::rasterize_first_hits(scene, config, &alpha, *make_sequential_executor());
     EXPECT_GT(raster.counts.asked, 100u);
     const std::vector<Ray> rays = camera_rays(scene, config);
@@ -199,7 +206,8 @@ TEST(FirstHits, SpheresAreLeftToRays) {
   EXPECT_NE(after.at(0, 0), nullptr);
 }
 
-// The whole frame: no camera ray, each path once, nearly the same picture, and the same one however rays are handed over.
+// The whole frame: no camera ray, each path once, nearly the same picture, and the same one however rays are handed
+// over.
 TEST(FirstHits, PathsStartAtThem) {
   const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
   const Config config = picture(24, 20, 8);

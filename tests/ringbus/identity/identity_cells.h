@@ -27,13 +27,14 @@ inline std::vector<std::vector<int>> pairwise(const std::vector<Factor>& factors
 }
 
 /// Every cell of the factors' covering array, and so many random ones, has the scene's digest.
-inline void expect_one_digest(TestScene& scene, const std::vector<Factor>& factors, std::uint32_t number, int random_cells) {
-  ASSERT_GT(scene.rays(), 1000u);   // most rays hit and send on others
-  SCOPED_TRACE(fmt::format("CAROUSEL_SEED={}", run_seed()));   // rays and arrays follow from it
+inline void expect_one_digest(TestScene& scene, const std::vector<Factor>& factors, std::uint32_t number,
+                              int random_cells) {
+  ASSERT_GT(scene.rays(), 1000u);                             // most rays hit and send on others
+  SCOPED_TRACE(fmt::format("CAROUSEL_SEED={}", run_seed()));  // rays and arrays follow from it
   const std::uint32_t array_seed = 32 * (run_seed() - 1) + number;
   std::vector<std::vector<int>> rows = pairwise(factors, array_seed);
 #ifdef __SANITIZE_THREAD__
-  rows.resize(rows.size() / 16);   // the checked build runs all of them
+  rows.resize(rows.size() / 16);  // the checked build runs all of them
 #endif
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Cell cell = cell_of(factors, rows[i]);

@@ -27,14 +27,19 @@ void expect_one_digest_a_level(const std::vector<Factor>& factors, std::uint32_t
       } while (!possible(cell_of(factors, row).config));
       Cell cell = cell_of(factors, row);
       cell.config.accuracy = accuracy;
-      EXPECT_EQ(run_cell(scene, cell).fault, "") << "CAROUSEL_SEED=" << run_seed() << " cell " << i << ": " << cell.text();
+      EXPECT_EQ(run_cell(scene, cell).fault, "")
+          << "CAROUSEL_SEED=" << run_seed() << " cell " << i << ": " << cell.text();
     }
   }
-  EXPECT_GE(digests.size(), 4u);   // levels are seen in the hits, or this shows nothing
+  EXPECT_GE(digests.size(), 4u);  // levels are seen in the hits, or this shows nothing
 }
 
-TEST(LevelsIdentity, NativeRingGivesTheTracersDigest) { expect_one_digest_a_level(machine_factors(), 1); }
-TEST(LevelsIdentity, CycleEngineGivesTheTracersDigest) { expect_one_digest_a_level(cycle_factors(), 2); }
+TEST(LevelsIdentity, NativeRingGivesTheTracersDigest) {
+  expect_one_digest_a_level(machine_factors(), 1);
+}
+TEST(LevelsIdentity, CycleEngineGivesTheTracersDigest) {
+  expect_one_digest_a_level(cycle_factors(), 2);
+}
 
 }  // namespace
 }  // namespace carousel::ringbus

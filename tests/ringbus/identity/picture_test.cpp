@@ -28,7 +28,8 @@ void expect_one_picture(BuiltinScene builtin, std::uint32_t salt) {
     } while (!possible(cell.config));
     Config& c = cell.config;
     const accel::Accel accel = accel::build(scene, c.bvh, *make_sequential_executor());
-    c.collections.capacity = std::max<std::int64_t>(minimum_capacity(c, accel.width, accel.max_depth), 4 * c.packets.rays);
+    c.collections.capacity =
+        std::max<std::int64_t>(minimum_capacity(c, accel.width, accel.max_depth), 4 * c.packets.rays);
     // Few paths at a time, many at a time.
     shading::PathTracer tracer(scene, c, seed % 2 ? 1000 : 5, static_cast<std::size_t>(c.shading.workers));
     run_native(c, accel, size, tracer, on_threads(cell.threads));
@@ -38,10 +39,18 @@ void expect_one_picture(BuiltinScene builtin, std::uint32_t salt) {
   }
 }
 
-TEST(Picture, OfCornellIsOne) { expect_one_picture(BuiltinScene::kCornell, 1); }
-TEST(Picture, OfTerrainIsOne) { expect_one_picture(BuiltinScene::kTerrain, 2); }
-TEST(Picture, OfSpheresIsOne) { expect_one_picture(BuiltinScene::kSpheres, 3); }
-TEST(Picture, OfInstancesIsOne) { expect_one_picture(BuiltinScene::kInstances, 4); }
+TEST(Picture, OfCornellIsOne) {
+  expect_one_picture(BuiltinScene::kCornell, 1);
+}
+TEST(Picture, OfTerrainIsOne) {
+  expect_one_picture(BuiltinScene::kTerrain, 2);
+}
+TEST(Picture, OfSpheresIsOne) {
+  expect_one_picture(BuiltinScene::kSpheres, 3);
+}
+TEST(Picture, OfInstancesIsOne) {
+  expect_one_picture(BuiltinScene::kInstances, 4);
+}
 
 }  // namespace
 }  // namespace carousel::ringbus

@@ -43,7 +43,8 @@ void draw_faults(std::mt19937& random, Cell& cell) {
   f.seed = random();
   const auto fraction = [&] { return random() % 3 == 0 ? 0.02 * (1 + random() % 6) : 0.0; };
   if (random() % 2 == 0) {
-    f.links = {fraction(), fraction(), fraction(), fraction(), fraction(), 1 + static_cast<std::int64_t>(random() % 200)};
+    f.links = {fraction(), fraction(), fraction(),
+               fraction(), fraction(), 1 + static_cast<std::int64_t>(random() % 200)};
   }
   const std::array kinds{Kind::kNone, Kind::kPause, Kind::kSlow, Kind::kStop, Kind::kStop};
   FaultsConfig::Resource& r = f.resource;
@@ -103,7 +104,9 @@ TEST(RandomFaults, OnTheNativeEngine) {
   expect_one_digest_whatever_fails(factors, 20);
 }
 
-TEST(RandomFaults, UnderVirtualTime) { expect_one_digest_whatever_fails(cycle_factors(), 40); }
+TEST(RandomFaults, UnderVirtualTime) {
+  expect_one_digest_whatever_fails(cycle_factors(), 40);
+}
 
 }  // namespace
 }  // namespace carousel::ringbus

@@ -63,7 +63,8 @@ void expect_recovery(TestScene& scene, const Cell& cell) {
   EXPECT_EQ(stop.resource, cell.config.faults.resource.number);
   // Word of it, the silence, and at least the way to the resources and back.
   const auto latency = static_cast<cycle::Cycle>(cell.config.topology.link.latency_cycles);
-  EXPECT_EQ(stop.noticed, stop.stopped + latency + static_cast<cycle::Cycle>(cell.config.faults.resource.silence_cycles));
+  EXPECT_EQ(stop.noticed,
+            stop.stopped + latency + static_cast<cycle::Cycle>(cell.config.faults.resource.silence_cycles));
   EXPECT_GE(stop.restarted, stop.noticed + 2 * latency);
   EXPECT_LT(stop.restarted, out.result.cycle->cycles);
 }
@@ -72,10 +73,13 @@ TEST(StoppedResource, ItsRaysBeginAgainElsewhereAndNothingChanges) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 400, 2);
   for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
     for (const Traversal traversal : {Traversal::kSpread, Traversal::kOrdered, Traversal::kTreelet})
-      for (const TopologyShape shape : {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint,
-                                        TopologyShape::kMultiRing, TopologyShape::kHierarchical, TopologyShape::kBus}) {
+      for (const TopologyShape shape :
+           {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint,
+            TopologyShape::kMultiRing, TopologyShape::kHierarchical, TopologyShape::kBus}) {
         // The native engine waits a tenth of a second each time.
-        if (engine == EngineKind::kNative && (shape > TopologyShape::kBidirectional || traversal == Traversal::kTreelet)) continue;
+        if (engine == EngineKind::kNative &&
+            (shape > TopologyShape::kBidirectional || traversal == Traversal::kTreelet))
+          continue;
         Cell cell = with_a_stop(engine, shape == TopologyShape::kRing ? 2 : 4, 1, 30);
         cell.config.collections.traversal = traversal;
         cell.config.topology.shape = shape;
@@ -99,7 +103,7 @@ TEST(StoppedResource, WithBundlesHashedHomesAndTravellingRays) {
       } else if (what == 3) {
         c.collections.home = Home::kLocal;
       } else {
-        if (engine == EngineKind::kCycle) continue;   // rays do not travel there
+        if (engine == EngineKind::kCycle) continue;  // rays do not travel there
         c.rays.placement = what == 4 ? Placement::kFirstTaker : Placement::kAddressed;
       }
       SCOPED_TRACE(cell.text());
@@ -121,7 +125,7 @@ TEST(StoppedResource, MayHaveBeenShadingOrWaitingForOpacity) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 400, 2);
   Cell cell = with_a_stop(EngineKind::kCycle, 3, 1, 10);
   cell.config.shading.idle_resources_shade = true;
-  cell.config.shading.cycles_per_shade = 3000;   // so that all help
+  cell.config.shading.cycles_per_shade = 3000;  // so that all help
   cell.config.shading.workers = 1;
   cell.config.faults.resource.silence_cycles = 500;
   expect_recovery(scene, cell);
@@ -133,7 +137,8 @@ TEST(StoppedResource, MayHaveQuestionsOpen) {
   TestScene scene(accel::passing_scene(BuiltinScene::kSpheres, 20, run_seed()), 200, 3, 0.5f, {}, &stop);
   for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
     for (const std::int64_t after : {5, 20, 60}) {
-      SCOPED_TRACE(testing::Message() << "CAROUSEL_SEED=" << run_seed() << " engine " << static_cast<int>(engine) << " after " << after);
+      SCOPED_TRACE(testing::Message() << "CAROUSEL_SEED=" << run_seed() << " engine " << static_cast<int>(engine)
+                                      << " after " << after);
       Cell cell = with_a_stop(engine, 3, 1, after);
       cell.config.testers.any_hit = TestersConfig::AnyHit::kShader;
       cell.config.shading.workers = 1;
@@ -175,7 +180,8 @@ TEST(StoppedResource, WithoutRecoveryTheRunSaysWhatIsMissing) {
     Cell cell = with_a_stop(engine, 3, 2, 10);
     cell.config.faults.resource.recover = false;
     const Outcome out = run_cell(scene, cell);
-    EXPECT_NE(out.fault.find("resource 2 stopped and faults.resource.recover is off: "), std::string::npos) << out.fault;
+    EXPECT_NE(out.fault.find("resource 2 stopped and faults.resource.recover is off: "), std::string::npos)
+        << out.fault;
     EXPECT_NE(out.fault.find(" rays are missing, of paths "), std::string::npos) << out.fault;
   }
 }

@@ -39,9 +39,9 @@ TEST(Link, CountsWhatItsSenderSaw) {
   for (const QueueKind kind : queue_kinds()) {
     const auto link = make_link(kind, 4, ResourceId(0), ResourceId(1));
     const std::array<PacketId, 3> three{PacketId(1), PacketId(2), PacketId(3)};
-    (void)link->try_send(three);   // 3 waiting, sampled
-    (void)link->try_send(three);   // 2 refused, so full
-    (void)link->try_send(three);   // 3 refused
+    (void)link->try_send(three);  // 3 waiting, sampled
+    (void)link->try_send(three);  // 2 refused, so full
+    (void)link->try_send(three);  // 3 refused
     std::array<PacketId, 3> got;
     EXPECT_EQ(link->try_receive(got), 3u);
     (void)link->try_send(std::span(three).first(1));
@@ -93,10 +93,10 @@ TEST(OccupancySeries, JoinsNeighboursAndLosesNoSample) {
   for (const OccupancySeries::Entry& entry : series.entries()) {
     seen += entry.samples;
     added += entry.sum;
-    EXPECT_GE(entry.most, most);   // it rises
+    EXPECT_GE(entry.most, most);  // it rises
     most = entry.most;
   }
-  EXPECT_LE(kSamples - seen, 32u * 512);   // what is open is less than an entry
+  EXPECT_LE(kSamples - seen, 32u * 512);  // what is open is less than an entry
   EXPECT_LE(added, sum);
   EXPECT_EQ(most, 8u);
 }

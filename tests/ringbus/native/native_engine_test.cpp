@@ -1,11 +1,11 @@
 // How a run ends: to its end, early, stuck, or with somebody's exception.
-#include "accel/build/build.h"
 #include "ringbus/native/native_engine.h"
 
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "accel/build/build.h"
 #include "core/system/error.h"
 #include "tests/ringbus/support/test_machine.h"
 
@@ -95,7 +95,8 @@ TEST(NativeEngine, GivesTheSameHitsWithoutStatistics) {
 
 TEST(NativeEngine, LinkCountsAddUpToHops) {
   TestScene scene(builtin_scene(BuiltinScene::kCornell, 0, 0), 500, 2);
-  for (const TopologyShape shape : {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint}) {
+  for (const TopologyShape shape :
+       {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint}) {
     Cell cell{small_config(), 2};
     cell.config.topology.shape = shape;
     const Outcome out = run_cell(scene, cell);
@@ -103,19 +104,20 @@ TEST(NativeEngine, LinkCountsAddUpToHops) {
     std::uint64_t packets = 0;
     for (const LinkResult& link : out.result.links) packets += link.statistics.packets;
     EXPECT_EQ(packets, out.sum.hops);
-    EXPECT_EQ(out.sum.seen_rays, 4 * out.sum.packet_rays);   // visit: all
+    EXPECT_EQ(out.sum.seen_rays, 4 * out.sum.packet_rays);  // visit: all
   }
 }
 
 /// Makes rays for ever, or throws at some call.
 class OddWorkload final : public Workload {
  public:
-  int throw_in_generate = -1, throw_in_shade = -1;   // at the n-th call
+  int throw_in_generate = -1, throw_in_shade = -1;  // at the n-th call
   bool endless = true;
 
   Generated generate(WorkerId, std::size_t max_rays, RayBatch& out) override {
     if (calls_generate_++ == throw_in_generate) throw std::runtime_error("generate failed");
-    for (std::size_t i = 0; i < max_rays; ++i) out.push_back({{{0, 0, 3}, 0, {0.01f * static_cast<float>(i % 50), 0, -1}}, {}});
+    for (std::size_t i = 0; i < max_rays; ++i)
+      out.push_back({{{0, 0, 3}, 0, {0.01f * static_cast<float>(i % 50), 0, -1}}, {}});
     return {max_rays, !endless};
   }
   void shade(WorkerId, const HitBatch&, RayBatch&) override {
@@ -217,7 +219,7 @@ TEST(NativeEngine, StuckRingSaysWhoWaitsForWhom) {
   c.shading.workers = 1;
   ScatterWorkload workload = scene.workload();
   RunOptions options;
-  options.threads = 1;   // one thread: the order of steps is fixed
+  options.threads = 1;  // one thread: the order of steps is fixed
   options.stuck_after = std::chrono::milliseconds(300);
   try {
     run_native(c, scene.accel(BvhConfig{}), scene.size(), workload, options);

@@ -75,7 +75,9 @@ TEST(ReliableLink, EveryFaultIsMadeGood) {
       EXPECT_EQ(got.faults.corrupted > 0, f.corrupt > 0);
       EXPECT_EQ(got.faults.reordered > 0, f.reorder > 0);
       EXPECT_EQ(got.faults.delayed > 0, f.delay > 0);
-      if (f.drop > 0) { EXPECT_GT(got.faults.resent, 0u); }
+      if (f.drop > 0) {
+        EXPECT_GT(got.faults.resent, 0u);
+      }
       EXPECT_GT(got.faults.resent + got.faults.discarded, 0u);
     }
 }
@@ -152,7 +154,8 @@ TEST(PacketImage, HoldsAllOfAPacket) {
   EXPECT_EQ(other.owners, packet.owners);
 }
 
-// What comes out is what went over the wire, none of it damaged, though the memory that both ends share has been written over.
+// What comes out is what went over the wire, none of it damaged, though the memory that both ends share has been
+// written over.
 TEST(ReliableLink, CarriesCopiesAndNoDamagedOne) {
   const Config config = faulty(0, 0.1, 0.5, 0, 0);
   std::vector<Packet> packets(8);
@@ -220,7 +223,7 @@ TEST(FaultDice, TheSameSeedGivesTheSameFates) {
   EXPECT_EQ(a, b);
   EXPECT_EQ(same, 0u);
   EXPECT_NEAR(static_cast<double>(drops), 1000, 150);
-  EXPECT_NEAR(static_cast<double>(a.corrupted), 1500, 150);   // of those not dropped
+  EXPECT_NEAR(static_cast<double>(a.corrupted), 1500, 150);  // of those not dropped
 }
 
 TEST(LinkFaultTimer, LosesTimeAndNothingElse) {
@@ -242,7 +245,7 @@ TEST(LinkFaultTimer, LosesTimeAndNothingElse) {
   }
   EXPECT_EQ(timer.counts().resent, waited);
   EXPECT_EQ(timer.counts().dropped, waited);
-  EXPECT_NEAR(static_cast<double>(waited), 2000, 250);   // a geometric distribution of mean 1
+  EXPECT_NEAR(static_cast<double>(waited), 2000, 250);  // a geometric distribution of mean 1
 }
 
 // Acknowledgements are lost, late and damaged; every place comes back once, and none before its time.
@@ -261,7 +264,7 @@ TEST(LinkFaultTimer, PlacesComeBackThoughAcknowledgementsFail) {
     back += heard;
     late += heard == 0;
     ASSERT_LE(back, sent);
-    EXPECT_EQ(heard > 0, back == sent);   // one that comes tells of all before it
+    EXPECT_EQ(heard > 0, back == sent);  // one that comes tells of all before it
     now = at + 1;
     // Now and then the sender has no more to send and waits for the rest.
     for (int wait = 0; i % 10 == 9 && back < sent; ++wait) {

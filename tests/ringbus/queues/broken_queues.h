@@ -102,7 +102,7 @@ class Tears : public BrokenBase<T> {
       std::swap(this->values_.back().words.back(), late_);
       const std::size_t popped = popped_, place = this->values_.size() - 1;
       lock.unlock();
-      std::this_thread::sleep_for(std::chrono::microseconds(300));   // somebody looks meanwhile
+      std::this_thread::sleep_for(std::chrono::microseconds(300));  // somebody looks meanwhile
       lock.lock();
       if (popped_ - popped <= place) this->values_[place - (popped_ - popped)].words.back() = value.words.back();
     }

@@ -10,9 +10,10 @@ namespace carousel::ringbus {
 /// queue, whose atomic fences it does not model.
 inline std::vector<QueueKind> queue_kinds() {
 #ifdef __SANITIZE_THREAD__
-  return {QueueKind::kSpscRing, QueueKind::kMpmcRing, QueueKind::kAtomicQueue, QueueKind::kBoostSpsc, QueueKind::kMutex};
+  return {QueueKind::kSpscRing, QueueKind::kMpmcRing, QueueKind::kAtomicQueue, QueueKind::kBoostSpsc,
+          QueueKind::kMutex};
 #else
-  return {QueueKind::kSpscRing, QueueKind::kMpmcRing, QueueKind::kTbbBounded, QueueKind::kMoodycamel,
+  return {QueueKind::kSpscRing,    QueueKind::kMpmcRing,  QueueKind::kTbbBounded, QueueKind::kMoodycamel,
           QueueKind::kAtomicQueue, QueueKind::kBoostSpsc, QueueKind::kMutex};
 #endif
 }

@@ -28,8 +28,8 @@ using Kinds = testing::Types<SpscRing<std::uint64_t>, MutexQueue<std::uint64_t>,
 constexpr std::uint64_t kThreaded = 20000;
 #else
 using Kinds = testing::Types<SpscRing<std::uint64_t>, MutexQueue<std::uint64_t>, MpmcRing<std::uint64_t>,
-                             AtomicQueue<std::uint64_t>, BoostSpscQueue<std::uint64_t>,
-                             TbbBoundedQueue<std::uint64_t>, MoodycamelQueue<std::uint64_t>>;
+                             AtomicQueue<std::uint64_t>, BoostSpscQueue<std::uint64_t>, TbbBoundedQueue<std::uint64_t>,
+                             MoodycamelQueue<std::uint64_t>>;
 constexpr std::uint64_t kThreaded = 50000;
 #endif
 TYPED_TEST_SUITE(Queue, Kinds);
@@ -43,7 +43,7 @@ TYPED_TEST(Queue, RefusesWhenFullAndWhenEmpty) {
   for (const std::size_t capacity : {1u, 2u, 3u, 8u}) {
     TypeParam queue(capacity);
     std::uint64_t value = 77;
-    for (int round = 0; round < 5; ++round) {   // again after the indices have gone round
+    for (int round = 0; round < 5; ++round) {  // again after the indices have gone round
       EXPECT_FALSE(queue.try_pop(value));
       EXPECT_EQ(value, 77u);
       for (std::uint64_t i = 0; i < capacity; ++i) {
@@ -113,7 +113,7 @@ TYPED_TEST(Queue, ConservesBetweenTwoThreads) {
   constexpr std::uint64_t kValues = kThreaded;
   for (const std::size_t capacity : {1u, 2u, 3u, 64u}) {
     TypeParam queue(capacity);
-    std::vector<std::uint64_t> beside(kValues);   // plain memory that travels with the right to read it
+    std::vector<std::uint64_t> beside(kValues);  // plain memory that travels with the right to read it
     std::jthread producer([&] {
       std::minstd_rand random(1);
       std::array<std::uint64_t, 8> batch{};
@@ -153,7 +153,10 @@ TYPED_TEST(Queue, FreePlacesIsALowerBoundForTheProducer) {
   std::jthread consumer([&] {
     std::uint64_t value;
     for (std::uint64_t got = 0; got < kValues;)
-      if (queue.try_pop(value)) ++got; else std::this_thread::yield();
+      if (queue.try_pop(value))
+        ++got;
+      else
+        std::this_thread::yield();
   });
   std::array<std::uint64_t, 5> batch{};
   for (std::uint64_t sent = 0; sent < kValues;) {

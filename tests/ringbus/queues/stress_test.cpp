@@ -1,13 +1,11 @@
 // The stress of queues: sound ones come through every pattern, broken ones are caught and named.
-#include "ringbus/stress/stress_run.h"
-
 #include <gtest/gtest.h>
 
+#include "own_queue.h"  // the example of docs/queues.md
 #include "ringbus/stress/delivery_checker.h"
+#include "ringbus/stress/stress_run.h"
 #include "tests/ringbus/queues/broken_queues.h"
 #include "tests/ringbus/queues/queue_kinds.h"
-
-#include "own_queue.h"   // the example of docs/queues.md
 
 namespace carousel::ringbus::stress {
 namespace {
@@ -65,7 +63,7 @@ TEST(Arrivals, NamesWhatHappened) {
   EXPECT_EQ(judged({0, 1}, 70), "lost 68");
   EXPECT_EQ(judged({0, 2, 1}, 3), "reordered 1");
   EXPECT_EQ(judged({0, 1, 1, 2}, 3), "doubled 1");
-  EXPECT_EQ(judged({0, 1, 2, 100}, 3), "torn 1");   // nobody sent it
+  EXPECT_EQ(judged({0, 1, 2, 100}, 3), "torn 1");  // nobody sent it
 }
 
 TEST(Arrivals, TwoConsumersMayNotGetTheSame) {
@@ -146,7 +144,7 @@ TEST(Stress, CatchesWhatIsStuckAndCallsThatNeverReturn) {
   const TrialResult sticks = run_trial(queue_under_test<Sticks>("sticks"), options);
   EXPECT_TRUE(sticks.findings.stuck);
   EXPECT_NE(sticks.findings.detail.find("nothing moved for 150 ms"), std::string::npos) << sticks.findings.detail;
-#ifndef __SANITIZE_THREAD__   // it leaves a thread behind, and that is what ThreadSanitizer would tell
+#ifndef __SANITIZE_THREAD__  // it leaves a thread behind, and that is what ThreadSanitizer would tell
   const TrialResult hangs = run_trial(queue_under_test<NeverReturns>("hangs"), options);
   EXPECT_TRUE(hangs.findings.stuck);
   EXPECT_NE(hangs.findings.detail.find("had not returned"), std::string::npos) << hangs.findings.detail;
@@ -175,7 +173,7 @@ TEST(Stress, EveryQueueMeetsEveryPatternItFitsAsOftenAsTheOthers) {
     last = part;
   };
   const std::vector<StressRow> rows = run_stress(queues, options);
-  ASSERT_EQ(rows.size(), 5u);   // spsc_ring does not fit many_to_many
+  ASSERT_EQ(rows.size(), 5u);  // spsc_ring does not fit many_to_many
   for (const StressRow& row : rows) {
     EXPECT_EQ(row.rates.size(), 2u);
     EXPECT_EQ(row.sum.findings.any(), row.queue == 2);

@@ -33,7 +33,7 @@ BundlesConfig of_size(std::int64_t size, double threshold = 0.1) {
 
 Groups groups_of(BundleBuilder& builder, const RayBatch& rays) {
   std::vector<std::uint32_t> order{77};
-  std::vector<std::uint8_t> sizes{77};   // what was there is gone
+  std::vector<std::uint8_t> sizes{77};  // what was there is gone
   builder.group(rays, order, sizes);
   Groups groups;
   std::size_t at = 0;
@@ -52,7 +52,9 @@ Groups groups_of(const BundlesConfig& config, const RayBatch& rays) {
 }
 
 /// A ray close to (0, 0, 1), or to another direction when that is given.
-RayRequest ray_along(float x, float y = 0, float z = 1) { return ray_to(Vec3{0}, {x, y, z}); }
+RayRequest ray_along(float x, float y = 0, float z = 1) {
+  return ray_to(Vec3{0}, {x, y, z});
+}
 
 /// Rays through the pixels of a square image, a row after the other.
 RayBatch camera_rays(int pixels) {
@@ -96,7 +98,9 @@ BundlesConfig any_config(Random& random) {
   return config;
 }
 
-double largest(const DVec3& v) { return std::max({v.x, v.y, v.z}); }
+double largest(const DVec3& v) {
+  return std::max({v.x, v.y, v.z});
+}
 bool same_signs(const Vec3& a, const Vec3& b) {
   return std::signbit(a.x) == std::signbit(b.x) && std::signbit(a.y) == std::signbit(b.y) &&
          std::signbit(a.z) == std::signbit(b.z);
@@ -110,7 +114,7 @@ TEST(BundleBuilder, PutsEveryRayInExactlyOneGroupThatObeysTheConfiguration) {
     SCOPED_TRACE("round " + std::to_string(round));
     const BundlesConfig config = any_config(random);
     BundleBuilder builder(config, kSceneSize);
-    for (int call = 0; call < 2; ++call) {   // nothing is left from one to the next
+    for (int call = 0; call < 2; ++call) {  // nothing is left from one to the next
       const RayBatch rays = mixed_batch(random, random.below(300));
       std::vector<int> seen(rays.size());
       for (const auto& group : groups_of(builder, rays)) {
@@ -126,10 +130,18 @@ TEST(BundleBuilder, PutsEveryRayInExactlyOneGroupThatObeysTheConfiguration) {
           ASSERT_TRUE(accel::valid(r.ray));
           ASSERT_EQ(r.ray.tmin, 0);
           ASSERT_EQ(r.tag.kind, first.tag.kind);
-          if (config.sources == BundlesConfig::Sources::kCamera) { ASSERT_EQ(r.tag.kind, RayKind::kCamera); }
-          if (config.sources == BundlesConfig::Sources::kShader) { ASSERT_NE(r.tag.kind, RayKind::kCamera); }
-          if (config.builder.same_origin) { ASSERT_EQ(r.ray.origin, first.ray.origin); }
-          if (config.builder.same_signs) { ASSERT_TRUE(same_signs(r.ray.direction, first.ray.direction)); }
+          if (config.sources == BundlesConfig::Sources::kCamera) {
+            ASSERT_EQ(r.tag.kind, RayKind::kCamera);
+          }
+          if (config.sources == BundlesConfig::Sources::kShader) {
+            ASSERT_NE(r.tag.kind, RayKind::kCamera);
+          }
+          if (config.builder.same_origin) {
+            ASSERT_EQ(r.ray.origin, first.ray.origin);
+          }
+          if (config.builder.same_signs) {
+            ASSERT_TRUE(same_signs(r.ray.direction, first.ray.direction));
+          }
         }
       }
       for (const int times : seen) ASSERT_EQ(times, 1);
@@ -171,7 +183,8 @@ TEST(BundleBuilder, KeepsBundlesBelowTheThreshold) {
         DVec3 o_min(1e9), o_max(-1e9), d_min(1e9), d_max(-1e9);
         for (const std::uint32_t i : group) {
           const DVec3 o(rays[i].ray.origin), d(rays[i].ray.direction);
-          o_min = glm::min(o_min, o), o_max = glm::max(o_max, o), d_min = glm::min(d_min, d), d_max = glm::max(d_max, d);
+          o_min = glm::min(o_min, o), o_max = glm::max(o_max, o), d_min = glm::min(d_min, d),
+          d_max = glm::max(d_max, d);
         }
         const double origins = largest(o_max - o_min) / kSceneSize, range = largest(d_max - d_min);
         const DVec3 e = d_max - d_min, c = glm::abs(0.5 * (d_min + d_max));
@@ -186,8 +199,12 @@ TEST(BundleBuilder, KeepsBundlesBelowTheThreshold) {
       }
       EXPECT_GT(bundled, 100u) << enum_name(similarity);
       // What the similarity does not look at is free.
-      if (similarity == Builder::Similarity::kComponentRange) { EXPECT_TRUE(far_apart); }
-      if (similarity == Builder::Similarity::kOriginBox) { EXPECT_TRUE(spread_out); }
+      if (similarity == Builder::Similarity::kComponentRange) {
+        EXPECT_TRUE(far_apart);
+      }
+      if (similarity == Builder::Similarity::kOriginBox) {
+        EXPECT_TRUE(spread_out);
+      }
     }
   }
 }

@@ -56,7 +56,7 @@ TEST(RayControl, BalancedSpreadsEachGroupInEqualRuns) {
   std::map<std::uint32_t, int> at;
   const auto groups = bench.collect_all();
   ASSERT_EQ(groups.size(), 2u);
-  EXPECT_NE(groups[0].first, groups[1].first);   // issued by different resources
+  EXPECT_NE(groups[0].first, groups[1].first);  // issued by different resources
   for (const auto& [issuer, group] : groups) {
     ASSERT_EQ(group.ids.size(), 32u);
     std::map<std::uint32_t, std::vector<std::uint32_t>> paths;
@@ -64,7 +64,7 @@ TEST(RayControl, BalancedSpreadsEachGroupInEqualRuns) {
     ASSERT_EQ(paths.size(), 4u);
     for (const auto& [owner, run] : paths) {
       ASSERT_EQ(run.size(), 8u);
-      EXPECT_EQ(run.back() - run.front(), 7u);   // neighbours stay together
+      EXPECT_EQ(run.back() - run.front(), 7u);  // neighbours stay together
     }
   }
 }
@@ -129,7 +129,7 @@ TEST(RayControl, GivesEverySlotOnceUntilItIsFreed) {
 TEST(RayControl, RaysWaitForSlotsInTheirOrder) {
   Bench bench(Placement::kBalanced, Home::kIssuer, 2, 2, 4);
   bench.control->submit(rays(10));
-  bench.control->submit(rays(3, 10));   // behind those that wait
+  bench.control->submit(rays(3, 10));  // behind those that wait
   std::vector<std::uint32_t> order;
   for (int round = 0; round < 20; ++round) {
     for (const auto& [issuer, group] : bench.collect_all()) {

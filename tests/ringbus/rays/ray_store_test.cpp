@@ -35,7 +35,7 @@ RayRequest request(float tmax = kInfinity) {
 
 TEST(RayStore, LoadsAFreshRecord) {
   RayStore store(ResourceId(3), 5);
-  store.record(2).hit = {1, 0.5f, 0.5f, 4, 4};   // what an earlier ray left
+  store.record(2).hit = {1, 0.5f, 0.5f, 4, 4};  // what an earlier ray left
   store.record(2).tag.flags = 0xff;
   const RayId id = store.load(2, request(8), 3);
   EXPECT_TRUE(store.owns(id));
@@ -59,11 +59,11 @@ TEST(RayStore, CatchesStaleIds) {
   const RayId first = store.load(0, request(), 1);
   EXPECT_NO_THROW(store.slot(first));
   store.retire(0);
-  EXPECT_THROW(store.slot(first), SimulationError);   // freed
+  EXPECT_THROW(store.slot(first), SimulationError);  // freed
   const RayId second = store.load(0, request(), 1);
   EXPECT_NO_THROW(store.slot(second));
   try {
-    store.slot(first);   // handed out again
+    store.slot(first);  // handed out again
     FAIL();
   } catch (const SimulationError& error) {
     const std::string text = error.what();
@@ -72,7 +72,9 @@ TEST(RayStore, CatchesStaleIds) {
   }
 }
 
-NextNode node(float entry, std::uint32_t ref) { return {{0, accel::NodeRef::from_bits(ref)}, entry, 1, true}; }
+NextNode node(float entry, std::uint32_t ref) {
+  return {{0, accel::NodeRef::from_bits(ref)}, entry, 1, true};
+}
 
 TEST(RayStacks, PopsTheLastPushedThatIsNotBeyondTmax) {
   RayStacks stacks(2, 8, 4);
@@ -84,9 +86,9 @@ TEST(RayStacks, PopsTheLastPushedThatIsNotBeyondTmax) {
   stacks.push(1, node(9, 3));
   EXPECT_EQ(stacks.pop(0, 4).key.ref.bits(), 2u);
   stacks.push(0, node(6, 4));
-  EXPECT_EQ(stacks.pop(0, 5).key.ref.bits(), 1u);   // 6 is beyond; 5 is not
+  EXPECT_EQ(stacks.pop(0, 5).key.ref.bits(), 1u);  // 6 is beyond; 5 is not
   EXPECT_FALSE(stacks.pop(0, kInfinity).any);
-  EXPECT_EQ(stacks.pop(1, 9).key.ref.bits(), 3u);   // the neighbour's is untouched
+  EXPECT_EQ(stacks.pop(1, 9).key.ref.bits(), 3u);  // the neighbour's is untouched
   stacks.push(1, node(1, 5));
   stacks.clear(1);
   EXPECT_FALSE(stacks.pop(1, kInfinity).any);

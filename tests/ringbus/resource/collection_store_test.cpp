@@ -12,7 +12,9 @@ namespace {
 using accel::NodeKey;
 using accel::NodeRef;
 
-NodeKey key(std::uint32_t node) { return {0, NodeRef::inner(node)}; }
+NodeKey key(std::uint32_t node) {
+  return {0, NodeRef::inner(node)};
+}
 RayId ray(std::uint32_t bits) {
   RayId id;
   id.bits = bits;
@@ -62,7 +64,7 @@ TEST(CollectionStore, OldestFirstAndNewestFirst) {
   for (const Policy policy : {Policy::kOldest, Policy::kNewest}) {
     CollectionStore store(settings(policy, Select::kStrict));
     for (const std::uint32_t k : {5u, 3u, 9u}) store.add(key(k), 1, 1, rays(k, 2));
-    store.add(key(5), 1, 1, rays(50, 1));   // growing does not make it younger
+    store.add(key(5), 1, 1, rays(50, 1));  // growing does not make it younger
     EXPECT_EQ(drain(store), policy == Policy::kOldest ? (Keys{5, 3, 9}) : (Keys{9, 3, 5}));
   }
 }
@@ -84,7 +86,7 @@ TEST(CollectionStore, NearestFirstAndAnEarlierEntryBringsForward) {
   store.add(key(3), 1, 2.0f, rays(20, 1));
   store.add(key(4), 1, 0.0f, rays(30, 1));
   store.add(key(1), 1, 1.0f, rays(40, 1));
-  store.add(key(2), 1, 9.0f, rays(50, 1));   // a later one changes nothing
+  store.add(key(2), 1, 9.0f, rays(50, 1));  // a later one changes nothing
   EXPECT_EQ(drain(store), (Keys{4, 2, 1, 3}));
 }
 
@@ -96,10 +98,10 @@ TEST(CollectionStore, FullFirstOffersReadyOnesOnly) {
     EXPECT_EQ(store.key(*store.best(true)), key(1));
     store.add(key(2), 1, 5.0f, rays(10, 8));
     EXPECT_EQ(store.key(*store.best(false)), key(2));
-    EXPECT_EQ(store.key(*store.best(true)), key(2));   // before better ones that are not ready
+    EXPECT_EQ(store.key(*store.best(true)), key(2));  // before better ones that are not ready
     std::vector<RayId> out;
     store.take(*store.best(false), out);
-    EXPECT_FALSE(store.best(false));   // four are left: not ready any more
+    EXPECT_FALSE(store.best(false));  // four are left: not ready any more
     store.add(key(1), 9, 0.1f, rays(20, 1));
     EXPECT_EQ(store.key(*store.best(false)), key(1));
   }
@@ -176,19 +178,25 @@ TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
         ASSERT_EQ(store.depth(*best), c.depth);
         ASSERT_EQ(store.entry(*best), c.entry);
         const auto ready = [&](const Collection& o) { return s.select == Select::kStrict || o.rays.size() >= s.ready; };
-        ASSERT_EQ(store.best(false).has_value(), std::any_of(model.begin(), model.end(), [&](const auto& o) { return ready(o.second); }));
+        ASSERT_EQ(store.best(false).has_value(),
+                  std::any_of(model.begin(), model.end(), [&](const auto& o) { return ready(o.second); }));
         for (const auto& [other_key, other] : model) {
           if (ready(other) && !ready(c)) FAIL() << "a ready collection was passed over";
           if (ready(other) != ready(c)) continue;
           switch (s.policy) {
-            case Policy::kDeepest: ASSERT_GE(c.depth, other.depth); break;
-            case Policy::kNearest: ASSERT_LE(c.entry, other.entry * 1.126f); break;   // buckets of an eighth octave
-            case Policy::kFullest:   // full is as full as it gets: two ready sizes fill the scale
+            case Policy::kDeepest:
+              ASSERT_GE(c.depth, other.depth);
+              break;
+            case Policy::kNearest:
+              ASSERT_LE(c.entry, other.entry * 1.126f);
+              break;                // buckets of an eighth octave
+            case Policy::kFullest:  // full is as full as it gets: two ready sizes fill the scale
               if (other.rays.size() < 2 * s.ready) {
                 ASSERT_GE((c.rays.size() + 1) * 128 / s.ready + 1, other.rays.size() * 128 / s.ready);
               }
               break;
-            default: break;   // age: below, without `full first`, where readiness moves nothing
+            default:
+              break;  // age: below, without `full first`, where readiness moves nothing
           }
           if (s.select != Select::kStrict) continue;
           ASSERT_TRUE(s.policy != Policy::kOldest || c.born <= other.born);
@@ -200,7 +208,8 @@ TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
         for (std::size_t r = 0; r < out.size(); ++r) ASSERT_EQ(out[r].bits, c.rays[r]);
         memberships -= out.size();
         blocks -= 1;
-        it->second.rays.erase(it->second.rays.begin(), it->second.rays.begin() + static_cast<std::ptrdiff_t>(out.size()));
+        it->second.rays.erase(it->second.rays.begin(),
+                              it->second.rays.begin() + static_cast<std::ptrdiff_t>(out.size()));
         if (it->second.rays.empty()) model.erase(it);
       }
       ASSERT_EQ(store.collections(), model.size());

@@ -12,7 +12,9 @@ namespace {
 using accel::NodeKey;
 using accel::NodeRef;
 
-NodeKey key(std::uint32_t instance, std::uint32_t bits) { return {instance, NodeRef::from_bits(bits)}; }
+NodeKey key(std::uint32_t instance, std::uint32_t bits) {
+  return {instance, NodeRef::from_bits(bits)};
+}
 
 TEST(CollectionTable, FindsNothingWhenEmpty) {
   const CollectionTable table;
@@ -25,7 +27,8 @@ TEST(CollectionTable, TellsInstancesAndNodesApart) {
   CollectionTable table;
   std::uint32_t value = 0;
   for (std::uint32_t instance : {0u, 1u, 2u, 0x10000u, accel::kMaxBlocks, kNoInstance})
-    for (std::uint32_t node : {0u, 1u, 0x10000u, 0x3fffffffu, 0x40000000u, 0x80000001u}) table.insert(key(instance, node), value++);
+    for (std::uint32_t node : {0u, 1u, 0x10000u, 0x3fffffffu, 0x40000000u, 0x80000001u})
+      table.insert(key(instance, node), value++);
   value = 0;
   for (std::uint32_t instance : {0u, 1u, 2u, 0x10000u, accel::kMaxBlocks, kNoInstance})
     for (std::uint32_t node : {0u, 1u, 0x10000u, 0x3fffffffu, 0x40000000u, 0x80000001u})

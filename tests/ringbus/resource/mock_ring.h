@@ -9,9 +9,9 @@
 #include "accel/structure/accel.h"
 #include "accel/traverse/brute_force.h"
 #include "core/system/executor.h"
+#include "ringbus/packets/statistics_sink.h"
 #include "ringbus/protocol/deadlock.h"
 #include "ringbus/resource/resource.h"
-#include "ringbus/packets/statistics_sink.h"
 #include "ringbus/topology/topology.h"
 #include "scene/builtin/builtin.h"
 
@@ -29,9 +29,11 @@ struct MockRing {
   MockRing(const Config& c, const scene::Scene& scene)
       : config(c), accel(accel::build(scene, c.bvh, *make_sequential_executor())) {
     if (config.collections.when_full == WhenFull::kReserve)
-      config.collections.capacity = std::max(config.packets.rays, minimum_capacity(config, accel.width, accel.max_depth));
+      config.collections.capacity =
+          std::max(config.packets.rays, minimum_capacity(config, accel.width, accel.max_depth));
     for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(c.topology.resources); ++r) {
-      stores.push_back(std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(c.rays.slots_per_resource)));
+      stores.push_back(
+          std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(c.rays.slots_per_resource)));
       sinks.push_back(std::make_unique<StatisticsSink>());
       resources.push_back(std::make_unique<Resource>(config, accel, 10.0f, *stores.back(), sinks.back().get()));
       free_slots.emplace_back();

@@ -5,8 +5,8 @@
 #include "accel/traverse/reference_tracer.h"
 #include "accel/traverse/verifying_workload.h"
 #include "core/config/enum_names.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/ringbus/resource/mock_ring.h"
 
 namespace carousel::ringbus {
@@ -35,7 +35,8 @@ class Shuffler {
       EXPECT_TRUE(r->idle());
       EXPECT_EQ(r->packets_in_flight(), 0u);
     }
-    for (std::size_t r = 0; r < ring_.free_slots.size(); ++r) EXPECT_EQ(ring_.free_slots[r].size(), ring_.stores[r]->slots());
+    for (std::size_t r = 0; r < ring_.free_slots.size(); ++r)
+      EXPECT_EQ(ring_.free_slots[r].size(), ring_.stores[r]->slots());
     for (const int times : seen_) EXPECT_EQ(times, 1);
   }
 
@@ -49,7 +50,8 @@ class Shuffler {
   }
   std::uint64_t reserve_entered() const {
     std::uint64_t sum = 0;
-    for (const auto& sink : ring_.sinks) sum += sink->statistics().stalls[static_cast<std::size_t>(StallReason::kReserve)];
+    for (const auto& sink : ring_.sinks)
+      sum += sink->statistics().stalls[static_cast<std::size_t>(StallReason::kReserve)];
     return sum;
   }
   std::uint64_t storage_refusals() const { return storage_refusals_; }
@@ -57,7 +59,7 @@ class Shuffler {
  private:
   struct UnderWay {
     std::unique_ptr<Packet> packet;
-    std::uint32_t visits = 0;   // resources it has been to
+    std::uint32_t visits = 0;  // resources it has been to
   };
 
   std::uint32_t resources() const { return static_cast<std::uint32_t>(ring_.resources.size()); }
@@ -144,7 +146,8 @@ Config config_of(Traversal traversal, PacketShapes shapes, std::uint32_t seed) {
 void shuffle(Traversal traversal, PacketShapes shapes) {
   std::uint64_t reserve = 0, refusals = 0;
   for (const bool instanced : {false, true}) {
-    const scene::Scene scene = instanced ? accel::small_builtin(BuiltinScene::kInstances, 100, 5) : accel::icosphere_scene(2);
+    const scene::Scene scene =
+        instanced ? accel::small_builtin(BuiltinScene::kInstances, 100, 5) : accel::icosphere_scene(2);
     for (std::uint32_t seed = 1; seed <= 30; ++seed) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << (instanced ? " instances" : " sphere"));
       Shuffler shuffler(config_of(traversal, shapes, seed), scene, accel::mixed_rays(scene, 60, seed), seed);
@@ -154,16 +157,26 @@ void shuffle(Traversal traversal, PacketShapes shapes) {
       refusals += shuffler.storage_refusals();
     }
   }
-  if (traversal == Traversal::kOrdered) return;   // needs no reserve
+  if (traversal == Traversal::kOrdered) return;  // needs no reserve
   EXPECT_GT(reserve, 0u);
   EXPECT_GT(refusals, 0u);
 }
 
-TEST(ResourceOrder, StripsOfSpreadRaysComeOutRight) { shuffle(Traversal::kSpread, PacketShapes::kStrip); }
-TEST(ResourceOrder, SingleShapesOfSpreadRaysComeOutRight) { shuffle(Traversal::kSpread, PacketShapes::kSingle); }
-TEST(ResourceOrder, OrderedRaysComeOutRight) { shuffle(Traversal::kOrdered, PacketShapes::kStrip); }
-TEST(ResourceOrder, StripsOfTreeletsComeOutRight) { shuffle(Traversal::kTreelet, PacketShapes::kStrip); }
-TEST(ResourceOrder, SingleShapesOfTreeletsComeOutRight) { shuffle(Traversal::kTreelet, PacketShapes::kSingle); }
+TEST(ResourceOrder, StripsOfSpreadRaysComeOutRight) {
+  shuffle(Traversal::kSpread, PacketShapes::kStrip);
+}
+TEST(ResourceOrder, SingleShapesOfSpreadRaysComeOutRight) {
+  shuffle(Traversal::kSpread, PacketShapes::kSingle);
+}
+TEST(ResourceOrder, OrderedRaysComeOutRight) {
+  shuffle(Traversal::kOrdered, PacketShapes::kStrip);
+}
+TEST(ResourceOrder, StripsOfTreeletsComeOutRight) {
+  shuffle(Traversal::kTreelet, PacketShapes::kStrip);
+}
+TEST(ResourceOrder, SingleShapesOfTreeletsComeOutRight) {
+  shuffle(Traversal::kTreelet, PacketShapes::kSingle);
+}
 
 }  // namespace
 }  // namespace carousel::ringbus

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "accel/box/slab.h"
-#include "tests/accel/traverse/test_rays.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/test_rays.h"
 #include "tests/ringbus/resource/mock_ring.h"
 
 namespace carousel::ringbus {
@@ -69,7 +69,7 @@ TEST_F(ResourceTest, OneStripTestsLocalRaysAndNoOthers) {
   EXPECT_EQ(statistics(0).tests.box, 4 * boxes);
   EXPECT_EQ(statistics(0).tests.triangle, 0u);
   for (std::size_t i = 1; i < 8; i += 2) {
-    EXPECT_EQ(packet_.members[i].mask, 0);               // the other resource's
+    EXPECT_EQ(packet_.members[i].mask, 0);  // the other resource's
     EXPECT_EQ(ring_->record(ids_[i]).pending, 1);
   }
   resource(1).test(packet_);
@@ -77,13 +77,13 @@ TEST_F(ResourceTest, OneStripTestsLocalRaysAndNoOthers) {
   std::size_t done = 0;
   for (std::size_t i = 0; i < 8; ++i) {
     const int hits = std::popcount(packet_.members[i].mask);
-    EXPECT_EQ(ring_->record(ids_[i]).pending, hits);     // 1 + hits - 1
+    EXPECT_EQ(ring_->record(ids_[i]).pending, hits);  // 1 + hits - 1
     memberships += static_cast<std::uint64_t>(hits);
     done += hits == 0;
   }
   EXPECT_GT(memberships, 4u);
   EXPECT_EQ(resource(0).completed().size() + resource(1).completed().size(), done);
-  EXPECT_EQ(resource(0).collections().memberships(), 0u);   // not before it is home
+  EXPECT_EQ(resource(0).collections().memberships(), 0u);  // not before it is home
   resource(0).retire(packet_);
   EXPECT_EQ(resource(0).collections().memberships(), memberships);
   EXPECT_EQ(statistics(0).memberships, memberships);
@@ -124,11 +124,11 @@ TEST_F(ResourceTest, SingleShapesGoOutOneAPacket) {
     EXPECT_EQ(ring_->record(ids_[0]).pending, before - 1 + (packet.members[0].mask != 0 ? below : 0));
   }
   EXPECT_EQ(lanes, (1u << shapes) - 1);
-  EXPECT_EQ(resource(0).offer(true, packet_), Resource::Offer::kNothing);   // nothing has been retired yet
+  EXPECT_EQ(resource(0).offer(true, packet_), Resource::Offer::kNothing);  // nothing has been retired yet
 }
 
 TEST_F(ResourceTest, OrderedWritesTheNearestChildIntoThePacket) {
-  start(config(Traversal::kOrdered), {0.9f, 0.8f, 1});   // through several children each
+  start(config(Traversal::kOrdered), {0.9f, 0.8f, 1});  // through several children each
   ASSERT_EQ(resource(0).offer(false, packet_), Resource::Offer::kPacket);
   resource(0).test(packet_);
   resource(1).test(packet_);
@@ -139,7 +139,7 @@ TEST_F(ResourceTest, OrderedWritesTheNearestChildIntoThePacket) {
     going += next.any;
     if (!next.any) continue;
     EXPECT_EQ(next.depth, 1);
-    EXPECT_EQ(ring_->record(ids_[i]).pending, 1);   // in one collection at a time
+    EXPECT_EQ(ring_->record(ids_[i]).pending, 1);  // in one collection at a time
     const accel::Node& node = ring_->accel.nodes[packet_.key.ref.node()];
     float nearest = kInfinity;
     int children = 0;
@@ -201,7 +201,7 @@ TEST_F(ResourceTest, ShadowRayThatIsDoneIsSkippedButDrains) {
     resource(0).test(packet_);
     if (done) {
       done_early = true;
-      EXPECT_EQ(statistics(0).tests.box, before.box);   // nothing more is tested
+      EXPECT_EQ(statistics(0).tests.box, before.box);  // nothing more is tested
     }
     resource(0).retire(packet_);
   }

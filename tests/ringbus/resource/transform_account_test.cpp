@@ -1,9 +1,9 @@
 // What the transform unit is charged with: never a bit of a hit, but tests, cycles and bytes.
-#include "accel/build/build.h"
 #include "ringbus/resource/transform_account.h"
 
 #include <gtest/gtest.h>
 
+#include "accel/build/build.h"
 #include "ringbus/cycle/fabric/packet_size.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
@@ -61,7 +61,8 @@ TEST(TransformAccount, InvertsWhatIsStoredForwardUnlessItIsTransposed) {
       accuracy.instance_data = data.value;
       const TransformAccount account(accuracy, accel, 1);
       EXPECT_EQ(account.inverts(2), data.value == Data::kForward);
-      EXPECT_EQ(account.inverts(1), data.value == Data::kForward && level.value != TransformLevel::kTransposeIfRotation);
+      EXPECT_EQ(account.inverts(1),
+                data.value == Data::kForward && level.value != TransformLevel::kTransposeIfRotation);
     }
   }
 }
@@ -78,7 +79,7 @@ TEST(InstanceData, IsWhatTheLevelReads) {
   EXPECT_EQ(accel::instance_bytes(a), 48u);
   a.transform = TransformLevel::kTwoStepDouble;
   EXPECT_EQ(accel::instance_bytes(a), 84u);
-  a.instance_data = Data::kForward;   // the scene's floats
+  a.instance_data = Data::kForward;  // the scene's floats
   EXPECT_EQ(accel::instance_bytes(a), 48u);
 }
 
@@ -94,7 +95,8 @@ TEST(InstanceData, TravelsWithThePacketsThatCarryShapes) {
   packet.key = {2, accel.instances[2].root};
   EXPECT_EQ(size.bytes(packet, memory, false), unmoved + 48);
   EXPECT_EQ(memory.transform(kNoInstance).bytes, 0u);
-  EXPECT_GE(memory.transform(1).address, accel.nodes.size() * sizeof(accel::Node) + accel.blocks.size() * sizeof(accel::TriangleBlock));
+  EXPECT_GE(memory.transform(1).address,
+            accel.nodes.size() * sizeof(accel::Node) + accel.blocks.size() * sizeof(accel::TriangleBlock));
   EXPECT_EQ(memory.transform(2).address, memory.transform(1).address + 64);
 }
 
@@ -107,9 +109,9 @@ TEST(Tester, InvertsBeforeItTransforms) {
   counts.box = 24;
   counts.transforms = 3;
   cycle::Tester plain(config), inverting(config);
-  EXPECT_EQ(plain.strip(100, counts), 110u);   // transformed at 104 to 106, their boxes tested at 108 to 110
+  EXPECT_EQ(plain.strip(100, counts), 110u);  // transformed at 104 to 106, their boxes tested at 108 to 110
   counts.inversions = 1;
-  EXPECT_EQ(inverting.strip(100, counts), 115u);   // two passes, begun at 100 and 101: at hand at 105
+  EXPECT_EQ(inverting.strip(100, counts), 115u);  // two passes, begun at 100 and 101: at hand at 105
   EXPECT_EQ(plain.transform.busy(), 3u);
   EXPECT_EQ(inverting.transform.busy(), 5u);
 }
@@ -144,7 +146,7 @@ TEST(TransformPolicies, ChangeTestsBytesAndCyclesButNoHit) {
         c.bvh.treelet_triangles = 200;
         c.rays.slots_per_resource = 64;
         c.memory.fetch = fetch;
-        c.testers.transform = {1, 200, 200};   // what a run waits for; else order and caches decide
+        c.testers.transform = {1, 200, 200};  // what a run waits for; else order and caches decide
         const Machine today = run(scene, c);
         c.accuracy.instance_data = Data::kForward;
         const Machine forward = run(scene, c);
@@ -158,9 +160,9 @@ TEST(TransformPolicies, ChangeTestsBytesAndCyclesButNoHit) {
         EXPECT_LE(forward.tests.inversions, forward.tests.transforms);
         EXPECT_GT(forward.cycles.cycles, today.cycles.cycles);
         EXPECT_LE(stored.tests.transforms, today.tests.transforms);
-        if (shape == TopologyShape::kRing) {   // elsewhere a ray comes to an instance once
+        if (shape == TopologyShape::kRing) {  // elsewhere a ray comes to an instance once
           EXPECT_LT(stored.tests.transforms, today.tests.transforms);
-          if (traversal.value != Traversal::kTreelet) {   // where few rays come again
+          if (traversal.value != Traversal::kTreelet) {  // where few rays come again
             EXPECT_LT(stored.cycles.cycles, today.cycles.cycles);
           }
           EXPECT_LT(both.tests.inversions, forward.tests.inversions);
@@ -171,7 +173,8 @@ TEST(TransformPolicies, ChangeTestsBytesAndCyclesButNoHit) {
           bytes.read += tile.transformed_rays.read;
         }
         EXPECT_EQ(bytes.written, 24 * stored.tests.transforms);
-        for (const cycle::TileResult& tile : today.cycles.tiles) EXPECT_EQ(tile.transformed_rays, TransformedRayBytes{});
+        for (const cycle::TileResult& tile : today.cycles.tiles)
+          EXPECT_EQ(tile.transformed_rays, TransformedRayBytes{});
       }
     }
   }

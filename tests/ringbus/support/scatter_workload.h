@@ -6,8 +6,8 @@
 #include <mutex>
 #include <vector>
 
-#include "core/types/aabb.h"
 #include "core/numeric/digest.h"
+#include "core/types/aabb.h"
 #include "core/types/workload.h"
 
 namespace carousel::ringbus {
@@ -19,7 +19,13 @@ class ScatterWorkload final : public Workload {
  public:
   ScatterWorkload(const Aabb& bounds, std::uint32_t count, std::uint8_t bounces, std::uint32_t seed, float away = 0.5f,
                   bool wishes = false)
-      : bounds_(bounds), count_(count), bounces_(bounces), seed_(seed), away_(away), wishes_(wishes), seen_(std::size_t{count} * (2u * bounces + 1u)) {}
+      : bounds_(bounds),
+        count_(count),
+        bounces_(bounces),
+        seed_(seed),
+        away_(away),
+        wishes_(wishes),
+        seen_(std::size_t{count} * (2u * bounces + 1u)) {}
 
   Generated generate(WorkerId, std::size_t max_rays, RayBatch& out) override {
     const std::uint32_t begin = next_.fetch_add(static_cast<std::uint32_t>(max_rays));
@@ -55,7 +61,8 @@ class ScatterWorkload final : public Workload {
       bounce.ray.origin = at;
       for (int a = 0; a < 3; ++a) bounce.ray.direction[a] = number(r.tag.path, r.tag.bounce + 1u, a) - 0.5f;
       bounce.ray.tmin = 1e-4f * std::fabs(bounds_.extent().x);
-      bounce.tag = {r.tag.path, RayKind::kBounce, static_cast<std::uint8_t>(r.tag.bounce + 1), 0, wish(r.tag.path, r.tag.bounce + 1u)};
+      bounce.tag = {r.tag.path, RayKind::kBounce, static_cast<std::uint8_t>(r.tag.bounce + 1), 0,
+                    wish(r.tag.path, r.tag.bounce + 1u)};
       out.push_back(bounce);
       RayRequest shadow = bounce;
       shadow.ray.direction = bounds_.hi + Vec3(number(r.tag.path, r.tag.bounce, 7)) - at;
@@ -80,7 +87,8 @@ class ScatterWorkload final : public Workload {
     return wishes_ && n < 0.25f ? static_cast<std::uint8_t>(static_cast<int>(n * 64) & kRayWishes) : std::uint8_t{0};
   }
   float number(std::uint32_t path, std::uint32_t bounce, int dimension) const {
-    std::uint64_t x = (std::uint64_t{seed_} << 32 | path) * 0x9e3779b97f4a7c15ull + bounce * 64u + static_cast<std::uint32_t>(dimension);
+    std::uint64_t x = (std::uint64_t{seed_} << 32 | path) * 0x9e3779b97f4a7c15ull + bounce * 64u +
+                      static_cast<std::uint32_t>(dimension);
     x ^= x >> 30;
     x *= 0xbf58476d1ce4e5b9ull;
     x ^= x >> 27;

@@ -20,12 +20,12 @@
 #include "core/system/error.h"
 #include "core/system/executor.h"
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/protocol/deadlock.h"
 #include "ringbus/native/native_engine.h"
+#include "ringbus/protocol/deadlock.h"
 #include "scene/builtin/builtin.h"
-#include "tests/support/random_runs.h"
 #include "tests/ringbus/queues/queue_kinds.h"
 #include "tests/ringbus/support/scatter_workload.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::ringbus {
 
@@ -33,20 +33,21 @@ namespace carousel::ringbus {
 struct Cell {
   Config config;
   std::size_t threads = 1;
-  bool tight_storage = false;   ///< bounded collection storage at its least
-  cycle::TraceWindow trace{};   ///< of the cycle engine
-  std::stop_token stop{};       ///< ends the run, which is then incomplete
+  bool tight_storage = false;  ///< bounded collection storage at its least
+  cycle::TraceWindow trace{};  ///< of the cycle engine
+  std::stop_token stop{};      ///< ends the run, which is then incomplete
 
   /// Nothing of those without faults.
   std::string faults_text() const {
     const FaultsConfig& f = config.faults;
     std::string text;
     if (f.links.any())
-      text += fmt::format(" links drop {} duplicate {} corrupt {} reorder {} delay {} by {}", f.links.drop, f.links.duplicate, f.links.corrupt,
-                          f.links.reorder, f.links.delay, f.links.delay_cycles);
+      text += fmt::format(" links drop {} duplicate {} corrupt {} reorder {} delay {} by {}", f.links.drop,
+                          f.links.duplicate, f.links.corrupt, f.links.reorder, f.links.delay, f.links.delay_cycles);
     if (f.resource.kind != FaultsConfig::Resource::Kind::kNone)
-      text += fmt::format(" resource {} {} after {} cycles {} factor {} silence {}", f.resource.number, enum_name(f.resource.kind),
-                          f.resource.after_rays, f.resource.cycles, f.resource.factor, f.resource.silence_cycles);
+      text += fmt::format(" resource {} {} after {} cycles {} factor {} silence {}", f.resource.number,
+                          enum_name(f.resource.kind), f.resource.after_rays, f.resource.cycles, f.resource.factor,
+                          f.resource.silence_cycles);
     return text.empty() ? text : fmt::format("{} seed {}", text, f.seed);
   }
   std::string text() const { return machine_text() + faults_text(); }
@@ -54,15 +55,17 @@ struct Cell {
     const Config& c = config;
     return fmt::format(
         "resources {} {} visit {} flow {} queue {} depth {} slots {} placement {} packet rays {} {} ready {} {} {} {} "
-        "home {} {}{} contexts {} carry {} fetch {} ahead {} width {} leaf {} treelet {} {} mixed {} workers {} {}{} simd {} threads {}",
+        "home {} {}{} contexts {} carry {} fetch {} ahead {} width {} leaf {} treelet {} {} mixed {} workers {} {}{} "
+        "simd {} threads {}",
         c.topology.resources, enum_name(c.topology.shape), enum_name(c.topology.visit), enum_name(c.topology.flow),
         enum_name(c.topology.link.queue), c.topology.link.depth, c.rays.slots_per_resource, enum_name(c.rays.placement),
         c.packets.rays, enum_name(c.packets.shapes), c.collections.ready, enum_name(c.collections.traversal),
         enum_name(c.collections.policy), enum_name(c.collections.select), enum_name(c.collections.home),
         enum_name(c.collections.when_full), tight_storage ? " tight" : "", c.testers.contexts,
         enum_name(c.packets.carry), enum_name(c.memory.fetch), c.memory.fetch_ahead, c.bvh.width, c.bvh.leaf_triangles,
-        c.bvh.treelet_triangles, enum_name(c.bvh.elements), c.bvh.mixed_triangles, c.shading.workers, enum_name(c.shading.distribute),
-        c.shading.idle_resources_shade ? " idle resources shade" : "", enum_name(c.engine.simd), threads);
+        c.bvh.treelet_triangles, enum_name(c.bvh.elements), c.bvh.mixed_triangles, c.shading.workers,
+        enum_name(c.shading.distribute), c.shading.idle_resources_shade ? " idle resources shade" : "",
+        enum_name(c.engine.simd), threads);
   }
 };
 
@@ -106,15 +109,17 @@ class TestScene {
     return accel(bvh, none);
   }
   const accel::Accel& accel(const BvhConfig& bvh, const CullPlanesConfig& planes) {
-    auto& built = accels_[{bvh.width, bvh.leaf_triangles, bvh.elements, bvh.mixed_triangles, planes.count, planes.nodes, planes.fit, planes.shared_normals, planes.order,
-                         planes.levels}];
+    auto& built = accels_[{bvh.width, bvh.leaf_triangles, bvh.elements, bvh.mixed_triangles, planes.count, planes.nodes,
+                           planes.fit, planes.shared_normals, planes.order, planes.levels}];
     if (!built) {
       built = std::make_unique<accel::Accel>(accel::build(scene_, bvh, *make_sequential_executor(), accuracy_, planes));
       built->any_hit = any_hit_;
     }
     return *built;
   }
-  ScatterWorkload workload() const { return ScatterWorkload(bounds_, paths_, bounces_, 6 + run_seed(), away_, any_hit_ != nullptr); }
+  ScatterWorkload workload() const {
+    return ScatterWorkload(bounds_, paths_, bounces_, 6 + run_seed(), away_, any_hit_ != nullptr);
+  }
   std::unique_ptr<Workload> new_workload() const {
     return std::make_unique<ScatterWorkload>(bounds_, paths_, bounces_, 6 + run_seed(), away_, any_hit_ != nullptr);
   }
@@ -132,10 +137,11 @@ class TestScene {
   std::uint8_t bounces_;
   float away_;
   AccuracyConfig accuracy_;
-  const AnyHit* any_hit_;   // with one, rays also have wishes
+  const AnyHit* any_hit_;  // with one, rays also have wishes
   /// Width, leaf size, elements, mixed nodes, and planes: count, nodes, fit, shared, order, levels.
-  using Built = std::tuple<std::int64_t, std::int64_t, BvhConfig::Elements, std::int64_t, std::int64_t, CullPlanesConfig::Nodes, CullPlanesConfig::Fit, bool,
-                           CullPlanesConfig::Order, CullPlanesConfig::Levels>;
+  using Built =
+      std::tuple<std::int64_t, std::int64_t, BvhConfig::Elements, std::int64_t, std::int64_t, CullPlanesConfig::Nodes,
+                 CullPlanesConfig::Fit, bool, CullPlanesConfig::Order, CullPlanesConfig::Levels>;
   std::map<Built, std::unique_ptr<accel::Accel>> accels_;
   HitsDigest digest_;
   std::uint64_t rays_ = 0;
@@ -198,7 +204,7 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   expect("rays shaded twice", workload.doubled(), 0u);
   expect("completed", out.result.rays_completed, out.result.rays_emitted);
   expect("complete", out.result.complete, true);
-  std::uint64_t in_bundles = 0;   // beyond the one ID that was admitted for each
+  std::uint64_t in_bundles = 0;  // beyond the one ID that was admitted for each
   for (const BundleCounts& at_depth : out.sum.bundles) in_bundles += at_depth.loaded_rays - at_depth.loaded;
   const std::uint64_t admitted = out.sum.rays_admitted + in_bundles, again = out.result.rays_restarted;
   // Those that begin again may have been on their way when all work was discarded, or admitted.
@@ -206,7 +212,8 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   if (admitted < scene.rays() || admitted > scene.rays() + again) out.fault += fmt::format("admitted: {}; ", admitted);
   if (out.result.paths_restarted > again) out.fault += "more paths than rays began again; ";
   expect("handed over", out.sum.rays_completed, scene.rays());
-  expect("packets retired or discarded", out.sum.packets_retired + out.result.packets_discarded, out.sum.packets_issued);
+  expect("packets retired or discarded", out.sum.packets_retired + out.result.packets_discarded,
+         out.sum.packets_issued);
   return out;
 }
 

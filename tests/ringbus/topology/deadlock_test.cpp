@@ -22,7 +22,7 @@ TEST(DeadlockVerdict, NamesTheRuleThatProtects) {
   c.flow = Flow::kNone;
   EXPECT_TRUE(deadlock_verdict(c).can_deadlock);
   c.resources = 1;
-  EXPECT_FALSE(deadlock_verdict(c).can_deadlock);   // no links
+  EXPECT_FALSE(deadlock_verdict(c).can_deadlock);  // no links
   c.resources = 5;
   c.shape = TopologyShape::kIndependent;
   EXPECT_FALSE(deadlock_verdict(c).can_deadlock);
@@ -41,7 +41,8 @@ TEST(CheckStorage, AsksForWhatDrainingNeeds) {
   ASSERT_EQ(issues.size(), 1u);
   EXPECT_EQ(issues[0].key_path, "collections.capacity");
   EXPECT_NE(issues[0].message.find(fmt::format("expected at least {} ray IDs", c.collections.capacity + 1)),
-            std::string::npos) << issues[0].message;
+            std::string::npos)
+      << issues[0].message;
   EXPECT_NE(issues[0].message.find("when_full: spill"), std::string::npos);
   c.collections.when_full = WhenFull::kSpill;
   c.collections.capacity = 8;

@@ -26,7 +26,8 @@ Packet packet(std::uint32_t owner, std::initializer_list<std::uint32_t> owners, 
 }
 
 /// Follows the packet from its owner until it is back; who handles it on the way, in order.
-std::vector<std::uint32_t> route(const Topology& topology, const Packet& p, std::vector<std::uint32_t>* through = nullptr) {
+std::vector<std::uint32_t> route(const Topology& topology, const Packet& p,
+                                 std::vector<std::uint32_t>* through = nullptr) {
   std::vector<std::uint32_t> handled;
   ResourceId at = p.owner;
   for (std::size_t steps = 0; steps <= topology.resources(); ++steps) {
@@ -51,7 +52,8 @@ TEST(Topology, WiresAreTheShape) {
     for (const Topology::Wire& w : ring.wires()) EXPECT_EQ(w.to.value, (w.from.value + 1) % n);
     EXPECT_EQ(both.wires().size(), 2 * n);
     EXPECT_EQ(both.directions(), 2u);
-    for (const Topology::Wire& w : both.wires()) EXPECT_EQ(w.to.value, (w.from.value + (w.direction == 0 ? 1 : n - 1)) % n);
+    for (const Topology::Wire& w : both.wires())
+      EXPECT_EQ(w.to.value, (w.from.value + (w.direction == 0 ? 1 : n - 1)) % n);
     std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
     for (const Topology::Wire& w : all.wires()) {
       EXPECT_NE(w.from, w.to);
@@ -63,7 +65,8 @@ TEST(Topology, WiresAreTheShape) {
 }
 
 TEST(Topology, VisitAllIsHandledByEveryone) {
-  for (const TopologyShape shape : {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint}) {
+  for (const TopologyShape shape :
+       {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kPointToPoint}) {
     const Topology t(config(shape, 5));
     EXPECT_EQ(route(t, packet(2, {2, 4})), (Route{3, 4, 0, 1}));
     EXPECT_EQ(t.hops(packet(2, {2})), 5u);
@@ -79,7 +82,7 @@ TEST(Topology, VisitOwnersIsHandledByThemAlone) {
   }
   std::vector<std::uint32_t> through;
   route(Topology(config(TopologyShape::kRing, 70, Visit::kOwners)), packet(68, {0, 65}), &through);
-  EXPECT_EQ(through.size(), 69u);   // a ring has no short cuts
+  EXPECT_EQ(through.size(), 69u);  // a ring has no short cuts
   through.clear();
   route(Topology(config(TopologyShape::kPointToPoint, 70, Visit::kOwners)), packet(68, {0, 65}), &through);
   EXPECT_EQ(through, (Route{0, 65}));
@@ -121,7 +124,7 @@ TEST(Topology, CreditsStayBelowWhatTheRingHolds) {
       c.flow = Flow::kCredits;
       const auto n = static_cast<std::uint32_t>(resources), d = static_cast<std::uint32_t>(depth);
       EXPECT_GE(packets_in_flight(c), 1u);
-      EXPECT_LT(n * packets_in_flight(c), n * d + n);   // links and one place in hand a resource
+      EXPECT_LT(n * packets_in_flight(c), n * d + n);  // links and one place in hand a resource
       c.flow = Flow::kNone;
       EXPECT_GT(n * packets_in_flight(c), n * d + n);
     }

@@ -23,7 +23,7 @@ class BatchMeans {
     for (const double sum : sums_) out.mean += sum / static_cast<double>(batch_ * kBatches);
     double squares = 0;
     for (const double sum : sums_) squares += std::pow(sum / static_cast<double>(batch_) - out.mean, 2);
-    constexpr double kStudent = 3.633;   // 31 degrees of freedom, two-sided 0.1 %
+    constexpr double kStudent = 3.633;  // 31 degrees of freedom, two-sided 0.1 %
     out.half_width = kStudent * std::sqrt(squares / (kBatches - 1) / kBatches);
     return out;
   }
@@ -35,7 +35,7 @@ class BatchMeans {
 };
 
 constexpr std::size_t kCustomers = 640000;
-constexpr Cycle kService = 1000;   // cycles, so that arrivals on whole cycles are nearly as in continuous time
+constexpr Cycle kService = 1000;  // cycles, so that arrivals on whole cycles are nearly as in continuous time
 
 /// Arrivals of a Poisson process that keeps a server with kService busy for `load` of the time.
 class PoissonArrivals {
@@ -50,7 +50,9 @@ class PoissonArrivals {
 };
 
 /// Mean wait of an M/D/1 queue in cycles (Pollaczek and Khinchine).
-double wait_m_d_1(double load) { return load / (2 * (1 - load)) * static_cast<double>(kService); }
+double wait_m_d_1(double load) {
+  return load / (2 * (1 - load)) * static_cast<double>(kService);
+}
 
 TEST(QueueingTheory, AUnitBankIsAnMD1Queue) {
   for (const double load : {0.2, 0.5, 0.8}) {
@@ -92,7 +94,8 @@ TEST(QueueingTheory, ALinkIsAnMD1Queue) {
     std::vector<Cycle> created;
     BatchMeans waits(kCustomers);
     // The tail arrives when the packet has waited, occupied the link and crossed it.
-    run_link(load, [&](std::uint32_t i, Cycle at) { waits.add(static_cast<double>(at - created[i] - kService)); }, created);
+    run_link(
+        load, [&](std::uint32_t i, Cycle at) { waits.add(static_cast<double>(at - created[i] - kService)); }, created);
     const Estimate wait = waits.estimate();
     EXPECT_LT(wait.half_width, 0.1 * wait.mean);
     EXPECT_NEAR(wait.mean, wait_m_d_1(load), wait.half_width) << "load " << load;
@@ -103,11 +106,14 @@ TEST(QueueingTheory, InATandemOfEqualServersTheSecondOneHasNoQueue) {
   std::vector<Cycle> created;
   UnitBank second(TesterUnits{1, static_cast<std::int64_t>(kService), 1});
   Cycle last = 0;
-  run_link(0.9, [&](std::uint32_t, Cycle at) {
-    EXPECT_GE(at, last + kService);   // the first lets out one a service time at most
-    last = at;
-    EXPECT_EQ(second.reserve(at, 1).first, at + 1);
-  }, created);
+  run_link(
+      0.9,
+      [&](std::uint32_t, Cycle at) {
+        EXPECT_GE(at, last + kService);  // the first lets out one a service time at most
+        last = at;
+        EXPECT_EQ(second.reserve(at, 1).first, at + 1);
+      },
+      created);
 }
 
 }  // namespace

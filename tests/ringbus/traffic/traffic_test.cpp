@@ -7,8 +7,8 @@
 
 #include "core/config/enum_names.h"
 #include "core/system/error.h"
-#include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
+#include "ringbus/cycle/traffic/traffic_plan.h"
 #include "tests/ringbus/support/test_machine.h"
 #include "tests/ringbus/traffic/traffic_config.h"
 
@@ -25,9 +25,10 @@ Config random_network(std::uint32_t seed) {
     const std::array all{values...};
     return all[random() % all.size()];
   };
-  Config c = traffic_config(any(Shape::kRing, Shape::kBidirectional, Shape::kMultiRing, Shape::kPointToPoint), any(1, 2, 3, 8, 13, 16),
-                            any(Pattern::kUniform, Pattern::kTornado, Pattern::kNeighbour, Pattern::kHotspot, Pattern::kBursty),
-                            any(0.01, 0.2, 0.5, 0.8), 5000);
+  Config c = traffic_config(
+      any(Shape::kRing, Shape::kBidirectional, Shape::kMultiRing, Shape::kPointToPoint), any(1, 2, 3, 8, 13, 16),
+      any(Pattern::kUniform, Pattern::kTornado, Pattern::kNeighbour, Pattern::kHotspot, Pattern::kBursty),
+      any(0.01, 0.2, 0.5, 0.8), 5000);
   c.image.seed = seed;
   c.topology.flow = any(Flow::kBubble, Flow::kCredits);
   c.topology.link.depth = any(2, 3, 16);
@@ -39,9 +40,10 @@ Config random_network(std::uint32_t seed) {
 }
 
 std::string text(const Config& c) {
-  return fmt::format("{} of {}, {} {}, flow {} depth {} latency {} bytes {}", enum_name(c.topology.shape), c.topology.resources,
-                     enum_name(c.workload.traffic.pattern), c.workload.traffic.rate, enum_name(c.topology.flow), c.topology.link.depth,
-                     c.topology.link.latency_cycles, c.workload.traffic.packet_bytes);
+  return fmt::format("{} of {}, {} {}, flow {} depth {} latency {} bytes {}", enum_name(c.topology.shape),
+                     c.topology.resources, enum_name(c.workload.traffic.pattern), c.workload.traffic.rate,
+                     enum_name(c.topology.flow), c.topology.link.depth, c.topology.link.latency_cycles,
+                     c.workload.traffic.packet_bytes);
 }
 
 TEST(Traffic, EveryPacketIsDeliveredOnceAndNoneFasterThanAlone) {
@@ -143,7 +145,7 @@ TEST(GeometricGap, HasMeanVarianceAndShapeOfBernoulliTrials) {
     }
     const double mean = sum / kDraws, variance = squares / kDraws - mean * mean, expected = (1 - rate) / (rate * rate);
     EXPECT_NEAR(mean, 1 / rate, 5 * std::sqrt(expected / kDraws) + 1e-12);
-    EXPECT_NEAR(variance, expected, 0.05 * expected + 1e-12);   // its own standard error is 0.7 % at most
+    EXPECT_NEAR(variance, expected, 0.05 * expected + 1e-12);  // its own standard error is 0.7 % at most
     EXPECT_NEAR(ones / kDraws, rate, 5 * std::sqrt(rate * (1 - rate) / kDraws) + 1e-12);
   }
 }

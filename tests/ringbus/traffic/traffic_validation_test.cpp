@@ -58,7 +58,10 @@ TEST(TrafficValidation, TakesAsLongAsBookSim2) {
     const double hop = static_cast<double>(config.topology.link.latency_cycles);
     // 4 (R - 1) + 6 + (L - 1), or 6 R + 1, at our own R.
     const double closed = ours.zero_load_latency(config);
-    EXPECT_NEAR(closed, row.pipeline == "short" ? 4 * (ours.routers_mean() - 1) + 5 + double(row.flits) : 6 * ours.routers_mean() + 1, 1e-9);
+    EXPECT_NEAR(
+        closed,
+        row.pipeline == "short" ? 4 * (ours.routers_mean() - 1) + 5 + double(row.flits) : 6 * ours.routers_mean() + 1,
+        1e-9);
     EXPECT_NEAR(ours.latency.mean(), closed, 0.002 * closed);
     // BookSim2's at the same R. Its runs had some load: its 4-flit packets took 0.5 % longer than alone.
     const double theirs = row.latency + hop * (ours.routers_mean() - row.routers);
@@ -66,8 +69,9 @@ TEST(TrafficValidation, TakesAsLongAsBookSim2) {
     if (row.flits == 1) {
       EXPECT_NEAR(ours.latency.mean(), theirs, 0.002 * theirs);
     }
-    fmt::print("{:<8} {:<9} k {:>2}, {} flits: R {:.4f}, {:.4f} cycles, closed form {:.4f}, BookSim2 at this R {:.4f}\n", row.pipeline,
-               row.pattern, row.resources, row.flits, ours.routers_mean(), ours.latency.mean(), closed, theirs);
+    fmt::print(
+        "{:<8} {:<9} k {:>2}, {} flits: R {:.4f}, {:.4f} cycles, closed form {:.4f}, BookSim2 at this R {:.4f}\n",
+        row.pipeline, row.pattern, row.resources, row.flits, ours.routers_mean(), ours.latency.mean(), closed, theirs);
     if (row.pattern != "neighbour") continue;
     EXPECT_EQ(ours.latency.mean(), 10.0);
     EXPECT_EQ(ours.latency.max(), 10u);
@@ -87,11 +91,12 @@ TEST(TrafficValidation, SaturatesBelowTheBoundOfTheLinks) {
         c.topology.link.depth = depth;
         c.topology.flow = flow;
         const TrafficResult r = run_traffic(c, {});
-        const double accepted = static_cast<double>(r.accepted) / (static_cast<double>(r.window_end - r.window_begin) * static_cast<double>(k));
-        EXPECT_LE(accepted, 1.005 * bound);   // the ways drawn are a little shorter or longer
+        const double accepted = static_cast<double>(r.accepted) /
+                                (static_cast<double>(r.window_end - r.window_begin) * static_cast<double>(k));
+        EXPECT_LE(accepted, 1.005 * bound);  // the ways drawn are a little shorter or longer
         EXPECT_LE(accepted, 1.005 * bound * static_cast<double>(depth) / 8);
-        fmt::print("k {:>2} depth {:>2} {:<7}: {:.5f} packets per resource and cycle, bound {:.5f}: {:.1f} %\n", k, depth, enum_name(flow), accepted, bound,
-                   100 * accepted / bound);
+        fmt::print("k {:>2} depth {:>2} {:<7}: {:.5f} packets per resource and cycle, bound {:.5f}: {:.1f} %\n", k,
+                   depth, enum_name(flow), accepted, bound, 100 * accepted / bound);
         if (flow != Flow::kBubble) continue;
         EXPECT_GE(accepted, last);
         last = accepted;

@@ -85,8 +85,7 @@ TEST(Builtin, SmoothNormalsAgreeWithTheWinding) {
       if (mesh.normals.empty()) continue;
       for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
         const std::uint32_t a = mesh.indices[t], b = mesh.indices[t + 1], c = mesh.indices[t + 2];
-        const Vec3 face =
-            glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+        const Vec3 face = glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
         ASSERT_GT(glm::dot(face, mesh.normals[a] + mesh.normals[b] + mesh.normals[c]), 0.0f) << t / 3;
       }
     }

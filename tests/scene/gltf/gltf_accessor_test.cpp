@@ -14,15 +14,13 @@ template <class T>
 GltfBuilder square_with_indices(int component) {
   GltfBuilder b;
   const int positions = b.square_positions();
-  b.mesh({{"POSITION", positions}},
-         b.accessor(b.view(std::vector<T>{0, 1, 2, 0, 2, 3}), component, 6, "SCALAR"));
+  b.mesh({{"POSITION", positions}}, b.accessor(b.view(std::vector<T>{0, 1, 2, 0, 2, 3}), component, 6, "SCALAR"));
   return b;
 }
 
 TEST(GltfAccessor, ReadsEveryIndexType) {
-  for (const GltfBuilder& b :
-       {square_with_indices<std::uint8_t>(5121), square_with_indices<std::uint16_t>(5123),
-        square_with_indices<std::uint32_t>(5125)}) {
+  for (const GltfBuilder& b : {square_with_indices<std::uint8_t>(5121), square_with_indices<std::uint16_t>(5123),
+                               square_with_indices<std::uint32_t>(5125)}) {
     const Scene scene = b.load();
     EXPECT_EQ(scene.meshes[0].indices, kTwoTriangles);
     EXPECT_EQ(scene.meshes[0].positions, kSquare);
@@ -52,8 +50,7 @@ TEST(GltfAccessor, ReadsInterleavedStridedAttributes) {
   std::vector<float> data;
   for (const Vec3& p : kSquare) data.insert(data.end(), {p.x, p.y, p.z, 0, 0, 2, -99});
   const int view = b.view(data, 28);
-  const int positions = b.accessor(view, 5126, 4, "VEC3"),
-            normals = b.accessor(view, 5126, 4, "VEC3", false, 12);
+  const int positions = b.accessor(view, 5126, 4, "VEC3"), normals = b.accessor(view, 5126, 4, "VEC3", false, 12);
   b.mesh({{"POSITION", positions}, {"NORMAL", normals}},
          b.accessor(b.view(std::vector<std::uint8_t>{0, 1, 2}), 5121, 3, "SCALAR"));
   const Scene scene = b.load();
@@ -63,8 +60,7 @@ TEST(GltfAccessor, ReadsInterleavedStridedAttributes) {
 
 TEST(GltfAccessor, SparseReplacesElementsOfTheBase) {
   GltfBuilder b = GltfBuilder::square();
-  const int indices = b.view(std::vector<std::uint16_t>{1, 3}),
-            values = b.view(std::vector<float>{5, 6, 7, 8, 9, 10});
+  const int indices = b.view(std::vector<std::uint16_t>{1, 3}), values = b.view(std::vector<float>{5, 6, 7, 8, 9, 10});
   b.json["accessors"][0]["sparse"] = {{"count", 2},
                                       {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
                                       {"values", {{"bufferView", values}}}};
@@ -83,8 +79,7 @@ TEST(GltfAccessor, SparseWithoutABaseStartsFromZeros) {
 
 TEST(GltfAccessor, SparseIndicesWithoutABaseAreRead) {
   GltfBuilder b = GltfBuilder::square();
-  const int indices = b.view(std::vector<std::uint8_t>{1, 2}),
-            values = b.view(std::vector<std::uint16_t>{1, 2});
+  const int indices = b.view(std::vector<std::uint8_t>{1, 2}), values = b.view(std::vector<std::uint16_t>{1, 2});
   b.json["accessors"][1].erase("bufferView");
   b.json["accessors"][1]["sparse"] = {{"count", 2},
                                       {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
@@ -97,12 +92,11 @@ TEST(GltfAccessor, NormalisedIntegersAreExactQuotients) {
   Json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["TEXCOORD_0"] =
       b.accessor(b.view(std::vector<std::uint16_t>{0, 65535, 1, 2, 3, 4, 5, 6}), 5123, 4, "VEC2", true);
-  attributes["TEXCOORD_1"] =
-      b.accessor(b.view(std::vector<std::uint8_t>{0, 255, 0, 0, 1, 2, 0, 0, 3, 4, 0, 0, 5, 6, 0, 0}, 4), 5121,
-                 4, "VEC2", true);
-  attributes["COLOR_0"] = b.accessor(
-      b.view(std::vector<std::uint8_t>{255, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0}, 4), 5121,
-      4, "VEC3", true);
+  attributes["TEXCOORD_1"] = b.accessor(
+      b.view(std::vector<std::uint8_t>{0, 255, 0, 0, 1, 2, 0, 0, 3, 4, 0, 0, 5, 6, 0, 0}, 4), 5121, 4, "VEC2", true);
+  attributes["COLOR_0"] =
+      b.accessor(b.view(std::vector<std::uint8_t>{255, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0, 255, 0, 51, 0}, 4), 5121,
+                 4, "VEC3", true);
   const Mesh mesh = b.load().meshes[0];
   EXPECT_EQ(mesh.uv0[0], Vec2(0, 1));
   EXPECT_EQ(mesh.uv0[1], Vec2(1.0f / 65535.0f, 2.0f / 65535.0f));
@@ -114,10 +108,10 @@ TEST(GltfAccessor, QuantisedPositionsAndNormals) {
   GltfBuilder b;
   b.json["extensionsUsed"] = {"KHR_mesh_quantization"};
   b.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-  const int positions = b.accessor(
-      b.view(std::vector<std::int16_t>{-32768, 0, 7, 0, 100, 200, -300, 0, 1, 2, 3, 0}, 8), 5122, 3, "VEC3");
-  const int normals = b.accessor(
-      b.view(std::vector<std::int8_t>{0, 0, 127, 0, 0, -128, 0, 0, -127, 0, 0, 0}, 4), 5120, 3, "VEC3", true);
+  const int positions =
+      b.accessor(b.view(std::vector<std::int16_t>{-32768, 0, 7, 0, 100, 200, -300, 0, 1, 2, 3, 0}, 8), 5122, 3, "VEC3");
+  const int normals = b.accessor(b.view(std::vector<std::int8_t>{0, 0, 127, 0, 0, -128, 0, 0, -127, 0, 0, 0}, 4), 5120,
+                                 3, "VEC3", true);
   b.mesh({{"POSITION", positions}, {"NORMAL", normals}});
   const Mesh mesh = b.load().meshes[0];
   EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{-32768, 0, 7}, {100, 200, -300}, {1, 2, 3}}));
@@ -127,8 +121,7 @@ TEST(GltfAccessor, QuantisedPositionsAndNormals) {
 TEST(GltfAccessor, RefusesQuantisedPositionsWithoutTheExtension) {
   GltfBuilder b;
   b.mesh({{"POSITION", b.accessor(b.view(std::vector<std::int16_t>(12), 8), 5122, 3, "VEC3")}});
-  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION",
-                 "needs the extension KHR_mesh_quantization");
+  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION", "needs the extension KHR_mesh_quantization");
 }
 
 TEST(GltfAccessor, RefusesIndexBeyondPositions) {
@@ -163,8 +156,7 @@ TEST(GltfAccessor, RefusesZerosThatNothingJustifies) {
   GltfBuilder b = GltfBuilder::square();
   b.json["accessors"][0].erase("bufferView");
   b.json["accessors"][0]["count"] = 4000000000u;
-  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION",
-                 "asks for 4000000000 elements and stores 0");
+  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION", "asks for 4000000000 elements and stores 0");
 }
 
 TEST(GltfAccessor, RefusesSparseZerosThatNothingJustifies) {
@@ -175,8 +167,7 @@ TEST(GltfAccessor, RefusesSparseZerosThatNothingJustifies) {
   b.json["accessors"][0]["sparse"] = {{"count", 1},
                                       {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
                                       {"values", {{"bufferView", values}}}};
-  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION",
-                 "asks for 4000000000 elements and stores 1");
+  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION", "asks for 4000000000 elements and stores 1");
 }
 
 TEST(GltfAccessor, RefusesManyMeshesThatMultiplyOneAccessor) {
@@ -192,8 +183,7 @@ TEST(GltfAccessor, RefusesSparseIndexBeyondTheCount) {
   b.json["accessors"][0]["sparse"] = {{"count", 1},
                                       {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
                                       {"values", {{"bufferView", values}}}};
-  expect_refused(b, "/accessors/0/sparse/indices",
-                 "index 4 at position 0 is beyond the accessor's 4 elements");
+  expect_refused(b, "/accessors/0/sparse/indices", "index 4 at position 0 is beyond the accessor's 4 elements");
 }
 
 TEST(GltfAccessor, RefusesSparseIndicesThatDoNotIncrease) {
@@ -218,12 +208,10 @@ TEST(GltfAccessor, RefusesNaNPositions) {
   GltfBuilder b;
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   b.mesh({{"POSITION", b.floats({0, 0, 0, 1, nan, 0, 0, 1, 0}, "VEC3", 3)}});
-  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION",
-                 "component 1 of element 1 of accessor 0 is NaN");
+  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION", "component 1 of element 1 of accessor 0 is NaN");
   GltfBuilder c;
   c.mesh({{"POSITION", c.floats({0, 0, 0, 1, 0, -inf, 0, 1, 0}, "VEC3", 3)}});
-  expect_refused(c, "/meshes/0/primitives/0/attributes/POSITION",
-                 "component 2 of element 1 of accessor 0 is infinite");
+  expect_refused(c, "/meshes/0/primitives/0/attributes/POSITION", "component 2 of element 1 of accessor 0 is infinite");
 }
 
 TEST(GltfAccessor, RefusesWrongElementAndComponentTypes) {

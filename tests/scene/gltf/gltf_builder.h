@@ -88,8 +88,8 @@ class GltfBuilder {
   std::string text() const {
     Json out = json;
     if (!binary.empty() && !out.contains("buffers")) {
-      out["buffers"] = Json::array({{{"byteLength", binary.size()},
-                                     {"uri", "data:application/octet-stream;base64," + base64(binary)}}});
+      out["buffers"] = Json::array(
+          {{{"byteLength", binary.size()}, {"uri", "data:application/octet-stream;base64," + base64(binary)}}});
     }
     return out.dump();
   }
@@ -97,8 +97,7 @@ class GltfBuilder {
   /// The file as .glb.
   std::vector<std::byte> glb() const {
     Json out = json;
-    if (!binary.empty() && !out.contains("buffers"))
-      out["buffers"] = Json::array({{{"byteLength", binary.size()}}});
+    if (!binary.empty() && !out.contains("buffers")) out["buffers"] = Json::array({{{"byteLength", binary.size()}}});
     std::string text = out.dump();
     while (text.size() % 4 != 0) text += ' ';
     std::vector<std::byte> padded = binary;
@@ -134,16 +133,14 @@ class GltfBuilder {
       for (std::size_t k = 0; k < 3; ++k) {
         bits = bits << 8 | (i + k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
       }
-      for (std::size_t k = 0; k < 4; ++k)
-        out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+      for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
     }
     return out;
   }
 };
 
 /// Runs `load` and expects a SceneError at `path` whose message contains `message`.
-inline void expect_scene_error(const std::function<void()>& load, const std::string& path,
-                               const std::string& message) {
+inline void expect_scene_error(const std::function<void()>& load, const std::string& path, const std::string& message) {
   try {
     load();
     ADD_FAILURE() << "loaded without an error";

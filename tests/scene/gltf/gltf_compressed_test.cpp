@@ -179,8 +179,9 @@ TEST(GltfCompressed, MeshoptParametersAreChecked) {
 TEST(GltfCompressed, MeshoptCountsAreJudgedBeforeAnythingIsAllocated) {
   GltfBuilder b = GltfBuilder::square();
   meshopt_view(b, bytes_of(std::vector<float>(12)), 4, 12, "ATTRIBUTES");
-  b.json["buffers"] = Json::array({{{"byteLength", b.binary.size()}},
-                                   {{"byteLength", 12e12}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
+  b.json["buffers"] =
+      Json::array({{{"byteLength", b.binary.size()}},
+                   {{"byteLength", 12e12}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
   Json& view = b.json["bufferViews"][2];
   view["buffer"] = 1;
   view["byteOffset"] = 0;
@@ -212,14 +213,18 @@ TEST(GltfCompressed, DracoStreamsAndAccessorsMustAgree) {
                        extension + "/attributes/NORMAL", "has 4 components, the compressed data 3");
   expect_draco_refused([](GltfBuilder& b, Json&) { b.json["accessors"][2]["componentType"] = 5126; }, "/indices",
                        "the component type is not allowed");
-  expect_draco_refused([&](GltfBuilder&, Json& p) { p["extensions"]["KHR_draco_mesh_compression"]["attributes"]["NORMAL"] = 9; },
-                       extension + "/attributes/NORMAL", "has no attribute 9");
-  expect_draco_refused([&](GltfBuilder&, Json& p) { p["extensions"]["KHR_draco_mesh_compression"]["attributes"]["COLOR_0"] = 1; },
-                       extension + "/attributes/COLOR_0", "the primitive has no such attribute");
+  expect_draco_refused(
+      [&](GltfBuilder&, Json& p) { p["extensions"]["KHR_draco_mesh_compression"]["attributes"]["NORMAL"] = 9; },
+      extension + "/attributes/NORMAL", "has no attribute 9");
+  expect_draco_refused(
+      [&](GltfBuilder&, Json& p) { p["extensions"]["KHR_draco_mesh_compression"]["attributes"]["COLOR_0"] = 1; },
+      extension + "/attributes/COLOR_0", "the primitive has no such attribute");
   expect_draco_refused([](GltfBuilder&, Json& p) { p.erase("indices"); }, "/indices", "missing");
   expect_draco_refused([](GltfBuilder&, Json& p) { p["mode"] = 5; }, "/mode", "expected triangles");
-  expect_draco_refused([](GltfBuilder& b, Json&) { b.json["bufferViews"][0]["byteLength"] = 60; }, extension, "is broken");
-  expect_draco_refused([](GltfBuilder& b, Json&) { b.binary[5] = std::byte{1}; }, extension, "not a mesh of Draco bitstream 2.2");
+  expect_draco_refused([](GltfBuilder& b, Json&) { b.json["bufferViews"][0]["byteLength"] = 60; }, extension,
+                       "is broken");
+  expect_draco_refused([](GltfBuilder& b, Json&) { b.binary[5] = std::byte{1}; }, extension,
+                       "not a mesh of Draco bitstream 2.2");
   // Byte 11 is the kind of traversal, then the number of vertices as a varint.
   expect_draco_refused(
       [](GltfBuilder& b, Json&) {
@@ -276,7 +281,8 @@ TEST(GltfCompressed, BrokenStreamsLoadOrAreRefused) {
   });
   std::size_t refused = 0;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    EXPECT_NE(outcomes[i].end, End::kFault) << "byte " << changes[i].first << " ^ " << changes[i].second << ": " << outcomes[i];
+    EXPECT_NE(outcomes[i].end, End::kFault)
+        << "byte " << changes[i].first << " ^ " << changes[i].second << ": " << outcomes[i];
     refused += outcomes[i].end == End::kRefused;
   }
   EXPECT_GT(refused, outcomes.size() / 20);

@@ -62,9 +62,10 @@ TEST(GltfLayers, FactorsAreMovedIntoTheirRanges) {
   EXPECT_EQ(material("KHR_materials_ior", {{"ior", 0.5}}).ior, 1);
   EXPECT_EQ(material("KHR_materials_ior", {{"ior", -2}}).ior, 1);
   EXPECT_EQ(material("KHR_materials_transmission", {{"transmissionFactor", 3}}).transmission.weight, 1);
-  const auto volume = material("KHR_materials_volume", {{"thicknessFactor", -1},
-                                                        {"attenuationDistance", -1},
-                                                        {"attenuationColor", {-1, 2, 0.5}}}).volume;
+  const auto volume =
+      material("KHR_materials_volume",
+               {{"thicknessFactor", -1}, {"attenuationDistance", -1}, {"attenuationColor", {-1, 2, 0.5}}})
+          .volume;
   EXPECT_EQ(volume.thickness, 0);
   EXPECT_GT(volume.attenuation_distance, 0);
   EXPECT_EQ(volume.attenuation_color, Vec3(0, 1, 0.5f));
@@ -80,9 +81,10 @@ TEST(GltfLayers, FactorsAreMovedIntoTheirRanges) {
       material("KHR_materials_sheen", {{"sheenColorFactor", {2, -1, 0.5}}, {"sheenRoughnessFactor", 2}}).sheen;
   EXPECT_EQ(sheen.color, Vec3(1, 0, 0.5f));
   EXPECT_EQ(sheen.roughness, 1);
-  const auto iridescence = material("KHR_materials_iridescence", {{"iridescenceFactor", 2},
-                                                                  {"iridescenceIor", 0.5},
-                                                                  {"iridescenceThicknessMinimum", -5}}).iridescence;
+  const auto iridescence =
+      material("KHR_materials_iridescence",
+               {{"iridescenceFactor", 2}, {"iridescenceIor", 0.5}, {"iridescenceThicknessMinimum", -5}})
+          .iridescence;
   EXPECT_EQ(iridescence.weight, 1);
   EXPECT_EQ(iridescence.ior, 1);
   EXPECT_EQ(iridescence.thickness_min, 0);
@@ -111,9 +113,10 @@ TEST(GltfLayers, LayersOfNoWeightAreNotThere) {
 
 TEST(GltfLayers, TextureTransformAndSecondSetOnEverySlot) {
   GltfBuilder b = every_extension();
-  const Json info = {{"index", 0},
-                     {"texCoord", 1},
-                     {"extensions", {{"KHR_texture_transform", {{"offset", {3, 4}}, {"scale", {5, 6}}, {"rotation", 7}}}}}};
+  const Json info = {
+      {"index", 0},
+      {"texCoord", 1},
+      {"extensions", {{"KHR_texture_transform", {{"offset", {3, 4}}, {"scale", {5, 6}}, {"rotation", 7}}}}}};
   Json& material = b.json["materials"][0];
   for (auto& [name, extension] : material["extensions"].items()) {
     for (auto& [key, value] : extension.items())
@@ -121,13 +124,14 @@ TEST(GltfLayers, TextureTransformAndSecondSetOnEverySlot) {
   }
   material["emissiveFactor"] = {1, 1, 1};
   for (const char* slot : {"emissiveTexture", "normalTexture"}) material[slot] = info;
-  for (const char* slot : {"baseColorTexture", "metallicRoughnessTexture"}) material["pbrMetallicRoughness"][slot] = info;
+  for (const char* slot : {"baseColorTexture", "metallicRoughnessTexture"})
+    material["pbrMetallicRoughness"][slot] = info;
   const Material m = b.load().materials.at(0);
   for (const auto& use :
-       {m.base_color_texture, m.metallic_roughness_texture, m.emissive_texture, m.normal_texture, m.transmission.texture,
-        m.volume.thickness_texture, m.specular.texture, m.specular.color_texture, m.clearcoat.texture,
-        m.clearcoat.roughness_texture, m.clearcoat.normal_texture, m.sheen.color_texture, m.sheen.roughness_texture,
-        m.iridescence.texture, m.iridescence.thickness_texture, m.anisotropy.texture}) {
+       {m.base_color_texture, m.metallic_roughness_texture, m.emissive_texture, m.normal_texture,
+        m.transmission.texture, m.volume.thickness_texture, m.specular.texture, m.specular.color_texture,
+        m.clearcoat.texture, m.clearcoat.roughness_texture, m.clearcoat.normal_texture, m.sheen.color_texture,
+        m.sheen.roughness_texture, m.iridescence.texture, m.iridescence.thickness_texture, m.anisotropy.texture}) {
     ASSERT_TRUE(use);
     EXPECT_EQ(use->uv_set, 1);
     EXPECT_EQ(use->offset, Vec2(3, 4));
@@ -158,7 +162,8 @@ TEST(GltfLayers, WebpKeepsColourWithoutAlpha) {
   const std::vector<unsigned char> pixels{200, 100, 50, 0, 10, 20, 30, 128};
   b.json["images"][0]["bufferView"] = b.view(webp(2, 1, pixels));
   EXPECT_EQ(b.load().images.at(0).rgba, pixels);
-  b.json["images"][0]["bufferView"] = b.view(std::vector<char>{'R', 'I', 'F', 'F', 9, 0, 0, 0, 'W', 'E', 'B', 'P', 'V', 'P', '8', 'L', 0});
+  b.json["images"][0]["bufferView"] =
+      b.view(std::vector<char>{'R', 'I', 'F', 'F', 9, 0, 0, 0, 'W', 'E', 'B', 'P', 'V', 'P', '8', 'L', 0});
   expect_refused(b, "/images/0", "the image is broken");
 }
 

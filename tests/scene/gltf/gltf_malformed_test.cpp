@@ -68,9 +68,8 @@ TEST(GltfMalformed, OptionalExtensionIsIgnoredWithOneWarning) {
   b.push("materials", {{"extensions", {{"KHR_materials_dispersion", {{"dispersion", "nonsense"}}}}}});
   std::vector<std::string> warnings;
   b.load([&](const std::string& w) { warnings.push_back(w); });
-  EXPECT_EQ(warnings,
-            std::vector<std::string>{
-                "test.gltf: optional extensions ignored: KHR_materials_dispersion, VENDOR_unheard_of"});
+  EXPECT_EQ(warnings, std::vector<std::string>{
+                          "test.gltf: optional extensions ignored: KHR_materials_dispersion, VENDOR_unheard_of"});
 }
 
 TEST(GltfMalformed, SkinsMorphTargetsAndAnimationsAreIgnoredWithOneWarning) {
@@ -80,15 +79,15 @@ TEST(GltfMalformed, SkinsMorphTargetsAndAnimationsAreIgnoredWithOneWarning) {
   b.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", 0}}});
   std::vector<std::string> warnings;
   b.load([&](const std::string& w) { warnings.push_back(w); });
-  EXPECT_EQ(warnings,
-            std::vector<std::string>{"test.gltf: ignored, the base pose is shown: skins, morph targets"});
+  EXPECT_EQ(warnings, std::vector<std::string>{"test.gltf: ignored, the base pose is shown: skins, morph targets"});
 }
 
 TEST(GltfMalformed, FallbackBuffersAreOnlyForWhoCannotUnpack) {
   GltfBuilder b = GltfBuilder::square();
-  b.json["buffers"] = Json::array(
-      {{{"byteLength", 60}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
-  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION", "the data of accessor 0 is not in the file: buffer 0 holds none");
+  b.json["buffers"] =
+      Json::array({{{"byteLength", 60}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}});
+  expect_refused(b, "/meshes/0/primitives/0/attributes/POSITION",
+                 "the data of accessor 0 is not in the file: buffer 0 holds none");
 }
 
 TEST(GltfMalformed, NodeCycles) {
@@ -127,18 +126,15 @@ TEST(GltfMalformed, OutOfRangeIndicesOfEveryKind) {
     b.push("samplers", Json::object());
     b.push("images", {{"bufferView", 0}});
     b.push("skins", {{"joints", {0}}, {"skeleton", 0}, {"inverseBindMatrices", 0}});
-    b.push("animations",
-           {{"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}})},
-            {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
+    b.push("animations", {{"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}})},
+                          {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
     b.json["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({{{"type", "point"}}});
     b.json["nodes"][0]["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}},
                                         {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", 0}}}}}};
-    b.json["accessors"][0]["sparse"] = {{"count", 1},
-                                        {"indices", {{"bufferView", 0}, {"componentType", 5125}}},
-                                        {"values", {{"bufferView", 0}}}};
+    b.json["accessors"][0]["sparse"] = {
+        {"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5125}}}, {"values", {{"bufferView", 0}}}};
     b.json[Json::json_pointer(pointer)] = value;
-    expect_refused(b, pointer,
-                   "expected an index into " + array + ", which has " + size + ", found " + value.dump());
+    expect_refused(b, pointer, "expected an index into " + array + ", which has " + size + ", found " + value.dump());
   };
   for (const Json& bad : {Json(99), Json(-1), Json(1.5), Json(4294967296.0 * 4)}) {
     refuse("/scene", bad, "/scenes", "1 entry");
@@ -146,10 +142,8 @@ TEST(GltfMalformed, OutOfRangeIndicesOfEveryKind) {
     refuse("/nodes/0/mesh", bad, "/meshes", "1 entry");
     refuse("/nodes/0/skin", bad, "/skins", "1 entry");
     refuse("/nodes/0/camera", bad, "/cameras", "0 entries");
-    refuse("/nodes/0/extensions/KHR_lights_punctual/light", bad, "/extensions/KHR_lights_punctual/lights",
-           "1 entry");
-    refuse("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION", bad, "/accessors",
-           "2 entries");
+    refuse("/nodes/0/extensions/KHR_lights_punctual/light", bad, "/extensions/KHR_lights_punctual/lights", "1 entry");
+    refuse("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION", bad, "/accessors", "2 entries");
     refuse("/meshes/0/primitives/0/indices", bad, "/accessors", "2 entries");
     refuse("/meshes/0/primitives/0/material", bad, "/materials", "1 entry");
     refuse("/meshes/0/primitives/0/attributes/POSITION", bad, "/accessors", "2 entries");
@@ -175,8 +169,7 @@ TEST(GltfMalformed, ChildAndAnimationSamplerOutOfRange) {
   GltfBuilder a = GltfBuilder::square();
   a.push("animations", {{"channels", Json::array({{{"sampler", 1}, {"target", {{"path", "scale"}}}}})},
                         {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
-  expect_refused(a, "/animations/0/channels/0/sampler",
-                 "this animation's samplers, which has 1 entries, found 1");
+  expect_refused(a, "/animations/0/channels/0/sampler", "this animation's samplers, which has 1 entries, found 1");
 }
 
 TEST(GltfMalformed, WrongTypes) {
@@ -229,8 +222,7 @@ TEST(GltfMalformed, BufferViewOutsideItsBuffer) {
   GltfBuilder b = GltfBuilder::square();
   b.json["bufferViews"][0]["byteOffset"] = 40;
   expect_refused(b, "/bufferViews/0", "bytes 40 to 88 lie outside buffer 0, which has 60");
-  b.json["bufferViews"][0] = {
-      {"buffer", 0}, {"byteOffset", 9007199254740991.0}, {"byteLength", 9007199254740991.0}};
+  b.json["bufferViews"][0] = {{"buffer", 0}, {"byteOffset", 9007199254740991.0}, {"byteLength", 9007199254740991.0}};
   expect_refused(b, "/bufferViews/0", "lie outside buffer 0");
 }
 
@@ -245,8 +237,8 @@ TEST(GltfMalformed, ImageViewOutsideItsBuffer) {
 
 TEST(GltfMalformed, BufferShorterThanAnnounced) {
   GltfBuilder b = GltfBuilder::square();
-  b.json["buffers"] = Json::array(
-      {{{"byteLength", 60}, {"uri", "data:;base64," + GltfBuilder::base64(std::vector<std::byte>(59))}}});
+  b.json["buffers"] =
+      Json::array({{{"byteLength", 60}, {"uri", "data:;base64," + GltfBuilder::base64(std::vector<std::byte>(59))}}});
   expect_refused(b, "/buffers/0/byteLength", "60 bytes are announced, the data has 59");
 }
 
@@ -331,8 +323,7 @@ TEST_F(GltfFiles, MissingAndTruncatedBuffersAreNamed) {
   const std::string file = (folder_ / "a.gltf").string();
   expect_scene_error([&] { load_gltf(file); }, "/buffers/0/uri", "'gone.bin': no such file");
   write("gone.bin", "short");
-  expect_scene_error([&] { load_gltf(file); }, "/buffers/0/byteLength",
-                     "60 bytes are announced, the data has 5");
+  expect_scene_error([&] { load_gltf(file); }, "/buffers/0/byteLength", "60 bytes are announced, the data has 5");
   try {
     load_gltf(file);
   } catch (const SceneError& e) {

@@ -112,14 +112,12 @@ TEST(GltfTexture, ImageInADataUriIsDecoded) {
   GltfBuilder b = textured({1});
   const std::vector<unsigned char> png = encode("png", 1, 1, 3, {9, 8, 7});
   const auto* first = reinterpret_cast<const std::byte*>(png.data());
-  b.json["images"][0] = {
-      {"uri", "data:image/png;base64," + GltfBuilder::base64({first, first + png.size()})}};
+  b.json["images"][0] = {{"uri", "data:image/png;base64," + GltfBuilder::base64({first, first + png.size()})}};
   EXPECT_EQ(b.load().images.at(0).rgba, (std::vector<std::uint8_t>{9, 8, 7, 255}));
 }
 
 TEST(GltfTexture, BrokenImageIsNamed) {
-  expect_refused(textured(std::vector<unsigned char>(64, 'x')), "/images/0",
-                 "the image is neither PNG nor JPEG");
+  expect_refused(textured(std::vector<unsigned char>(64, 'x')), "/images/0", "the image is neither PNG nor JPEG");
   std::vector<unsigned char> cut = encode("png", 64, 64, 3, std::vector<unsigned char>(64 * 64 * 3, 77));
   cut.resize(cut.size() / 2);
   expect_refused(textured(cut), "/images/0", "the image is broken");
@@ -153,9 +151,9 @@ TEST(GltfTexture, OnlyImagesThatAreWantedAreDecoded) {
               return wanted;
             }),
             "picture ");
-  EXPECT_TRUE(triangles);   // so that a choice can be made of what is on them
+  EXPECT_TRUE(triangles);  // so that a choice can be made of what is on them
   EXPECT_EQ(decoded([](const Scene& scene) { return std::vector<bool>(scene.images.size(), false); }), "");
-  EXPECT_THROW(b.load(), SceneError);   // all are wanted: two cannot be had
+  EXPECT_THROW(b.load(), SceneError);  // all are wanted: two cannot be had
 }
 
 TEST(GltfTexture, ImageNeedsExactlyOneSource) {
@@ -197,9 +195,9 @@ TEST(GltfTexture, UsesThatCannotBeReadAreDroppedWithOneWarning) {
   const Scene scene = b.load([&](const std::string& w) { warnings.push_back(w); });
   EXPECT_FALSE(scene.materials[0].normal_texture);
   EXPECT_FALSE(scene.materials[0].emissive_texture);
-  EXPECT_EQ(warnings, std::vector<std::string>{
-                          "test.gltf: texture uses ignored: 1 with a texture coordinate set beyond 1, "
-                          "1 without a PNG, JPEG or WebP source"});
+  EXPECT_EQ(warnings,
+            std::vector<std::string>{"test.gltf: texture uses ignored: 1 with a texture coordinate set beyond 1, "
+                                     "1 without a PNG, JPEG or WebP source"});
 }
 
 TEST(GltfMaterial, FactorsFlagsAndExtensions) {
@@ -213,8 +211,7 @@ TEST(GltfMaterial, FactorsFlagsAndExtensions) {
           {"alphaCutoff", 0.75},
           {"doubleSided", true},
           {"extensions",
-           {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
-            {"KHR_materials_unlit", Json::object()}}}});
+           {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}, {"KHR_materials_unlit", Json::object()}}}});
   const Scene scene = b.load();
   const Material& m = scene.materials.at(0);
   EXPECT_EQ(m.name, "lamp");

@@ -26,11 +26,9 @@ TEST(GltfMesh, PrimitivesAreConcatenatedInOrderWithTheirMaterials) {
 TEST(GltfMesh, FewTrianglesOfManyVerticesKeepOnlyTheirOwn) {
   GltfBuilder b;
   std::vector<float> line;
-  for (int i = 0; i < 100; ++i)
-    line.insert(line.end(), {static_cast<float>(i), static_cast<float>(i * i), 0});
+  for (int i = 0; i < 100; ++i) line.insert(line.end(), {static_cast<float>(i), static_cast<float>(i * i), 0});
   const int positions = b.floats(line, "VEC3", 3);
-  b.mesh({{"POSITION", positions}},
-         b.accessor(b.view(std::vector<std::uint8_t>{90, 10, 50}), 5121, 3, "SCALAR"));
+  b.mesh({{"POSITION", positions}}, b.accessor(b.view(std::vector<std::uint8_t>{90, 10, 50}), 5121, 3, "SCALAR"));
   const Mesh mesh = b.load().meshes[0];
   EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{10, 100, 0}, {50, 2500, 0}, {90, 8100, 0}}));
   EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{2, 0, 1}));
@@ -78,8 +76,7 @@ TEST(GltfMesh, PointsAndLinesAreSkippedWithOneWarning) {
   std::vector<std::string> warnings;
   const Scene scene = b.load([&](const std::string& w) { warnings.push_back(w); });
   EXPECT_EQ(scene.meshes[0].triangle_count(), 2u);
-  EXPECT_EQ(warnings,
-            std::vector<std::string>{"test.gltf: 4 primitives skipped: points, lines or without positions"});
+  EXPECT_EQ(warnings, std::vector<std::string>{"test.gltf: 4 primitives skipped: points, lines or without positions"});
 }
 
 TEST(GltfMesh, SceneWithoutTrianglesIsRefused) {

@@ -3,10 +3,10 @@
 #include <iostream>
 
 #include "scene/builtin/hash_random.h"
-#include "tests/support/random_runs.h"
 #include "tests/scene/gltf/guarded_load.h"
 #include "tests/scene/gltf/packed_model.h"
 #include "tests/scene/gltf/rich_model.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::scene {
 namespace {

@@ -47,25 +47,27 @@ TEST(GltfNode, NestedTransformsComposeToTheirProduct) {
   const std::array<Level, 4> levels{{{{0.1, -0.5, 0.3, std::sqrt(0.65)}, {2, 0.5, -1}, {1e4, -20, 3}},
                                      {{0.6, 0, 0, 0.8}, {1, 1, 1}, {-9999.5, 20, 5e3}},
                                      {{0, -0.28, 0, 0.96}, {0.1, 3, 1}, {0.25, 0, -7}},
-                                     {{0.5, 0.5, 0.5, 0.5}, {-1, -2, 1}, {0, 1, 2}}}};   // innermost last
+                                     {{0.5, 0.5, 0.5, 0.5}, {-1, -2, 1}, {0, 1, 2}}}};  // innermost last
   GltfBuilder b = GltfBuilder::square();
   b.json["scenes"][0]["nodes"] = Json::array();
-  int node = 0;   // the square's
+  int node = 0;  // the square's
   b.json["nodes"][0].update({{"rotation", levels[3].q}, {"scale", levels[3].s}, {"translation", levels[3].t}});
   for (std::size_t i = 2; i > 0; --i)
-    node = b.push("nodes", {{"rotation", levels[i].q}, {"scale", levels[i].s}, {"translation", levels[i].t}, {"children", {node}}});
+    node =
+        b.push("nodes",
+               {{"rotation", levels[i].q}, {"scale", levels[i].s}, {"translation", levels[i].t}, {"children", {node}}});
   b.node({{"rotation", levels[0].q}, {"scale", levels[0].s}, {"translation", levels[0].t}, {"children", {node}}});
   const Affine m = b.load().instances[0].world_from_model;
 
   const auto place = [&](Point x) {
     for (std::size_t i = levels.size(); i-- > 0;) {
       const auto& [rotation, s, t] = levels[i];
-      const auto& q = rotation;   // Clang 14 captures no structured bindings
+      const auto& q = rotation;  // Clang 14 captures no structured bindings
       for (std::size_t a = 0; a < 3; ++a) x[a] *= s[a];
       const auto cross = [&](const Point& v) {
         return Point{q[1] * v[2] - q[2] * v[1], q[2] * v[0] - q[0] * v[2], q[0] * v[1] - q[1] * v[0]};
       };
-      const Point once = cross(x), twice = cross(once);   // x + 2 w (q x x) + 2 q x (q x x)
+      const Point once = cross(x), twice = cross(once);  // x + 2 w (q x x) + 2 q x (q x x)
       for (std::size_t a = 0; a < 3; ++a) x[a] += 2 * q[3] * once[a] + 2 * twice[a] + t[a];
     }
     return x;
@@ -73,7 +75,7 @@ TEST(GltfNode, NestedTransformsComposeToTheirProduct) {
   const Point origin = place({0, 0, 0});
   for (std::size_t row = 0; row < 3; ++row) {
     const int r = static_cast<int>(row);
-    EXPECT_LE(std::fabs(m.translation[r] - origin[row]), 0x1p-24L * std::fabs(origin[row]) + 1e-9L);   // one rounding
+    EXPECT_LE(std::fabs(m.translation[r] - origin[row]), 0x1p-24L * std::fabs(origin[row]) + 1e-9L);  // one rounding
     for (int c = 0; c < 3; ++c) {
       Point unit{0, 0, 0};
       unit[static_cast<std::size_t>(c)] = 1;
@@ -128,8 +130,7 @@ TEST(GltfNode, LongChainsOfNodesLoad) {
   GltfBuilder b = GltfBuilder::square();
   b.json["scenes"][0]["nodes"] = Json::array();
   int child = 0;
-  for (int i = 0; i < 50000; ++i)
-    child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
+  for (int i = 0; i < 50000; ++i) child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
   b.json["scenes"][0]["nodes"].push_back(child);
   EXPECT_EQ(b.load().instances[0].world_from_model.translation.z, 50000);
 }
@@ -137,8 +138,7 @@ TEST(GltfNode, LongChainsOfNodesLoad) {
 TEST(GltfNode, GpuInstancingIsExpandedInPlace) {
   GltfBuilder b = GltfBuilder::square();
   const int t = b.floats({1, 0, 0, 2, 0, 0}, "VEC3", 3);
-  const int r =
-      b.accessor(b.view(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, 32767, 0}), 5122, 2, "VEC4", true);
+  const int r = b.accessor(b.view(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, 32767, 0}), 5122, 2, "VEC4", true);
   const int s = b.floats({1, 1, 1, -2, 3, 1}, "VEC3", 3);
   b.json["nodes"][0]["translation"] = {0, 5, 0};
   b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
@@ -157,8 +157,7 @@ TEST(GltfNode, GpuInstancingIsExpandedInPlace) {
 TEST(GltfNode, RefusesGpuInstancingOfDifferentLengths) {
   GltfBuilder b = GltfBuilder::square();
   const int t = b.floats({1, 0, 0, 2, 0, 0}, "VEC3", 3), s = b.floats({1, 1, 1}, "VEC3", 3);
-  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t},
-                                                                               {"SCALE", s}};
+  b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", t}, {"SCALE", s}};
   expect_refused(b, "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/TRANSLATION",
                  "accessor 2 has 2 elements, other attributes have 1");
 }
@@ -218,8 +217,8 @@ TEST(GltfCamera, PerspectiveTakesPoseFromTheNodeWithoutItsScale) {
 
 TEST(GltfCamera, OrthographicKeepsItsMagnification) {
   GltfBuilder b = GltfBuilder::square();
-  b.push("cameras", {{"type", "orthographic"},
-                     {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0}, {"zfar", 10}}}});
+  b.push("cameras",
+         {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 3}, {"znear", 0}, {"zfar", 10}}}});
   b.node({{"camera", 0}});
   const Camera c = b.load().cameras.at(0);
   EXPECT_EQ(c.projection, Camera::Projection::kOrthographic);

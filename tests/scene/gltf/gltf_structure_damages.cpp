@@ -8,8 +8,7 @@ using Verdict = std::optional<Damage::Verdict>;
 using Plant = std::function<Verdict(ModelFiles&)>;
 
 /// Sets what a pointer names; the fault is there, or at `below` in it. The model must have the parent.
-Plant set(const std::string& pointer, const Json& value, const std::string& message,
-          const std::string& below = "") {
+Plant set(const std::string& pointer, const Json& value, const std::string& message, const std::string& below = "") {
   return [=](ModelFiles& m) -> Verdict {
     const Json::json_pointer at(pointer);
     if (!m.json.contains(at.parent_pointer())) return std::nullopt;
@@ -100,10 +99,9 @@ std::vector<Damage> node_damages() {
        [](ModelFiles& m) -> Verdict {
          return {{add_root(m, m.json["scenes"][0]["nodes"][0]), "is named twice"}};
        }},
-      {"projective matrix", on_node("/mesh", "/matrix", "not an affine transform",
-                                    [](ModelFiles&, Json& node) {
-                                      node["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1};
-                                    })},
+      {"projective matrix",
+       on_node("/mesh", "/matrix", "not an affine transform",
+               [](ModelFiles&, Json& node) { node["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1}; })},
       {"rotation by nothing", on_node("/mesh", "/rotation", "length zero",
                                       [](ModelFiles&, Json& node) {
                                         node.erase("matrix");
@@ -131,12 +129,12 @@ std::vector<Damage> extra_damages() {
                  const Json& attributes = node[Json::json_pointer(kInstances)];
                  m.json["accessors"][attributes["TRANSLATION"].get<std::size_t>()]["count"] = 1;
                })},
-      {"instance turned by nothing", on_node(kInstances + "/ROTATION", kInstances + "/ROTATION",
-                                             "the quaternion of instance 9 has length zero",
-                                             [](ModelFiles& m, Json& node) {
-                                               const Json& attributes = node[Json::json_pointer(kInstances)];
-                                               put(m.element(attributes["ROTATION"], 9), std::uint64_t{0});
-                                             })},
+      {"instance turned by nothing",
+       on_node(kInstances + "/ROTATION", kInstances + "/ROTATION", "the quaternion of instance 9 has length zero",
+               [](ModelFiles& m, Json& node) {
+                 const Json& attributes = node[Json::json_pointer(kInstances)];
+                 put(m.element(attributes["ROTATION"], 9), std::uint64_t{0});
+               })},
       {"light too bright", on_node("/extensions/KHR_lights_punctual", "", "too bright",
                                    [](ModelFiles& m, Json&) {
                                      Json& light = m.json[Json::json_pointer(kLights)][0];

@@ -49,8 +49,7 @@ struct ModelFiles {
       append(out.binary, files.at(buffer["uri"]));
     }
     for (Json& view : out.json["bufferViews"]) {
-      view["byteOffset"] =
-          view.value("byteOffset", std::size_t{0}) + start[view["buffer"].get<std::size_t>()];
+      view["byteOffset"] = view.value("byteOffset", std::size_t{0}) + start[view["buffer"].get<std::size_t>()];
       view["buffer"] = 0;
     }
     for (Json& image : out.json["images"]) {
@@ -69,8 +68,8 @@ struct ModelFiles {
     const Json& view = json["bufferViews"][a["bufferView"].get<std::size_t>()];
     const std::string uri = json["buffers"][view["buffer"].get<std::size_t>()]["uri"];
     const std::size_t stride = view.value("byteStride", element_size(a));
-    return files.at(uri).data() + view.value("byteOffset", std::size_t{0}) +
-           a.value("byteOffset", std::size_t{0}) + stride * index;
+    return files.at(uri).data() + view.value("byteOffset", std::size_t{0}) + a.value("byteOffset", std::size_t{0}) +
+           stride * index;
   }
 
  private:

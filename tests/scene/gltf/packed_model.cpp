@@ -81,19 +81,24 @@ void add_meshopt_meshes(GltfBuilder& b) {
   Packed octahedral(4 * vertices), exponents(12 * vertices);
   meshopt_encodeFilterOct(octahedral.data(), vertices, 4, 8, quads.data());
   meshopt_encodeFilterExp(exponents.data(), vertices, 12, 15, &ball.positions[0].x);
-  const int normals = b.accessor(meshopt_view(b, octahedral, vertices, 4, "ATTRIBUTES", "OCTAHEDRAL"), 5120, vertices,
-                                 "VEC3", true);
+  const int normals =
+      b.accessor(meshopt_view(b, octahedral, vertices, 4, "ATTRIBUTES", "OCTAHEDRAL"), 5120, vertices, "VEC3", true);
   b.json["bufferViews"].back()["byteStride"] = 4;
-  const int coarse = b.accessor(meshopt_view(b, exponents, vertices, 12, "ATTRIBUTES", "EXPONENTIAL"), 5126, vertices, "VEC3");
-  const int exact = b.accessor(meshopt_view(b, bytes_of(ball.positions), vertices, 12, "ATTRIBUTES"), 5126, vertices, "VEC3");
-  const int list = b.accessor(meshopt_view(b, bytes_of(indices), indices.size(), 2, "TRIANGLES"), 5123, indices.size(), "SCALAR");
-  const int sequence = b.accessor(meshopt_view(b, bytes_of(indices), indices.size(), 2, "INDICES"), 5123, indices.size(), "SCALAR");
+  const int coarse =
+      b.accessor(meshopt_view(b, exponents, vertices, 12, "ATTRIBUTES", "EXPONENTIAL"), 5126, vertices, "VEC3");
+  const int exact =
+      b.accessor(meshopt_view(b, bytes_of(ball.positions), vertices, 12, "ATTRIBUTES"), 5126, vertices, "VEC3");
+  const int list =
+      b.accessor(meshopt_view(b, bytes_of(indices), indices.size(), 2, "TRIANGLES"), 5123, indices.size(), "SCALAR");
+  const int sequence =
+      b.accessor(meshopt_view(b, bytes_of(indices), indices.size(), 2, "INDICES"), 5123, indices.size(), "SCALAR");
   b.mesh({{"POSITION", coarse}, {"NORMAL", normals}}, list);
   b.mesh({{"POSITION", exact}}, sequence);
   std::vector<float> turns{0, 0, 0.6f, 0.8f, 0.5f, 0.5f, -0.5f, 0.5f};
   Packed quaternions(16);
   meshopt_encodeFilterQuat(quaternions.data(), 2, 8, 16, turns.data());
-  const int rotations = b.accessor(meshopt_view(b, quaternions, 2, 8, "ATTRIBUTES", "QUATERNION"), 5122, 2, "VEC4", true);
+  const int rotations =
+      b.accessor(meshopt_view(b, quaternions, 2, 8, "ATTRIBUTES", "QUATERNION"), 5122, 2, "VEC4", true);
   b.json["nodes"].back()["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"ROTATION", rotations}};
 }
 
@@ -107,8 +112,12 @@ int meshopt_view(GltfBuilder& b, const std::vector<unsigned char>& data, std::si
   b.json["bufferViews"].erase(static_cast<std::size_t>(source));
   const int view = b.view(Packed(data.size()));
   Json& extension = b.json["bufferViews"].back()["extensions"]["EXT_meshopt_compression"];
-  extension = {{"buffer", 0}, {"byteOffset", at["byteOffset"]}, {"byteLength", packed.size()}, {"byteStride", stride},
-               {"count", count}, {"mode", mode}};
+  extension = {{"buffer", 0},
+               {"byteOffset", at["byteOffset"]},
+               {"byteLength", packed.size()},
+               {"byteStride", stride},
+               {"count", count},
+               {"mode", mode}};
   if (filter != nullptr) extension["filter"] = filter;
   return view;
 }

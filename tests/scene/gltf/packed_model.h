@@ -8,9 +8,9 @@
 
 namespace carousel::scene {
 
-/// The bytes of a buffer view compressed by EXT_meshopt_compression: its index. `data` are the uncompressed bytes (for a
-/// filter: its encoded input), `count` of `stride` bytes. Buffer 0 gets the compressed bytes, then zeros in place of a
-/// fallback.
+/// The bytes of a buffer view compressed by EXT_meshopt_compression: its index. `data` are the uncompressed bytes (for
+/// a filter: its encoded input), `count` of `stride` bytes. Buffer 0 gets the compressed bytes, then zeros in place of
+/// a fallback.
 int meshopt_view(GltfBuilder& b, const std::vector<unsigned char>& data, std::size_t count, std::size_t stride,
                  const char* mode, const char* filter = nullptr);
 

@@ -64,45 +64,39 @@ void split_buffers(const GltfBuilder& from, ModelFiles& to) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     std::string& file = to.files[names[i % 2]];
     file.resize((file.size() + 3) / 4 * 4);
-    const auto* first =
-        reinterpret_cast<const char*>(from.binary.data()) + views[i]["byteOffset"].get<std::size_t>();
+    const auto* first = reinterpret_cast<const char*>(from.binary.data()) + views[i]["byteOffset"].get<std::size_t>();
     views[i]["buffer"] = i % 2;
     views[i]["byteOffset"] = file.size();
     file.append(first, views[i]["byteLength"].get<std::size_t>());
   }
-  for (const char* name : names)
-    to.json["buffers"].push_back({{"uri", name}, {"byteLength", to.files[name].size()}});
+  for (const char* name : names) to.json["buffers"].push_back({{"uri", name}, {"byteLength", to.files[name].size()}});
 }
 
 }  // namespace
 
 GltfBuilder every_feature() {
   GltfBuilder b = GltfBuilder::square();
-  b.json["extensionsUsed"] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "KHR_lights_punctual",
-                              "VENDOR_x"};
+  b.json["extensionsUsed"] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "KHR_lights_punctual", "VENDOR_x"};
   b.json["extensionsRequired"] = {"KHR_mesh_quantization"};
   b.push("images", {{"bufferView", b.view(png(4))}, {"mimeType", "image/png"}});
   b.push("samplers", {{"wrapS", 33071}});
   b.push("textures", {{"source", 0}, {"sampler", 0}});
-  b.push("materials",
-         {{"pbrMetallicRoughness",
-           {{"baseColorTexture",
-             {{"index", 0},
-              {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 1}}, {"texCoord", 0}}}}}}},
-            {"metallicFactor", 0.5}}},
-          {"emissiveFactor", {1, 1, 1}},
-          {"alphaMode", "BLEND"},
-          {"extensions",
-           {{"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}},
-            {"VENDOR_x", {{"deep", {{"er", {1, 2}}}}}}}}});
+  b.push(
+      "materials",
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture",
+          {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 1}}, {"texCoord", 0}}}}}}},
+         {"metallicFactor", 0.5}}},
+       {"emissiveFactor", {1, 1, 1}},
+       {"alphaMode", "BLEND"},
+       {"extensions",
+        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}, {"VENDOR_x", {{"deep", {{"er", {1, 2}}}}}}}}});
   Json& primitive = b.json["meshes"][0]["primitives"][0];
   primitive["material"] = 0;
   primitive["attributes"]["TEXCOORD_0"] =
       b.accessor(b.view(std::vector<std::uint16_t>(8, 1000)), 5123, 4, "VEC2", true);
-  primitive["attributes"]["COLOR_0"] =
-      b.accessor(b.view(std::vector<std::uint8_t>(16, 200)), 5121, 4, "VEC4", true);
-  const int sparse_indices = b.view(std::vector<std::uint8_t>{1, 3}),
-            sparse_values = b.view(std::vector<float>(6, 2));
+  primitive["attributes"]["COLOR_0"] = b.accessor(b.view(std::vector<std::uint8_t>(16, 200)), 5121, 4, "VEC4", true);
+  const int sparse_indices = b.view(std::vector<std::uint8_t>{1, 3}), sparse_values = b.view(std::vector<float>(6, 2));
   b.json["accessors"][0]["sparse"] = {{"count", 2},
                                       {"indices", {{"bufferView", sparse_indices}, {"componentType", 5121}}},
                                       {"values", {{"bufferView", sparse_values}}}};
@@ -115,12 +109,10 @@ GltfBuilder every_feature() {
       Json::array({{{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}}, {{"type", "point"}}});
   b.node({{"rotation", {0, 0, 0, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   b.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}});
-  const int inner =
-      b.push("nodes", {{"camera", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 5, 5, 1}}});
+  const int inner = b.push("nodes", {{"camera", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 5, 5, 1}}});
   b.node({{"children", {inner}}, {"scale", {-1, 2, 1}}});
-  b.push("animations",
-         {{"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}})},
-          {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
+  b.push("animations", {{"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}})},
+                        {"samplers", Json::array({{{"input", 0}, {"output", 0}}})}});
   b.json["scene"] = 0;
   return b;
 }
@@ -138,9 +130,8 @@ ModelFiles rich_model() {
   primitive["targets"] = Json::array({{{"POSITION", primitive["attributes"]["POSITION"]}}});
   std::vector<float> identity(16);
   for (std::size_t i = 0; i < 4; ++i) identity[5 * i] = 1;
-  b.push("skins", {{"joints", {torus_node}},
-                   {"skeleton", torus_node},
-                   {"inverseBindMatrices", b.floats(identity, "MAT4", 16)}});
+  b.push("skins",
+         {{"joints", {torus_node}}, {"skeleton", torus_node}, {"inverseBindMatrices", b.floats(identity, "MAT4", 16)}});
   b.json["nodes"][static_cast<std::size_t>(torus_node)]["skin"] = 0;
   b.push("cameras",
          {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 1}, {"znear", 0}, {"zfar", 9}}}});

@@ -47,10 +47,8 @@ TEST(Bsdf, IsReciprocal) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0.02f, 1.0f);
   for (int i = 0; i < 2000; ++i) {
-    const MaterialPoint material{
-        {uniform(random), uniform(random), uniform(random)}, uniform(random), uniform(random)};
-    const Vec3 a = direction(uniform(random), uniform(random)),
-               b = direction(uniform(random), uniform(random));
+    const MaterialPoint material{{uniform(random), uniform(random), uniform(random)}, uniform(random), uniform(random)};
+    const Vec3 a = direction(uniform(random), uniform(random)), b = direction(uniform(random), uniform(random));
     const Vec3 ab = Bsdf(material, a).evaluate(b).f_cos / b.z, ba = Bsdf(material, b).evaluate(a).f_cos / a.z;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(ab[c], ba[c], 2e-3f * std::max(ab[c], 1.0f));
   }

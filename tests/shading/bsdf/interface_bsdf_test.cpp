@@ -9,8 +9,8 @@
 #include "shading/bsdf/fresnel.h"
 #include "shading/bsdf/ggx.h"
 #include "shading/bsdf/refraction_lobe.h"
-#include "tests/support/random_runs.h"
 #include "tests/shading/bsdf/bsdf_integrals.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::shading {
 namespace {
@@ -117,7 +117,8 @@ TEST(InterfaceBsdf, OpaqueSurfacesAndThinWallsAreReciprocal) {
     p.alpha = Vec2{uniform(random)};
     const Vec3 a = direction(uniform(random), uniform(random)), b = direction(uniform(random), uniform(random));
     const Vec3 below{b.x, b.y, -b.z}, a_below{a.x, a.y, -a.z};
-    const Vec3 ab = InterfaceBsdf<true>(p, a).evaluate(b).f_cos / b.z, ba = InterfaceBsdf<true>(p, b).evaluate(a).f_cos / a.z;
+    const Vec3 ab = InterfaceBsdf<true>(p, a).evaluate(b).f_cos / b.z,
+               ba = InterfaceBsdf<true>(p, b).evaluate(a).f_cos / a.z;
     const Vec3 through = InterfaceBsdf<true>(p, a).evaluate(below).f_cos / b.z,
                back = InterfaceBsdf<true>(p, b).evaluate(a_below).f_cos / a.z;
     for (int c = 0; c < 3; ++c) {
@@ -169,7 +170,7 @@ TEST(InterfaceBsdf, SmoothGlassBendsLightAsSnellSays) {
       const float cosine = std::sqrt(1 - sine * sine);
       const Vec3 wo{sine, 0, cosine};
       const InterfaceBsdf<true> bsdf(glass(eta, 0), wo);
-      const Vec3 wi = bsdf.sample(0.98f, {0.37f, 0.4f});   // reflection has the small lobe numbers
+      const Vec3 wi = bsdf.sample(0.98f, {0.37f, 0.4f});  // reflection has the small lobe numbers
       ASSERT_LT(wi.z, 0.0f);
       EXPECT_NEAR(wi.x, -sine / eta, 3e-3f);
       EXPECT_NEAR(wi.y, 0.0f, 3e-3f);
@@ -198,8 +199,8 @@ TEST(Refraction, FollowsFresnelInClosedForm) {
   // At Brewster's angle light polarised in the plane is not reflected; the rest is ((n^2-1)/(n^2+1))^2.
   const float brewster = 1 / std::sqrt(1 + 1.5f * 1.5f);
   EXPECT_NEAR(refraction(brewster, 1.5f).reflected, 0.5f * std::pow((2.25f - 1) / (2.25f + 1), 2.0f), 1e-5f);
-  EXPECT_TRUE(refraction(0.7f, 1 / 1.5f).total);   // sine 0.714 > 2/3
-  EXPECT_FALSE(refraction(0.76f, 1 / 1.5f).total);   // sine 0.65 < 2/3
+  EXPECT_TRUE(refraction(0.7f, 1 / 1.5f).total);    // sine 0.714 > 2/3
+  EXPECT_FALSE(refraction(0.76f, 1 / 1.5f).total);  // sine 0.65 < 2/3
   EXPECT_EQ(refraction(0.7f, 1 / 1.5f).reflected, 1.0f);
 }
 

@@ -14,7 +14,6 @@
 namespace carousel::shading {
 namespace {
 
-
 LayerPoint layers(float coat, float coat_roughness, float sheen, float sheen_roughness) {
   return {coat, coat_roughness, {0, 0, 1}, Vec3{sheen}, sheen_roughness};
 }
@@ -22,9 +21,8 @@ LayerPoint layers(float coat, float coat_roughness, float sheen, float sheen_rou
 template <class Base>
 void expect_white(const LayerPoint& l, const Base& base, const Vec3& wo) {
   const float a = white_albedo(LayeredBsdf<Base>(l, base, wo), 1 << 13).x;
-  EXPECT_NEAR(a, 1.0f, 0.01f)
-      << a << " coat " << l.coat << " " << l.coat_roughness << " sheen " << l.sheen.x << " " << l.sheen_roughness
-      << " cosine " << wo.z;
+  EXPECT_NEAR(a, 1.0f, 0.01f) << a << " coat " << l.coat << " " << l.coat_roughness << " sheen " << l.sheen.x << " "
+                              << l.sheen_roughness << " cosine " << wo.z;
 }
 
 TEST(LayeredBsdf, AWhiteSurfaceReflectsEverythingUnderAnyLayers) {
@@ -118,7 +116,8 @@ TEST(Iridescence, AFilmOfNoThicknessIsNotThere) {
 float airy(float n, float base, float nm, float wavelength) {
   const double r1 = (1.0 - n) / (1.0 + n), r2 = (n - base) / (n + base);
   const double phase = 4 * 3.14159265358979 * n * nm / wavelength;
-  const double num = r1 * r1 + r2 * r2 + 2 * r1 * r2 * std::cos(phase), den = 1 + r1 * r1 * r2 * r2 + 2 * r1 * r2 * std::cos(phase);
+  const double num = r1 * r1 + r2 * r2 + 2 * r1 * r2 * std::cos(phase),
+               den = 1 + r1 * r1 * r2 * r2 + 2 * r1 * r2 * std::cos(phase);
   return float(num / den);
 }
 

@@ -1,5 +1,5 @@
-// A white surface in a white world must not be seen: whatever lobes are combined, all the light comes back. Combinations
-// are drawn at random, each kind of base and layer with its limits more often than chance would have them.
+// A white surface in a white world must not be seen: whatever lobes are combined, all the light comes back.
+// Combinations are drawn at random, each kind of base and layer with its limits more often than chance would have them.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include "shading/bsdf/interface_bsdf.h"
 #include "shading/bsdf/layered_bsdf.h"
 #include "shading/math/luminance.h"
-#include "tests/support/random_runs.h"
 #include "tests/shading/bsdf/bsdf_integrals.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::shading {
 namespace {
@@ -60,7 +60,7 @@ Case draw_case(Draw& draw, Base base, bool stretched, bool layered) {
     p.eta = base == Base::kGlass ? ior : 1 / ior;
     p.glass = &GlassAlbedo::of(p.eta);
     f0 = f0_of_eta(ior);
-    if (base == Base::kInsideGlass && draw.one_in(2))   // near the critical angle everything changes
+    if (base == Base::kInsideGlass && draw.one_in(2))  // near the critical angle everything changes
       cosine = std::clamp(std::sqrt(1 - p.eta * p.eta) + draw.uniform(-0.03f, 0.03f), 0.03f, 1.0f);
   }
   p.dielectric_f90 = draw.one_in(2) ? 1.0f : draw.uniform(0.1f);
@@ -97,9 +97,9 @@ void expect_white(Base base, bool stretched, bool layered) {
     if (far_off()) a = furnace(c, base != Base::kOpaque, layered, 1 << 18);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(a[k], 1, 0.01) << fmt::format(
-          "case {}: metallic {} alpha {} {} transmission {} eta {} f0 {} f90 {} from {} {} {}; coat {} {} sheen {} {}", i,
-          p.material.metallic, p.alpha.x, p.alpha.y, p.transmission, p.eta, p.dielectric_f0[k], p.dielectric_f90, c.wo.x,
-          c.wo.y, c.wo.z, c.layers.coat, c.layers.coat_roughness, c.layers.sheen[k], c.layers.sheen_roughness);
+          "case {}: metallic {} alpha {} {} transmission {} eta {} f0 {} f90 {} from {} {} {}; coat {} {} sheen {} {}",
+          i, p.material.metallic, p.alpha.x, p.alpha.y, p.transmission, p.eta, p.dielectric_f0[k], p.dielectric_f90,
+          c.wo.x, c.wo.y, c.wo.z, c.layers.coat, c.layers.coat_roughness, c.layers.sheen[k], c.layers.sheen_roughness);
     }
   }
 }

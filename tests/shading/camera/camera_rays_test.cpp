@@ -54,8 +54,7 @@ TEST(CameraRays, OrthographicRaysAreParallelAndKeepTheWindow) {
 TEST(CameraRays, LensRaysMeetInTheFocalPlane) {
   const CameraConfig lens{0.5f, 3.0f};
   const CameraRays rays(scene::Camera{}, lens, 64, 64);
-  const Ray a = rays.ray(10, 20, {{0.5f, 0.5f}, {0.1f, 0.9f}}),
-            b = rays.ray(10, 20, {{0.5f, 0.5f}, {0.8f, 0.3f}});
+  const Ray a = rays.ray(10, 20, {{0.5f, 0.5f}, {0.1f, 0.9f}}), b = rays.ray(10, 20, {{0.5f, 0.5f}, {0.8f, 0.3f}});
   EXPECT_NE(a.origin, b.origin);
   EXPECT_LE(glm::length(a.origin), 0.25f + 1e-6f);
   const Vec3 pa = a.origin + a.direction * (-3.0f / a.direction.z);

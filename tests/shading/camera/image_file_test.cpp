@@ -7,8 +7,8 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
-#include "core/system/error.h"
 #include "core/numeric/fixed_point.h"
+#include "core/system/error.h"
 #include "shading/camera/film.h"
 #include "shading/camera/tone_curve.h"
 #include "tests/support/full_disk.h"
@@ -96,8 +96,7 @@ TEST(ToneCurve, KeepsMidtonesAndNeverLeavesTheDisplay) {
 TEST(Film, AveragesOverSamples) {
   Film film(2, 1, 4);
   std::uint64_t saturated = 0;
-  film.add(1, to_fixed_point(1.0f, saturated), to_fixed_point(2.0f, saturated),
-           to_fixed_point(-1.0f, saturated));
+  film.add(1, to_fixed_point(1.0f, saturated), to_fixed_point(2.0f, saturated), to_fixed_point(-1.0f, saturated));
   film.add(1, to_fixed_point(3.0f, saturated), 0, 0);
   EXPECT_EQ(film.linear_rgb(), (std::vector<float>{0, 0, 0, 1, 0.5f, -0.25f}));
 }

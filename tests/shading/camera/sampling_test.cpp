@@ -5,18 +5,17 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "shading/math/disk.h"
-#include "shading/math/shading_basis.h"
 #include "shading/camera/pixel_order.h"
+#include "shading/math/disk.h"
 #include "shading/math/sampler.h"
+#include "shading/math/shading_basis.h"
 #include "shading/math/trigonometry.h"
 
 namespace carousel::shading {
 namespace {
 
 TEST(PixelOrder, VisitsEveryPathOnce) {
-  for (const auto& [width, height, samples] :
-       {std::tuple{1u, 1u, 1u}, {16u, 8u, 3u}, {21u, 13u, 2u}, {3u, 50u, 1u}}) {
+  for (const auto& [width, height, samples] : {std::tuple{1u, 1u, 1u}, {16u, 8u, 3u}, {21u, 13u, 2u}, {3u, 50u, 1u}}) {
     const PixelOrder order(width, height, samples);
     std::vector<bool> seen(order.count());
     for (std::uint64_t i = 0; i < order.count(); ++i) {

@@ -76,7 +76,10 @@ inline scene::Scene scene_that_calls_for(Effect effect) {
     case Effect::kVolume:
       m.roughness = 0;
       m.transmission.weight = 1;
-      m.volume = {.thickness = 1, .thickness_texture = {}, .attenuation_color = {0.2f, 0.8f, 0.4f}, .attenuation_distance = 0.7f};
+      m.volume = {.thickness = 1,
+                  .thickness_texture = {},
+                  .attenuation_color = {0.2f, 0.8f, 0.4f},
+                  .attenuation_distance = 0.7f};
       break;
     case Effect::kIor:
       m.ior = 2.2f;
@@ -121,7 +124,9 @@ inline scene::Scene scene_that_calls_for(Effect effect) {
     case Effect::kDirectionalLights: {
       scene = box_on_floor(m);
       scene::PunctualLight light;
-      light.kind = effect == Effect::kPointLights ? Kind::kPoint : effect == Effect::kSpotLights ? Kind::kSpot : Kind::kDirectional;
+      light.kind = effect == Effect::kPointLights  ? Kind::kPoint
+                   : effect == Effect::kSpotLights ? Kind::kSpot
+                                                   : Kind::kDirectional;
       light.position = {1.5f, 2, 2};
       light.direction = {-0.48f, -0.6f, -0.64f};
       light.intensity = Vec3{4};
@@ -140,7 +145,8 @@ inline scene::Scene scene_of_everything() {
     scene::Material m = matte({0.8f, 0.9f, 0.7f});
     m.roughness = 0.2f;
     m.transmission.weight = 0.7f;
-    m.volume = {.thickness = 1, .thickness_texture = {}, .attenuation_color = {0.5f, 0.8f, 0.9f}, .attenuation_distance = 1};
+    m.volume = {
+        .thickness = 1, .thickness_texture = {}, .attenuation_color = {0.5f, 0.8f, 0.9f}, .attenuation_distance = 1};
     m.clearcoat.weight = 0.5f;
     m.sheen.color = {0.3f, 0.2f, 0.1f};
     m.sheen.roughness = 0.4f;

@@ -6,8 +6,8 @@
 
 #include "shading/surface/alpha_test.h"
 #include "shading/tracer/path_tracer.h"
-#include "tests/shading/path/brute_force_tracer.h"
 #include "tests/shading/effects/effect_scenes.h"
+#include "tests/shading/path/brute_force_tracer.h"
 #include "tests/shading/path/threaded_frame.h"
 
 namespace carousel::shading {
@@ -88,7 +88,7 @@ TEST(EffectsPlan, NothingIsCalledForByAPlainWall) {
   unused.transmission.weight = 1;
   unused.clearcoat.weight = 1;
   unused.emissive = Vec3{1};
-  add_material(scene, unused);   // on no triangle
+  add_material(scene, unused);  // on no triangle
   const EffectsPlan plan = plan_effects(scene, small_image());
   for (std::size_t i = 0; i < kEffects; ++i) {
     const bool expected = static_cast<Effect>(i) == Effect::kReflection;
@@ -106,7 +106,7 @@ TEST(EffectsPlan, NothingIsCalledForByAPlainWall) {
 TEST(EffectsPlan, EachMaterialHasTheLeastCodeThatShadesIt) {
   const scene::Scene scene = scene_of_everything();
   const auto of = surface_classes(scene, plan_effects(scene, small_image()));
-  EXPECT_EQ(of[0], SurfaceClass::kPlain);   // the floor beside the glass
+  EXPECT_EQ(of[0], SurfaceClass::kPlain);  // the floor beside the glass
   EXPECT_EQ(of[2], SurfaceClass::kLayeredTransmissive);
   EXPECT_EQ(of[4], SurfaceClass::kUnlit);
   for (const SurfaceClass c : surface_classes(scene, plan_effects(scene, small_image(Choice::kAll))))
@@ -115,24 +115,26 @@ TEST(EffectsPlan, EachMaterialHasTheLeastCodeThatShadesIt) {
 
 TEST(EffectsPlan, ATextureMakesGlassOfWhatIsMetalByDefault) {
   scene::Scene scene = scene_that_calls_for(Effect::kVolume);
-  scene.images[0].rgba = {0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255};   // B: no metal
+  scene.images[0].rgba = {0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255, 0, 255};  // B: no metal
   scene.materials[2].metallic = 1;
   EXPECT_FALSE(plan_effects(scene, small_image()).on(Effect::kTransmission));
   scene.materials[2].metallic_roughness_texture.emplace();
   const EffectsPlan plan = plan_effects(scene, small_image());
-  for (const Effect effect : {Effect::kTransmission, Effect::kRefraction, Effect::kVolume}) EXPECT_TRUE(plan.on(effect));
+  for (const Effect effect : {Effect::kTransmission, Effect::kRefraction, Effect::kVolume})
+    EXPECT_TRUE(plan.on(effect));
   EXPECT_EQ(surface_classes(scene, plan)[2], SurfaceClass::kTransmissive);
   const Picture glass = picture(scene, small_image());
   EXPECT_EQ(glass.image, picture(scene, small_image(Choice::kAll)).image);
   scene.materials[2].metallic = 0;
   scene.materials[2].metallic_roughness_texture.reset();
   const Picture plain = picture(scene, small_image());
-  for (std::size_t i = 0; i < glass.rgb.size(); ++i) EXPECT_NEAR(glass.rgb[i], plain.rgb[i], 1e-3f + 0.01f * plain.rgb[i]);
+  for (std::size_t i = 0; i < glass.rgb.size(); ++i)
+    EXPECT_NEAR(glass.rgb[i], plain.rgb[i], 1e-3f + 0.01f * plain.rgb[i]);
 }
 
 TEST(EffectsPlan, ImagesAreReadOnlyByEffectsThatAreOn) {
   scene::Scene scene = scene_that_calls_for(Effect::kClearcoat);
-  scene.materials[2].transmission.texture.emplace();   // of weight 0
+  scene.materials[2].transmission.texture.emplace();  // of weight 0
   const std::vector<bool> yes{true}, no{false};
   EXPECT_EQ(images_read(scene, {}), no);
   EXPECT_EQ(images_read(scene, {Choice::kAll, {}}), yes);
@@ -180,7 +182,8 @@ double through_glass(float thickness, const Vec3& color, float distance, int cha
   scene::Material glass = matte({1, 1, 1});
   glass.roughness = 0;
   glass.transmission.weight = 1;
-  glass.volume = {.thickness = 1, .thickness_texture = {}, .attenuation_color = color, .attenuation_distance = distance};
+  glass.volume = {
+      .thickness = 1, .thickness_texture = {}, .attenuation_color = color, .attenuation_distance = distance};
   const std::uint32_t m = add_material(scene, glass);
   const float h = thickness / 2;
   add_quad(scene, {-9, h, 9}, {9, h, 9}, {9, h, -9}, {-9, h, -9}, m);
@@ -196,7 +199,7 @@ double through_glass(float thickness, const Vec3& color, float distance, int cha
 }
 
 TEST(Volume, TakesLightAsBeerAndLambertSay) {
-  EXPECT_NEAR(through_glass(1, Vec3{1}, 1, 0), 1.0, 0.01);   // clear glass in a white world is not seen
+  EXPECT_NEAR(through_glass(1, Vec3{1}, 1, 0), 1.0, 0.01);  // clear glass in a white world is not seen
   const Vec3 color{0.25f, 0.5f, 0.9f};
   for (const float thickness : {0.5f, 1.5f}) {
     for (int c = 0; c < 3; ++c) {

@@ -9,8 +9,8 @@
 
 #include "core/numeric/octahedral.h"
 #include "shading/bsdf/lambert.h"
-#include "shading/tracer/path_tracer.h"
 #include "shading/math/trigonometry.h"
+#include "shading/tracer/path_tracer.h"
 #include "tests/shading/path/brute_force_tracer.h"
 #include "tests/shading/path/small_scenes.h"
 
@@ -60,8 +60,7 @@ TEST(LightSet, InstancedAndMirroredTrianglesGiveTheFormFactorsIrradiance) {
   add_mesh(scene, {{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}}, {0, 1, 2}, light, placement);
   const LightSet lights(scene);
   std::vector<DVec3> polygon;
-  for (const Vec3& v : scene.meshes[0].positions)
-    polygon.emplace_back(placement.linear * v + placement.translation);
+  for (const Vec3& v : scene.meshes[0].positions) polygon.emplace_back(placement.linear * v + placement.translation);
   const double expected = polygon_irradiance(polygon, {0, 0, 0}, {0, 1, 0});
   EXPECT_NEAR(sampled_irradiance(lights, {0, 0, 0}, {0, 1, 0}), expected, 0.01 * expected);
 }
@@ -76,7 +75,7 @@ TEST(LightSet, ASphereGivesTheIrradianceOfItsDisk) {
     const double expected = 3.14159265358979 / d2 * (3.0 - p.y) / std::sqrt(d2);
     EXPECT_NEAR(sampled_irradiance(lights, p, {0, 1, 0}), expected, 0.01 * expected);
   }
-  EXPECT_EQ(sampled_irradiance(lights, {0, 3.2f, 0}, {0, 1, 0}), 0.0);   // its inside is dark
+  EXPECT_EQ(sampled_irradiance(lights, {0, 3.2f, 0}, {0, 1, 0}), 0.0);  // its inside is dark
   scene.materials[0].double_sided = true;
   EXPECT_NEAR(sampled_irradiance(LightSet(scene), {0, 3.2f, 0}, {0, 1, 0}), 3.14159265358979, 0.03);
 }
@@ -106,7 +105,7 @@ TEST(LightSet, DensityOfAMetEllipsoidIsTheDensityOfChoosingIt) {
     const Vec2 u = sampler.direction(0, s, 0).direction;
     const SinCos turn = sin_cos_turns(u.y);
     const float sine = std::sqrt(1 - u.x * u.x);
-    const Vec3 d{sine * turn.cos, u.x, sine * turn.sin};   // even over the hemisphere above
+    const Vec3 d{sine * turn.cos, u.x, sine * turn.sin};  // even over the hemisphere above
     if (const std::optional<Hit> hit = meet_ellipsoid(stretched, p, d)) {
       const TriangleGeometry geometry = triangle_geometry(scene, 0, 0, hit->u, hit->v);
       const auto cosine = float(-glm::dot(geometry.normal, DVec3(d)));
@@ -131,8 +130,8 @@ TEST(LightSet, DensityOfAMetTriangleIsTheDensityOfChoosingIt) {
     if (light.pdf == 0.0f) continue;
     const Hit hit = tracer.trace({p, 0, light.wi, kInfinity}, RayKind::kBounce);
     if (!hit.valid() || scene.instances[hit.instance].mesh.value != 1) continue;
-    const float pdf = lights.primitive_pdf(hit, triangle_geometry(scene, hit.instance, hit.primitive, hit.u, hit.v), true,
-                                           std::abs(light.wi.y));
+    const float pdf = lights.primitive_pdf(hit, triangle_geometry(scene, hit.instance, hit.primitive, hit.u, hit.v),
+                                           true, std::abs(light.wi.y));
     EXPECT_NEAR(pdf, light.pdf, 1e-3f * light.pdf);
     ++compared;
   }

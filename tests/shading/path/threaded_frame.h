@@ -16,8 +16,8 @@ namespace carousel::shading {
 
 /// Runs a frame on `workers` threads that take rays from one bag in random order and cut random batches of at
 /// most `batch`: an engine as unruly as the contract of Workload allows.
-inline void run_unruly_frame(Workload& workload, const BruteForceTracer& tracer, std::size_t workers,
-                             std::size_t batch, std::uint32_t seed) {
+inline void run_unruly_frame(Workload& workload, const BruteForceTracer& tracer, std::size_t workers, std::size_t batch,
+                             std::uint32_t seed) {
   std::mutex mutex;
   RayBatch bag;                          // guarded by mutex
   std::atomic<std::size_t> unshaded{0};  // rays in the bag or being traced or shaded

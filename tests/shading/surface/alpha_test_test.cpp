@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "scene/model/opacity.h"
-#include "tests/support/random_runs.h"
 #include "tests/shading/path/small_scenes.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::shading {
 namespace {
@@ -31,7 +31,7 @@ bool stops(const scene::Scene& scene, float x, float y, const Vec3& from = {0.5f
   Ray ray;
   ray.origin = from;
   ray.direction = Vec3{x, y, 0} - from;
-  const bool lower = y < x;   // vertices 0 1 2, else 0 2 3
+  const bool lower = y < x;  // vertices 0 1 2, else 0 2 3
   return AlphaTest(scene).stops(ray, 0, lower ? 0 : 1, lower ? x - y : x, lower ? y : y - x);
 }
 
@@ -55,7 +55,7 @@ TEST(AlphaTest, TheCutoffItselfIsSolid) {
 
 TEST(AlphaTest, VertexColoursAndFactorCountToo) {
   scene::Scene scene = cut_square(scene::AlphaMode::kMask, 1.0f);
-  scene.meshes[0].colors = {{1, 1, 1, 1}, {1, 1, 1, 0}, {1, 1, 1, 0}, {1, 1, 1, 1}};   // fades along x
+  scene.meshes[0].colors = {{1, 1, 1, 1}, {1, 1, 1, 0}, {1, 1, 1, 0}, {1, 1, 1, 1}};  // fades along x
   EXPECT_TRUE(stops(scene, 0.45f, 0.2f));
   EXPECT_FALSE(stops(scene, 0.55f, 0.2f));
   scene.materials[0].base_color.a = 0.75f;
@@ -118,13 +118,13 @@ TEST(Opacity, AsksOnlyWhereARayMayPass) {
   };
   EXPECT_FALSE(asks(cut_square(AlphaMode::kOpaque, 0)));
   EXPECT_TRUE(asks(cut_square(AlphaMode::kMask, 0.4f)));
-  EXPECT_FALSE(asks(cut_square(AlphaMode::kMask, 0.6f)));   // nowhere below the cutoff
+  EXPECT_FALSE(asks(cut_square(AlphaMode::kMask, 0.6f)));  // nowhere below the cutoff
   EXPECT_TRUE(asks(cut_square(AlphaMode::kBlend, 0.6f)));
   EXPECT_FALSE(asks(cut_square(AlphaMode::kBlend, 1)));
   scene::Scene faded = cut_square(AlphaMode::kBlend, 1);
   faded.meshes[0].colors = {Vec4{1}, Vec4{1, 1, 1, 0.5f}, Vec4{1}, Vec4{1}};
   EXPECT_TRUE(asks(faded, 0));
-  EXPECT_FALSE(asks(faded, 1));   // vertices 0, 2, 3
+  EXPECT_FALSE(asks(faded, 1));  // vertices 0, 2, 3
 }
 
 TEST(Opacity, NeverCallsATriangleSolidThatLetsARayPass) {

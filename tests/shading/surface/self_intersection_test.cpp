@@ -9,8 +9,8 @@
 
 #include "core/config/enum_names.h"
 #include "shading/surface/spawn_point.h"
-#include "tests/support/publish.h"
 #include "tests/shading/path/small_scenes.h"
+#include "tests/support/publish.h"
 
 namespace carousel::shading {
 namespace {
@@ -63,7 +63,7 @@ class SelfIntersection : public testing::Test {
     return met;
   }
 
-  double farthest_ = 0;   // that a point has been moved
+  double farthest_ = 0;  // that a point has been moved
 
  private:
   std::mt19937 random_{7};
@@ -94,17 +94,17 @@ TEST_F(SelfIntersection, NeverInSlivers) {
 
 TEST_F(SelfIntersection, NeverInInstances) {
   for (int i = 0; i < 2000; ++i) {
-    const scene::Affine placement{Mat3(vector(1), vector(1), vector(1)),
-                                  vector(std::pow(10.0f, uniform(-2, 6)))};
+    const scene::Affine placement{Mat3(vector(1), vector(1), vector(1)), vector(std::pow(10.0f, uniform(-2, 6)))};
     ASSERT_EQ(count(vector(1), vector(1), vector(1), placement), 0);
   }
 }
 
 // How far is far enough, for surfaces far from the world's origin: the hard cases of issue 5 as a table.
 TEST_F(SelfIntersection, FarAwayOnlyTheBoundIsAlwaysEnough) {
-  std::string table = "\nRays that meet the triangle they leave, of 100,000 from each: triangles of unit size |T| away, as "
-                      "vertices of one mesh and as instances; and how far the points were moved at most.\n\n| spawn | 1e4, mesh | 1e4, "
-                      "instances | moved | 1e6, mesh | 1e6, instances | moved |\n|---|---:|---:|---:|---:|---:|---:|\n";
+  std::string table =
+      "\nRays that meet the triangle they leave, of 100,000 from each: triangles of unit size |T| away, as "
+      "vertices of one mesh and as instances; and how far the points were moved at most.\n\n| spawn | 1e4, mesh | 1e4, "
+      "instances | moved | 1e6, mesh | 1e6, instances | moved |\n|---|---:|---:|---:|---:|---:|---:|\n";
   for (const auto& offset : kEnumNames<SpawnOffset>) {
     table += fmt::format("| {} |", offset.name);
     for (const float away : {1e4f, 1e6f}) {

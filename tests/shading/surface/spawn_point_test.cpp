@@ -157,8 +157,7 @@ TEST(SpawnPoint, SidesFollowTheWindingThroughMirroredInstances) {
   scene::Scene scene = empty_scene();
   add_material(scene, matte(Vec3{1}));
   // glTF turns the winding of a mirrored instance: its front looks where the mirror image's front looks.
-  add_mesh(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, 0,
-           {Mat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), Vec3{0}});
+  add_mesh(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, 0, {Mat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), Vec3{0}});
   const TriangleGeometry g = triangle_geometry(scene, 0, 0, 0.25f, 0.25f);
   EXPECT_EQ(g.normal, DVec3(0, 0, 1));
   EXPECT_TRUE(g.mirrored);

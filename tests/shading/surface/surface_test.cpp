@@ -30,8 +30,7 @@ TextureId add_texel(scene::Scene& scene, std::uint8_t r, std::uint8_t g, std::ui
 Vec3 normal_at(const scene::Scene& scene, float u, float v, const Vec3& wo) {
   const TriangleGeometry g = triangle_geometry(scene, 0, 0, u, v);
   const bool front = glm::dot(g.normal, DVec3(wo)) >= 0;
-  return shading_normal(scene, triangle_point(scene, 0, 0, u, v), g, Vec3(front ? g.normal : -g.normal),
-                        front, wo);
+  return shading_normal(scene, triangle_point(scene, 0, 0, u, v), g, Vec3(front ? g.normal : -g.normal), front, wo);
 }
 
 void expect_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
@@ -49,8 +48,7 @@ TEST(Surface, MultipliesFactorTextureAndVertexColour) {
 TEST(Surface, ReadsRoughnessFromGreenAndMetallicFromBlue) {
   scene::Scene scene = triangle(matte(Vec3{1}));
   scene.materials[0].metallic = 1;
-  scene.materials[0].metallic_roughness_texture =
-      scene::TextureUse{add_texel(scene, 9, 51, 204), 0, {}, {1, 1}, 0};
+  scene.materials[0].metallic_roughness_texture = scene::TextureUse{add_texel(scene, 9, 51, 204), 0, {}, {1, 1}, 0};
   const MaterialPoint m = material_point(scene, triangle_point(scene, 0, 0, 0.2f, 0.2f));
   EXPECT_NEAR(m.roughness, 0.2f, 1e-6f);
   EXPECT_NEAR(m.metallic, 0.8f, 1e-6f);
