@@ -14,7 +14,7 @@ struct Integral {
   float schlick = 0;  // weighted by (1 - cos)^5
 };
 
-Integral integrate(float cos_theta, float alpha) {
+Integral integrate_albedo(float cos_theta, float alpha) {
   constexpr int kStrata = 20;
   const Vec3 wo{std::sqrt(std::max(0.0f, 1.0f - cos_theta * cos_theta)), 0.0f, cos_theta};
   Integral sum;
@@ -77,7 +77,7 @@ GgxAlbedo::GgxAlbedo() {
     const float alpha = ggx_alpha(roughness);
     for (int c = 0; c < kSize; ++c) {
       const float x = std::max(float(c) / (kSize - 1), 0.01f);
-      const Integral integral = integrate(x * x, alpha);
+      const Integral integral = integrate_albedo(x * x, alpha);
       split_[r][c] = {integral.full, integral.schlick};
       directional_[r][c] = {integral.full, kDielectricF0 * (integral.full - integral.schlick) + integral.schlick};
     }
