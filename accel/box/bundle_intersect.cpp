@@ -109,7 +109,7 @@ struct Verdicts {
 /// Of four boxes, in the order that is asked for; each test counts for the lanes that it is asked about.
 template <class Form>
 Verdicts verdicts(Form& form, const Node& node, int first, std::uint32_t lanes, BundlesConfig::Order order,
-                  TestCounts& counts) {
+                  IntersectionCounts& counts) {
   using Order = BundlesConfig::Order;
   const auto hit_among = [&](std::uint32_t among) {
     counts.bundle += static_cast<std::uint64_t>(std::popcount(among));
@@ -143,7 +143,8 @@ Verdicts verdicts(Form& form, const Node& node, int first, std::uint32_t lanes, 
 }
 
 template <class Form>
-BundleAnswer answer(Form form, const Node& node, std::uint32_t lanes, BundlesConfig::Order order, TestCounts& counts) {
+BundleAnswer answer(Form form, const Node& node, std::uint32_t lanes, BundlesConfig::Order order,
+                    IntersectionCounts& counts) {
   BundleAnswer out;
   lanes &= (1u << node.count) - 1;
   for (int first = 0; first < kMaxWidth; first += kGroup) {
@@ -160,7 +161,7 @@ BundleAnswer answer(Form form, const Node& node, std::uint32_t lanes, BundlesCon
 
 template <class Real>
 BundleAnswer answer_as(BoxLevel level, const Node& node, std::uint32_t lanes, const BundleRecord& bundle,
-                       const BundlesConfig& config, TestCounts& counts) {
+                       const BundlesConfig& config, IntersectionCounts& counts) {
   if (config.form == BundlesConfig::Form::kSilhouette && bundle.count != 1 && BundleSilhouette::applies(bundle))
     return answer(SilhouetteForm<Real>(bundle, level, config.edges), node, lanes, config.order, counts);
   return answer(IntervalForm<Real>(bundle, far_widening(level), config.strict), node, lanes, config.order, counts);
@@ -169,7 +170,7 @@ BundleAnswer answer_as(BoxLevel level, const Node& node, std::uint32_t lanes, co
 }  // namespace
 
 BundleAnswer test_bundle(const Accel& accel, const Node& node, std::uint32_t lanes, const BundleRecord& bundle,
-                         const BundlesConfig& config, TestCounts& counts) {
+                         const BundlesConfig& config, IntersectionCounts& counts) {
   const BoxLevel level = accel.accuracy.box;
   if (level == BoxLevel::kDouble) return answer_as<double>(level, node, lanes, bundle, config, counts);
   return answer_as<float>(level, node, lanes, bundle, config, counts);

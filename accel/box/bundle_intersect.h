@@ -27,6 +27,6 @@ struct BundleAnswer {
 /// The silhouette form stands back for the interval form where there is no such test: for single rays, directions of
 /// several octants, and extreme exponents. Counts the bundle tests. Any thread may call.
 BundleAnswer test_bundle(const Accel& accel, const Node& node, std::uint32_t lanes, const BundleRecord& bundle,
-                         const BundlesConfig& config, TestCounts& counts);
+                         const BundlesConfig& config, IntersectionCounts& counts);
 
 }  // namespace carousel::accel

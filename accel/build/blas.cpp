@@ -34,17 +34,17 @@ void fill_block(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bu
     const auto set = [&](std::size_t vertex, const Vec3& p) {
       for (int axis = 0; axis < 3; ++axis) block.vertex[vertex][axis][lane] = p[axis];
     };
-    bool asks;
+    bool calls_any_hit;
     if (index >= mesh.triangle_count()) {
       const scene::Sphere& sphere = mesh.spheres[index - mesh.triangle_count()];
       set(0, sphere.center);
       block.vertex[1][0][lane] = sphere.radius;
-      asks = opacity.may_let_through(sphere);
+      calls_any_hit = opacity.may_be_non_opaque(sphere);
     } else {
       for (std::size_t k = 0; k < 3; ++k) set(k, mesh.positions[mesh.indices[3 * std::size_t{index} + k]]);
-      asks = opacity.may_let_through(mesh, index);
+      calls_any_hit = opacity.may_be_non_opaque(mesh, index);
     }
-    block.primitive[lane] = index | (asks ? kAskBit : 0);
+    block.primitive[lane] = index | (calls_any_hit ? kNonOpaqueBit : 0);
   }
 }
 

@@ -57,7 +57,7 @@ class AccelBuilder {
     for (std::size_t i = first_of_top; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
     for (const TriangleBlock& block : accel_.blocks)
       for (const std::uint32_t primitive : block.primitive)
-        accel_.may_pass |= primitive != kNoPrimitive && (primitive & kAskBit) != 0;
+        accel_.has_non_opaque |= primitive != kNoPrimitive && (primitive & kNonOpaqueBit) != 0;
     for (const scene::Instance& instance : scene_.instances)
       accel_.procedural_primitives |= !scene_.meshes[instance.mesh.value].spheres.empty();
     mix_nodes();

@@ -25,7 +25,7 @@ std::array<BoxAnswer, kMaxWidth> box_answers(BoxLevel level, const Ray& ray, std
   std::uint8_t mask = 0;
   float nearest[kMaxWidth], entries[kMaxWidth] = {};
   std::fill(nearest, nearest + kMaxWidth, kInfinity);
-  TestCounts counts;
+  IntersectionCounts counts;
   test_strip(accel, {kNoInstance, NodeRef::inner(0)}, ~0u, {&record, nullptr, 1}, {&mask, nearest, entries}, counts);
   std::array<BoxAnswer, kMaxWidth> out;
   for (std::size_t lane = 0; lane < boxes.size(); ++lane) out[lane] = {(mask >> lane & 1) != 0, entries[lane]};
@@ -58,7 +58,7 @@ Hit OneLeaf::hit(const Ray& ray, const AccuracyConfig& accuracy) {
   accel_.accuracy = accuracy;
   RayRecord record;
   start_record({ray, {}}, record);
-  TestCounts counts;
+  IntersectionCounts counts;
   test_strip(accel_, accel_.root, ~0u, {&record, nullptr, 1}, {}, counts);
   return record.hit.valid() ? record.hit : Hit{};
 }

@@ -200,7 +200,8 @@ HWY_INLINE CutLines::M mask_of(std::uint32_t bits) {
 /// Of the child lanes in `mask`, whose boxes were hit, those that no plane shows to be missed. With accel.planes_first
 /// the planes of all `lanes` are tested, and box tests that are not needed are taken from counts.box.
 HWY_NOINLINE std::uint32_t cull_lanes(const Accel& accel, const Node& node, const SlabRay& ray, const Vec3& direction,
-                                      std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
+                                      std::uint32_t lanes, std::uint32_t mask, IntersectionCounts& counts,
+                                      CullCounts* culls) {
   constexpr std::size_t kLanes = hn::MaxLanes(CutLines::Tag());
   const LanePlaneCounts planes(node.plane_counts);
   const CullPlane* const first_plane = accel.planes.data() + node.first_plane;

@@ -9,30 +9,29 @@
 namespace carousel::accel {
 
 /// Whether a hit there is to stand in the place of `hit`: ties go to the smallest (t, instance, primitive).
-[[gnu::always_inline]] inline bool comes_before(float t, std::uint32_t instance, std::uint32_t primitive,
-                                                const Hit& hit) {
+[[gnu::always_inline]] inline bool closer(float t, std::uint32_t instance, std::uint32_t primitive, const Hit& hit) {
   return t < hit.t ||
          (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
 }
 
 /// Whether the ray stops at a primitive that is to be asked, found in front of all that has stopped it so far.
 template <class Slab>
-[[gnu::noinline]] bool asked_to_stop(const Accel& accel, const FrameRay<Slab>& ray, const Hit& found) {
+[[gnu::noinline]] bool any_hit_accepts(const Accel& accel, const LocalRay<Slab>& ray, const Hit& found) {
   if (accel.any_hit == nullptr || (ray.record->tag.flags & kRayForceOpaque) != 0) return true;
-  ++ray.counts->asked;
-  return accel.any_hit->stops(ray.record->ray, found.instance, found.primitive, found.u, found.v);
+  ++ray.counts->any_hit_calls;
+  return accel.any_hit->accepts(ray.record->ray, found.instance, found.primitive, found.u, found.v);
 }
 
 /// The same of a triangle, given in the frame's space, that may have to be asked, or show the wrong side. glTF turns
 /// the winding of instances that mirror, which makes the front what it is in model space.
 template <class Slab>
-[[gnu::noinline]] bool stopped_by_triangle(const Accel& accel, bool asks, const std::array<Vec3, 3>& triangle,
-                                           const FrameRay<Slab>& ray, const Hit& found) {
+[[gnu::noinline]] bool triangle_accepts(const Accel& accel, bool calls_any_hit, const std::array<Vec3, 3>& triangle,
+                                        const LocalRay<Slab>& ray, const Hit& found) {
   if (const std::uint8_t culls = ray.record->tag.flags & (kRayCullBack | kRayCullFront); culls != 0) {
     const int facing = exact_facing(ray.direction, triangle);
     if (((culls & kRayCullBack) != 0 && facing < 0) || ((culls & kRayCullFront) != 0 && facing > 0)) return false;
   }
-  return !asks || asked_to_stop(accel, ray, found);
+  return !calls_any_hit || any_hit_accepts(accel, ray, found);
 }
 
 }  // namespace carousel::accel

@@ -33,7 +33,7 @@ union TriangleRay {
 /// place: copying what was just written piece by piece would stall on the stores. Slab is SlabRay, or DoubleSlabRay
 /// for accuracy.box: double.
 template <class Slab>
-struct FrameRay {
+struct LocalRay {
   Slab slab;
   TriangleRay triangle;
   std::uint32_t instance;
@@ -41,10 +41,10 @@ struct FrameRay {
   // For tests that few configurations have: planes, procedural primitives, what lets rays through.
   Vec3 origin, direction;
   const RayRecord* record;  ///< the ray in world space, and what it wants
-  TestCounts* counts;
+  IntersectionCounts* counts;
 
-  [[gnu::always_inline]] FrameRay(const AccuracyConfig& accuracy, const Ray& ray, std::uint32_t i, float entry,
-                                  const RayRecord& of, TestCounts& total)
+  [[gnu::always_inline]] LocalRay(const AccuracyConfig& accuracy, const Ray& ray, std::uint32_t i, float entry,
+                                  const RayRecord& of, IntersectionCounts& total)
       : slab(ray, far_widening(accuracy.box)),
         triangle(ray, accuracy.triangle),
         instance(i),
@@ -55,10 +55,10 @@ struct FrameRay {
         counts(&total) {}
 };
 
-/// Storage for a FrameRay to be built in.
+/// Storage for a LocalRay to be built in.
 template <class Slab>
 union FrameStorage {
-  FrameRay<Slab> ray;
+  LocalRay<Slab> ray;
   FrameStorage() {}
 };
 
@@ -67,17 +67,17 @@ union FrameStorage {
 /// entered no later than any of them, it decides nothing.
 template <class Slab>
 [[gnu::always_inline]] inline void enter_frame(const Accel& accel, std::uint32_t instance, const RayRecord& record,
-                                               FrameRay<Slab>* frame, TestCounts& counts) {
+                                               LocalRay<Slab>* frame, IntersectionCounts& counts) {
   const Ray& ray = record.ray;
   if (instance == kNoInstance || accel.instances[instance].transform.identity) {
-    new (frame) FrameRay<Slab>(accel.accuracy, ray, instance, ray.tmin, record, counts);
+    new (frame) LocalRay<Slab>(accel.accuracy, ray, instance, ray.tmin, record, counts);
     return;
   }
   const InstanceNode& node = accel.instances[instance];
   float entry;
   slab(Slab(ray, far_widening(accel.accuracy.box)), node.world, kInfinity, entry);
   ++counts.transforms;
-  new (frame) FrameRay<Slab>(accel.accuracy, node.transform.to_model(ray), instance, entry, record, counts);
+  new (frame) LocalRay<Slab>(accel.accuracy, node.transform.to_model(ray), instance, entry, record, counts);
 }
 
 }  // namespace carousel::accel

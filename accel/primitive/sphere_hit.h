@@ -16,24 +16,24 @@ namespace carousel::accel {
 /// the way out its back.
 template <class Slab>
 [[gnu::noinline]] bool lower_by_sphere(const Accel& accel, const TriangleBlock& block, std::size_t lane,
-                                       const FrameRay<Slab>& ray, Hit& hit) {
+                                       const LocalRay<Slab>& ray, Hit& hit) {
   const auto [centre, radius] = sphere_in(block, lane);
   SphereCrossing crossing;
   if (!cross_sphere(ray.origin, ray.direction, centre, radius, crossing)) return false;
   float entry;
   if (!slab(ray.slab, sphere_box(centre, radius), hit.t, entry)) return false;
   const std::uint32_t primitive = block.primitive[lane] & kPrimitiveMask;
-  const bool asks = (block.primitive[lane] & kAskBit) != 0;
+  const bool calls_any_hit = (block.primitive[lane] & kNonOpaqueBit) != 0;
   constexpr std::uint8_t kCulledBy[2] = {kRayCullFront, kRayCullBack};
   for (int k = 0; k < 2; ++k) {
     const float t = static_cast<float>(crossing.t[k]);
     if (!(t >= ray.slab.tmin && t <= std::numeric_limits<float>::max() && t <= hit.t)) continue;
     if ((ray.record->tag.flags & kCulledBy[k]) != 0) continue;
     const float distance = std::max({t, entry, ray.instance_entry});
-    if (!comes_before(distance, ray.instance, primitive, hit)) return false;
+    if (!closer(distance, ray.instance, primitive, hit)) return false;
     const Vec2 where = octahedral(crossing.normal[k]);
     const Hit found{distance, where.x, where.y, ray.instance, primitive};
-    if (asks && !asked_to_stop(accel, ray, found)) continue;
+    if (calls_any_hit && !any_hit_accepts(accel, ray, found)) continue;
     hit = found;
     return true;
   }

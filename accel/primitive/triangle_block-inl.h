@@ -47,8 +47,8 @@ HWY_INLINE Aabb box_of(const std::array<Vec3, 3>& p) {
 /// Lowers `hit` to the smallest (t', instance, primitive) of the triangles of `block` that are crossed, where t' also
 /// counts the entries of the triangle's own box and of the instance's world box. True when the hit changed.
 template <class T, class Slab>
-HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const Crossings<T>& crossings,
-                          const FrameRay<Slab>& ray, Hit& hit) {
+HWY_INLINE bool update_closest(const Accel& accel, const TriangleBlock& block, const Crossings<T>& crossings,
+                               const LocalRay<Slab>& ray, Hit& hit) {
   bool changed = false;
   for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
     const int l = std::countr_zero(inside);
@@ -60,12 +60,12 @@ HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const 
     float distance = entry > t ? entry : t;
     distance = ray.instance_entry > distance ? ray.instance_entry : distance;
     const std::uint32_t primitive = block.primitive[l] & kPrimitiveMask;
-    if (!comes_before(distance, ray.instance, primitive, hit)) continue;
+    if (!closer(distance, ray.instance, primitive, hit)) continue;
     const Hit found{distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]),
                     ray.instance, primitive};
-    const std::uint32_t asks = block.primitive[l] & kAskBit;
-    if (HWY_UNLIKELY((asks | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
-        !stopped_by_triangle(accel, asks != 0, corners(block, l), ray, found))
+    const std::uint32_t calls_any_hit = block.primitive[l] & kNonOpaqueBit;
+    if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
+        !triangle_accepts(accel, calls_any_hit != 0, corners(block, l), ray, found))
       continue;
     hit = found;
     changed = true;
@@ -73,34 +73,34 @@ HWY_INLINE bool lower_hit(const Accel& accel, const TriangleBlock& block, const 
   return changed;
 }
 
-// Each tests the triangles of `block` that `lanes` selects: lower_hit() of what its kernel says.
+// Each tests the triangles of `block` that `lanes` selects: update_closest() of what its kernel says.
 
 template <class T, class Slab>
 HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, const WatertightRay<T>& watertight,
-                                 std::uint32_t lanes, const FrameRay<Slab>& ray, Hit& hit) {
+                                 std::uint32_t lanes, const LocalRay<Slab>& ray, Hit& hit) {
   const hn::CappedTag<T, kBlockTriangles> d;
   Crossings<T> c;
   for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
     c.inside |= watertight_lanes(d, block, i, watertight, c.t + i, c.second + i, c.third + i) << i;
   c.inside &= lanes & ((1u << kBlockTriangles) - 1);
-  return lower_hit(accel, block, c, ray, hit);
+  return update_closest(accel, block, c, ray, hit);
 }
 
 template <class Slab>
 HWY_INLINE bool moller_trumbore_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
-                                      const FrameRay<Slab>& ray, Hit& hit) {
+                                      const LocalRay<Slab>& ray, Hit& hit) {
   const hn::CappedTag<float, kBlockTriangles> d;
   Crossings<float> c;
   for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
     c.inside |= moller_trumbore_lanes(d, block, i, ray.triangle.line, c.t + i, c.second + i, c.third + i) << i;
   c.inside &= lanes & ((1u << kBlockTriangles) - 1);
-  return lower_hit(accel, block, c, ray, hit);
+  return update_closest(accel, block, c, ray, hit);
 }
 
 /// The triangle's own box, which a hit has to pass anyway, spares most of them the exact test.
 template <class Slab>
 HWY_INLINE bool exact_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
-                            const FrameRay<Slab>& ray, Hit& hit) {
+                            const LocalRay<Slab>& ray, Hit& hit) {
   Crossings<float> c;
   for (int l = 0; l < kBlockTriangles; ++l) {
     if (!(lanes >> l & 1)) continue;
@@ -112,7 +112,7 @@ HWY_INLINE bool exact_block(const Accel& accel, const TriangleBlock& block, std:
     c.t[l] = crossing.t, c.second[l] = crossing.u, c.third[l] = crossing.v;
     c.inside |= 1u << l;
   }
-  return lower_hit(accel, block, c, ray, hit);
+  return update_closest(accel, block, c, ray, hit);
 }
 
 /// The blocks of a leaf, of whose triangles `lanes` selects some; `test` is one of the above.
@@ -126,7 +126,7 @@ HWY_INLINE bool each_block(const Accel& accel, NodeRef leaf, std::uint32_t lanes
 
 /// The spheres of a leaf likewise.
 template <class Slab>
-HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
+HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const LocalRay<Slab>& ray,
                              Hit& hit) {
   bool changed = false;
   for (std::uint32_t i = 0; i < leaf.triangles(); ++i)
@@ -138,7 +138,7 @@ HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lan
 
 /// Kept apart from test_leaf(), whose registers and code are the watertight kernel's.
 template <class Slab>
-HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
+HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const LocalRay<Slab>& ray,
                                       Hit& hit) {
   if (leaf.is_procedural()) return test_spheres(accel, leaf, lanes, ray, hit);
   const auto each = [&](const auto& test) HWY_ATTR { return each_block(accel, leaf, lanes, test); };
@@ -162,7 +162,7 @@ HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uin
 /// Tests the triangles, or procedural primitives, of `leaf` that `lanes` selects and lowers `hit`; true when it
 /// changed. Not inlined: its registers would push the traversal's own into memory.
 template <class Slab>
-HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const FrameRay<Slab>& ray,
+HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const LocalRay<Slab>& ray,
                             Hit& hit) {
   if (HWY_UNLIKELY(accel.accuracy.triangle != TriangleLevel::kWatertight || leaf.is_procedural()))
     return test_leaf_otherwise(accel, leaf, lanes, ray, hit);

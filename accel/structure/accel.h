@@ -38,12 +38,12 @@ struct Accel {
   const AnyHit* any_hit = nullptr;      ///< who knows what lets rays through, set before tracing; null: nothing does
   AccuracyConfig accuracy;              ///< arithmetic of the tests on it
   bool procedural_primitives = false;   ///< there are some
-  bool may_pass = false;                ///< some primitives have kAskBit
+  bool has_non_opaque = false;          ///< some primitives have kNonOpaqueBit
   int width = kMaxWidth;                ///< children a node at most
   int max_depth = 0;                    ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
   std::size_t baked_instances = 0;      ///< singular transforms, stored as world-space triangles
 
-  bool asks() const { return may_pass && any_hit != nullptr; }
+  bool calls_any_hit() const { return has_non_opaque && any_hit != nullptr; }
   std::size_t size_bytes() const {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
            plane_bytes + instances.size() * sizeof(InstanceNode);

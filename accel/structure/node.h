@@ -15,8 +15,8 @@ inline constexpr int kBlockTriangles = 4;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
 /// In a block's primitive: it may let rays through and has to be asked (core/types/any_hit.h).
-inline constexpr std::uint32_t kAskBit = 1u << 31;
-inline constexpr std::uint32_t kPrimitiveMask = kAskBit - 1;
+inline constexpr std::uint32_t kNonOpaqueBit = 1u << 31;
+inline constexpr std::uint32_t kPrimitiveMask = kNonOpaqueBit - 1;
 
 /// Names a shape of the structure in 32 bits: an inner node, a leaf (1 to 16 triangles, or procedural primitives, in
 /// consecutive blocks), or, below the top level only, an instance.
@@ -100,7 +100,7 @@ static_assert(sizeof(Node) == 256);
 /// a second vertex has its x; the rest stays unused.
 struct alignas(16) TriangleBlock {
   float vertex[3][3][kBlockTriangles];       ///< [vertex][axis][lane]
-  std::uint32_t primitive[kBlockTriangles];  ///< with kAskBit
+  std::uint32_t primitive[kBlockTriangles];  ///< with kNonOpaqueBit
 
   TriangleBlock() {
     for (auto& v : vertex)

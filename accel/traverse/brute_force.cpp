@@ -121,13 +121,13 @@ Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const 
     InstanceTransform transform;
     const bool baked = !make_transform(m, transform, accuracy.transform);
     if (baked) transform = InstanceTransform{};
-    const auto stops = [&](std::uint32_t primitive, bool front, float u, float v) {
+    const auto accepts = [&](std::uint32_t primitive, bool front, float u, float v) {
       if ((request.tag.flags & (front ? kRayCullFront : kRayCullBack)) != 0) return false;
-      const bool asks = primitive < mesh.triangle_count()
-                            ? opacity.may_let_through(mesh, primitive)
-                            : opacity.may_let_through(mesh.spheres[primitive - mesh.triangle_count()]);
-      return !asks || any_hit == nullptr || (request.tag.flags & kRayForceOpaque) != 0 ||
-             any_hit->stops(request.ray, i, primitive, u, v);
+      const bool calls_any_hit = primitive < mesh.triangle_count()
+                                     ? opacity.may_be_non_opaque(mesh, primitive)
+                                     : opacity.may_be_non_opaque(mesh.spheres[primitive - mesh.triangle_count()]);
+      return !calls_any_hit || any_hit == nullptr || (request.tag.flags & kRayForceOpaque) != 0 ||
+             any_hit->accepts(request.ray, i, primitive, u, v);
     };
     const auto lower = [&](float t, float u, float v, std::uint32_t primitive) {
       // Instances and primitives are visited in rising order, so an equal t never replaces an earlier hit.
@@ -157,7 +157,7 @@ Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const 
       if (!crosses(accuracy.triangle, ray, p, crossing)) continue;
       if (!(crossing.t >= ray.tmin && crossing.t <= std::numeric_limits<float>::max())) continue;
       if (!slab(model_slab, box_of(p), request.ray.tmax, entry)) continue;
-      if (!stops(primitive, shows_front(ray, p), crossing.u, crossing.v)) continue;
+      if (!accepts(primitive, shows_front(ray, p), crossing.u, crossing.v)) continue;
       lower(std::max({crossing.t, entry, instance_entry}), crossing.u, crossing.v, primitive);
     }
     for (std::uint32_t s = 0; s < mesh.spheres.size(); ++s) {
@@ -171,7 +171,7 @@ Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const 
         const float t = static_cast<float>(crossing.t[k]);
         const Vec2 uv = octahedral(crossing.normal[k]);
         if (!(t >= ray.tmin && t <= std::numeric_limits<float>::max())) continue;
-        if (stops(primitive, k == 0, uv.x, uv.y)) lower(std::max({t, entry, instance_entry}), uv.x, uv.y, primitive);
+        if (accepts(primitive, k == 0, uv.x, uv.y)) lower(std::max({t, entry, instance_entry}), uv.x, uv.y, primitive);
       }
     }
   }

@@ -75,7 +75,7 @@ HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint
 }
 
 /// What a traversal counts.
-struct TraversalCounts : TestCounts {
+struct TraversalCounts : IntersectionCounts {
   CullCounts* culls;  ///< RayMembers::culls
   explicit TraversalCounts(CullCounts* by_depth) : culls(by_depth) {}
 };
@@ -84,14 +84,14 @@ struct TraversalCounts : TestCounts {
 /// missed. With planes first, the boxes of `lanes` that need no test are taken from counts.box.
 template <class Slab>
 HWY_INLINE std::uint32_t cull(const Accel& accel, const Node& node, const Slab& slab, const Vec3& direction,
-                              std::uint32_t lanes, std::uint32_t mask, TestCounts& counts, CullCounts* culls) {
+                              std::uint32_t lanes, std::uint32_t mask, IntersectionCounts& counts, CullCounts* culls) {
   if constexpr (std::is_same_v<Slab, SlabRay>)  // planes need accuracy.box: conservative
     if (HWY_UNLIKELY(node.plane_counts != 0) && (mask != 0 || accel.planes_first))
       return cull_lanes(accel, node, slab, direction, lanes, mask, counts, culls);
   return mask;
 }
 
-HWY_INLINE void count_leaf(NodeRef leaf, TestCounts& counts) {
+HWY_INLINE void count_leaf(NodeRef leaf, IntersectionCounts& counts) {
   (HWY_UNLIKELY(leaf.is_procedural()) ? counts.procedural : counts.triangle) += leaf.triangles();
 }
 
@@ -115,7 +115,7 @@ HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Ve
 /// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node
 /// holds itself are not among them, nor counted.
 template <class Slab, class Registers>
-HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const FrameRay<Slab>& frame,
+HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const LocalRay<Slab>& frame,
                                       const Registers& ray, float tmax, float* entry, std::uint64_t& tested) {
   const Node& node = accel.nodes[ref.node()];
   tested += node.count;
@@ -133,7 +133,7 @@ enum class Then { kPop, kEnter, kStop };
 /// after kEnter it goes on with the node that `ref` has been set to. Adds the boxes and planes tested to `counts`. True
 /// when it was stopped.
 template <class Slab, class VisitOther>
-HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const FrameRay<Slab>& frame, const Hit& hit,
+HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Slab>& frame, const Hit& hit,
                             DepthFirstStack& stack, TraversalCounts& counts, const VisitOther& visit_other) {
   const auto ray = in_registers(frame.slab);
   const Node* const nodes = accel.nodes.data();
@@ -179,7 +179,7 @@ struct TraceStacks {
 
 /// Goes on into an instance without a transform: true, and `ref` is its root.
 template <class Slab>
-HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, FrameRay<Slab>& frame) {
+HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, LocalRay<Slab>& frame) {
   const InstanceNode& instance = accel.instances[ref.instance_index()];
   if (!instance.transform.identity) return false;
   frame.instance = ref.instance_index();
@@ -195,7 +195,7 @@ HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord
 /// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform
 /// are entered in passing; `level` is 0 there and 1 below an instance with one.
 template <class Slab>
-HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, FrameRay<Slab>& frame,
+HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, LocalRay<Slab>& frame,
                               TraceStacks& stacks, int level, TraversalCounts& counts) {
   const bool any_hit = record.tag.kind == RayKind::kShadow;
   Hit& hit = record.hit;

@@ -33,7 +33,7 @@ struct Walker {
 template <class Slab>
 HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, NodeRef ref, TraceStacks& stacks,
                         TraversalCounts& counts) {
-  FrameRay<Slab>& frame = walker.frame.ray;
+  LocalRay<Slab>& frame = walker.frame.ray;
   Hit& hit = walker.record->hit;
   for (;; any = false) {
     if (!any) {

@@ -30,8 +30,8 @@ HWY_INLINE void settle(RayRecord& record) {
 
 /// Tests the primitives of the node's own leaves among `lanes`; true when the hit changed.
 template <class Slab>
-HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, const FrameRay<Slab>& frame,
-                              Hit& hit, TestCounts& counts) {
+HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, const LocalRay<Slab>& frame,
+                              Hit& hit, IntersectionCounts& counts) {
   bool changed = false;
   for (std::uint32_t left = node.direct & lanes; left != 0; left &= left - 1) {
     const NodeRef leaf = node.child[std::countr_zero(left)];
@@ -44,21 +44,22 @@ HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_
 /// The same for a ray that is not yet in the node's frame.
 template <class Slab>
 HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key, std::uint32_t lanes, RayRecord& record,
-                              std::uint8_t* asked, TestCounts& counts) {
-  TestCounts own;
+                              std::uint8_t* any_hit_calls, IntersectionCounts& counts) {
+  IntersectionCounts own;
   FrameStorage<Slab> frame;
   enter_frame(accel, key.instance, record, &frame.ray, own);
   own.transforms = 0;  // counted with the boxes
   test_direct(accel, node, lanes, frame.ray, record.hit, own);
   settle(record);
-  if (asked != nullptr) *asked = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, own.asked));
+  if (any_hit_calls != nullptr)
+    *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, own.any_hit_calls));
   counts += own;
 }
 
 // Slab: SlabRay, or DoubleSlabRay for accuracy.box: double.
 template <class Slab>
 void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
-                TestCounts& counts) {
+                IntersectionCounts& counts) {
   const Node& node = accel.nodes[key.ref.node()];
   const InstanceTransform* transform = key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
   lanes &= (1u << node.count) - 1;
@@ -92,8 +93,8 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
         if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
     }
     if (HWY_UNLIKELY(direct != 0))
-      test_direct<Slab>(accel, node, key, direct, record, members.asked == nullptr ? nullptr : members.asked + i,
-                        counts);
+      test_direct<Slab>(accel, node, key, direct, record,
+                        members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i, counts);
     hits.masks[i] = static_cast<std::uint8_t>(mask);
     if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
   }
@@ -103,7 +104,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
 
 template <class Slab>
 void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
-                    TestCounts& counts) {
+                    IntersectionCounts& counts) {
   lanes &= (1u << key.ref.triangles()) - 1;
   const std::uint64_t tested = static_cast<std::uint64_t>(std::popcount(lanes));
   std::uint64_t& tests = key.ref.is_procedural() ? counts.procedural : counts.triangle;
@@ -111,18 +112,19 @@ void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const 
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
     tests += tested;
-    const std::uint64_t asked = counts.asked;
+    const std::uint64_t any_hit_calls = counts.any_hit_calls;
     FrameStorage<Slab> frame;
     enter_frame(accel, key.instance, record, &frame.ray, counts);
     test_leaf(accel, key.ref, lanes, frame.ray, record.hit);
-    if (members.asked != nullptr) members.asked[i] = static_cast<std::uint8_t>(counts.asked - asked);  // 32 at most
+    if (members.any_hit_calls != nullptr)
+      members.any_hit_calls[i] = static_cast<std::uint8_t>(counts.any_hit_calls - any_hit_calls);  // 32 at most
     settle(record);
   }
 }
 
 template <class Slab>
 void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
-                 TestCounts& counts) {
+                 IntersectionCounts& counts) {
   if (key.ref.is_inner())
     test_boxes<Slab>(accel, key, lanes, members, hits, counts);
   else
@@ -130,7 +132,7 @@ void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const Ray
 }
 
 template <class Slab>
-void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
+void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& total) {
   TraceStacks stacks;
   TraversalCounts counts(members.culls);
   for (std::size_t i = 0; i < members.count; ++i) {
@@ -145,7 +147,7 @@ void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members
 }
 
 template <class Slab>
-void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& total) {
+void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& total) {
   constexpr std::size_t kWalkers = 4;  // two gain half as much, six nothing more
   const Node* const nodes = accel.nodes.data();
   TraceStacks stacks;
@@ -173,7 +175,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
     for (std::size_t k = 0; k < count; ++k) {
       Walker<Slab>& walker = *active[k];
       const Node& node = nodes[walker.ref.node()];
-      const FrameRay<Slab>& frame = walker.frame.ray;
+      const LocalRay<Slab>& frame = walker.frame.ray;
       walker.mask = met_children(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t, walker.entry,
                                  counts.box);
       walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
@@ -202,17 +204,17 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, T
 }
 
 void TestStrip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
-               TestCounts& counts) {
+               IntersectionCounts& counts) {
   const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
   (in_double ? test_shapes<DoubleSlabRay> : test_shapes<SlabRay>)(accel, key, lanes, members, hits, counts);
 }
 
-void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
   const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
   (in_double ? trace_one_by_one<DoubleSlabRay> : trace_one_by_one<SlabRay>)(accel, key, members, counts);
 }
 
-void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
   const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
   (in_double ? trace_in_turn<DoubleSlabRay> : trace_in_turn<SlabRay>)(accel, key, members, counts);
 }
@@ -232,15 +234,15 @@ HWY_EXPORT(TraceSubtree);
 HWY_EXPORT(TraceInterleaved);
 
 void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
-                TestCounts& counts) {
+                IntersectionCounts& counts) {
   HWY_DYNAMIC_DISPATCH(TestStrip)(accel, key, lanes, members, hits, counts);
 }
 
-void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
   HWY_DYNAMIC_DISPATCH(TraceSubtree)(accel, key, members, counts);
 }
 
-void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts) {
+void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
   HWY_DYNAMIC_DISPATCH(TraceInterleaved)(accel, key, members, counts);
 }
 

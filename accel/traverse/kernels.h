@@ -18,8 +18,9 @@ struct RayMembers {
   RayRecord* records = nullptr;
   const std::uint32_t* slots = nullptr;
   std::size_t count = 0;
-  CullCounts* culls = nullptr;    ///< where cull planes are counted by depth; null: nowhere
-  std::uint8_t* asked = nullptr;  ///< null, or one a member: how often test_strip() on a leaf asked whether it passes
+  CullCounts* culls = nullptr;  ///< where cull planes are counted by depth; null: nowhere
+  std::uint8_t* any_hit_calls =
+      nullptr;  ///< null, or one a member: how often test_strip() on a leaf asked whether it passes
 };
 
 /// What a strip of boxes answers. Untouched for strips of triangles, whose answer is in the rays' hits.
@@ -33,14 +34,14 @@ struct StripHits {
 /// triangles, bit i is triangle i in block order). Members that are done are skipped, with an empty mask.
 /// Rays are brought to model space when the key is below an instance. SIMD target dispatched once a call.
 void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
-                TestCounts& counts);
+                IntersectionCounts& counts);
 
 /// Traces each member through everything below `key`, depth-first and nearest first, one ray after another.
-void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts);
+void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts);
 
 /// The same with several rays under way, of which one fills the waits of the others. Faster where there are rays
 /// enough and the nodes are not all in the first-level cache.
-void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, TestCounts& counts);
+void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts);
 
 /// Names of the SIMD targets this program was built for and this machine has, best first.
 std::vector<std::string> simd_targets();

@@ -11,7 +11,7 @@ namespace {
 
 /// `trace` is one of the kernels that trace whatever is below a node.
 void trace_batch(decltype(trace_subtree)& trace, const Accel& accel, const RayBatch& rays, HitBatch& out,
-                 TestCounts& counts) {
+                 IntersectionCounts& counts) {
   constexpr std::size_t kChunk = 64;  // records that stay in the first-level cache
   std::array<RayRecord, kChunk> records;
   for (std::size_t begin = 0; begin < rays.size(); begin += kChunk) {
@@ -24,11 +24,12 @@ void trace_batch(decltype(trace_subtree)& trace, const Accel& accel, const RayBa
 
 }  // namespace
 
-void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts) {
+void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, IntersectionCounts& counts) {
   trace_batch(trace_subtree, accel, rays, out, counts);
 }
 
-void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts) {
+void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, HitBatch& out,
+                                   IntersectionCounts& counts) {
   trace_batch(trace_interleaved, accel, rays, out, counts);
 }
 

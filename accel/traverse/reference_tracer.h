@@ -10,15 +10,15 @@ namespace carousel::accel {
 
 /// Closest hits (any hit for shadow rays) of the requests, depth-first over the whole structure, in order.
 /// Appends one result a request. Rays must be valid (accel/traverse/ray_check.h).
-void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts);
+void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, IntersectionCounts& counts);
 
 /// The same with several rays under way at a time (accel/traverse/kernels.h, trace_interleaved), as the ring traces
 /// treelets.
-void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, HitBatch& out, TestCounts& counts);
+void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, HitBatch& out, IntersectionCounts& counts);
 
 struct ReferenceRun {
   std::size_t rays = 0;
-  TestCounts tests;
+  IntersectionCounts tests;
 };
 
 /// Runs a whole workload on the depth-first tracer, as worker 0, `batch` rays at a time: the answer every

@@ -19,7 +19,7 @@ void VerifyingWorkload::shade(WorkerId worker, const HitBatch& completed, RayBat
   for (const RayResult& result : completed) again.push_back({result.ray, result.tag});
   HitBatch expected;
   expected.reserve(completed.size());
-  TestCounts counts;
+  IntersectionCounts counts;
   trace_depth_first(accel_, again, expected, counts);
   // Relaxed: plain sums, read when the engine's threads have been joined.
   compared_.fetch_add(completed.size(), std::memory_order_relaxed);

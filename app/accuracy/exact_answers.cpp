@@ -13,7 +13,7 @@ namespace carousel::app {
 HitList trace(const accel::Accel& accel, const RayBatch& rays) {
   HitBatch results;
   results.reserve(rays.size());
-  TestCounts counts;
+  IntersectionCounts counts;
   accel::trace_depth_first(accel, rays, results, counts);
   HitList hits;
   hits.reserve(results.size());

@@ -41,7 +41,7 @@ report::SceneSummary summary(const Prepared& p) {
   return out;
 }
 
-report::Tests tests(const TestCounts& counts, std::uint64_t rays) {
+report::Tests tests(const IntersectionCounts& counts, std::uint64_t rays) {
   const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
   return {kind(counts.box),        kind(counts.plane),      kind(counts.triangle), kind(counts.bundle),
           kind(counts.transforms), kind(counts.inversions), kind(counts.culled)};
@@ -134,7 +134,7 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Packets
   r.tests = tests(sum.tests, rays);
   const auto kind = [&](std::uint64_t count) { return report::TestKind{count, ratio(count, rays)}; };
   if (accel.procedural_primitives) r.tests->procedural = kind(sum.tests.procedural);
-  if (accel.asks()) r.tests->any_hit = kind(sum.tests.asked);
+  if (accel.calls_any_hit()) r.tests->any_hit = kind(sum.tests.any_hit_calls);
   r.tests->ray_reads = {sum.reads, ratio(sum.reads, rays)};
   if (!sum.bundles.empty()) r.tests->bundles = bundles(sum.bundles);
   if (!accel.planes.empty()) r.cull_planes = cull_planes(accel, sum.culls);
@@ -184,7 +184,7 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
                     const accel::Accel& accel) {
   using ringbus::cycle::TileState;
   const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
-  const auto bank = [&](const ringbus::cycle::UnitLedger& ledger) {
+  const auto bank = [&](const ringbus::cycle::Utilisation& ledger) {
     return report::UnitCycles{ledger.busy,
                               in(TileState::kTesting)-ledger.busy,
                               in(TileState::kMemory),
@@ -194,17 +194,18 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
                               in(TileState::kShading),
                               in(TileState::kIdle)};
   };
-  report::Units out{bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.handler.busy,
-                    cycles - tile.handler.busy};
+  report::Units out{bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.dispatch.busy,
+                    cycles - tile.dispatch.busy};
   if (config.cull_planes.count > 0) out.plane = bank(tile.plane);
   if (config.bundles.size > 0) out.bundle = bank(tile.bundle);
   if (accel.procedural_primitives) out.procedural = bank(tile.procedural);
-  if (accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kInline) out.any_hit = bank(tile.any_hit);
+  if (accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
+    out.any_hit = bank(tile.any_hit);
   if (config.rays.reads_per_cycle > 0) out.ray_reads = bank(tile.ray_reads);
   return out;
 }
 
-report::Stack stack(const ringbus::cycle::StackLedger& ledger) {
+report::Stack stack(const ringbus::cycle::StackTraffic& ledger) {
   return {ledger.pushed_bytes, ledger.popped_bytes, ledger.peak_bytes, ledger.ray_peak_bytes};
 }
 
@@ -228,8 +229,8 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     }
   }
   for (std::size_t i = 0; r.links && i < r.links->size(); ++i) {
-    const ringbus::cycle::UnitLedger& use = c.links[i].use;
-    const ringbus::cycle::QueueLedger& queue = c.links[i].queue;
+    const ringbus::cycle::Utilisation& use = c.links[i].use;
+    const ringbus::cycle::Occupancy& queue = c.links[i].queue;
     (*r.links)[i].utilisation = ratio(use.busy, c.cycles);
     (*r.links)[i].occupancy_mean = ratio(queue.packet_cycles, c.cycles);
     (*r.links)[i].occupancy_max = queue.most;
@@ -281,7 +282,7 @@ report::Verify verify(const accel::VerifyingWorkload& verifying) {
 
 }  // namespace
 
-report::Report build_report(const Prepared& prepared, const Frame& frame, const ringbus::RunResult& result,
+report::Report build_report(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& result,
                             const accel::VerifyingWorkload* verifying) {
   const Config& config = prepared.config();
   report::Report r;
@@ -290,8 +291,8 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   r.config = config_json(config);
   r.scene = summary(prepared);
   r.host = host(prepared, result);
-  r.host.raster_seconds = frame.raster_seconds();
-  r.raster = frame.raster();
+  r.host.raster_seconds = job.raster_seconds();
+  r.raster = job.raster();
   if (result.rays_restarted > 0 && !result.cycle) r.host.recovery_seconds = result.recovery_seconds;
   const bool alone = r.host.threads == 1;
   r.engine.kind = enum_name(config.engine.kind);
@@ -301,7 +302,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
                         ? "one thread steps everything in a fixed order"
                         : "threads run on the wall clock: counts of packets and tests depend on their timing; rays, "
                           "hits and picture do not";
-  const auto emitted = frame.emitted();
+  const auto emitted = job.emitted();
   r.rays = {result.rays_emitted,   result.rays_completed,  result.rays_emitted - result.rays_completed,
             result.rays_restarted, result.paths_restarted, {emitted[0], emitted[1], emitted[2]}};
   if (!result.resources.empty()) {
@@ -310,7 +311,7 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
   }
   r.shading = {static_cast<std::uint64_t>(config.shading.workers),
                result.rays_completed,
-               frame.saturated(),
+               job.saturated(),
                std::nullopt,
                {},
                {},
@@ -325,14 +326,14 @@ report::Report build_report(const Prepared& prepared, const Frame& frame, const 
     stop.resource = static_cast<std::uint64_t>(fault.number);
     stop.packets_discarded = result.packets_discarded;
     if (result.cycle && result.cycle->stop) {
-      const ringbus::cycle::StopLedger& at = *result.cycle->stop;
+      const ringbus::cycle::StopTimes& at = *result.cycle->stop;
       stop.stopped_cycle = at.stopped;
       stop.noticed_cycle = at.noticed;
       if (at.restarted > 0) stop.restarted_cycle = at.restarted;
     }
   }
   if (verifying) r.verify = verify(*verifying);
-  r.digest = {frame.hits_digest(), frame.image_digest()};
+  r.digest = {job.hits_digest(), job.image_digest()};
   return r;
 }
 

@@ -11,7 +11,7 @@
 namespace carousel::app {
 
 /// The report of a native run. `verifying` is null unless the run was verified.
-report::Report build_report(const Prepared& prepared, const Frame& frame, const ringbus::RunResult& result,
+report::Report build_report(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& result,
                             const accel::VerifyingWorkload* verifying);
 
 }  // namespace carousel::app

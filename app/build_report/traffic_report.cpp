@@ -33,7 +33,7 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
   const LatencyHistogram& l = result.latency;
   out.latency = {l.mean(), l.quantile(0.5), l.quantile(0.95), l.quantile(0.99), l.max()};
   std::uint64_t busy = 0, busiest = 0;
-  for (const ringbus::cycle::LinkLedger& link : result.links) {
+  for (const ringbus::cycle::LinkUse& link : result.links) {
     busy += link.use.busy;
     busiest = std::max(busiest, link.use.busy);
   }
@@ -45,7 +45,7 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
 std::vector<report::Link> links(const Config& config, const ringbus::TrafficResult& result) {
   std::vector<report::Link> out;
   for (std::size_t i = 0; i < result.links.size(); ++i) {
-    const ringbus::cycle::LinkLedger& link = result.links[i];
+    const ringbus::cycle::LinkUse& link = result.links[i];
     report::Link& one = out.emplace_back();
     one.from = link.from;
     one.to = link.to;

@@ -36,11 +36,11 @@ Json read_report(const std::string& name) {
 /// What the machine of a report does within some cycles.
 std::vector<ringbus::cycle::Step> steps_of(const Json& report, const report::EpochRange& epoch) {
   const Prepared p = prepare_config(report["config"].dump(), "config of the report");
-  Frame frame(p);
+  RenderJob job(p);
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.trace = {epoch.first_cycle, epoch.end_cycle};
-  return ringbus::run_cycle(p.config(), p.accel, p.scene_size(), frame.workload(), options).cycle->steps;
+  return ringbus::run_cycle(p.config(), p.accel, p.scene_size(), job.workload(), options).cycle->steps;
 }
 
 std::string first_divergence(const Json& a, const Json& b) {

@@ -122,7 +122,7 @@ int inspect_command(const InspectArguments& arguments) {
   scene::Scene scene = scene::load_scene(
       located.config.scene, {}, [](const std::string& w) { spdlog::warn("{}", w); },
       [&](const scene::Scene& s) { return shading::images_read(s, choice); });
-  shading::keep_effects(scene, choice);
+  shading::strip_effects(scene, choice);
   report::Shading shading;
   add_effects(shading, scene, located.config);
   print_result(arguments.json ? json_of(scene, shading).dump(2) + "\n" : table_of(scene, shading));

@@ -39,8 +39,8 @@ std::filesystem::path out_folder(const RunArguments& arguments) {
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
 }
 
-ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& workload, const InterruptScope& interrupt,
-                            bool quiet) {
+ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
+                            const InterruptScope& interrupt, bool quiet) {
   CountingWorkload counting(workload);
   std::optional<report::ProgressLine> line;
   if (!quiet) line.emplace(stderr);
@@ -48,7 +48,7 @@ ringbus::RunResult simulate(const Prepared& p, const Frame& frame, Workload& wor
   options.threads = p.threads;
   options.stop = interrupt.token();
   options.progress = [&](std::uint64_t completed) {
-    if (line) line->update(report::ratio(counting.generated(), frame.first_rays()), completed);
+    if (line) line->update(report::ratio(counting.generated(), job.first_rays()), completed);
   };
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   return run(p.config(), p.accel, p.scene_size(), counting, options);
@@ -83,9 +83,9 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
-                 const Frame& frame, const report::Report& report, HitRecorder* recorder) {
+                 const RenderJob& job, const report::Report& report, HitRecorder* recorder) {
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
-  frame.write_images(folder);
+  job.write_images(folder);
   if (recorder) {
     const std::vector<report::HitRow> rows = recorder->take();
     if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
@@ -104,27 +104,27 @@ int run_command(const RunArguments& arguments) {
   if (!p.config().vary.empty()) spdlog::warn("vary is for sweeps; run takes the values outside of it");
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return run_traffic_command(arguments, p, interrupt);
 
-  Frame frame(p);
+  RenderJob job(p);
   std::optional<HitRecorder> recorder;
-  if (keep_hits) frame.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
+  if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
   std::optional<accel::VerifyingWorkload> verifying;
   std::optional<accel::Accel> plain;  // planes and spheres are verified, too
   if (p.config().verify == Verify::kReference) {
     if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
-    verifying.emplace(frame.workload(), plain ? *plain : p.accel);
+    verifying.emplace(job.workload(), plain ? *plain : p.accel);
   }
-  Workload& workload = verifying ? *verifying : frame.workload();
+  Workload& workload = verifying ? *verifying : job.workload();
 
-  const ringbus::RunResult result = simulate(p, frame, workload, interrupt, arguments.quiet);
-  report::Report report = build_report(p, frame, result, verifying ? &*verifying : nullptr);
+  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet);
+  report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {
     report.bound = bound_of(p.config(), result);
-    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, frame, interrupt.token());
+    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, job, interrupt.token());
   }
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, interrupt, report);
   const std::filesystem::path folder = out_folder(arguments);
-  write_files(folder, arguments, p, frame, report, recorder ? &*recorder : nullptr);
+  write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr);
 
   print_report(arguments, report, report::report_table(report), folder);
   return verdict(report);

@@ -83,8 +83,8 @@ report::StressRow row_of(const stress::StressRow& row, const stress::QueueUnderT
   out.pop_refused = report::ratio(sum.pop_refusals, sum.pop_calls);
   out.blocked = report::ratio(sum.blocked_seconds, sum.producer_seconds);
   out.memory_bytes = sum.memory_bytes;
-  out.found = sum.findings.names();
-  out.detail = sum.findings.detail;
+  out.found = sum.violations.names();
+  out.detail = sum.violations.detail;
   return out;
 }
 

@@ -30,7 +30,7 @@ class FrameWorkload final : public Workload {
   }
 
  private:
-  Frame frame_;
+  RenderJob frame_;
 };
 
 std::string percent_text(double fraction) {
@@ -50,7 +50,7 @@ std::string verdict(const report::Bottleneck& b) {
 
 }  // namespace
 
-report::Bottleneck find_bottleneck(const Prepared& prepared, const Frame& frame, std::stop_token stop) {
+report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, std::stop_token stop) {
   const Config& config = prepared.config();
   ringbus::RunOptions options;
   options.threads = prepared.threads;
@@ -58,8 +58,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const Frame& frame,
   options.statistics = false;
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
       config, prepared.accel, prepared.scene_size(),
-      [&](const Config& machine) { return std::make_unique<FrameWorkload>(prepared, machine, frame.first_hits()); },
-      std::min(frame.first_rays(), ringbus::pilot_paths(config)), options);
+      [&](const Config& machine) { return std::make_unique<FrameWorkload>(prepared, machine, job.first_hits()); },
+      std::min(job.first_rays(), ringbus::pilot_paths(config)), options);
   report::Bottleneck out;
   out.rays_per_kilocycle = found.rays_per_kilocycle;
   out.noise = found.noise;
@@ -80,7 +80,7 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     out.classes.push_back({name, 1000 * rays * parts / busy});
   };
   double box = 0, triangle = 0, plane = 0, bundle = 0, reads = 0, transform = 0, procedural = 0, any_hit = 0,
-         handler = 0, link = 0;
+         dispatch = 0, link = 0;
   for (const ringbus::cycle::TileResult& tile : c.tiles) {
     box += static_cast<double>(tile.box.busy);
     triangle += static_cast<double>(tile.triangle.busy);
@@ -90,9 +90,9 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     transform += static_cast<double>(tile.transform.busy);
     procedural += static_cast<double>(tile.procedural.busy);
     any_hit += static_cast<double>(tile.any_hit.busy);
-    handler += static_cast<double>(tile.handler.busy);
+    dispatch += static_cast<double>(tile.dispatch.busy);
   }
-  for (const ringbus::cycle::LinkLedger& one : c.links) link += static_cast<double>(one.use.busy);
+  for (const ringbus::cycle::LinkUse& one : c.links) link += static_cast<double>(one.use.busy);
   const double tiles = static_cast<double>(c.tiles.size());
   add("box_tests", tiles, box);
   add("triangle_tests", tiles, triangle);
@@ -102,7 +102,7 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
   add("transforms", tiles, transform);
   add("procedural_tests", tiles, procedural);
   add("any_hit_lookups", tiles, any_hit);
-  add("handling", tiles, handler);
+  add("handling", tiles, dispatch);
   add("link_bandwidth", static_cast<double>(c.links.size()), link);
   add("memory_bandwidth", 1, static_cast<double>(c.memory_busy));
   add("shading", static_cast<double>(config.shading.workers), static_cast<double>(c.shading_busy));

@@ -30,16 +30,16 @@ void prove_effects(const ConfigArguments& arguments, const InterruptScope& inter
   ConfigArguments with_all = arguments;
   with_all.sets.insert(with_all.sets.end(), {"verify=none", "shading.effects=all"});
   const Prepared p = prepare(with_all, {.force = true}, false);
-  Frame frame(p);
+  RenderJob job(p);
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = interrupt.token();
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
-  const ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), frame.workload(), options);
+  const ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), job.workload(), options);
   if (!result.complete) return;
   report::EffectsProof& proof = report.shading.proof.emplace();
-  proof.same_hits = frame.hits_digest() == report.digest.hits;
-  proof.same_image = frame.image_digest() == report.digest.image;
+  proof.same_hits = job.hits_digest() == report.digest.hits;
+  proof.same_image = job.image_digest() == report.digest.image;
   proof.rays_spared = difference(result.rays_completed, report.rays.completed);
   proof.tests_spared = difference(tests_of(result), tests_of(report));
   if (result.cycle && report.engine.cycles)

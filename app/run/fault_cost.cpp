@@ -11,19 +11,19 @@ void compare_without_faults(const Prepared& prepared, std::stop_token stop, repo
   if (report.incomplete || !report.engine.cycles) return;
   Config sound = prepared.config();
   sound.faults = {};
-  Frame frame(prepared, sound);
+  RenderJob job(prepared, sound);
   ringbus::RunOptions options;
   options.threads = prepared.threads;
   options.stop = std::move(stop);
   options.statistics = false;
   const ringbus::RunResult result =
-      ringbus::run_cycle(sound, prepared.accel, prepared.scene_size(), frame.workload(), options);
+      ringbus::run_cycle(sound, prepared.accel, prepared.scene_size(), job.workload(), options);
   if (!result.complete) return;
   if (!report.faults) report.faults.emplace();
   report.faults->cycles_without = result.cycle->cycles;
   report.faults->cycles_lost =
       static_cast<std::int64_t>(*report.engine.cycles) - static_cast<std::int64_t>(result.cycle->cycles);
-  report.faults->same_hits = frame.hits_digest() == report.digest.hits && frame.image_digest() == report.digest.image;
+  report.faults->same_hits = job.hits_digest() == report.digest.hits && job.image_digest() == report.digest.image;
 }
 
 }  // namespace carousel::app

@@ -51,7 +51,7 @@ void load_scene(Prepared& p) {
         p.warnings.push_back(warning);
       },
       [&](const scene::Scene& s) { return shading::images_read(s, p.config().shading.effects); });
-  shading::keep_effects(p.scene, p.config().shading.effects);
+  shading::strip_effects(p.scene, p.config().shading.effects);
   p.scene_seconds = watch.seconds();
 }
 
@@ -61,7 +61,7 @@ void build_accel(Prepared& p) {
   const auto executor = make_tbb_executor(p.threads);
   p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
   p.build_seconds = watch.seconds();
-  if (p.accel.may_pass) {
+  if (p.accel.has_non_opaque) {
     p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
     p.accel.any_hit = p.alpha_test.get();
   }

@@ -9,7 +9,7 @@
 
 namespace carousel::app {
 
-Frame::Frame(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
+RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
   const auto workers = static_cast<std::size_t>(config.shading.workers);
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
@@ -30,42 +30,42 @@ Frame::Frame(const Prepared& prepared, const Config& config, const shading::Firs
   }
 }
 
-Workload& Frame::workload() const {
+Workload& RenderJob::workload() const {
   return tracer_ ? static_cast<Workload&>(*tracer_) : *list_;
 }
 
-void Frame::set_recorder(shading::RayRecorder* recorder) {
+void RenderJob::set_recorder(shading::RayRecorder* recorder) {
   if (tracer_) tracer_->set_recorder(recorder);
   if (list_) list_->set_recorder(recorder);
 }
 
-std::uint64_t Frame::first_rays() const {
+std::uint64_t RenderJob::first_rays() const {
   return first_rays_;
 }
 
-std::array<std::uint64_t, kRayKinds> Frame::emitted() const {
+std::array<std::uint64_t, kRayKinds> RenderJob::emitted() const {
   return tracer_ ? tracer_->counts().emitted : list_->emitted();
 }
 
-std::uint64_t Frame::saturated() const {
+std::uint64_t RenderJob::saturated() const {
   return tracer_ ? tracer_->counts().saturated : 0;
 }
 
-std::string Frame::hits_digest() const {
+std::string RenderJob::hits_digest() const {
   return (tracer_ ? tracer_->hits_digest() : list_->hits_digest()).hex();
 }
 
-std::optional<std::string> Frame::image_digest() const {
+std::optional<std::string> RenderJob::image_digest() const {
   return tracer_ ? std::optional(tracer_->image_digest()) : std::nullopt;
 }
 
-std::optional<report::Raster> Frame::raster() const {
+std::optional<report::Raster> RenderJob::raster() const {
   if (!raster_seconds_) return std::nullopt;
   const shading::FirstHits::Counts& c = first_hits_.counts;
-  return report::Raster{c.triangles, c.binned, c.tested, c.asked, c.hits, c.misses, c.left_to_rays};
+  return report::Raster{c.triangles, c.binned, c.tested, c.any_hit_calls, c.hits, c.misses, c.left_to_rays};
 }
 
-void Frame::write_images(const std::filesystem::path& folder) const {
+void RenderJob::write_images(const std::filesystem::path& folder) const {
   if (!tracer_) return;
   const std::vector<float> rgb = tracer_->linear_rgb();
   shading::write_png(folder / "image.png", tracer_->width(), tracer_->height(), rgb);

@@ -16,13 +16,13 @@
 namespace carousel::app {
 
 /// The rays of a run, whichever the configuration asks for: a picture's or a file's.
-class Frame {
+class RenderJob {
  public:
   /// Reads the file of `rays_from`. Keeps references to `prepared`. Throws ConfigError and FileError.
-  explicit Frame(const Prepared& prepared) : Frame(prepared, prepared.config()) {}
+  explicit RenderJob(const Prepared& prepared) : RenderJob(prepared, prepared.config()) {}
   /// With another machine than the prepared one, for what-if runs. `first_hits`, if not null, are taken instead of a
   /// raster pass of its own, and must outlive the frame.
-  Frame(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
+  RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
   Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);

@@ -33,11 +33,11 @@ Digests run_cell(const Prepared& p, Cell& cell, const std::stop_token& stop) {
   config.engine.kind = EngineKind::kNative;
   config.topology.link.queue = cell.kind;
   config.topology.link.depth = cell.depth;
-  Frame frame(p, config);
+  RenderJob job(p, config);
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = stop;
-  const ringbus::RunResult result = ringbus::run_native(config, p.accel, p.scene_size(), frame.workload(), options);
+  const ringbus::RunResult result = ringbus::run_native(config, p.accel, p.scene_size(), job.workload(), options);
   if (!result.complete) return {};
   cell.rates.push_back(report::ratio(result.rays_completed, result.wall_seconds));
   for (const ringbus::LinkResult& link : result.links) {
@@ -46,7 +46,7 @@ Digests run_cell(const Prepared& p, Cell& cell, const std::stop_token& stop) {
     cell.occupancy += link.statistics.occupancy_sum;
     cell.samples += link.statistics.samples;
   }
-  return {frame.hits_digest(), frame.image_digest().value_or("")};
+  return {job.hits_digest(), job.image_digest().value_or("")};
 }
 
 double median(std::vector<double> values) {

@@ -45,7 +45,7 @@ RaySet primary_rays(const scene::Scene& scene, std::uint32_t side) {
 std::vector<SurfacePoint> surface_points(const scene::Scene& scene, const accel::Accel& accel, const RaySet& rays) {
   std::vector<SurfacePoint> points;
   HitBatch hits;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (const RayBatch& batch : rays.batches) {
     hits.clear();
     accel::trace_depth_first(accel, batch, hits, counts);

@@ -46,7 +46,7 @@ RayCase ray_case(std::int64_t resources, Traversal traversal, std::size_t thread
 HitList reference_hits(const accel::Accel& accel, const RaySet& rays) {
   HitList hits;
   HitBatch found;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (const RayBatch& batch : rays.batches) {
     found.clear();
     accel::trace_depth_first(accel, batch, found, counts);

@@ -30,7 +30,7 @@ EffectsScene run_scene(const EffectsOptions& o, const std::string& name, scene::
   fmt::print(stderr, "{}\n", name);
   accel::Accel accel = accel::build(scene, {}, *make_sequential_executor());
   const shading::AlphaTest alpha(scene);
-  if (accel.may_pass) accel.any_hit = &alpha;
+  if (accel.has_non_opaque) accel.any_hit = &alpha;
   Config config;
   config.image = {o.quick ? 32 : 192, o.quick ? 32 : 192, 4, 5, 1};
   return measure_effects(name, scene, accel, config, ways, o.quick ? 1 : o.repetitions);

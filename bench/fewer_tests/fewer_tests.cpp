@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 struct Traced {
   HitList hits;
-  TestCounts tests;
+  IntersectionCounts tests;
   double seconds = 0;
 };
 
@@ -44,7 +44,7 @@ FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays,
   FewerTestsResult out{scene, rays.name, rays.size, {}};
   std::vector<std::vector<double>> seconds(variants.size()), ratios(variants.size());
   std::optional<HitList> expected;
-  std::vector<TestCounts> tests(variants.size());
+  std::vector<IntersectionCounts> tests(variants.size());
   for (int round = 0; round < repetitions; ++round) {
     for (std::size_t k = 0; k < variants.size(); ++k) {
       const std::size_t i = (k + static_cast<std::size_t>(round)) % variants.size();

@@ -21,12 +21,12 @@ struct TestVariant {
   std::string method;   ///< cull_planes, bundles
   std::string setting;  ///< of the method, as a table names it
   /// Writes as many hits as there are rays.
-  std::function<void(const RaySet&, HitList&, TestCounts&)> trace;
+  std::function<void(const RaySet&, HitList&, IntersectionCounts&)> trace;
 };
 
 struct VariantSpeed {
   std::string method, setting;
-  TestCounts tests;
+  IntersectionCounts tests;
   Spread nanoseconds_per_ray;  ///< CPU time
   Spread ratio;                ///< of the time of the same round's first variant
 };

@@ -38,7 +38,7 @@ std::vector<TestVariant> plane_variants(const scene::Scene& scene) {
     planes.count = count;
     const auto accel = std::make_shared<const accel::Accel>(accel::build(scene, {}, *make_tbb_executor(1), {}, planes));
     variants.push_back({"cull_planes", fmt::format("{} plane{}", count, count == 1 ? "" : "s"),
-                        [accel](const RaySet& rays, HitList& hits, TestCounts& counts) {
+                        [accel](const RaySet& rays, HitList& hits, IntersectionCounts& counts) {
                           HitBatch found;
                           for (const RayBatch& batch : rays.batches) {
                             found.clear();
@@ -64,7 +64,7 @@ std::vector<TestVariant> bundle_variants(const scene::Scene& scene) {
     form.statistics = true;
     form.bundles.size = size;
     variants.push_back({"bundles", size == 0 ? "no bundles" : fmt::format("of {}", size),
-                        [=](const RaySet& rays, HitList& hits, TestCounts& counts) {
+                        [=](const RaySet& rays, HitList& hits, IntersectionCounts& counts) {
                           const RingRun run = run_ring(*accel, scene_size, settings, form, rays, 1, hits);
                           for (const ringbus::ResourceStatistics& one : run.result.resources) counts += one.tests;
                         }});

@@ -71,7 +71,7 @@ void strip_of_boxes(benchmark::State& state) {
   std::vector<RayRecord> rays = s.rays;
   std::vector<std::uint8_t> masks(rays.size());
   std::array<float, accel::kMaxWidth> nearest;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (auto _ : state) {
     nearest.fill(kInfinity);
     accel::test_strip(s.accel, s.node, ~0u, {rays.data(), nullptr, rays.size()},
@@ -86,7 +86,7 @@ BENCHMARK(strip_of_boxes);
 void strip_of_triangles(benchmark::State& state) {
   const Setting& s = Setting::get();
   std::vector<RayRecord> rays = s.rays;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (auto _ : state) {
     accel::test_strip(s.accel, s.leaf, ~0u, {rays.data(), nullptr, rays.size()}, {}, counts);
     benchmark::DoNotOptimize(rays.data());
@@ -99,7 +99,7 @@ BENCHMARK(strip_of_triangles);
 void whole_tree(benchmark::State& state) {
   const Setting& s = Setting::get();
   std::vector<RayRecord> rays;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (auto _ : state) {
     rays = s.rays;
     accel::trace_subtree(s.accel, s.accel.root_key(), {rays.data(), nullptr, rays.size()}, counts);

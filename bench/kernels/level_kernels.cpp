@@ -96,7 +96,7 @@ void boxes(benchmark::State& state, BoxLevel level, SimdTarget target) {
   const OnTarget on(state, target);
   if (!on) return;
   const accel::NodeKey root{0, a.instances.at(0).root};
-  TestCounts counts;
+  IntersectionCounts counts;
   for (auto _ : state) {
     nearest.fill(kInfinity);
     accel::test_strip(a, root, ~0u, {rays.data(), nullptr, rays.size()}, {masks.data(), nearest.data(), nullptr},
@@ -119,7 +119,7 @@ void triangles(benchmark::State& state, TriangleLevel level, SimdTarget target) 
   std::vector<RayRecord> rays = s.rays();
   const OnTarget on(state, target);
   if (!on) return;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (auto _ : state) {
     accel::test_strip(a, leaf, ~0u, {rays.data(), nullptr, rays.size()}, {}, counts);
     benchmark::DoNotOptimize(rays.data());
@@ -132,7 +132,7 @@ void whole_trace(benchmark::State& state, TriangleLevel triangle, BoxLevel box) 
   LevelSetting& s = LevelSetting::get();
   const accel::Accel& a = s.accel(triangle, box, 4);
   std::vector<RayRecord> rays;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (auto _ : state) {
     rays = s.rays();
     accel::trace_subtree(a, a.root_key(), {rays.data(), nullptr, rays.size()}, counts);

@@ -62,7 +62,7 @@ void Contest::add_depth_first(const char* name, decltype(accel::trace_depth_firs
          for_each_batch(rays, threads, [&] {
            return [&, found = HitBatch()](const RayBatch& batch) mutable {
              found.clear();
-             TestCounts counts;
+             IntersectionCounts counts;
              trace(accel_, batch, found, counts);
              for (const RayResult& result : found) hits[result.tag.path] = result.hit;
              // Relaxed: sums, read when the threads have been joined.

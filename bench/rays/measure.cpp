@@ -18,7 +18,7 @@ HitList reference_hits(const accel::Accel& accel, const RaySet& rays) {
   HitList hits;
   hits.reserve(rays.size);
   HitBatch found;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (const RayBatch& batch : rays.batches) {
     found.clear();
     accel::trace_depth_first(accel, batch, found, counts);

@@ -216,7 +216,7 @@ struct MemoryConfig {
 };
 
 /// What the shaders' rays of one kind want (core/types/ray.h).
-struct RayWishes {
+struct RayFlags {
   enum class Cull { kNone, kBack, kFront } cull = Cull::kNone;
   bool force_opaque = false;
 };
@@ -231,7 +231,7 @@ struct ShadingConfig {
   std::int64_t cycles_per_shade = 20;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
   std::int64_t cycles_per_any_hit = 10, cycles_per_effect = 5;
-  RayWishes camera_rays{}, bounce_rays{}, shadow_rays{};
+  RayFlags camera_rays{}, bounce_rays{}, shadow_rays{};
 };
 
 struct TrafficConfig {

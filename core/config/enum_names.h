@@ -101,8 +101,8 @@ CAROUSEL_ENUM(BvhConfig::Elements, {BvhConfig::Elements::kBoxes, "boxes"}, {BvhC
 CAROUSEL_ENUM(BundlesConfig::AtInstances, {BundlesConfig::AtInstances::kSplit, "split"},
               {BundlesConfig::AtInstances::kRebound, "rebound"});
 CAROUSEL_ENUM(BundlesConfig::Hint, {BundlesConfig::Hint::kIgnore, "ignore"}, {BundlesConfig::Hint::kObey, "obey"});
-CAROUSEL_ENUM(RayWishes::Cull, {RayWishes::Cull::kNone, "none"}, {RayWishes::Cull::kBack, "back"},
-              {RayWishes::Cull::kFront, "front"});
+CAROUSEL_ENUM(RayFlags::Cull, {RayFlags::Cull::kNone, "none"}, {RayFlags::Cull::kBack, "back"},
+              {RayFlags::Cull::kFront, "front"});
 CAROUSEL_ENUM(TestersConfig::AnyHit, {TestersConfig::AnyHit::kInline, "inline"},
               {TestersConfig::AnyHit::kShader, "shader"});
 CAROUSEL_ENUM(MemoryConfig::Fetch, {MemoryConfig::Fetch::kPacket, "packet"},

@@ -276,7 +276,7 @@ void describe(V& v, MemoryConfig& c) {
 }
 
 template <class V>
-void describe(V& v, RayWishes& c) {
+void describe(V& v, RayFlags& c) {
   v.choice("cull", c.cull, "triangles that are not there for these rays: those that show their back, or their front");
   v.field("force_opaque", c.force_opaque, "", "nothing lets these rays through");
 }

@@ -56,8 +56,8 @@ bool is_scalar(const Node& node) {
 
 }  // namespace
 
-Reader::Visit::Visit(Reader& r, std::string_view key) : reader(r), node(r.frames_.back().node->find(key)) {
-  r.frames_.back().known.emplace_back(key);
+Reader::Visit::Visit(Reader& r, std::string_view key) : reader(r), node(r.scopes_.back().node->find(key)) {
+  r.scopes_.back().known.emplace_back(key);
   r.path_.emplace_back(key);
 }
 
@@ -206,11 +206,11 @@ void Reader::workload(std::string_view key, WorkloadConfig& value, const char*) 
   if (node.kind == Node::Kind::kString && node.text == "rays") {
     value.kind = WorkloadConfig::Kind::kRays;
   } else if (node.kind == Node::Kind::kMap) {
-    frames_.push_back({&node, {}});
+    scopes_.push_back({&node, {}});
     field("rays_from", value.rays_from, "", "");
     section("traffic", value.traffic, "");
-    report_unknown(frames_.back());
-    frames_.pop_back();
+    report_unknown(scopes_.back());
+    scopes_.pop_back();
     const bool from_file = node.find("rays_from"), traffic = node.find("traffic");
     if (from_file == traffic)
       issues_.push_back({node.position, path(), "expected " + expected});
@@ -242,7 +242,7 @@ void Reader::vary(std::string_view key, std::map<std::string, std::vector<std::s
   }
 }
 
-void Reader::report_unknown(const Frame& frame) {
+void Reader::report_unknown(const Scope& frame) {
   for (const Member& member : frame.node->members) {
     if (std::find(frame.known.begin(), frame.known.end(), member.key) != frame.known.end()) continue;
     path_.push_back(member.key);

@@ -19,10 +19,10 @@ class Reader {
   template <class T>
   void read(const Node& node, T& value) {
     if (node.kind != Node::Kind::kMap) return wrong(node, "a map");
-    frames_.push_back({&node, {}});
+    scopes_.push_back({&node, {}});
     describe(*this, value);
-    report_unknown(frames_.back());
-    frames_.pop_back();
+    report_unknown(scopes_.back());
+    scopes_.pop_back();
   }
 
   void field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*);
@@ -45,7 +45,7 @@ class Reader {
     E chosen{};
     const std::size_t before = issues_.size();
     choice(key, chosen, meaning);
-    if (issues_.size() == before && frames_.back().node->find(key)) value = chosen;
+    if (issues_.size() == before && scopes_.back().node->find(key)) value = chosen;
   }
 
   template <class T>
@@ -66,7 +66,7 @@ class Reader {
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*);
 
  private:
-  struct Frame {
+  struct Scope {
     const Node* node;
     std::vector<std::string> known;  ///< keys asked for
   };
@@ -92,13 +92,13 @@ class Reader {
   void real(std::string_view key, Real& value, RealRange range, const char* unit);
   std::optional<std::size_t> choose(const Node& node, const std::vector<std::string>& names);
   void read_override(const Node& node, ResourceOverride& value);
-  void report_unknown(const Frame& frame);
+  void report_unknown(const Scope& frame);
   void wrong(const Node& node, const std::string& expected, const std::string& hint = "");
   std::string path() const;
 
   std::vector<ConfigIssue>& issues_;
   TestersConfig base_testers_;  ///< what an override starts from
-  std::vector<Frame> frames_;
+  std::vector<Scope> scopes_;
   std::vector<std::string> path_;
 };
 

@@ -16,7 +16,7 @@ class AnyHit {
   virtual ~AnyHit() = default;
 
   /// `ray` in world space; `u` and `v` as in Hit.
-  virtual bool stops(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const = 0;
+  virtual bool accepts(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const = 0;
 };
 
 }  // namespace carousel

@@ -283,7 +283,7 @@ struct Host {
 
 /// The pass that stands in for camera rays.
 struct Raster {
-  std::uint64_t triangles = 0, binned = 0, tested = 0, asked = 0;
+  std::uint64_t triangles = 0, binned = 0, tested = 0, any_hit_calls = 0;
   std::uint64_t hits = 0, misses = 0, left_to_rays = 0;
 };
 

@@ -273,7 +273,7 @@ void describe(V& v, Raster& r) {
   v.field("triangles", r.triangles, "triangles", "of all instances");
   v.field("binned", r.binned, "triangles", "sorted into tiles, once for each tile");
   v.field("tested", r.tested, "tests", "edge functions of a triangle at a sample");
-  v.field("asked", r.asked, "samples", "at which a cut-out or veil was asked");
+  v.field("asked", r.any_hit_calls, "samples", "at which a cut-out or veil was asked");
   v.field("hits", r.hits, "samples", "that meet a triangle");
   v.field("misses", r.misses, "samples", "that meet nothing");
   v.field("left_to_rays", r.left_to_rays, "samples", "for which camera rays were sent: near procedural primitives");

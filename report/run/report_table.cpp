@@ -156,7 +156,7 @@ void cycle_lines(Table& table, const Report& report) {
   table.line("simulated", "{}", text);
   if (!report.resources || report.resources->empty()) return;
   UnitCycles sum;
-  std::uint64_t handler = 0;
+  std::uint64_t dispatch = 0;
   for (const Resource& r : *report.resources) {
     if (!r.units) return;
     const UnitCycles& u = r.units->box;
@@ -166,14 +166,14 @@ void cycle_lines(Table& table, const Report& report) {
     sum.storage += u.storage;
     sum.shading += u.shading;
     sum.idle += u.idle;
-    handler += r.units->handler_busy;
+    dispatch += r.units->handler_busy;
   }
   const std::uint64_t all = cycles * report.resources->size();
   const auto part = [&](std::uint64_t x) { return percent(ratio(x, all)); };
   table.line("busy", "box {}   triangle {}   transform {}   handling {}   shading {}   memory {}",
              percent(busy_fraction(*report.resources, cycles, &Units::box)),
              percent(busy_fraction(*report.resources, cycles, &Units::triangle)),
-             percent(busy_fraction(*report.resources, cycles, &Units::transform)), part(handler),
+             percent(busy_fraction(*report.resources, cycles, &Units::transform)), part(dispatch),
              percent(report.shading.utilisation.value_or(0)),
              percent(report.memory ? report.memory->dram_utilisation : 0));
   table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),

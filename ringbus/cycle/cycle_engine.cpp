@@ -42,7 +42,7 @@ class CycleRun {
         side.jobs = jobs_.emplace_back(std::make_unique<Channel<ShadeJob>>()).get();
         side.help = help_.emplace_back(std::make_unique<Channel<HelpNote>>()).get();
       }
-      if (machine_.asks_shader()) {
+      if (machine_.calls_shader()) {
         side.questions = questions_.emplace_back(std::make_unique<Channel<AnyHitQuestion>>()).get();
         side.answers = opacities_.emplace_back(std::make_unique<Channel<AnyHitAnswer>>()).get();
       }
@@ -59,9 +59,9 @@ class CycleRun {
     const std::vector<std::vector<Agent*>> parts = share_out();
     auto last_report = start;
     bool stopped = false;
-    WakeBoard board(parts);
-    connect(board);
-    const Cycle reached = run_windows(parts, board, lookahead(), [&](Cycle) {
+    WakeupTable wakeups(parts);
+    connect(wakeups);
+    const Cycle reached = run_windows(parts, wakeups, lookahead(), [&](Cycle) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
@@ -206,28 +206,28 @@ class CycleRun {
   }
 
   /// Everything but credits, for which agents look when they need any.
-  void connect(WakeBoard& board) const {
+  void connect(WakeupTable& wakeups) const {
     for (std::size_t i = 0; i < wires_.size(); ++i) {
       const Topology::Wire& wire = machine_.topology.wires()[i];
-      board.connect(wires_[i]->packets, node(wire.from), node(wire.to));
+      wakeups.connect(wires_[i]->packets, node(wire.from), node(wire.to));
     }
     for (std::size_t r = 0; r < tiles_.size(); ++r) {
       const ShapeCache& cache = *caches_[r / static_cast<std::size_t>(config_.memory.shared_by)];
-      board.connect(*new_rays_[r], *shading_, *tiles_[r]);
-      board.connect(*completed_[r], *tiles_[r], *shading_);
-      board.connect(*fetches_[r], *tiles_[r], cache);
-      board.connect(*answers_[r], cache, *tiles_[r]);
+      wakeups.connect(*new_rays_[r], *shading_, *tiles_[r]);
+      wakeups.connect(*completed_[r], *tiles_[r], *shading_);
+      wakeups.connect(*fetches_[r], *tiles_[r], cache);
+      wakeups.connect(*answers_[r], cache, *tiles_[r]);
       if (!questions_.empty()) {
-        board.connect(*questions_[r], *tiles_[r], *shading_);
-        board.connect(*opacities_[r], *shading_, *tiles_[r]);
+        wakeups.connect(*questions_[r], *tiles_[r], *shading_);
+        wakeups.connect(*opacities_[r], *shading_, *tiles_[r]);
       }
       if (jobs_.empty()) continue;
-      board.connect(*jobs_[r], *shading_, *tiles_[r]);
-      board.connect(*help_[r], *tiles_[r], *shading_);
+      wakeups.connect(*jobs_[r], *shading_, *tiles_[r]);
+      wakeups.connect(*help_[r], *tiles_[r], *shading_);
     }
     for (std::size_t c = 0; c < caches_.size(); ++c) {
-      board.connect(*lines_[2 * c], *caches_[c], *memory_);
-      board.connect(*lines_[2 * c + 1], *memory_, *caches_[c]);
+      wakeups.connect(*lines_[2 * c], *caches_[c], *memory_);
+      wakeups.connect(*lines_[2 * c + 1], *memory_, *caches_[c]);
     }
   }
 

@@ -39,7 +39,7 @@ void double_units(TestersConfig& testers, TesterUnits TestersConfig::*bank) {
   (testers.*bank).units *= 2;
 }
 
-Lift units_lift(std::string name, std::string key, TesterUnits TestersConfig::*bank) {
+WhatIf units_what_if(std::string name, std::string key, TesterUnits TestersConfig::*bank) {
   return {std::move(name), "twice testers." + key + ".units", [bank](Config& c) {
             double_units(c.testers, bank);
             for (ResourceOverride& one : c.topology.overrides) double_units(one.testers, bank);
@@ -48,19 +48,19 @@ Lift units_lift(std::string name, std::string key, TesterUnits TestersConfig::*b
 
 }  // namespace
 
-std::vector<Lift> lifts(const Config& config, const accel::Accel& accel) {
-  std::vector<Lift> all;
-  all.push_back(units_lift("box_tests", "box", &TestersConfig::box));
-  all.push_back(units_lift("triangle_tests", "triangle", &TestersConfig::triangle));
+std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
+  std::vector<WhatIf> all;
+  all.push_back(units_what_if("box_tests", "box", &TestersConfig::box));
+  all.push_back(units_what_if("triangle_tests", "triangle", &TestersConfig::triangle));
   if (accel.procedural_primitives)
-    all.push_back(units_lift("procedural_tests", "procedural", &TestersConfig::procedural));
-  if (accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
-    all.push_back(units_lift("any_hit_lookups", "any_hit_unit", &TestersConfig::any_hit_unit));
-  if (config.cull_planes.count > 0) all.push_back(units_lift("plane_tests", "plane", &TestersConfig::plane));
-  if (config.bundles.size > 0) all.push_back(units_lift("bundle_tests", "bundle", &TestersConfig::bundle));
+    all.push_back(units_what_if("procedural_tests", "procedural", &TestersConfig::procedural));
+  if (accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
+    all.push_back(units_what_if("any_hit_lookups", "any_hit_unit", &TestersConfig::any_hit_unit));
+  if (config.cull_planes.count > 0) all.push_back(units_what_if("plane_tests", "plane", &TestersConfig::plane));
+  if (config.bundles.size > 0) all.push_back(units_what_if("bundle_tests", "bundle", &TestersConfig::bundle));
   if (config.rays.reads_per_cycle > 0)
     all.push_back({"ray_reads", "twice rays.reads_per_cycle", [](Config& c) { c.rays.reads_per_cycle *= 2; }});
-  all.push_back(units_lift("transforms", "transform", &TestersConfig::transform));
+  all.push_back(units_what_if("transforms", "transform", &TestersConfig::transform));
   const bool independent = config.topology.shape == TopologyShape::kIndependent;
   if (!independent)
     all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
@@ -110,12 +110,12 @@ Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, floa
   const RunResult base = simulate(whole);
   out.rays_per_kilocycle = steady_rate(*base.cycle, base.rays_completed);
   out.noise = base.cycle->steady_spread;
-  for (const Lift& lift : lifts(config, accel)) {
+  for (const WhatIf& what_if : what_ifs(config, accel)) {
     if (options.stop.stop_requested()) break;
-    Config lifted = whole;
-    lift.apply(lifted);
-    const RunResult result = simulate(lifted);
-    Gain gain{lift.name, lift.action, steady_rate(*result.cycle, result.rays_completed), 0};
+    Config relaxed = whole;
+    what_if.apply(relaxed);
+    const RunResult result = simulate(relaxed);
+    Gain gain{what_if.name, what_if.action, steady_rate(*result.cycle, result.rays_completed), 0};
     gain.gain = gain.rays_per_kilocycle / out.rays_per_kilocycle - 1;
     out.gains.push_back(std::move(gain));
   }

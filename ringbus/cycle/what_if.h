@@ -14,13 +14,13 @@
 namespace carousel::ringbus {
 
 /// A class of the machine's parts, and how a machine looks that has twice as much of it (or half the latency).
-struct Lift {
+struct WhatIf {
   std::string name;    ///< as in the report: box_tests, link_bandwidth, ...
   std::string action;  ///< what was doubled or halved, with the key
   std::function<void(Config&)> apply;
 };
 /// Those that can make a difference to the configured machine with such a scene.
-std::vector<Lift> lifts(const Config& config, const accel::Accel& accel);
+std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel);
 
 /// What lifting one class does to the throughput.
 struct Gain {

@@ -8,21 +8,21 @@
 namespace carousel::ringbus {
 
 /// What happens to one frame.
-struct FrameFate {
+struct FaultDraw {
   bool drop = false, duplicate = false, corrupt = false, reorder = false, delay = false;
   std::uint64_t bits = 0;  ///< random: where a corrupted frame is hurt
 };
 
 /// Draws fates: the n-th frame of a stream has the same one in every run.
-class FaultDice {
+class FaultInjector {
  public:
   /// `stream` tells links and directions apart.
-  FaultDice(const FaultsConfig& config, std::uint64_t stream)
+  FaultInjector(const FaultsConfig& config, std::uint64_t stream)
       : links_(config.links), key_(mix(static_cast<std::uint64_t>(config.seed) * 0x9e3779b97f4a7c15u + stream)) {}
 
   /// The next frame's; counts what it draws.
-  FrameFate next(LinkFaultCounts& counts) {
-    FrameFate fate;
+  FaultDraw next(LinkFaultCounts& counts) {
+    FaultDraw fate;
     fate.drop = happens(links_.drop);
     fate.duplicate = happens(links_.duplicate);
     fate.corrupt = happens(links_.corrupt);

@@ -10,7 +10,7 @@ namespace carousel::ringbus {
 
 /// The sending end of a queue that loses, doubles, damages, delays and reorders what is put into it. One thread's.
 /// Frame has flip(random) to be damaged by, copy() to be doubled by, and drop() to be lost by.
-template <class Queue, class Frame>
+template <class Queue, class LinkFrame>
 class FaultyWire {
  public:
   using Clock = std::chrono::steady_clock;
@@ -18,7 +18,7 @@ class FaultyWire {
   FaultyWire(Queue& queue, const FaultsConfig& config, std::uint64_t stream, std::chrono::nanoseconds delay)
       : queue_(queue), dice_(config, stream), delay_(delay) {}
   ~FaultyWire() {
-    for (Frame& one : after_next_) one.drop();
+    for (LinkFrame& one : after_next_) one.drop();
     for (Late& one : late_) one.frame.drop();
   }
   FaultyWire(const FaultyWire&) = delete;
@@ -27,8 +27,8 @@ class FaultyWire {
   bool has_room() { return queue_.free_places() > 1; }  // one may come twice
 
   /// Takes the frame, which is the wire's from then on.
-  void put(Frame frame) {
-    const FrameFate fate = dice_.next(counts_);
+  void put(LinkFrame frame) {
+    const FaultDraw fate = dice_.next(counts_);
     if (fate.drop) {
       frame.drop();
     } else {
@@ -43,13 +43,13 @@ class FaultyWire {
         send(frame);
       }
     }
-    for (const Frame& one : after_next_) send(one);
+    for (const LinkFrame& one : after_next_) send(one);
     after_next_.clear();
   }
   /// Lets go of what has been late long enough, and of what waits for a next one that may not come.
   void release() {
     if (!after_next_.empty() && ++quiet_ > 8) {
-      for (const Frame& one : after_next_) send(one);
+      for (const LinkFrame& one : after_next_) send(one);
       after_next_.clear();
       quiet_ = 0;
     }
@@ -66,19 +66,19 @@ class FaultyWire {
  private:
   struct Late {
     Clock::time_point due;
-    Frame frame;
+    LinkFrame frame;
   };
   // A full queue loses it, as one more fault of the wire.
-  void send(Frame frame) {
+  void send(LinkFrame frame) {
     if (queue_.try_push(frame)) return;
     ++counts_.dropped;
     frame.drop();
   }
 
   Queue& queue_;
-  FaultDice dice_;
+  FaultInjector dice_;
   std::chrono::nanoseconds delay_;
-  std::vector<Frame> after_next_;
+  std::vector<LinkFrame> after_next_;
   int quiet_ = 0;  // releases since something waits for a next one
   std::vector<Late> late_;
   LinkFaultCounts counts_;

@@ -37,7 +37,7 @@ class LinkFaultTimer {
     Cycle start = now;
     for (bool first = true;; first = false) {
       counts_.resent += !first;
-      const FrameFate fate = dice_.next(counts_);
+      const FaultDraw fate = dice_.next(counts_);
       out.busy += cycles * (fate.duplicate && !fate.drop ? 2 : 1);
       counts_.discarded += fate.duplicate && !fate.drop;
       // It comes before the one that was overtaken, and is not taken.
@@ -60,27 +60,27 @@ class LinkFaultTimer {
   /// The acknowledgement that would come at `at`, not before any other: how many places the sender knows to be free
   /// again by it. Call made_good(at) before.
   std::uint32_t acknowledge(Cycle at) {
-    const FrameFate fate = ack_dice_.next(counts_);
+    const FaultDraw fate = ack_dice_.next(counts_);
     const bool lost = fate.drop || fate.corrupt;
     if (lost || fate.delay || fate.reorder) {
       // One that the next one overtakes says nothing new when it comes.
       silent_.push_back(lost || fate.reorder ? kNever : at + delay_);
-      if (ask_at_ == kNever) ask_at_ = at + patience();
+      if (any_hit_at_ == kNever) any_hit_at_ = at + patience();
       return 0;
     }
     return hear(silent_.size()) + 1;
   }
   /// What late acknowledgements and asking again have brought by `now`.
-  struct MadeGood {
+  struct Recovered {
     std::uint32_t places = 0;
     Cycle busy = 0;  ///< for which the link was asked over
   };
-  MadeGood made_good(Cycle now) {
-    MadeGood out;
+  Recovered made_good(Cycle now) {
+    Recovered out;
     while (!silent_.empty()) {
       const auto first = std::min_element(silent_.begin(), silent_.end());
-      if (std::min(*first, ask_at_) > now) break;
-      if (*first <= ask_at_)
+      if (std::min(*first, any_hit_at_) > now) break;
+      if (*first <= any_hit_at_)
         out.places += hear(static_cast<std::size_t>(first - silent_.begin()) + 1);
       else
         out.busy += ask();
@@ -90,7 +90,7 @@ class LinkFaultTimer {
   /// When made_good() will bring something, or may.
   Cycle next() const {
     if (silent_.empty()) return kNever;
-    return std::min(*std::min_element(silent_.begin(), silent_.end()), ask_at_);
+    return std::min(*std::min_element(silent_.begin(), silent_.end()), any_hit_at_);
   }
   const LinkFaultCounts& counts() const { return counts_; }
 
@@ -99,30 +99,30 @@ class LinkFaultTimer {
   Cycle patience() const { return 2 * latency_ + cycles_; }
   std::uint32_t hear(std::size_t count) {
     silent_.erase(silent_.begin(), silent_.begin() + static_cast<std::ptrdiff_t>(count));
-    if (silent_.empty()) ask_at_ = kNever;
+    if (silent_.empty()) any_hit_at_ = kNever;
     return static_cast<std::uint32_t>(count);
   }
   /// The last frame once more. What it was asked for comes with the answer, if both get through.
   Cycle ask() {
     ++counts_.resent;
-    const FrameFate frame = ack_dice_.next(counts_);
+    const FaultDraw frame = ack_dice_.next(counts_);
     counts_.discarded += !frame.drop;
     const bool through = !frame.drop && !frame.corrupt;
-    const FrameFate answer = through ? ack_dice_.next(counts_) : FrameFate{};
+    const FaultDraw answer = through ? ack_dice_.next(counts_) : FaultDraw{};
     if (through && !answer.drop && !answer.corrupt)
       silent_.back() =
-          std::min(silent_.back(), ask_at_ + patience() + (frame.delay ? delay_ : 0) + (answer.delay ? delay_ : 0));
-    ask_at_ += cycles_ + patience();
+          std::min(silent_.back(), any_hit_at_ + patience() + (frame.delay ? delay_ : 0) + (answer.delay ? delay_ : 0));
+    any_hit_at_ += cycles_ + patience();
     return cycles_;
   }
 
-  FaultDice dice_, ack_dice_;
+  FaultInjector dice_, ack_dice_;
   Cycle delay_, latency_;
   Cycle cycles_ = 1;  // of the last packet
   Cycle last_ = 0;
-  bool overtaken_ = false;    // the one before comes after the next
-  std::deque<Cycle> silent_;  // acknowledgements that did not come when they should: when they will, or never
-  Cycle ask_at_ = kNever;     // while there are any
+  bool overtaken_ = false;     // the one before comes after the next
+  std::deque<Cycle> silent_;   // acknowledgements that did not come when they should: when they will, or never
+  Cycle any_hit_at_ = kNever;  // while there are any
   LinkFaultCounts counts_;
 };
 

@@ -15,7 +15,7 @@ namespace carousel::ringbus {
 /// An unfinished path goes on from its rays that are open: what it has gathered and where it has been stand in its path
 /// state, which is not the ring's and is not lost. To begin it again at the camera would trace these rays and all that
 /// came before them, to the same hits, and add to the path's light what it has already.
-class RetryLedger {
+class OutstandingRays {
  public:
   /// Before the rays are submitted.
   void add(const RayBatch& rays) {

@@ -12,7 +12,7 @@ namespace carousel::ringbus {
 /// are short where threads have cores, and then there is no need to wait for so much as a clock's tick. Where threads
 /// wait for cores each turn takes a time slice in which the other end will have had its turn, so few of them are
 /// enough.
-class ResendPatience {
+class RetransmitTimer {
  public:
   using Clock = std::chrono::steady_clock;
   /// Frame `sequence` goes on the wire for the first time.

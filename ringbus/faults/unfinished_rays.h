@@ -11,8 +11,8 @@
 
 namespace carousel::ringbus {
 
-/// What is missing when a resource has stopped and nothing is to begin again; `open` as RetryLedger tells it.
-inline std::string missing_rays(ResourceId stopped, const RayBatch& open, std::uint64_t completed) {
+/// What is missing when a resource has stopped and nothing is to begin again; `open` as OutstandingRays tells it.
+inline std::string unfinished_rays(ResourceId stopped, const RayBatch& open, std::uint64_t completed) {
   std::string text =
       fmt::format("resource {} stopped and faults.resource.recover is off: {} rays are missing, of paths",
                   stopped.value, open.size());

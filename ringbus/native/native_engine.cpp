@@ -30,7 +30,8 @@ class NativeRun {
       : options_(options), config_(config), accel_(accel), scene_size_(scene_size), workload_(workload) {
     for (std::int64_t r = 0; r < config.topology.resources; ++r)
       sinks_.push_back(options.statistics ? std::make_unique<StatisticsSink>() : nullptr);
-    if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<RetryLedger>();
+    if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
+      ledger_ = std::make_unique<OutstandingRays>();
     build();
     threads_ = std::clamp<std::size_t>(options.threads, 1, std::max(ports_.size(), workers_.size()));
     progress_ = std::make_unique<Progress[]>(threads_);
@@ -42,9 +43,9 @@ class NativeRun {
       run_threads();
       if (error_) std::rethrow_exception(error_);
       if (stuck_) throw SimulationError(describe_stuck());
-      if (!lost_ || given_up_) break;
+      if (!excluded_ || given_up_) break;
       if (!config_.faults.resource.recover)
-        throw SimulationError(missing_rays(*lost_, ledger_->open(), count_.completed.load()));
+        throw SimulationError(unfinished_rays(*excluded_, ledger_->open(), count_.completed.load()));
       restart();
     }
     const std::chrono::duration<double> wall = Clock::now() - start_;
@@ -96,13 +97,13 @@ class NativeRun {
       ledger_->remove(batch);
       machine_->completed.push(std::move(batch));
     }
-    machine_->control.exclude(*lost_);
-    for (const auto& port : ports_) port->lose(*lost_);
-    ports_[lost_->value]->stop();
+    machine_->control.exclude(*excluded_);
+    for (const auto& port : ports_) port->exclude(*excluded_);
+    ports_[excluded_->value]->stop();
     given_up_ = true;
     const RayBatch rays = ledger_->open();
     rays_restarted_ += rays.size();
-    paths_restarted_ += RetryLedger::paths_of(rays);
+    paths_restarted_ += OutstandingRays::paths_of(rays);
     recovery_seconds_ = std::chrono::duration<double>(Clock::now() - last_beat_).count();
     if (!rays.empty()) machine_->control.submit(rays);
   }
@@ -123,7 +124,7 @@ class NativeRun {
     const std::uint64_t turns = turns_.load(std::memory_order_relaxed);
     if (std::exchange(turns_seen_, turns) == turns) last_beat_ = std::max(last_beat_, Clock::now() - kSilence / 2);
     if (Clock::now() - last_beat_ < kSilence) return false;
-    lost_ = id;
+    excluded_ = id;
     return true;
   }
 
@@ -203,7 +204,7 @@ class NativeRun {
       throw SimulationError(
           fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
     for (const auto& port : ports_)
-      if (!(given_up_ && port->resource().id() == *lost_) && !port->drained())
+      if (!(given_up_ && port->resource().id() == *excluded_) && !port->drained())
         throw SimulationError("not everything came home: " + port->describe());
   }
 
@@ -239,12 +240,12 @@ class NativeRun {
   Workload& workload_;
   std::unique_ptr<Machine> machine_;
   RayCount count_;
-  std::unique_ptr<RetryLedger> ledger_;  // where a resource may stop
-  std::atomic<std::uint64_t> turns_{0};  // of the thread that plays it
+  std::unique_ptr<OutstandingRays> ledger_;  // where a resource may stop
+  std::atomic<std::uint64_t> turns_{0};      // of the thread that plays it
   std::uint64_t turns_seen_ = 0, beats_ = 0;
   Clock::time_point last_beat_{};
-  std::optional<ResourceId> lost_;  // it has stopped
-  bool given_up_ = false;           // and the others go on without it
+  std::optional<ResourceId> excluded_;  // it has stopped
+  bool given_up_ = false;               // and the others go on without it
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0, packets_discarded_ = 0;
   std::uint64_t slots_used_ = 0, slot_waits_ = 0;  // before the machine was built anew
   std::vector<LinkFaultCounts> faults_before_;     // likewise, by link

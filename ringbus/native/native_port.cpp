@@ -25,14 +25,14 @@ NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventS
              machine.config.faults.resource.number == id.value),
       sink_(sink),
       resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], sink),
-      exit_of_(machine.topology.resources()),
+      out_port_of_(machine.topology.resources()),
       free_(machine.topology.directions()) {
   const std::vector<Topology::Wire>& wires = machine.topology.wires();
   for (std::size_t i = 0; i < wires.size(); ++i) {
-    if (wires[i].to == id) entries_.push_back({machine.links[i].get(), wires[i].direction});
+    if (wires[i].to == id) in_ports_.push_back({machine.links[i].get(), wires[i].direction});
     if (wires[i].from != id) continue;
-    exit_of_[wires[i].to.value] = static_cast<std::uint32_t>(exits_.size());
-    exits_.push_back({machine.links[i].get(), {}});
+    out_port_of_[wires[i].to.value] = static_cast<std::uint32_t>(out_ports_.size());
+    out_ports_.push_back({machine.links[i].get(), {}});
   }
   for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
     if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
@@ -44,7 +44,7 @@ bool NativePort::step() {
   if (stops_ && rays_completed_ >= stops_after_) stopped_ = true;
   if (stopped_) {
     bool moved = tick_links();
-    moved |= send_in_hand();
+    moved |= send_egress();
     return receive() || moved;
   }
   // Relaxed, and no read-modify-write: it has one writer.
@@ -56,35 +56,35 @@ bool NativePort::step() {
 bool NativePort::tick_links() {
   if (!links_fail_) return false;
   bool moved = false;
-  for (const Exit& exit : exits_) moved |= exit.link->tick();
-  for (const Entry& entry : entries_) entry.link->tick_receiver();
+  for (const OutPort& exit : out_ports_) moved |= exit.link->tick();
+  for (const InPort& entry : in_ports_) entry.link->tick_receiver();
   return moved;
 }
 
 bool NativePort::step_now() {
   bool moved = tick_links();
-  moved |= send_in_hand();
+  moved |= send_egress();
   moved |= receive();
   moved |= admit();
   moved |= issue(false);
   // Collections that are not full only when there is nothing better to do: waiting fills them.
   if (!moved) moved = issue(true);
-  moved |= send_in_hand();
+  moved |= send_egress();
   flush_completed(!moved);
   return moved;
 }
 
 // ---- packets passing
 
-bool NativePort::send_in_hand() {
+bool NativePort::send_egress() {
   bool moved = false;
   std::array<PacketId, kReceiveBatch> batch;
-  for (Exit& exit : exits_) {
-    while (!exit.in_hand.empty()) {
-      const std::size_t count = std::min(batch.size(), exit.in_hand.size());
-      std::copy_n(exit.in_hand.begin(), count, batch.begin());
+  for (OutPort& exit : out_ports_) {
+    while (!exit.egress.empty()) {
+      const std::size_t count = std::min(batch.size(), exit.egress.size());
+      std::copy_n(exit.egress.begin(), count, batch.begin());
       const std::size_t sent = exit.link->try_send({batch.data(), count});
-      exit.in_hand.erase(exit.in_hand.begin(), exit.in_hand.begin() + static_cast<std::ptrdiff_t>(sent));
+      exit.egress.erase(exit.egress.begin(), exit.egress.begin() + static_cast<std::ptrdiff_t>(sent));
       moved |= sent > 0;
       if (sent < count) {
         stall(StallReason::kLink);
@@ -98,16 +98,16 @@ bool NativePort::send_in_hand() {
 bool NativePort::receive() {
   bool moved = false;
   std::array<PacketId, kReceiveBatch> batch;
-  for (const Entry& entry : entries_) {
+  for (const InPort& entry : in_ports_) {
     // On a ring, what cannot leave must not come in, or the hand would be a queue without a bound. Point to
     // point, every packet there is would fit into the hand, so all may come in.
-    if (!machine_.topology.direct() && !exits_[entry.direction].in_hand.empty()) continue;
+    if (!machine_.topology.direct() && !out_ports_[entry.direction].egress.empty()) continue;
     // No more than a link holds, though the sender may refill it meanwhile.
     std::size_t most = std::min(batch.size(), entry.link->capacity());
     // A hand with something left takes a place that the bubble is counted on for; three such hands can fill the ring in
     // spite of it (tests/models/flow.pml, -DGREEDY_HAND). So what comes in can go on at once, but for a single packet.
     if (!machine_.topology.direct() && machine_.config.topology.flow == Flow::kBubble)
-      most = std::min(most, std::max<std::size_t>(1, exits_[entry.direction].link->free_places()));
+      most = std::min(most, std::max<std::size_t>(1, out_ports_[entry.direction].link->free_places()));
     const std::size_t count = entry.link->try_receive(std::span(batch).first(most));
     for (std::size_t k = 0; k < count; ++k) arrive(batch[k]);
     moved |= count > 0;
@@ -117,7 +117,7 @@ bool NativePort::receive() {
 
 void NativePort::arrive(PacketId id) {
   Packet& packet = machine_.packet(id);
-  if (packet.owner == resource_.id()) return stopped_ ? discard(id) : come_home(id);
+  if (packet.owner == resource_.id()) return stopped_ ? discard(id) : retire_at_owner(id);
   if (stopped_) return forward(id);
   if (machine_.topology.handles(packet, resource_.id())) {
     switch (packet.kind) {
@@ -137,13 +137,14 @@ void NativePort::arrive(PacketId id) {
 
 void NativePort::forward(PacketId id) {
   const Packet& packet = machine_.packet(id);
-  const std::size_t exit =
-      machine_.topology.direct() ? exit_of_[machine_.topology.next(packet, resource_.id()).value] : packet.direction;
-  exits_[exit].in_hand.push_back(id);
+  const std::size_t exit = machine_.topology.direct()
+                               ? out_port_of_[machine_.topology.next(packet, resource_.id()).value]
+                               : packet.direction;
+  out_ports_[exit].egress.push_back(id);
   hop(id);
 }
 
-void NativePort::come_home(PacketId id) {
+void NativePort::retire_at_owner(PacketId id) {
   Packet& packet = machine_.packet(id);
   if (packet.kind == PacketKind::kRays) {
     // The IDs of the rays that found a slot, and the rays nobody had room for. They wait here and give the packet
@@ -164,11 +165,11 @@ void NativePort::come_home(PacketId id) {
 
 void NativePort::discard(PacketId id) {
   free_[machine_.packet(id).direction].push_back(id);
-  // Release: as in come_home().
+  // Release: as in retire_at_owner().
   out_.store(out_.load(std::memory_order_relaxed) - 1, std::memory_order_release);
 }
 
-void NativePort::leave(PacketId id) {
+void NativePort::inject(PacketId id) {
   // Relaxed: a ray of this packet is still counted, and that count is looked at first.
   out_.store(out_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   forward(id);
@@ -280,7 +281,7 @@ bool NativePort::send_round(RayGroup& group) {
   group.addresses.clear();
   take_rays(*packet);
   if (travels) {
-    leave(id);
+    inject(id);
   } else {
     group.rays = std::move(packet->requests);
     group.addresses = std::move(packet->addresses);
@@ -293,10 +294,10 @@ bool NativePort::send_round(RayGroup& group) {
 
 bool NativePort::may_inject(std::size_t exit) const {
   // A packet in hand goes first. The bubble rule also leaves a place for the ring's own traffic.
-  if (machine_.config.topology.flow == Flow::kNone) return exits_[exit].in_hand.size() < kReceiveBatch;
+  if (machine_.config.topology.flow == Flow::kNone) return out_ports_[exit].egress.size() < kReceiveBatch;
   if (machine_.topology.direct()) return true;
-  if (!exits_[exit].in_hand.empty()) return false;
-  return machine_.config.topology.flow != Flow::kBubble || exits_[exit].link->free_places() >= 2;
+  if (!out_ports_[exit].egress.empty()) return false;
+  return machine_.config.topology.flow != Flow::kBubble || out_ports_[exit].link->free_places() >= 2;
 }
 
 bool NativePort::free_packet(PacketId& id) {
@@ -342,7 +343,7 @@ bool NativePort::issue(bool partial) {
       resource_.retire(*packet);
       if (!stays) free_[packet->direction].push_back(id);
     } else {
-      leave(id);
+      inject(id);
     }
   }
   return moved;
@@ -366,9 +367,9 @@ void NativePort::flush_completed(bool all) {
 // ---- the end, good or bad
 
 bool NativePort::drained() const {
-  const bool hands_empty =
-      std::all_of(exits_.begin(), exits_.end(), [](const Exit& exit) { return exit.in_hand.empty(); });
-  return packets_out() == 0 && hands_empty && resource_.idle() && waiting_ids_.empty() && waiting_rays_.empty() &&
+  const bool egress_empty =
+      std::all_of(out_ports_.begin(), out_ports_.end(), [](const OutPort& exit) { return exit.egress.empty(); });
+  return packets_out() == 0 && egress_empty && resource_.idle() && waiting_ids_.empty() && waiting_rays_.empty() &&
          resource_.packets_in_flight() == 0 && machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
 }
 
@@ -381,15 +382,15 @@ std::string NativePort::describe() const {
   for (const std::vector<RayId>& ids : waiting_ids_) rays += ids.size();
   for (const RayGroup& group : waiting_rays_) rays += group.rays.size();
   if (rays > 0) text += fmt::format(", {} new rays wait", rays);
-  for (const Exit& exit : exits_) {
-    if (exit.in_hand.empty()) continue;
-    const Packet& packet = machine_.packet(exit.in_hand.front());
-    text += fmt::format("; packet {} of resource {}", exit.in_hand.front().value, packet.owner.value);
+  for (const OutPort& exit : out_ports_) {
+    if (exit.egress.empty()) continue;
+    const Packet& packet = machine_.packet(exit.egress.front());
+    text += fmt::format("; packet {} of resource {}", exit.egress.front().value, packet.owner.value);
     if (!packet.members.empty())
       text += fmt::format(" (first ray {}:{})", resource_.rays().layout().owner(packet.members[0].ray).value,
                           resource_.rays().layout().slot(packet.members[0].ray));
     text += fmt::format(" waits for a place in the link to resource {} (depth {}, {} more in hand)",
-                        exit.link->to().value, exit.link->capacity(), exit.in_hand.size() - 1);
+                        exit.link->to().value, exit.link->capacity(), exit.egress.size() - 1);
   }
   return text;
 }

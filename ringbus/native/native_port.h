@@ -25,14 +25,14 @@ class NativePort {
 
   const Resource& resource() const { return resource_; }
   /// Own packets under way, as of some recent moment. Any thread may call.
-  // Acquire: pairs with the release in came_home; whoever sees a packet home sees what it brought.
+  // Acquire: pairs with the release in retire_at_owner; whoever sees a packet home sees what it brought.
   std::uint32_t packets_out() const { return out_.load(std::memory_order_acquire); }
   /// Nothing here: no packet of its own on the way, none in hand, no collection, no new ray.
   bool drained() const;
   /// From now on it only forwards, as one that has stopped does.
   void stop() { stopped_ = true; }
   /// From now on another is known to have stopped. Before the first step.
-  void lose(ResourceId stopped) { resource_.lose(stopped); }
+  void exclude(ResourceId stopped) { resource_.exclude(stopped); }
   /// Counts its steps, but not when it has stopped. Any thread may call.
   // Relaxed: the watcher only wants to see it change.
   std::uint64_t beats() const { return beats_.load(std::memory_order_relaxed); }
@@ -41,20 +41,20 @@ class NativePort {
 
  private:
   /// Where packets leave: one link, and those that the link has not taken yet.
-  struct Exit {
+  struct OutPort {
     Link* link;
-    std::deque<PacketId> in_hand;
+    std::deque<PacketId> egress;
   };
 
   bool step_now();
   bool tick_links();
-  bool send_in_hand();
+  bool send_egress();
   bool receive();
   void arrive(PacketId id);
-  void come_home(PacketId id);
+  void retire_at_owner(PacketId id);
   void discard(PacketId id);
   void forward(PacketId id);
-  void leave(PacketId id);
+  void inject(PacketId id);
 
   bool admit();
   void wait(RayGroup&& group);
@@ -84,13 +84,13 @@ class NativePort {
   std::atomic<std::uint64_t> beats_{0};
   EventSink* sink_;
   Resource resource_;
-  struct Entry {
+  struct InPort {
     Link* link;
     std::uint16_t direction;
   };
-  std::vector<Entry> entries_;               // incoming links
-  std::vector<Exit> exits_;                  // a ring: one a direction
-  std::vector<std::uint32_t> exit_of_;       // point to point: by destination
+  std::vector<InPort> in_ports_;             // incoming links
+  std::vector<OutPort> out_ports_;           // a ring: one a direction
+  std::vector<std::uint32_t> out_port_of_;   // point to point: by destination
   std::vector<std::vector<PacketId>> free_;  // own packets at home, by direction
   std::size_t next_direction_ = 0;
   std::atomic<std::uint32_t> out_{0};           // own packets under way; written by the owner

@@ -23,7 +23,7 @@ namespace carousel::ringbus {
 ///
 /// A frame is a copy of all that the packet holds, and what comes out of the link is the copy: it is written over the
 /// packet, which nobody else touches between a send and its reception. Any part of a copy may be damaged on the wire.
-/// Time passes in turns, ticks of the sender (ResendPatience).
+/// Time passes in turns, ticks of the sender (RetransmitTimer).
 template <template <class> class Queue>
 class ReliableLink final : public Link {
  public:
@@ -39,7 +39,7 @@ class ReliableLink final : public Link {
         out_(frames_, config.faults, 2 * number, delay_of(config)),
         back_(acks_, config.faults, 2 * number + 1, delay_of(config)) {}
   ~ReliableLink() override {
-    Frame frame;
+    LinkFrame frame;
     while (frames_.try_pop(frame)) frame.drop();
   }
 
@@ -51,7 +51,7 @@ class ReliableLink final : public Link {
   bool tick() override {
     const bool moved = take_acks();
     out_.release();
-    if (base_ < sent_ && patience_.ends(ResendPatience::Clock::now)) go_back();
+    if (base_ < sent_ && patience_.ends(RetransmitTimer::Clock::now)) go_back();
     transmit();
     return moved;
   }
@@ -74,7 +74,7 @@ class ReliableLink final : public Link {
   static constexpr std::size_t kAcks = 64;
 
   /// Owns its image, by hand: queues carry what is trivially copyable. Whoever has taken it last drops it.
-  struct Frame {
+  struct LinkFrame {
     std::uint64_t sequence = 0, packet = 0, check = 0;
     PacketImage* image = nullptr;
 
@@ -83,7 +83,7 @@ class ReliableLink final : public Link {
       std::uint64_t* const head[] = {&sequence, &packet, &check};
       *(word < 3 ? head[word] : &(*image)[word - 3]) ^= std::uint64_t{1} << bits % 64;
     }
-    Frame copy() const { return {sequence, packet, check, new PacketImage(*image)}; }
+    LinkFrame copy() const { return {sequence, packet, check, new PacketImage(*image)}; }
     void drop() { delete std::exchange(image, nullptr); }
   };
   struct Ack {
@@ -175,7 +175,7 @@ class ReliableLink final : public Link {
   template <class Take>
   void take_frames(const Take& take) {
     bool heard = false;
-    Frame frame;
+    LinkFrame frame;
     while (frames_.try_pop(frame)) {
       heard = true;
       const bool whole = frame.check == check(frame.sequence, frame.packet, *frame.image);
@@ -202,7 +202,7 @@ class ReliableLink final : public Link {
   std::vector<Sent> window_;                      // by sequence number modulo depth
   std::uint64_t base_ = 0, sent_ = 0, next_ = 0;  // acknowledged up to; on the wire up to; accepted up to
   std::uint64_t once_sent_ = 0;                   // the first that has never been on the wire
-  ResendPatience patience_;
+  RetransmitTimer patience_;
   std::uint64_t asked_for_ = ~std::uint64_t{0};  // the frame that an acknowledgement last asked for again
   std::uint64_t resent_ = 0;
   // The receiver's.
@@ -210,10 +210,10 @@ class ReliableLink final : public Link {
   std::uint64_t discarded_ = 0;
   std::optional<PacketId> held_;  // taken in while nobody wanted it
   // Between them.
-  alignas(128) Queue<Frame> frames_;
+  alignas(128) Queue<LinkFrame> frames_;
   SpscRing<Ack> acks_;
-  alignas(128) FaultyWire<Queue<Frame>, Frame> out_;  // the sender's end
-  alignas(128) FaultyWire<SpscRing<Ack>, Ack> back_;  // the receiver's end
+  alignas(128) FaultyWire<Queue<LinkFrame>, LinkFrame> out_;  // the sender's end
+  alignas(128) FaultyWire<SpscRing<Ack>, Ack> back_;          // the receiver's end
 };
 
 }  // namespace carousel::ringbus

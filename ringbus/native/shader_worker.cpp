@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kGenerateBatch = 4096;
 }  // namespace
 
-ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, RetryLedger* ledger)
+ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, OutstandingRays* ledger)
     : id_(id),
       machine_(machine),
       workload_(workload),
@@ -52,20 +52,20 @@ bool ShaderWorker::generate() {
   std::int64_t left = std::min(room, slots_ / workers + 1);
   bool any = false;
   while (left > 0) {
-    const std::int64_t asked = std::min(left, kGenerateBatch);
+    const std::int64_t any_hit_calls = std::min(left, kGenerateBatch);
     // Counted before they exist, so that nobody sees the source finished with the last rays not yet counted.
-    count_.outstanding.fetch_add(asked, std::memory_order_relaxed);
+    count_.outstanding.fetch_add(any_hit_calls, std::memory_order_relaxed);
     rays_.clear();
-    const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(asked), rays_);
-    count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - asked, std::memory_order_release);
+    const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(any_hit_calls), rays_);
+    count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - any_hit_calls, std::memory_order_release);
     count_.emitted.fetch_add(made.rays, std::memory_order_relaxed);
     // Release: pairs with the acquire in done().
     if (made.finished) count_.source_finished.store(true, std::memory_order_release);
     if (ledger_ != nullptr) ledger_->add(rays_);
     if (made.rays > 0) machine_.control.submit(rays_);
     any |= made.rays > 0;
-    if (made.finished || static_cast<std::int64_t>(made.rays) < asked) break;
-    left -= asked;
+    if (made.finished || static_cast<std::int64_t>(made.rays) < any_hit_calls) break;
+    left -= any_hit_calls;
   }
   return any;
 }

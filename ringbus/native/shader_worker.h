@@ -28,7 +28,7 @@ struct RayCount {
 class ShaderWorker {
  public:
   /// `ledger` is told of every ray; null: none is kept.
-  ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, RetryLedger* ledger = nullptr);
+  ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, OutstandingRays* ledger = nullptr);
 
   /// Returns whether anything was done.
   bool step();
@@ -41,7 +41,7 @@ class ShaderWorker {
   Machine& machine_;
   Workload& workload_;
   RayCount& count_;
-  RetryLedger* ledger_;
+  OutstandingRays* ledger_;
   std::int64_t slots_;
   RayBatch rays_;
 };

@@ -41,7 +41,7 @@ struct Event {
   std::uint32_t rays = 0;
   std::uint32_t reads = 0;  ///< kTest: records of rays and bundles that were read
   std::uint16_t depth = 0;  ///< kTest: of `key`
-  TestCounts tests{};
+  IntersectionCounts tests{};
   const BundleCounts* bundles = nullptr;  ///< kTest with bundles; valid during the call only
   StallReason reason = StallReason::kNone;
   std::span<const PacketMember> members{};  ///< valid during the call only

@@ -16,7 +16,7 @@ struct ResourceStatistics {
   std::uint64_t local_rays = 0, seen_rays = 0;  ///< members tested here; members of all packets seen
   std::uint64_t memberships = 0;                ///< ray IDs that joined collections at retirement
   std::array<std::uint64_t, 6> stalls{};        ///< by StallReason
-  TestCounts tests;
+  IntersectionCounts tests;
   std::uint64_t reads = 0;            ///< records of rays and bundles read for tests
   std::vector<BundleCounts> bundles;  ///< by depth in strips; empty without bundles
   CullCounts culls;

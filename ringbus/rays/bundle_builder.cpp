@@ -78,7 +78,7 @@ double BundleBuilder::size_of(const Bounds& b) const {
 }
 
 // What has no size yet has no percentage either: there the size itself counts.
-double BundleBuilder::unlikeness(double before, double after) const {
+double BundleBuilder::dissimilarity(double before, double after) const {
   const bool percent = config_.builder.measure == BundlesConfig::Builder::Measure::kPercent;
   return percent && before > 0 ? (after - before) / before : after;
 }
@@ -127,7 +127,7 @@ void BundleBuilder::take(std::uint32_t index, const RayRequest& request, Groups&
     if (!may_join(request, bundle)) continue;
     Bounds with = bundle.bounds;
     with.extend(Bounds(request.ray));
-    const double size = size_of(with), unlike = unlikeness(bundle.size, size);
+    const double size = size_of(with), unlike = dissimilarity(bundle.size, size);
     if (!(unlike <= config_.builder.threshold) || !(unlike < least)) continue;
     best = place, least = unlike, best_size = size;
   }

@@ -51,7 +51,7 @@ class BundleBuilder {
   bool may_share(const RayRequest& request) const;
   bool may_join(const RayRequest& request, const Open& open) const;
   double size_of(const Bounds& bounds) const;
-  double unlikeness(double before, double after) const;
+  double dissimilarity(double before, double after) const;
   void take(std::uint32_t index, const RayRequest& request, Groups& out);
   void open(std::uint32_t index, const RayRequest& request, Groups& out);
   /// The bundle at `place` of oldest_first_ goes.

@@ -31,7 +31,7 @@ std::size_t RayControl::load_bundle(ResourceId resource, std::span<const RayRequ
     store.record(members_.back()).pending = 1;  // held for the bundle, until it dissolves
   }
   ids.resize(first);
-  ids.push_back(store.bundle_up(list.free_bundles.back(), members_, static_cast<std::int16_t>(initial_tests_)));
+  ids.push_back(store.make_bundle(list.free_bundles.back(), members_, static_cast<std::int16_t>(initial_tests_)));
   list.free_bundles.pop_back();
   return rays.size();
 }

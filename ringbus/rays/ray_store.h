@@ -49,7 +49,7 @@ class RayStore {
   }
   /// Makes a bundle in a free slot of one, of rays in `ray_slots` (of this store), waiting for `tests` tests. Adds to
   /// none of their counts.
-  RayId bundle_up(std::uint32_t slot, std::span<const std::uint32_t> ray_slots, std::int16_t tests) {
+  RayId make_bundle(std::uint32_t slot, std::span<const std::uint32_t> ray_slots, std::int16_t tests) {
     accel::BundleRecord& bundle = this->bundle(slot) = accel::BundleRecord();
     bundle.rays = (slot - slots()) * room_.rays;
     bundle.count = static_cast<std::uint8_t>(ray_slots.size());

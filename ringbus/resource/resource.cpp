@@ -66,7 +66,7 @@ std::uint32_t Resource::discard() {
     if (transforms_ != nullptr) transforms_->forget(slot);
   }
   free_own_bundles();
-  reserved_blocks_ = custody_ = 0;
+  reserved_blocks_ = rays_held_ = 0;
   return std::exchange(in_flight_, 0);
 }
 
@@ -88,7 +88,7 @@ ResourceId Resource::home_of(accel::NodeKey key) const {
   if (config_.collections.home != Home::kHash) return id();
   const std::uint32_t resources = static_cast<std::uint32_t>(config_.topology.resources);
   const ResourceId home(static_cast<std::uint32_t>(((key.bits() * 0x9e3779b97f4a7c15ull) >> 33) % resources));
-  return home == lost_ ? ResourceId((home.value + 1) % resources) : home;
+  return home == excluded_ ? ResourceId((home.value + 1) % resources) : home;
 }
 
 // ---- admission
@@ -100,7 +100,7 @@ std::size_t Resource::admissible() const {
   const std::int64_t blocks = config_.collections.capacity / block_rays;
   // Ordered rays may each end up alone in a block. Otherwise only above half free: what new rays put into the
   // root's collection must never crowd out their children.
-  if (ordered_) return static_cast<std::size_t>(std::max<std::int64_t>(0, blocks - custody_));
+  if (ordered_) return static_cast<std::size_t>(std::max<std::int64_t>(0, blocks - rays_held_));
   const std::int64_t room =
       collections_.free_blocks() - reserved_blocks_ - std::max<std::int64_t>(floor_blocks_, blocks / 2);
   return room <= 0 ? 0 : static_cast<std::size_t>(room * block_rays);
@@ -110,7 +110,7 @@ void Resource::admit(std::span<const RayId> rays) {
   const std::size_t block = static_cast<std::size_t>(config_.packets.rays);
   for (std::size_t i = 0; i < rays.size(); i += block)
     collections_.add(accel_.root_key(), 0, 0.0f, rays.subspan(i, std::min(block, rays.size() - i)));
-  custody_ += static_cast<std::uint32_t>(rays.size());
+  rays_held_ += static_cast<std::uint32_t>(rays.size());
   record({.kind = EventKind::kAdmit, .resource = id(), .rays = static_cast<std::uint32_t>(rays.size())});
 }
 

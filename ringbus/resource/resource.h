@@ -31,7 +31,7 @@ std::uint32_t reserve_blocks(const Config& config, int width, int max_depth);
 class SubtreeTracer {
  public:
   virtual ~SubtreeTracer() = default;
-  virtual void trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) = 0;
+  virtual void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) = 0;
 };
 
 /// A compute resource without a clock: its slice of the rays, its testers and its share of the collections. An
@@ -51,7 +51,7 @@ class Resource {
   void set_transform_account(TransformAccount* account) { transforms_ = account; }
   /// Before the first test: rays about which it had to be asked whether something lets them through wait for release()
   /// in each packet's turn, whatever else becomes of them.
-  void hold_askers(bool hold) { hold_askers_ = hold; }
+  void hold_any_hit_rays(bool hold) { hold_any_hit_rays_ = hold; }
   /// Whether `key` is a subtree that is crossed in one visit.
   bool is_treelet(accel::NodeKey key) const { return is_treelet(config_, accel_, key); }
 
@@ -69,18 +69,18 @@ class Resource {
   /// Tests the packet's members that live here and writes the answers into it.
   void test(Packet& packet);
   /// What the last test() did, with how many rays, and how many records of rays and bundles it read for that.
-  const TestCounts& last_tests() const { return tests_; }
+  const IntersectionCounts& last_tests() const { return tests_; }
   std::size_t last_rays() const { return local_slots_.size(); }
   std::uint32_t last_reads() const { return reads_; }
   /// Passes of its bundles through a bundle unit: one a test, or one an edge of a silhouette.
   std::uint32_t last_bundle_passes() const { return bundle_passes_; }
   /// A ray that the last test() held, and how often was asked for it.
-  struct Asker {
+  struct AnyHitCall {
     std::uint32_t slot, times;
   };
-  std::span<const Asker> last_askers() const { return askers_; }
+  std::span<const AnyHitCall> last_any_hit_calls() const { return any_hit_rays_; }
   /// The answers are there: the ray may complete.
-  void release(std::uint32_t slot) { settle(slot, -1); }
+  void release(std::uint32_t slot) { add_pending(slot, -1); }
   /// Takes back a packet of its own: hits join the children's collections.
   void retire(Packet& packet);
   /// Takes the members of a membership packet that has reached its home.
@@ -94,7 +94,7 @@ class Resource {
   /// had been issued and not come home; they are not to be retired any more.
   std::uint32_t discard();
   /// From now on `resource` is no home to collections. Before the first test, or after discard().
-  void lose(ResourceId resource) { lost_ = resource; }
+  void exclude(ResourceId resource) { excluded_ = resource; }
 
   bool idle() const { return collections_.empty() && issuing_.rays.empty(); }
   const RayStore& rays() const { return store_; }
@@ -122,25 +122,25 @@ class Resource {
   void fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std::span<const RayId> rays, std::uint32_t lanes);
 
   void gather_local(const Packet& packet);
-  TestCounts transforms_of(accel::NodeKey key);
+  IntersectionCounts transforms_of(accel::NodeKey key);
   void test_spread(Packet& packet);
   void test_ordered(Packet& packet);
   void find_bundles();
   bool bundles_go_on(const Packet& packet) const;
   bool moved(accel::NodeKey key) const;
   bool too_wide(const accel::BundleRecord& bundle, const accel::Node& node) const;
-  void bound_anew(std::span<const std::uint32_t> rays, std::uint32_t instance, accel::BundleRecord& bundle);
-  void touch(std::span<const std::uint32_t> rays, accel::NodeKey key);
+  void compute_bounds(std::span<const std::uint32_t> rays, std::uint32_t instance, accel::BundleRecord& bundle);
+  void charge_reads(std::span<const std::uint32_t> rays, accel::NodeKey key);
   void expand_bundles(Packet& packet);
-  void settle_expanded();
+  void add_pending_expanded();
   void test_whole(Packet& packet);
   void regroup(Packet& packet);
-  void send_inside(Packet& packet, std::span<const std::uint32_t> rays, const accel::BundleRecord& inside,
-                   std::uint8_t mask);
+  void descend_into_instance(Packet& packet, std::span<const std::uint32_t> rays, const accel::BundleRecord& inside,
+                             std::uint8_t mask);
   void send_alone(Packet& packet, std::uint32_t slot, std::uint8_t mask);
-  void settle_bundle(std::uint32_t slot, std::int32_t pending_change);
-  void settle(std::uint32_t slot, std::int32_t pending_change);
-  std::uint8_t* answers_wanted();
+  void add_pending_bundle(std::uint32_t slot, std::int32_t pending_change);
+  void add_pending(std::uint32_t slot, std::int32_t pending_change);
+  std::uint8_t* any_hit_counters();
   void hold_back(std::span<const std::uint32_t> slots);
   void complete(std::uint32_t slot);
   void retire_spread(Packet& packet);
@@ -157,15 +157,15 @@ class Resource {
   SubtreeTracer* subtree_tracer_ = nullptr;
   TransformAccount* transforms_ = nullptr;
   bool ordered_, single_, bounded_;
-  bool hold_askers_ = false;
+  bool hold_any_hit_rays_ = false;
   std::uint32_t floor_blocks_;
-  std::optional<ResourceId> lost_;
+  std::optional<ResourceId> excluded_;
   RayStore& store_;
   CollectionStore collections_;
   std::optional<RayStacks> stacks_;
   Issuing issuing_;
   std::uint32_t in_flight_ = 0, reserved_blocks_ = 0;
-  std::uint32_t custody_ = 0;  // rays in its collections or in its packets
+  std::uint32_t rays_held_ = 0;  // rays in its collections or in its packets
   HitBatch completed_;
   std::vector<std::uint32_t> freed_slots_;
 
@@ -177,12 +177,12 @@ class Resource {
   struct LocalBundle {
     std::uint32_t slot, member;
   };
-  struct OnTheirOwn {  // a ray that leaves its bundle for some of a node's children
+  struct EjectedRay {  // a ray that leaves its bundle for some of a node's children
     std::uint32_t slot;
     std::uint8_t mask;
   };
   std::vector<LocalBundle> local_bundles_;
-  std::vector<OnTheirOwn> leaving_;
+  std::vector<EjectedRay> leaving_;
   std::vector<std::int32_t> bundle_changes_;  // of the local bundles' pending counts
   std::uint64_t bundle_transforms_ = 0;       // of their rays, in this visit
   RayBatch regrouped_;
@@ -192,11 +192,11 @@ class Resource {
 
   // Scratch of the calls, kept so that nothing is allocated per packet.
   std::vector<std::uint32_t> local_slots_, local_members_;
-  std::vector<std::uint8_t> masks_, asked_;
-  std::vector<Asker> askers_;
+  std::vector<std::uint8_t> masks_, any_hit_calls_;
+  std::vector<AnyHitCall> any_hit_rays_;
   std::vector<float> entries_;
   std::vector<RayId> ids_;
-  TestCounts tests_;
+  IntersectionCounts tests_;
   std::uint32_t reads_ = 0, bundle_passes_ = 0;
 };
 

@@ -97,7 +97,8 @@ bool Resource::too_wide(const accel::BundleRecord& bundle, const accel::Node& no
 }
 
 /// The bounds of rays in the space of an instance, as the box tests there will see them.
-void Resource::bound_anew(std::span<const std::uint32_t> rays, std::uint32_t instance, accel::BundleRecord& bundle) {
+void Resource::compute_bounds(std::span<const std::uint32_t> rays, std::uint32_t instance,
+                              accel::BundleRecord& bundle) {
   for (const std::uint32_t slot : rays) {
     const RayRecord& record = store_.record(slot);
     bundle.widen(accel_.instances[instance].transform.to_model(record.ray), record.hit.t);
@@ -107,7 +108,7 @@ void Resource::bound_anew(std::span<const std::uint32_t> rays, std::uint32_t ins
 }
 
 /// The records of a bundle's rays are read, and the rays brought to where the node is.
-void Resource::touch(std::span<const std::uint32_t> rays, accel::NodeKey key) {
+void Resource::charge_reads(std::span<const std::uint32_t> rays, accel::NodeKey key) {
   reads_ += static_cast<std::uint32_t>(rays.size());
   bundles_.touched += rays.size();
   if (transforms_ == nullptr || !transforms_->moves(key.instance)) return;
@@ -132,7 +133,7 @@ void Resource::expand_bundles(Packet& packet) {
 }
 
 /// After their rays' tests: the bundles' own ranges, which cost nothing now that the rays are at hand, and counts.
-void Resource::settle_expanded() {
+void Resource::add_pending_expanded() {
   for (const LocalBundle& local : local_bundles_) {
     accel::BundleRecord& bundle = store_.bundle(local.slot);
     bundle.tmax = -kInfinity;
@@ -141,11 +142,11 @@ void Resource::settle_expanded() {
       if (ray.hit.valid()) bundle.nearest = std::min(bundle.nearest, ray.hit.t);
       if ((ray.tag.flags & kRayDone) == 0) bundle.tmax = std::max(bundle.tmax, ray.hit.t);
     }
-    settle_bundle(local.slot, -1);
+    add_pending_bundle(local.slot, -1);
   }
 }
 
-void Resource::settle_bundle(std::uint32_t slot, std::int32_t pending_change) {
+void Resource::add_pending_bundle(std::uint32_t slot, std::int32_t pending_change) {
   accel::BundleRecord& bundle = store_.bundle(slot);
   bundle.pending = static_cast<std::int16_t>(bundle.pending + pending_change);
   if constexpr (kChecked) {
@@ -158,7 +159,7 @@ void Resource::settle_bundle(std::uint32_t slot, std::int32_t pending_change) {
   bundles_.formed_rays += bundle.count;
   reads_ += bundle.count;
   bundles_.touched += bundle.count;
-  for (const std::uint32_t ray : store_.rays_of(slot)) settle(ray, -1);
+  for (const std::uint32_t ray : store_.rays_of(slot)) add_pending(ray, -1);
   store_.retire(slot);
   const bool own = slot >= store_.slots() + store_.room().loaded;
   bundles_.loaded += !own;
@@ -180,7 +181,7 @@ void Resource::test_whole(Packet& packet) {
         moved(packet.key) && (store_.bundle(local.slot).flags & accel::BundleRecord::kInModelSpace) == 0;
     const bool stays_out = enters && free_bundles_.empty();
     accel::BundleRecord inside;
-    if (enters && !stays_out) bound_anew(rays, packet.key.instance, inside);
+    if (enters && !stays_out) compute_bounds(rays, packet.key.instance, inside);
     const accel::BundleRecord& bundle = enters ? inside : store_.bundle(local.slot);
     accel::BundleAnswer answer;
     if (stays_out || too_wide(bundle, node)) {
@@ -197,12 +198,13 @@ void Resource::test_whole(Packet& packet) {
       packet.nearest[lane] = std::min(packet.nearest[lane], answer.entry[lane]);
     }
     masks_.assign(rays.size(), 0);
-    if (answer.undecided != 0 || reformed_ || enters) touch(rays, packet.key);
+    if (answer.undecided != 0 || reformed_ || enters) charge_reads(rays, packet.key);
     if (answer.undecided != 0) {
-      if (hold_askers_) asked_.assign(rays.size(), 0);
-      accel::test_strip(accel_, packet.key, answer.undecided,
-                        {store_.records(), rays.data(), rays.size(), nullptr, hold_askers_ ? asked_.data() : nullptr},
-                        {masks_.data(), packet.nearest, nullptr}, tests_);
+      if (hold_any_hit_rays_) any_hit_calls_.assign(rays.size(), 0);
+      accel::test_strip(
+          accel_, packet.key, answer.undecided,
+          {store_.records(), rays.data(), rays.size(), nullptr, hold_any_hit_rays_ ? any_hit_calls_.data() : nullptr},
+          {masks_.data(), packet.nearest, nullptr}, tests_);
       hold_back(rays);
     }
     const std::uint8_t together = reformed_ ? 0 : answer.all;
@@ -213,7 +215,7 @@ void Resource::test_whole(Packet& packet) {
     }
     packet.members[local.member].mask = enters ? std::uint8_t{0} : together;
     bundle_changes_.push_back((enters ? 0 : static_cast<std::int32_t>(bits(together))) - 1);
-    if (enters && together != 0) send_inside(packet, rays, inside, together);
+    if (enters && together != 0) descend_into_instance(packet, rays, inside, together);
     const std::uint64_t lanes = node.count;
     bundles_.all += bits(answer.all);
     bundles_.split += bits(answer.undecided);
@@ -227,7 +229,7 @@ void Resource::test_whole(Packet& packet) {
     if (reformed_) {
       masks_.resize(local_slots_.size());
       const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), nullptr,
-                                      answers_wanted()};
+                                      any_hit_counters()};
       accel::test_strip(accel_, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr}, tests_);
       hold_back(local_slots_);
       for (std::size_t i = 0; i < local_slots_.size(); ++i) {
@@ -241,17 +243,18 @@ void Resource::test_whole(Packet& packet) {
   regroup(packet);
   // Only now may counts fall to nothing: whoever goes on has been counted.
   if (reformed_)
-    for (const std::uint32_t slot : local_slots_) settle(slot, -1);
-  for (std::size_t i = 0; i < local_bundles_.size(); ++i) settle_bundle(local_bundles_[i].slot, bundle_changes_[i]);
+    for (const std::uint32_t slot : local_slots_) add_pending(slot, -1);
+  for (std::size_t i = 0; i < local_bundles_.size(); ++i)
+    add_pending_bundle(local_bundles_[i].slot, bundle_changes_[i]);
 }
 
 /// Sends a bundle on as one of the instance that it has come to.
-void Resource::send_inside(Packet& packet, std::span<const std::uint32_t> rays, const accel::BundleRecord& inside,
-                           std::uint8_t mask) {
+void Resource::descend_into_instance(Packet& packet, std::span<const std::uint32_t> rays,
+                                     const accel::BundleRecord& inside, std::uint8_t mask) {
   const std::uint32_t slot = free_bundles_.back();
   free_bundles_.pop_back();
   for (const std::uint32_t ray : rays) ++store_.record(ray).pending;
-  packet.members.push_back({store_.bundle_up(slot, rays, static_cast<std::int16_t>(bits(mask))), mask});
+  packet.members.push_back({store_.make_bundle(slot, rays, static_cast<std::int16_t>(bits(mask))), mask});
   store_.rebound(slot, inside);
 }
 
@@ -264,11 +267,11 @@ void Resource::send_alone(Packet& packet, std::uint32_t slot, std::uint8_t mask)
 /// to go back to the builder.
 void Resource::regroup(Packet& packet) {
   if (!rebuilds_) {
-    for (const OnTheirOwn& ray : leaving_) send_alone(packet, ray.slot, ray.mask);
+    for (const EjectedRay& ray : leaving_) send_alone(packet, ray.slot, ray.mask);
     return;
   }
   std::stable_sort(leaving_.begin(), leaving_.end(),
-                   [](const OnTheirOwn& a, const OnTheirOwn& b) { return a.mask < b.mask; });
+                   [](const EjectedRay& a, const EjectedRay& b) { return a.mask < b.mask; });
   for (std::size_t first = 0, end; first < leaving_.size(); first = end) {
     const std::uint8_t mask = leaving_[first].mask;
     regrouped_.clear();
@@ -290,7 +293,7 @@ void Resource::regroup(Packet& packet) {
       }
       for (const std::uint32_t slot : bundle_slots_) ++store_.record(slot).pending;
       packet.members.push_back(
-          {store_.bundle_up(free_bundles_.back(), bundle_slots_, static_cast<std::int16_t>(bits(mask))), mask});
+          {store_.make_bundle(free_bundles_.back(), bundle_slots_, static_cast<std::int16_t>(bits(mask))), mask});
       free_bundles_.pop_back();
     }
   }

@@ -16,7 +16,7 @@ void Resource::retire(Packet& packet) {
     joined = static_cast<std::uint32_t>(collections_.memberships() - before);
   }
   // Custody bounds the storage of ordered rays, which are in one place at a time and stay with their issuer.
-  if (ordered_ && bounded_) custody_ -= static_cast<std::uint32_t>(packet.members.size()) - joined;
+  if (ordered_ && bounded_) rays_held_ -= static_cast<std::uint32_t>(packet.members.size()) - joined;
   reserved_blocks_ -= packet.reserved_blocks;
   --in_flight_;
   record({.kind = EventKind::kRetire, .resource = id(), .key = packet.key, .rays = joined, .members = packet.members});

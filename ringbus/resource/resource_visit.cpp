@@ -36,7 +36,7 @@ void Resource::gather_local(const Packet& packet) {
   local_members_.resize(count);
 }
 
-void Resource::settle(std::uint32_t slot, std::int32_t pending_change) {
+void Resource::add_pending(std::uint32_t slot, std::int32_t pending_change) {
   RayRecord& record = store_.record(slot);
   record.pending += pending_change;
   if constexpr (kChecked) {
@@ -56,8 +56,8 @@ void Resource::complete(std::uint32_t slot) {
 }
 
 // Before the tests, which may complete rays.
-TestCounts Resource::transforms_of(accel::NodeKey key) {
-  TestCounts counts;
+IntersectionCounts Resource::transforms_of(accel::NodeKey key) {
+  IntersectionCounts counts;
   if (!transforms_->moves(key.instance)) return counts;
   for (const std::uint32_t slot : local_slots_)
     if ((store_.record(slot).tag.flags & kRayDone) == 0) counts.transforms += transforms_->needs(slot, key.instance);
@@ -66,26 +66,26 @@ TestCounts Resource::transforms_of(accel::NodeKey key) {
 }
 
 /// Where the kernels are to note how often they asked, a member each; null when nobody wants to know.
-std::uint8_t* Resource::answers_wanted() {
-  if (!hold_askers_) return nullptr;
-  asked_.assign(local_slots_.size(), 0);
-  return asked_.data();
+std::uint8_t* Resource::any_hit_counters() {
+  if (!hold_any_hit_rays_) return nullptr;
+  any_hit_calls_.assign(local_slots_.size(), 0);
+  return any_hit_calls_.data();
 }
 
 /// Gives the rays that asked a count to wait for, before those of the test are taken from them.
 void Resource::hold_back(std::span<const std::uint32_t> slots) {
-  if (!hold_askers_) return;
+  if (!hold_any_hit_rays_) return;
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (asked_[i] == 0) continue;
+    if (any_hit_calls_[i] == 0) continue;
     ++store_.record(slots[i]).pending;
-    askers_.push_back({slots[i], asked_[i]});
+    any_hit_rays_.push_back({slots[i], any_hit_calls_[i]});
   }
 }
 
 void Resource::test(Packet& packet) {
-  askers_.clear();
+  any_hit_rays_.clear();
   gather_local(packet);
-  tests_ = TestCounts{};
+  tests_ = IntersectionCounts{};
   bundles_ = BundleCounts{};
   bundle_passes_ = 0;
   if (bundled_) find_bundles();
@@ -95,14 +95,14 @@ void Resource::test(Packet& packet) {
   if (!local_bundles_.empty() && !whole) expand_bundles(packet);
   if (seen > 0) {
     const bool accounted = transforms_ != nullptr && !is_treelet(packet.key);  // a subtree's tracer does it itself
-    const TestCounts moved = accounted ? transforms_of(packet.key) : TestCounts{};
+    const IntersectionCounts moved = accounted ? transforms_of(packet.key) : IntersectionCounts{};
     if (ordered_)
       test_ordered(packet);
     else if (whole)
       test_whole(packet);
     else
       test_spread(packet);
-    if (!whole) settle_expanded();
+    if (!whole) add_pending_expanded();
     if (accounted) {
       const std::uint64_t of_bundles = whole ? bundle_transforms_ : 0;
       tests_.transforms = moved.transforms + of_bundles;
@@ -122,7 +122,8 @@ void Resource::test(Packet& packet) {
 }
 
 void Resource::test_spread(Packet& packet) {
-  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_, answers_wanted()};
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_,
+                                  any_hit_counters()};
   if (is_treelet(packet.key) || !packet.key.ref.is_inner()) {
     if (is_treelet(packet.key) && subtree_tracer_ != nullptr)
       subtree_tracer_->trace(packet.key, members, tests_);
@@ -131,7 +132,7 @@ void Resource::test_spread(Packet& packet) {
     else
       accel::test_strip(accel_, packet.key, packet.lanes, members, {}, tests_);
     hold_back(local_slots_);
-    for (const std::uint32_t slot : local_slots_) settle(slot, -1);
+    for (const std::uint32_t slot : local_slots_) add_pending(slot, -1);
     return;
   }
   masks_.resize(local_slots_.size());
@@ -140,7 +141,7 @@ void Resource::test_spread(Packet& packet) {
   if (!single_) {
     for (std::size_t i = 0; i < local_slots_.size(); ++i) {
       packet.members[local_members_[i]].mask = masks_[i];
-      settle(local_slots_[i], kBitCount[masks_[i]] - 1);
+      add_pending(local_slots_[i], kBitCount[masks_[i]] - 1);
     }
     return;
   }
@@ -150,12 +151,13 @@ void Resource::test_spread(Packet& packet) {
   const std::int32_t below = tests_of(config_, accel_, accel_.child_key(packet.key, lane), node.strip_size[lane]);
   for (std::size_t i = 0; i < local_slots_.size(); ++i) {
     packet.members[local_members_[i]].mask = masks_[i];
-    settle(local_slots_[i], (masks_[i] != 0 ? below : 0) - 1);
+    add_pending(local_slots_[i], (masks_[i] != 0 ? below : 0) - 1);
   }
 }
 
 void Resource::test_ordered(Packet& packet) {
-  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_, answers_wanted()};
+  const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_,
+                                  any_hit_counters()};
   if (packet.key.ref.is_inner()) {
     masks_.resize(local_slots_.size());
     entries_.resize(accel::kMaxWidth * local_slots_.size());
@@ -177,7 +179,7 @@ void Resource::test_ordered(Packet& packet) {
     const bool done = (ray.tag.flags & kRayDone) != 0;
     const NextNode next = done ? NextNode{} : stacks_->pop(slot, ray.hit.t);
     packet.next[local_members_[i]] = next;
-    if (!next.any) settle(slot, -1);
+    if (!next.any) add_pending(slot, -1);
   }
 }
 

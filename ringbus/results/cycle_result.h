@@ -25,26 +25,26 @@ enum class TileState : std::uint8_t {
 inline constexpr std::size_t kTileStates = 7;
 
 /// A class of equal units of one resource, or a link, over the whole run.
-struct UnitLedger {
+struct Utilisation {
   Cycle busy = 0;     ///< cycles in which it worked
   Cycle stalled = 0;  ///< it had work and could not do it
-  friend bool operator==(const UnitLedger&, const UnitLedger&) = default;
+  friend bool operator==(const Utilisation&, const Utilisation&) = default;
 };
 
 /// What the stacks of a resource's rays moved, for `shape: independent`.
-struct StackLedger {
+struct StackTraffic {
   std::uint64_t pushed_bytes = 0, popped_bytes = 0;
   std::uint64_t peak_bytes = 0;      ///< of all its rays at once
   std::uint64_t ray_peak_bytes = 0;  ///< of one ray
-  friend bool operator==(const StackLedger&, const StackLedger&) = default;
+  friend bool operator==(const StackTraffic&, const StackTraffic&) = default;
 };
 
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
-  UnitLedger box, triangle, plane, bundle, transform, ray_reads, procedural,
+  Utilisation box, triangle, plane, bundle, transform, ray_reads, procedural,
       any_hit;  ///< busy within TileState::kTesting
-  UnitLedger handler;
-  StackLedger stack;
+  Utilisation dispatch;
+  StackTraffic stack;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
   LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they are home
   Cycle packet_cycles = 0;               ///< its packets under way, summed over the cycles
@@ -52,17 +52,17 @@ struct TileResult {
 };
 
 /// What stood in the queue at the far end of a link.
-struct QueueLedger {
+struct Occupancy {
   Cycle packet_cycles = 0;  ///< packets times the cycles they waited
   std::uint64_t most = 0;   ///< packets at once
-  friend bool operator==(const QueueLedger&, const QueueLedger&) = default;
+  friend bool operator==(const Occupancy&, const Occupancy&) = default;
 };
 
-struct LinkLedger {
+struct LinkUse {
   std::uint32_t from = 0, to = 0;
-  UnitLedger use;
-  QueueLedger queue;
-  friend bool operator==(const LinkLedger&, const LinkLedger&) = default;
+  Utilisation use;
+  Occupancy queue;
+  friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
 struct CacheResult {
@@ -72,10 +72,10 @@ struct CacheResult {
 
 /// A resource stopped for good: when it did, when ray control gave it up, and when everything had been drained and rays
 /// began again (0 when all had come back meanwhile).
-struct StopLedger {
+struct StopTimes {
   std::uint32_t resource = 0;
   Cycle stopped = 0, noticed = 0, restarted = 0;
-  friend bool operator==(const StopLedger&, const StopLedger&) = default;
+  friend bool operator==(const StopTimes&, const StopTimes&) = default;
 };
 
 struct CycleResult {
@@ -84,13 +84,13 @@ struct CycleResult {
   std::uint64_t steady_rays = 0;  ///< completed in these
   double steady_spread = 0;       ///< by how much the rates of their halves differ, as a fraction
   std::vector<TileResult> tiles;  ///< by resource
-  std::vector<LinkLedger> links;
+  std::vector<LinkUse> links;
   std::vector<CacheResult> caches;
   std::uint64_t memory_lines = 0;
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
-  std::optional<StopLedger> stop;  ///< if one was given up before the last ray was shaded
+  std::optional<StopTimes> stop;  ///< if one was given up before the last ray was shaded
   EpochDigests epochs;
   std::vector<Step> steps;  ///< of RunOptions::trace
   friend bool operator==(const CycleResult&, const CycleResult&) = default;

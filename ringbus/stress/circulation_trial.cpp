@@ -17,16 +17,16 @@ constexpr std::size_t kTaken = 8;  // at most, from a link at once
 /// A ring as the native engine's: each node takes in what comes, passes on what is not its own, and sends messages of
 /// its own, at most `capacity` of them out at once, which leaves a place free on the ring.
 template <std::size_t kBytes>
-class Ring final : public Crew {
+class Ring final : public WorkerGroup {
  public:
   Ring(const QueueUnderTest& queue, std::size_t threads, const TrialOptions& options)
-      : Crew(threads),
+      : WorkerGroup(threads),
         threads_(threads),
         each_(std::max<std::uint64_t>(options.messages / kNodes, 1)),
         capacity_(options.capacity) {
     for (std::size_t n = 0; n < kNodes; ++n) {
       nodes_.emplace_back(Node{});
-      nodes_.back().arrivals = Arrivals(kNodes, each_);
+      nodes_.back().arrivals = DeliveryChecker(kNodes, each_);
       nodes_.back().sent_at.resize(capacity_);
       links_.push_back(queue.make<kBytes>()(capacity_));
     }
@@ -64,7 +64,7 @@ class Ring final : public Crew {
       out.pop_refusals += node.pop_refusals;
       out.round_trip_ns.add(node.round_trips);
       // Every node sees every message once.
-      out.findings += Arrivals::judge({&node.arrivals, 1}, sent);
+      out.violations += DeliveryChecker::judge({&node.arrivals, 1}, sent);
     }
     return out;
   }
@@ -73,9 +73,9 @@ class Ring final : public Crew {
   struct alignas(128) Node {
     std::uint64_t sent = 0, home = 0;
     bool finished = false;
-    std::deque<Message<kBytes>> in_hand;
+    std::deque<Message<kBytes>> egress;
     std::vector<std::int64_t> sent_at;  // of those out, by number modulo capacity
-    Arrivals arrivals{0, 0};
+    DeliveryChecker arrivals{0, 0};
     LatencyHistogram round_trips;
     std::uint64_t push_calls = 0, push_refusals = 0, pop_calls = 0, pop_refusals = 0;
   };
@@ -83,10 +83,10 @@ class Ring final : public Crew {
   bool step(std::size_t n) {
     Node& node = nodes_[n];
     bool any = send(node, *links_[n]);
-    if (node.in_hand.empty()) any |= receive(node, n);
-    while (node.in_hand.empty() && node.sent < each_ && node.sent - node.home < capacity_ && !stop_sending()) {
+    if (node.egress.empty()) any |= receive(node, n);
+    while (node.egress.empty() && node.sent < each_ && node.sent - node.home < capacity_ && !stop_sending()) {
       node.sent_at[node.sent % capacity_] = now_ns();
-      node.in_hand.push_back(
+      node.egress.push_back(
           Message<kBytes>::of({static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(node.sent++)}));
       any |= send(node, *links_[n]);
     }
@@ -100,13 +100,13 @@ class Ring final : public Crew {
 
   bool send(Node& node, AnyQueue<Message<kBytes>>& link) {
     bool any = false;
-    while (!node.in_hand.empty()) {
+    while (!node.egress.empty()) {
       ++node.push_calls;
-      if (!link.try_push(node.in_hand.front())) {
+      if (!link.try_push(node.egress.front())) {
         ++node.push_refusals;
         break;
       }
-      node.in_hand.pop_front();
+      node.egress.pop_front();
       any = true;
     }
     return any;
@@ -121,7 +121,7 @@ class Ring final : public Crew {
     for (std::size_t k = 0; k < count; ++k) {
       const std::optional<Origin> origin = node.arrivals.take(batch[k]);
       if (!origin || origin->producer != n) {
-        node.in_hand.push_back(batch[k]);
+        node.egress.push_back(batch[k]);
         continue;
       }
       ++node.home;
@@ -148,10 +148,10 @@ TrialResult run_circulation(const QueueUnderTest& queue, const TrialOptions& opt
   const auto ring = std::make_shared<Ring<kBytes>>(queue, threads, options);
   std::vector<std::function<void()>> bodies;
   for (std::size_t t = 0; t < threads; ++t) bodies.push_back([r = ring.get(), t] { r->play(t); });
-  const Crew::Ending ending = Crew::run(ring, bodies, {options.time, options.stuck_after, options.stop});
+  const WorkerGroup::Ending ending = WorkerGroup::run(ring, bodies, {options.time, options.stuck_after, options.stop});
   TrialResult out;
-  if (ending != Crew::Ending::kNeverReturned) out = ring->result();
-  note_ending(out.findings, ending, options);
+  if (ending != WorkerGroup::Ending::kNeverReturned) out = ring->result();
+  note_ending(out.violations, ending, options);
   return out;
 }
 

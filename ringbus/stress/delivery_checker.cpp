@@ -7,35 +7,35 @@
 
 namespace carousel::ringbus::stress {
 
-Arrivals::Arrivals(std::size_t producers, std::uint64_t most) : most_(most), from_(producers) {
+DeliveryChecker::DeliveryChecker(std::size_t producers, std::uint64_t most) : most_(most), from_(producers) {
   for (From& from : from_) from.seen.resize(most / 64 + 1);
 }
 
-void Arrivals::tear() {
-  ++findings_.torn;
-  if (findings_.detail.empty()) findings_.detail = fmt::format("arrival {} is not what anybody sent", taken_ - 1);
+void DeliveryChecker::tear() {
+  ++violations_.corrupted;
+  if (violations_.detail.empty()) violations_.detail = fmt::format("arrival {} is not what anybody sent", taken_ - 1);
 }
 
-void Arrivals::misplaced(From& from, Origin origin, bool again) {
+void DeliveryChecker::misplaced(From& from, Origin origin, bool again) {
   if (again) {
-    ++findings_.doubled;
+    ++violations_.doubled;
   } else {
-    ++findings_.reordered;
+    ++violations_.reordered;
     from.seen[origin.number / 64] |= std::uint64_t{1} << (origin.number % 64);
   }
-  if (findings_.detail.empty())
-    findings_.detail = fmt::format("message {} of producer {} came {} message {}", origin.number, origin.producer,
-                                   again ? "again, after" : "after", from.next - 1);
+  if (violations_.detail.empty())
+    violations_.detail = fmt::format("message {} of producer {} came {} message {}", origin.number, origin.producer,
+                                     again ? "again, after" : "after", from.next - 1);
 }
 
-Findings Arrivals::judge(std::span<const Arrivals> consumers, std::span<const std::uint64_t> sent) {
-  Findings out;
-  for (const Arrivals& one : consumers) out += one.findings_;
+Violations DeliveryChecker::judge(std::span<const DeliveryChecker> consumers, std::span<const std::uint64_t> sent) {
+  Violations out;
+  for (const DeliveryChecker& one : consumers) out += one.violations_;
   for (std::size_t p = 0; p < sent.size(); ++p) {
     std::uint64_t missing = 0, first = 0;
     for (std::uint64_t base = 0; base < sent[p]; base += 64) {
       std::uint64_t seen = 0;
-      for (const Arrivals& one : consumers) {
+      for (const DeliveryChecker& one : consumers) {
         const std::uint64_t here = one.from_[p].seen[base / 64];
         out.doubled += static_cast<std::uint64_t>(std::popcount(seen & here));  // by two consumers
         seen |= here;
@@ -50,7 +50,7 @@ Findings Arrivals::judge(std::span<const Arrivals> consumers, std::span<const st
     if (missing > 0 && out.detail.empty()) out.detail = fmt::format("message {} of producer {} never came", first, p);
   }
   // A torn message is also missing under its name; it is told once.
-  out.lost -= std::min(out.lost, out.torn);
+  out.lost -= std::min(out.lost, out.corrupted);
   return out;
 }
 

@@ -11,10 +11,10 @@
 namespace carousel::ringbus::stress {
 
 /// What one consumer has received of each producer; one thread's.
-class Arrivals {
+class DeliveryChecker {
  public:
   /// `most`: messages a producer may send.
-  Arrivals(std::size_t producers, std::uint64_t most);
+  DeliveryChecker(std::size_t producers, std::uint64_t most);
 
   /// Returns whose it is; empty when it is torn.
   template <std::size_t kBytes>
@@ -41,7 +41,7 @@ class Arrivals {
   std::uint64_t taken() const { return taken_; }
 
   /// The verdict over all consumers; `sent`: how many of each producer's pushes succeeded.
-  static Findings judge(std::span<const Arrivals> consumers, std::span<const std::uint64_t> sent);
+  static Violations judge(std::span<const DeliveryChecker> consumers, std::span<const std::uint64_t> sent);
 
  private:
   struct From {
@@ -53,7 +53,7 @@ class Arrivals {
 
   std::uint64_t most_, taken_ = 0;
   std::vector<From> from_;
-  Findings findings_;
+  Violations violations_;
 };
 
 }  // namespace carousel::ringbus::stress

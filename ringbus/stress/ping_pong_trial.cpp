@@ -10,14 +10,14 @@ namespace {
 
 /// One message at a time, there and back over two queues.
 template <std::size_t kBytes>
-class PingPong final : public Crew {
+class PingPong final : public WorkerGroup {
  public:
   PingPong(const QueueUnderTest& queue, const TrialOptions& options)
-      : Crew(2),
+      : WorkerGroup(2),
         messages_(options.messages),
         there_(queue.make<kBytes>()(options.capacity)),
         back_(queue.make<kBytes>()(options.capacity)),
-        arrivals_(2, Arrivals(1, options.messages)) {}
+        arrivals_(2, DeliveryChecker(1, options.messages)) {}
 
   void serve() {
     const std::int64_t begin = now_ns();
@@ -59,7 +59,7 @@ class PingPong final : public Crew {
       out.pop_refusals += side.pop_refusals;
     }
     const std::array<std::uint64_t, 1> sent{served_};
-    for (const Arrivals& one : arrivals_) out.findings += Arrivals::judge({&one, 1}, sent);
+    for (const DeliveryChecker& one : arrivals_) out.violations += DeliveryChecker::judge({&one, 1}, sent);
     return out;
   }
 
@@ -90,7 +90,7 @@ class PingPong final : public Crew {
 
   std::uint64_t messages_;
   std::unique_ptr<AnyQueue<Message<kBytes>>> there_, back_;
-  std::vector<Arrivals> arrivals_;  // where it turns, and back where it started
+  std::vector<DeliveryChecker> arrivals_;  // where it turns, and back where it started
   std::array<Side, 2> sides_;
   alignas(128) std::uint64_t served_ = 0;  // serve()'s, to the end of its block
   double seconds_ = 0;
@@ -103,11 +103,12 @@ class PingPong final : public Crew {
 template <std::size_t kBytes>
 TrialResult run_ping_pong(const QueueUnderTest& queue, const TrialOptions& options) {
   const auto game = std::make_shared<PingPong<kBytes>>(queue, options);
-  const Crew::Ending ending = Crew::run(game, {[g = game.get()] { g->serve(); }, [g = game.get()] { g->answer(); }},
-                                        {options.time, options.stuck_after, options.stop});
+  const WorkerGroup::Ending ending =
+      WorkerGroup::run(game, {[g = game.get()] { g->serve(); }, [g = game.get()] { g->answer(); }},
+                       {options.time, options.stuck_after, options.stop});
   TrialResult out;
-  if (ending != Crew::Ending::kNeverReturned) out = game->result();
-  note_ending(out.findings, ending, options);
+  if (ending != WorkerGroup::Ending::kNeverReturned) out = game->result();
+  note_ending(out.violations, ending, options);
   return out;
 }
 

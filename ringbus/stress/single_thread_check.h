@@ -13,16 +13,16 @@ namespace carousel::ringbus::stress {
 /// What one thread can find out about an empty queue, in several rounds of its storage: that it takes exactly what it
 /// says, refuses then, gives all back in order, and never promises places it has not.
 template <std::size_t kBytes>
-Findings check_alone(AnyQueue<Message<kBytes>>& queue, std::size_t capacity) {
+Violations check_single_thread(AnyQueue<Message<kBytes>>& queue, std::size_t capacity) {
   constexpr std::size_t kRounds = 4;
-  Findings out;
+  Violations out;
   const auto wrong = [&](std::string what) {
     ++out.bounds;
     if (out.detail.empty()) out.detail = std::move(what);
   };
   if (queue.capacity() != capacity)
     wrong(fmt::format("made for {} messages it says it holds {}", capacity, queue.capacity()));
-  Arrivals arrivals(1, kRounds * (10 * capacity + 128));  // more than is pushed below
+  DeliveryChecker arrivals(1, kRounds * (10 * capacity + 128));  // more than is pushed below
   std::uint64_t sent = 0, inside = 0;
   std::array<Message<kBytes>, 7> batch;
   const auto push = [&](std::size_t want) {
@@ -63,9 +63,9 @@ Findings check_alone(AnyQueue<Message<kBytes>>& queue, std::size_t capacity) {
       (void)pop(1);
     }
   }
-  const std::array<Arrivals, 1> all{std::move(arrivals)};
+  const std::array<DeliveryChecker, 1> all{std::move(arrivals)};
   const std::array<std::uint64_t, 1> pushed{sent};
-  out += Arrivals::judge(all, pushed);
+  out += DeliveryChecker::judge(all, pushed);
   return out;
 }
 

@@ -72,16 +72,16 @@ Plan plan_of(const TrialOptions& options) {
 }
 
 template <std::size_t kBytes>
-class Stream final : public Crew {
+class Stream final : public WorkerGroup {
  public:
   Stream(const QueueUnderTest& queue, const Plan& plan, const TrialOptions& options)
-      : Crew(plan.producers + plan.consumers),
+      : WorkerGroup(plan.producers + plan.consumers),
         plan_(plan),
         seed_(options.seed),
         each_(std::max<std::uint64_t>(options.messages / plan.producers, 1)),
         senders_(plan.producers),
         receivers_(plan.consumers),
-        arrivals_(plan.consumers, Arrivals(plan.producers, each_)) {
+        arrivals_(plan.consumers, DeliveryChecker(plan.producers, each_)) {
     // One queue for all where it serves so many; else one a producer.
     const bool shared = (plan.producers == 1 || queue.producers == Parties::kMany) &&
                         (plan.consumers == 1 || queue.consumers == Parties::kMany);
@@ -116,7 +116,7 @@ class Stream final : public Crew {
 
   void consume(std::size_t c) {
     Receiver& me = receivers_[c];
-    Arrivals& arrivals = arrivals_[c];
+    DeliveryChecker& arrivals = arrivals_[c];
     std::minstd_rand random(static_cast<std::uint32_t>(seed_ * 37 + c + 1));
     std::array<Message<kBytes>, kBatch> batch;
     Backoff backoff;
@@ -185,7 +185,7 @@ class Stream final : public Crew {
     const std::vector<std::uint64_t>& shares = at_first_done_.empty() ? sent : at_first_done_;
     const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
     out.fairness = *most == 0 ? 1 : static_cast<double>(*least) / static_cast<double>(*most);
-    out.findings = Arrivals::judge(arrivals_, sent);
+    out.violations = DeliveryChecker::judge(arrivals_, sent);
     return out;
   }
 
@@ -235,7 +235,7 @@ class Stream final : public Crew {
     return done;
   }
 
-  void take(Receiver& me, Arrivals& arrivals, const Message<kBytes>& message) {
+  void take(Receiver& me, DeliveryChecker& arrivals, const Message<kBytes>& message) {
     const std::optional<Origin> origin = arrivals.take(message);
     if (!origin || origin->number % kStampEvery != 0) return;
     const std::int64_t stamp =
@@ -270,7 +270,7 @@ class Stream final : public Crew {
   std::vector<std::unique_ptr<AnyQueue<Message<kBytes>>>> queues_;
   std::vector<Sender> senders_;
   std::vector<Receiver> receivers_;
-  std::vector<Arrivals> arrivals_;
+  std::vector<DeliveryChecker> arrivals_;
   std::atomic<std::size_t> producers_done_{0};
   std::atomic<bool> first_done_{false};
   std::vector<std::uint64_t> at_first_done_;
@@ -286,10 +286,11 @@ TrialResult run_stream(const QueueUnderTest& queue, const TrialOptions& options)
   // The threads hold the crew; a plain pointer here keeps it from holding itself.
   for (std::size_t p = 0; p < plan.producers; ++p) bodies.push_back([s = stream.get(), p] { s->produce(p); });
   for (std::size_t c = 0; c < plan.consumers; ++c) bodies.push_back([s = stream.get(), c] { s->consume(c); });
-  const Crew::Ending ending = Crew::run(stream, bodies, {options.time, options.stuck_after, options.stop});
+  const WorkerGroup::Ending ending =
+      WorkerGroup::run(stream, bodies, {options.time, options.stuck_after, options.stop});
   TrialResult out;
-  if (ending != Crew::Ending::kNeverReturned) out = stream->result();
-  note_ending(out.findings, ending, options);
+  if (ending != WorkerGroup::Ending::kNeverReturned) out = stream->result();
+  note_ending(out.violations, ending, options);
   return out;
 }
 

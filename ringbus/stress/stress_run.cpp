@@ -28,7 +28,7 @@ void add(TrialResult& sum, const TrialResult& one, bool first) {
   sum.producer_seconds += one.producer_seconds;
   sum.fairness = first ? one.fairness : std::min(sum.fairness, one.fairness);
   sum.memory_bytes = std::max(sum.memory_bytes, one.memory_bytes);
-  sum.findings += one.findings;
+  sum.violations += one.violations;
 }
 
 std::vector<std::size_t> sizes_for(Pattern pattern, const StressOptions& options) {

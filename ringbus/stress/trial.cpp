@@ -22,7 +22,7 @@ TrialResult run_sized(const QueueUnderTest& queue, const TrialOptions& options) 
                                                                         : options.capacity;
   const std::size_t before = heap_bytes();
   const auto alone = queue.make<kBytes>()(capacity);
-  Findings found = check_alone(*alone, capacity);
+  Violations found = check_single_thread(*alone, capacity);
   const std::size_t after = heap_bytes();
   TrialResult out;
   switch (options.pattern) {
@@ -35,21 +35,21 @@ TrialResult run_sized(const QueueUnderTest& queue, const TrialOptions& options) 
     default:
       out = run_stream<kBytes>(queue, options);
   }
-  found += out.findings;
-  out.findings = std::move(found);
+  found += out.violations;
+  out.violations = std::move(found);
   out.memory_bytes = after > before ? after - before : 0;
   return out;
 }
 
 }  // namespace
 
-void note_ending(Findings& findings, Crew::Ending ending, const TrialOptions& options) {
-  if (ending == Crew::Ending::kDone) return;
-  findings.stuck = true;
-  if (!findings.detail.empty()) findings.detail += "; ";
-  findings.detail += ending == Crew::Ending::kStuck
-                         ? fmt::format("nothing moved for {} ms", options.stuck_after.count())
-                         : fmt::format("a call had not returned after {} ms", 2 * options.stuck_after.count());
+void note_ending(Violations& violations, WorkerGroup::Ending ending, const TrialOptions& options) {
+  if (ending == WorkerGroup::Ending::kDone) return;
+  violations.stuck = true;
+  if (!violations.detail.empty()) violations.detail += "; ";
+  violations.detail += ending == WorkerGroup::Ending::kStuck
+                           ? fmt::format("nothing moved for {} ms", options.stuck_after.count())
+                           : fmt::format("a call had not returned after {} ms", 2 * options.stuck_after.count());
 }
 
 bool pattern_fits(const QueueUnderTest& queue, Pattern pattern) {

@@ -36,7 +36,7 @@ struct TrialResult {
   double producer_seconds = 0;   ///< producers' time, summed
   double fairness = 1;           ///< least over most sent by a producer, when the first had sent its share
   std::size_t memory_bytes = 0;  ///< of one queue, full once (what the C library's heap can tell)
-  Findings findings;
+  Violations violations;
 };
 
 /// Whether a queue serves as many producers and consumers as the pattern has, one queue shared by all.

@@ -14,6 +14,6 @@ template <std::size_t kBytes>
 TrialResult run_circulation(const QueueUnderTest& queue, const TrialOptions& options);
 
 /// Tells why a crew ended otherwise than it should.
-void note_ending(Findings& findings, Crew::Ending ending, const TrialOptions& options);
+void note_ending(Violations& violations, WorkerGroup::Ending ending, const TrialOptions& options);
 
 }  // namespace carousel::ringbus::stress

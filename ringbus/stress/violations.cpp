@@ -4,7 +4,7 @@
 
 namespace carousel::ringbus::stress {
 
-std::string Findings::names() const {
+std::string Violations::names() const {
   std::string text;
   const auto add = [&](const char* name, std::uint64_t count) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, count);
@@ -12,17 +12,17 @@ std::string Findings::names() const {
   add("lost", lost);
   add("doubled", doubled);
   add("reordered", reordered);
-  add("torn", torn);
+  add("torn", corrupted);
   add("bounds", bounds);
   if (stuck) text += text.empty() ? "stuck" : ", stuck";
   return text;
 }
 
-Findings& Findings::operator+=(const Findings& o) {
+Violations& Violations::operator+=(const Violations& o) {
   lost += o.lost;
   doubled += o.doubled;
   reordered += o.reordered;
-  torn += o.torn;
+  corrupted += o.corrupted;
   bounds += o.bounds;
   stuck |= o.stuck;
   if (detail.empty()) detail = o.detail;

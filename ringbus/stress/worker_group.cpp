@@ -33,14 +33,14 @@ void pause_for(std::chrono::nanoseconds time) {
   while (Clock::now() < until);
 }
 
-std::uint64_t Crew::steps() const {
+std::uint64_t WorkerGroup::steps() const {
   std::uint64_t sum = 0;
   for (const Progress& one : progress_) sum += one.steps.load(std::memory_order_relaxed);
   return sum;
 }
 
-Crew::Ending Crew::run(const std::shared_ptr<Crew>& crew, const std::vector<std::function<void()>>& bodies,
-                       const Limits& limits) {
+WorkerGroup::Ending WorkerGroup::run(const std::shared_ptr<WorkerGroup>& crew,
+                                     const std::vector<std::function<void()>>& bodies, const Limits& limits) {
   std::vector<std::thread> threads;
   for (const std::function<void()>& body : bodies)
     threads.emplace_back([crew, body, t = threads.size(), all = bodies.size()] {

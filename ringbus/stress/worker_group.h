@@ -22,10 +22,10 @@ void pause_for(std::chrono::nanoseconds time);
 
 /// What the threads of a trial and the thread that watches them share. Trials derive from it; the threads hold it, so
 /// that it outlives even those that never return.
-class Crew {
+class WorkerGroup {
  public:
-  explicit Crew(std::size_t threads) : progress_(threads) {}
-  virtual ~Crew() = default;
+  explicit WorkerGroup(std::size_t threads) : progress_(threads) {}
+  virtual ~WorkerGroup() = default;
 
   /// Time is up: nothing new is to be sent.
   // Relaxed: only asks; nothing is read by its leave.
@@ -46,7 +46,7 @@ class Crew {
   };
   /// Runs one body a thread, on a core each as far as they go, started together, and watches them. After kNeverReturned
   /// the crew must not be read.
-  static Ending run(const std::shared_ptr<Crew>& crew, const std::vector<std::function<void()>>& bodies,
+  static Ending run(const std::shared_ptr<WorkerGroup>& crew, const std::vector<std::function<void()>>& bodies,
                     const Limits& limits);
 
  private:

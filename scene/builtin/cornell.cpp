@@ -41,14 +41,14 @@ Scene make_cornell() {
   const MaterialId green = add_material(scene, "green", {0.14f, 0.45f, 0.09f}, 0, 1);
   const MaterialId steel = add_material(scene, "steel", {0.78f, 0.80f, 0.83f}, 1, 0.18f);
   const MaterialId copper = add_material(scene, "copper", {0.93f, 0.55f, 0.37f}, 1, 0.25f);
-  const MaterialId lamp = add_material(scene, "lamp", {0.78f, 0.78f, 0.78f}, 0, 1);
-  scene.materials[lamp.value].emissive = {18.0f, 14.0f, 9.0f};
+  const MaterialId emissive_material = add_material(scene, "lamp", {0.78f, 0.78f, 0.78f}, 0, 1);
+  scene.materials[emissive_material.value].emissive = {18.0f, 14.0f, 9.0f};
 
   add_instance(scene, make_room(white, red, green), 0, {0, 0, 0});
 
   Mesh light;  // a little below the ceiling: coplanar surfaces would fight
   light.name = "lamp";
-  add_quad(light, {-0.32f, 0, -0.27f}, {0.32f, 0, -0.27f}, {0.32f, 0, 0.27f}, {-0.32f, 0, 0.27f}, lamp);
+  add_quad(light, {-0.32f, 0, -0.27f}, {0.32f, 0, -0.27f}, {0.32f, 0, 0.27f}, {-0.32f, 0, 0.27f}, emissive_material);
   add_instance(scene, std::move(light), 0, {0, 1.995f, -0.45f});
 
   Mesh tall;

@@ -36,7 +36,7 @@ Opacity::Opacity(const Scene& scene) : scene_(scene), least_(scene.materials.siz
   }
 }
 
-bool Opacity::may_let_through(const Mesh& mesh, std::uint32_t triangle) const {
+bool Opacity::may_be_non_opaque(const Mesh& mesh, std::uint32_t triangle) const {
   const std::uint32_t id = mesh.triangle_materials[triangle].value;
   const Material& material = scene_.materials[id];
   if (material.alpha_mode == AlphaMode::kOpaque) return false;
@@ -48,7 +48,7 @@ bool Opacity::may_let_through(const Mesh& mesh, std::uint32_t triangle) const {
   return !(least >= solid_from(material));
 }
 
-bool Opacity::may_let_through(const Sphere& sphere) const {
+bool Opacity::may_be_non_opaque(const Sphere& sphere) const {
   const Material& material = scene_.materials[sphere.material.value];
   return material.alpha_mode != AlphaMode::kOpaque && !(least_[sphere.material.value] >= solid_from(material));
 }

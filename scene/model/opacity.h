@@ -20,8 +20,8 @@ class Opacity {
   /// True if some material does, so that somebody has to be there to be asked.
   bool any() const { return any_; }
   /// Precondition: triangle < mesh.triangle_count(). Any thread.
-  bool may_let_through(const Mesh& mesh, std::uint32_t triangle) const;
-  bool may_let_through(const Sphere& sphere) const;
+  bool may_be_non_opaque(const Mesh& mesh, std::uint32_t triangle) const;
+  bool may_be_non_opaque(const Sphere& sphere) const;
 
  private:
   const Scene& scene_;

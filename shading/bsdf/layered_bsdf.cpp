@@ -25,7 +25,7 @@ float share_of(float albedo) {
 Layers::Layers(const LayerPoint& point, const Vec3& wo)
     : point_(point),
       wo_(wo),
-      coat_wo_(Frame(point.coat_normal).to_local(wo)),
+      coat_wo_(ShadingBasis(point.coat_normal).to_local(wo)),
       coat_alpha_(ggx_alpha(point.coat_roughness)),
       sheen_alpha_(charlie_alpha(point.sheen_roughness)) {
   const GgxAlbedo& table = GgxAlbedo::table();
@@ -49,7 +49,7 @@ void Layers::add(const Vec3& wi, BsdfValue& value) const {
   value.f_cos += point_.sheen * (below_coat_ * charlie_f_cos(wo_, wi, sheen_alpha_));
   value.pdf += sheen_share_ * (0.5f * kInvPi);
 
-  const Vec3 coat_wi = Frame(point_.coat_normal).to_local(wi);
+  const Vec3 coat_wi = ShadingBasis(point_.coat_normal).to_local(wi);
   const Vec3 sum = coat_wo_ + coat_wi;
   const float length2 = glm::dot(sum, sum);
   if (!(coat_wi.z > 0.0f) || !(length2 > 0.0f)) return;
@@ -76,7 +76,7 @@ bool Layers::sample(float& lobe, const Vec2& u, Vec3& wi) const {
   if (!shared(lobe, coat)) return false;
   if (coat) {
     const Vec3 h = sample_visible_normal(coat_wo_, coat_alpha_, u);
-    wi = Frame(point_.coat_normal).to_world(2.0f * glm::dot(coat_wo_, h) * h - coat_wo_);
+    wi = ShadingBasis(point_.coat_normal).to_world(2.0f * glm::dot(coat_wo_, h) * h - coat_wo_);
     if (!(wi.z > 0.0f)) wi = {1, 0, 0};  // must not be taken for the base's light from below
     return true;
   }

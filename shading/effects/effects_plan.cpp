@@ -79,7 +79,7 @@ class Planner {
   void look_for(Effect effect) {
     PlannedEffect& e = at(effect);
     if (is_of_materials(effect)) {
-      call_materials(e, [&](const Material& m) { return calls_for(m, effect); });
+      call_materials(e, [&](const Material& m) { return requires_effect(m, effect); });
     } else if (effect == Effect::kVertexColor) {
       for (const scene::Mesh& mesh : scene_.meshes) call(e, !mesh.colors.empty(), "mesh", mesh.name);
     } else if (effect == Effect::kAreaLights) {
@@ -187,9 +187,9 @@ EffectsPlan plan_effects(const scene::Scene& scene, const Config& config) {
   return Planner(scene, config).plan();
 }
 
-void keep_effects(scene::Scene& scene, const ShadingConfig::Effects& choice) {
+void strip_effects(scene::Scene& scene, const ShadingConfig::Effects& choice) {
   for (const Effect effect : left_out(choice)) {
-    for (Material& material : scene.materials) take_off(effect, material);
+    for (Material& material : scene.materials) disable(effect, material);
     if (effect == Effect::kVertexColor)
       for (scene::Mesh& mesh : scene.meshes) mesh.colors.clear();
     if (effect == Effect::kSky) scene.sky.radiance = Vec3{0};
@@ -204,7 +204,7 @@ std::vector<bool> images_read(const scene::Scene& scene, const ShadingConfig::Ef
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     if (!reached[i]) continue;
     Material material = scene.materials[i];
-    for (const Effect effect : left_out(choice)) take_off(effect, material);
+    for (const Effect effect : left_out(choice)) disable(effect, material);
     for (const scene::TextureUse& use : textures_read(material))
       read[scene.textures[use.texture.value].image.value] = true;
   }

@@ -54,16 +54,16 @@ struct EffectsPlan {
 };
 
 /// Looks at materials on triangles of instances, at lights, sky and camera. What a list names but nothing calls for is
-/// off. `scene` may have been through keep_effects().
+/// off. `scene` may have been through strip_effects().
 EffectsPlan plan_effects(const scene::Scene& scene, const Config& config);
 
 /// Takes out of the scene what a list of effects does not name, as far as it stands in the scene: textures, layers,
 /// lights. Without a list nothing changes. A material without `transmission` is opaque, without `refraction` a thin
 /// wall, without `mirror` no smoother than roughness 0.3, without `reflection` matte.
-void keep_effects(scene::Scene& scene, const ShadingConfig::Effects& choice);
+void strip_effects(scene::Scene& scene, const ShadingConfig::Effects& choice);
 
-/// By image: whether a material on a primitive of an instance has a texture of it that is read, once keep_effects() has
-/// been called with this choice (which may be before or after); all, if that is `all`. Reads no pixels.
+/// By image: whether a material on a primitive of an instance has a texture of it that is read, once strip_effects()
+/// has been called with this choice (which may be before or after); all, if that is `all`. Reads no pixels.
 std::vector<bool> images_read(const scene::Scene& scene, const ShadingConfig::Effects& choice);
 
 }  // namespace carousel::shading

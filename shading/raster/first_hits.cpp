@@ -47,14 +47,14 @@ std::array<DVec3, 8> world_box(const scene::Sphere& sphere, const scene::Affine&
 class Rasterizer {
  public:
   Rasterizer(const scene::Scene& scene, const scene::Camera& camera, const CameraRays& rays, const Sampler& sampler,
-             const Screen& screen, std::uint32_t samples, const RayWishes& wishes, const AnyHit* any_hit)
+             const Screen& screen, std::uint32_t samples, const RayFlags& ray_flags, const AnyHit* any_hit)
       : scene_(scene),
         rays_(rays),
         sampler_(sampler),
         screen_(screen),
         opacity_(scene),
-        wishes_(wishes),
-        any_hit_(opacity_.any() && !wishes.force_opaque ? any_hit : nullptr),
+        ray_flags_(ray_flags),
+        any_hit_(opacity_.any() && !ray_flags.force_opaque ? any_hit : nullptr),
         one_eye_(camera.projection == scene::Camera::Projection::kPerspective),
         tiles_across_((screen.width() + kBinSide - 1) / kBinSide),
         bins_(std::size_t{tiles_across_} * ((screen.height() + kBinSide - 1) / kBinSide)) {
@@ -72,7 +72,7 @@ class Rasterizer {
     });
     for (const FirstHits::Counts& c : counts) {
       out_.counts.tested += c.tested;
-      out_.counts.asked += c.asked;
+      out_.counts.any_hit_calls += c.any_hit_calls;
       out_.counts.hits += c.hits;
       out_.counts.misses += c.misses;
       out_.counts.left_to_rays += c.left_to_rays;
@@ -129,7 +129,7 @@ class Rasterizer {
     const scene::Mesh& mesh = scene_.meshes[scene_.instances[ref.instance].mesh.value];
     // Mirroring swaps the sides in world space; which one is the front, the mesh says.
     const bool mirrored = glm::determinant(DMat3(scene_.instances[ref.instance].world_from_model.linear)) < 0;
-    const bool passes = any_hit_ != nullptr && opacity_.may_let_through(mesh, ref.primitive);
+    const bool passes = any_hit_ != nullptr && opacity_.may_be_non_opaque(mesh, ref.primitive);
     const auto edges_from = [&](const Vec3& eye) {
       return EdgeFunctions({world[0] - DVec3(eye), world[1] - DVec3(eye), world[2] - DVec3(eye)});
     };
@@ -144,7 +144,7 @@ class Rasterizer {
           ++counts.tested;
           const auto crossing = edges.cross(DVec3(ray.direction));
           if (!crossing) continue;
-          if (wishes_.cull == (crossing->front == mirrored ? RayWishes::Cull::kBack : RayWishes::Cull::kFront))
+          if (ray_flags_.cull == (crossing->front == mirrored ? RayFlags::Cull::kBack : RayFlags::Cull::kFront))
             continue;
           const Hit hit{static_cast<float>(crossing->t), static_cast<float>(crossing->u),
                         static_cast<float>(crossing->v), ref.instance, ref.primitive};
@@ -152,8 +152,8 @@ class Rasterizer {
           const Hit& best = hits[s];
           if (std::tie(best.t, best.instance, best.primitive) < std::tie(hit.t, hit.instance, hit.primitive)) continue;
           if (passes) {
-            ++counts.asked;
-            if (!any_hit_->stops(ray, hit.instance, hit.primitive, hit.u, hit.v)) continue;
+            ++counts.any_hit_calls;
+            if (!any_hit_->accepts(ray, hit.instance, hit.primitive, hit.u, hit.v)) continue;
           }
           hits[s] = hit;
         }
@@ -173,7 +173,7 @@ class Rasterizer {
   const Sampler& sampler_;
   const Screen& screen_;
   const scene::Opacity opacity_;
-  const RayWishes wishes_;
+  const RayFlags ray_flags_;
   const AnyHit* any_hit_;
   const bool one_eye_;
   const std::uint32_t tiles_across_;

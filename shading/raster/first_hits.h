@@ -17,7 +17,7 @@ struct FirstHits {
     std::uint64_t triangles = 0;                           ///< of all instances
     std::uint64_t binned = 0;                              ///< entries of triangles in tiles
     std::uint64_t tested = 0;                              ///< edge tests: a triangle at a sample
-    std::uint64_t asked = 0;                               ///< samples at which a cut-out or veil was asked
+    std::uint64_t any_hit_calls = 0;                       ///< samples at which a cut-out or veil was asked
     std::uint64_t hits = 0, misses = 0, left_to_rays = 0;  ///< samples
   };
 

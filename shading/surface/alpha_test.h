@@ -16,13 +16,13 @@ class AlphaTest final : public AnyHit {
   /// Keeps a reference to `scene`, which must not change meanwhile. Any thread may ask.
   explicit AlphaTest(const scene::Scene& scene) : scene_(scene) {}
 
-  bool stops(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const override;
+  bool accepts(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const override;
 
  private:
   const scene::Scene& scene_;
 };
 
 /// Random number in [0, 1) of one ray at one triangle: a hash of the bits of its origin and direction.
-float veil_chance(const Ray& ray, std::uint32_t instance, std::uint32_t primitive);
+float blend_chance(const Ray& ray, std::uint32_t instance, std::uint32_t primitive);
 
 }  // namespace carousel::shading

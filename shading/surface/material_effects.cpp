@@ -26,7 +26,7 @@ bool may_be_dielectric(const Material& m) {
 
 }  // namespace
 
-bool calls_for(const Material& m, Effect effect) {
+bool requires_effect(const Material& m, Effect effect) {
   switch (effect) {
     case Effect::kBaseColorTexture:
       return m.base_color_texture.has_value();
@@ -77,7 +77,7 @@ bool calls_for(const Material& m, Effect effect) {
   }
 }
 
-void take_off(Effect effect, Material& m) {
+void disable(Effect effect, Material& m) {
   switch (effect) {
     case Effect::kBaseColorTexture:
       m.base_color_texture.reset();

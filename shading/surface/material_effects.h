@@ -10,9 +10,10 @@ namespace carousel::shading {
 // What a material asks of whoever shades it.
 
 /// Whether it calls for an effect; false for effects that are none of a material's.
-bool calls_for(const scene::Material& material, Effect effect);
-/// Afterwards it does not; what stands in its place: keep_effects(). Nothing for effects that are none of a material's.
-void take_off(Effect effect, scene::Material& material);
+bool requires_effect(const scene::Material& material, Effect effect);
+/// Afterwards it does not; what stands in its place: strip_effects(). Nothing for effects that are none of a
+/// material's.
+void disable(Effect effect, scene::Material& material);
 
 bool has_layers(const scene::Material& material);     ///< clearcoat or sheen
 bool has_interface(const scene::Material& material);  ///< a boundary that glTF's core does not describe

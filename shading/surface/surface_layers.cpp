@@ -44,14 +44,14 @@ GlassTables glass_tables(const scene::Material& material) {
   return {&GlassAlbedo::of(material.ior), &GlassAlbedo::of(1.0f / material.ior)};
 }
 
-Frame grain_frame(const SurfaceHit& hit, const Vec3& n) {
+ShadingBasis grain_frame(const SurfaceHit& hit, const Vec3& n) {
   const scene::Material& m = *hit.point.material;
   const auto& a = m.anisotropy;
-  if (!(a.strength > 0.0f)) return Frame(n);
+  if (!(a.strength > 0.0f)) return ShadingBasis(n);
   const scene::TextureUse plain{};
   const scene::TextureUse& use = a.texture ? *a.texture : m.normal_texture ? *m.normal_texture : plain;
   const std::optional<Vec3> tangent = texture_tangent(hit.point, hit.geometry, use, n);
-  if (!tangent) return Frame(n);
+  if (!tangent) return ShadingBasis(n);
   Vec2 along{1, 0};
   if (a.texture) {
     const Vec3 texel = linear(hit, a.texture);
@@ -61,7 +61,7 @@ Frame grain_frame(const SurfaceHit& hit, const Vec3& n) {
   const Vec2 turned{turn.cos * along.x - turn.sin * along.y, turn.sin * along.x + turn.cos * along.y};
   const Vec3 direction = *tangent * turned.x + glm::cross(n, *tangent) * turned.y;
   const float length2 = glm::dot(direction, direction);
-  return length2 > 1e-12f ? Frame(n, direction * (1.0f / std::sqrt(length2))) : Frame(n);
+  return length2 > 1e-12f ? ShadingBasis(n, direction * (1.0f / std::sqrt(length2))) : ShadingBasis(n);
 }
 
 InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& material, const GlassTables& glass,
@@ -98,7 +98,7 @@ InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& mater
   return out;
 }
 
-LayerPoint layer_point(const SurfaceHit& hit, const Frame& frame, const GlassTables& glass) {
+LayerPoint layer_point(const SurfaceHit& hit, const ShadingBasis& frame, const GlassTables& glass) {
   LayerPoint out;
   if (!hit.front && glass.outside != nullptr) return out;
   const scene::Material& m = *hit.point.material;

@@ -27,13 +27,13 @@ struct SurfaceHit {
 };
 
 /// The frame to shade in: that of the shading normal `n`, turned along the grain if the material has one.
-Frame grain_frame(const SurfaceHit& hit, const Vec3& n);
+ShadingBasis grain_frame(const SurfaceHit& hit, const Vec3& n);
 
 /// `material` is the point's, already widened; `cosine` that of wo and the shading normal.
 InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& material, const GlassTables& glass,
                                float cosine);
 
 /// Clearcoat and sheen. None from inside of what refracts: they lie on the outside.
-LayerPoint layer_point(const SurfaceHit& hit, const Frame& frame, const GlassTables& glass);
+LayerPoint layer_point(const SurfaceHit& hit, const ShadingBasis& frame, const GlassTables& glass);
 
 }  // namespace carousel::shading

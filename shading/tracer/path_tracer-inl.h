@@ -103,13 +103,13 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
     if (path.scattered) material.roughness = widened_roughness(material.roughness);
 
     if constexpr (kClass == SurfaceClass::kPlain || kClass == SurfaceClass::kTextured) {
-      const Frame frame(normal);
+      const ShadingBasis frame(normal);
       scatter<kClass, kLights>(result, point, geometry, facing, front, frame, Bsdf(material, frame.to_local(wo)),
                                worker, out, children);
     } else {
       const SurfaceHit surface{scene_, point, geometry, facing, wo, front, path.scattered};
       const GlassTables& glass = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())].glass;
-      const Frame frame = detail::has_boundary(kClass) ? grain_frame(surface, normal) : Frame(normal);
+      const ShadingBasis frame = detail::has_boundary(kClass) ? grain_frame(surface, normal) : ShadingBasis(normal);
       const Vec3 local = frame.to_local(wo);
       const auto go_on = [&](const auto& base) {
         using Base = std::remove_cvref_t<decltype(base)>;
@@ -134,8 +134,8 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
 /// The shadow ray and the bounce ray of a surface.
 template <SurfaceClass kClass, PathTracer::Lights kLights, class SomeBsdf>
 void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, const TriangleGeometry& geometry,
-                         const Vec3& facing, bool front, const Frame& frame, const SomeBsdf& bsdf, Worker& worker,
-                         RayBatch& out, std::uint32_t& children) {
+                         const Vec3& facing, bool front, const ShadingBasis& frame, const SomeBsdf& bsdf,
+                         Worker& worker, RayBatch& out, std::uint32_t& children) {
   constexpr bool kThrough = detail::transmits(kClass), kMedia = kLights == Lights::kLampsAndMedia;
   PathState& path = pool_.state(result.tag.path);
   const std::uint32_t bounce = result.tag.bounce;

@@ -24,11 +24,11 @@ CameraConfig lens(CameraConfig camera, const EffectsPlan& plan) {
   return camera;
 }
 
-std::uint8_t flags_of(const RayWishes& wishes) {
-  const int cull = wishes.cull == RayWishes::Cull::kBack    ? kRayCullBack
-                   : wishes.cull == RayWishes::Cull::kFront ? kRayCullFront
-                                                            : 0;
-  return static_cast<std::uint8_t>(cull | (wishes.force_opaque ? kRayForceOpaque : 0));
+std::uint8_t flags_of(const RayFlags& ray_flags) {
+  const int cull = ray_flags.cull == RayFlags::Cull::kBack    ? kRayCullBack
+                   : ray_flags.cull == RayFlags::Cull::kFront ? kRayCullFront
+                                                              : 0;
+  return static_cast<std::uint8_t>(cull | (ray_flags.force_opaque ? kRayForceOpaque : 0));
 }
 
 }  // namespace
@@ -41,8 +41,8 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
              static_cast<std::uint64_t>(config.image.samples)),
       max_depth_(plan_.on(Effect::kBounceRays) ? u32(config.image.max_depth) : 1),
       spawn_(config.accuracy.spawn),
-      wishes_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays),
-              flags_of(config.shading.shadow_rays)},
+      ray_flags_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays),
+                 flags_of(config.shading.shadow_rays)},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
       order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
@@ -236,7 +236,7 @@ void PathTracer::finish_ray(std::uint32_t index, std::uint32_t children, Worker&
 void PathTracer::emit(const Ray& ray, const RayTag& tag, Worker& worker, RayBatch& out) {
   ++worker.counts.emitted[static_cast<std::size_t>(tag.kind)];
   RayTag wishing = tag;
-  wishing.flags |= wishes_[static_cast<std::size_t>(tag.kind)];
+  wishing.flags |= ray_flags_[static_cast<std::size_t>(tag.kind)];
   out.push_back({ray, wishing});
 }
 

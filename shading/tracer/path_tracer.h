@@ -36,7 +36,7 @@ namespace carousel::shading {
 /// from the sky, which only such rays find, is not seen there.
 class PathTracer : public Workload {
  public:
-  /// Keeps a reference to `scene`, which has been through keep_effects() with config.shading.effects. At most
+  /// Keeps a reference to `scene`, which has been through strip_effects() with config.shading.effects. At most
   /// `max_paths_in_flight` paths have rays out at a time, 1 if 0 is given. Preconditions, which the config's ranges
   /// ensure: image.width, height and samples at least 1, max_depth 1 to 255, width * height below 2^32. Throws
   /// std::out_of_range if the scene has no camera `scene.camera`.
@@ -103,8 +103,8 @@ class PathTracer : public Workload {
   void choose_surfaces();
   template <SurfaceClass kClass, Lights kLights, class SomeBsdf>
   void scatter(const RayResult& result, const TrianglePoint& point, const TriangleGeometry& geometry,
-               const Vec3& facing, bool front, const Frame& frame, const SomeBsdf& bsdf, Worker& worker, RayBatch& out,
-               std::uint32_t& children);
+               const Vec3& facing, bool front, const ShadingBasis& frame, const SomeBsdf& bsdf, Worker& worker,
+               RayBatch& out, std::uint32_t& children);
   void absorb(const RayResult& result);
   Vec3 passed(std::uint32_t medium, float distance) const;
   void shade_miss(const RayResult& result, Worker& worker);
@@ -125,7 +125,7 @@ class PathTracer : public Workload {
   const std::uint64_t paths_;
   const std::uint32_t max_depth_;  // 1 if there is nothing for bounce rays to find
   const SpawnOffset spawn_;
-  const std::array<std::uint8_t, kRayKinds> wishes_;
+  const std::array<std::uint8_t, kRayKinds> ray_flags_;
   const Sampler sampler_;
   const PixelOrder order_;
   const CameraRays camera_;

@@ -56,7 +56,7 @@ std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::S
 std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan) {
   std::vector<std::uint32_t> counts;
   for (const Material& material : scene.materials) {
-    const auto has = [&](Effect effect) { return plan.everything || calls_for(material, effect); };
+    const auto has = [&](Effect effect) { return plan.everything || requires_effect(material, effect); };
     counts.push_back(static_cast<std::uint32_t>(std::count_if(kExtraEffects.begin(), kExtraEffects.end(), has)));
   }
   return counts;

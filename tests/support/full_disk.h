@@ -10,7 +10,7 @@ namespace carousel {
 /// without a disk.
 class FullDisk {
  public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+  explicit FullDisk(rlim_t bytes) : dispatch_(std::signal(SIGXFSZ, SIG_IGN)) {
     getrlimit(RLIMIT_FSIZE, &before_);
     rlimit small = before_;
     small.rlim_cur = bytes;
@@ -18,14 +18,14 @@ class FullDisk {
   }
   ~FullDisk() {
     setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
+    std::signal(SIGXFSZ, dispatch_);
   }
   FullDisk(const FullDisk&) = delete;
   FullDisk& operator=(const FullDisk&) = delete;
 
  private:
   rlimit before_{};
-  void (*handler_)(int);
+  void (*dispatch_)(int);
 };
 
 }  // namespace carousel

@@ -45,10 +45,10 @@ void Bridge::pass_on(Token token, bool from_group, Cycle now) {
 }
 
 std::string Bridge::describe() const {
-  std::size_t in_hand = 0;
-  for (const OutPort& out : out_) in_hand += out.in_hand();
-  if (in_hand == 0) return "";
-  return fmt::format("bridge {}: {} packets in hand", group_, in_hand);
+  std::size_t egress = 0;
+  for (const OutPort& out : out_) egress += out.egress();
+  if (egress == 0) return "";
+  return fmt::format("bridge {}: {} packets in hand", group_, egress);
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -21,7 +21,7 @@ template <class T>
 struct WireOf {
   Channel<T> packets;
   Channel<Credit> credits;
-  alignas(64) QueueLedger queue;  ///< the receiver's
+  alignas(64) Occupancy queue;  ///< the receiver's
 };
 
 /// Where packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A place is
@@ -41,7 +41,7 @@ struct InPortOf {
 
  private:
   void note_wait(Cycle arrival, Cycle now) {
-    QueueLedger& queue = wire->queue;
+    Occupancy& queue = wire->queue;
     queue.packet_cycles += now - arrival;
     // What leaves now was there until now. The queue is never longer than at the moment before something leaves it.
     if (wire->packets.size() > queue.most)
@@ -119,7 +119,7 @@ class OutPortOf {
   }
 
   bool empty() const { return queue_.empty(); }
-  std::size_t in_hand() const { return queue_.size(); }
+  std::size_t egress() const { return queue_.size(); }
   PacketId front() const { return queue_.front().token.packet; }  ///< of Tokens
   const T& first() const { return queue_.front().token; }
   bool blocked() const { return blocked_since_ != kNever; }
@@ -140,7 +140,7 @@ class OutPortOf {
   }
   /// Credits that were lost on their way. Asking for them occupies the link like a packet, and is not waiting.
   void make_good(Cycle now) {
-    const LinkFaultTimer::MadeGood made = faults_->made_good(now);
+    const LinkFaultTimer::Recovered made = faults_->made_good(now);
     credits_ += made.places;
     if (made.busy == 0) return;
     free_at_ = std::max(free_at_, now) + made.busy;

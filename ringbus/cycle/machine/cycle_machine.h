@@ -25,7 +25,9 @@ struct CycleMachine {
   bool stays() const { return topology.resources() == 1 || config.collections.home == Home::kLocal; }
 
   /// Whether resources ask shader workers what lets rays through.
-  bool asks_shader() const { return accel.asks() && config.testers.any_hit == TestersConfig::AnyHit::kShader; }
+  bool calls_shader() const {
+    return accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kShader;
+  }
 
   const Config& config;
   const accel::Accel& accel;

@@ -46,7 +46,7 @@ class ShadeHelpers {
     helper.jobs->send(now + latency_, {cycles});
   }
   /// The helper whose jobs go by `jobs` has stopped. The ray it had, if any, is to be shaded by somebody else.
-  std::optional<RayResult> lose(const Channel<ShadeJob>* jobs) {
+  std::optional<RayResult> exclude(const Channel<ShadeJob>* jobs) {
     for (std::size_t i = 0; i < helpers_.size(); ++i) {
       Helper& helper = helpers_[i];
       if (helper.jobs != jobs) continue;

@@ -25,7 +25,7 @@ class ShadeQueues {
   /// The first of the longest queue, for somebody who is no worker.
   std::optional<RayResult> take_any();
   /// How many rays `worker` is at.
-  void hold(std::uint32_t worker, std::size_t rays) { in_hand_[worker] = rays; }
+  void hold(std::uint32_t worker, std::size_t rays) { egress_[worker] = rays; }
 
  private:
   std::size_t queue_for(const RayResult& ray);
@@ -34,7 +34,7 @@ class ShadeQueues {
   ShadingConfig::Distribute distribute_;
   std::uint64_t seed_;
   std::vector<std::deque<RayResult>> queues_;
-  std::vector<std::size_t> in_hand_;  // by worker
+  std::vector<std::size_t> egress_;  // by worker
   std::size_t turn_ = 0, size_ = 0;
 };
 

@@ -30,7 +30,7 @@ ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindo
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
   if (machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
-    ledger_ = std::make_unique<RetryLedger>();
+    ledger_ = std::make_unique<OutstandingRays>();
   for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
   const BundlesConfig& bundles = machine.config.bundles;
   if (bundles.size > 0)
@@ -69,7 +69,7 @@ void ShadingAgent::take_completed(Cycle now) {
     while (clients_[r].completed->next() <= now) {
       const CompletedRays done = clients_[r].completed->take();
       if (done.note != CompletedRays::Note::kDone) {
-        hear(r, done.note, now);
+        on_note(r, done.note, now);
         continue;
       }
       machine_.control.free(ResourceId(r), done.slots);
@@ -211,7 +211,7 @@ void ShadingAgent::send_groups(Cycle now) {
 
 // ---- a resource that has stopped
 
-void ShadingAgent::hear(std::uint32_t resource, CompletedRays::Note note, Cycle now) {
+void ShadingAgent::on_note(std::uint32_t resource, CompletedRays::Note note, Cycle now) {
   if (note == CompletedRays::Note::kLastBeat) {
     stop_ = {resource, now - latency_, 0, 0};
     give_up_at_ = now + static_cast<Cycle>(machine_.config.faults.resource.silence_cycles);
@@ -225,8 +225,8 @@ void ShadingAgent::give_up(Cycle now) {
   stop_->noticed = now;
   const ResourceId stopped(stop_->resource);
   if (!machine_.config.faults.resource.recover)
-    throw SimulationError(missing_rays(stopped, ledger_->open(), completed_));
-  if (const std::optional<RayResult> ray = helpers_.lose(clients_[stopped.value].jobs)) queues_.push(*ray);
+    throw SimulationError(unfinished_rays(stopped, ledger_->open(), completed_));
+  if (const std::optional<RayResult> ray = helpers_.exclude(clients_[stopped.value].jobs)) queues_.push(*ray);
   draining_ = clients_.size();
   order_all(NewRays::Order::kDiscard, now);
 }
@@ -240,7 +240,7 @@ void ShadingAgent::restart(Cycle now) {
   order_all(NewRays::Order::kGoOn, now);
   const RayBatch rays = ledger_->open();
   rays_restarted_ = rays.size();
-  paths_restarted_ = RetryLedger::paths_of(rays);
+  paths_restarted_ = OutstandingRays::paths_of(rays);
   if (rays.empty()) return;
   if (machine_.config.bundles.size > 0)
     builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);

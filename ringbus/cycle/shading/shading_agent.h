@@ -56,7 +56,7 @@ class ShadingAgent final : public Agent {
   const std::vector<Milestone>& milestones() const { return milestones_; }
   const Trace& trace() const { return trace_; }
   /// What became of a resource that stopped; absent if none was heard to.
-  const std::optional<StopLedger>& stop() const { return stop_; }
+  const std::optional<StopTimes>& stop() const { return stop_; }
   std::uint64_t rays_restarted() const { return rays_restarted_; }
   std::uint64_t paths_restarted() const { return paths_restarted_; }
 
@@ -85,7 +85,7 @@ class ShadingAgent final : public Agent {
   bool start_job(std::uint32_t worker, Cycle now);
   void place(Cycle now);
   void send_groups(Cycle now);
-  void hear(std::uint32_t resource, CompletedRays::Note note, Cycle now);
+  void on_note(std::uint32_t resource, CompletedRays::Note note, Cycle now);
   void give_up(Cycle now);
   void restart(Cycle now);
   void order_all(NewRays::Order order, Cycle now);
@@ -111,8 +111,8 @@ class ShadingAgent final : public Agent {
   std::vector<Cycle> load_free_, last_sent_;  // by resource
   bool source_finished_ = false, source_dry_ = false, started_ = false;
   std::size_t making_ = 0;
-  std::unique_ptr<RetryLedger> ledger_;  // where a resource may stop
-  std::optional<StopLedger> stop_;
+  std::unique_ptr<OutstandingRays> ledger_;  // where a resource may stop
+  std::optional<StopTimes> stop_;
   Cycle give_up_at_ = kNever;
   std::size_t draining_ = 0;  // resources that have not said that they are drained
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;

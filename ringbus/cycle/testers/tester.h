@@ -36,7 +36,7 @@ struct Tester {
 
   /// When the answers to the tests of one strip are there; started at `at`, for `reads` records, with so many passes
   /// through the bundle units.
-  Cycle strip(Cycle at, const TestCounts& counts, std::uint64_t reads = 0, std::uint64_t bundle_passes = 0) {
+  Cycle strip(Cycle at, const IntersectionCounts& counts, std::uint64_t reads = 0, std::uint64_t bundle_passes = 0) {
     const UnitBank::Reservation bundled = tested(bundle, store.reserve(at, reads_cost_ ? reads : 0), bundle_passes);
     const Cycle inverse = inverted(bundled.first, counts);
     const UnitBank::Reservation moved =
@@ -45,7 +45,7 @@ struct Tester {
   }
 
   /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
-  Cycle walk(Cycle at, const TestCounts& counts, Cycle chain, std::uint64_t reads = 0) {
+  Cycle walk(Cycle at, const IntersectionCounts& counts, Cycle chain, std::uint64_t reads = 0) {
     return std::max({at + chain, store.reserve(at, reads_cost_ ? reads : 0).last,
                      transform.reserve(at, passes(counts)).last, box.reserve(at, counts.box).last,
                      plane.reserve(at, counts.plane).last, triangle.reserve(at, counts.triangle).last,
@@ -53,7 +53,7 @@ struct Tester {
   }
 
   /// The same for a single ray, beside others.
-  Cycle ray(Cycle at, const TestCounts& counts) {
+  Cycle ray(Cycle at, const IntersectionCounts& counts) {
     const Cycle moved = transform.reserve_beside(inverted(at, counts), counts.transforms).last;
     const bool planes_first = order_ == Order::kPlanesFirst && counts.plane > 0;
     const Cycle boxed = planes_first
@@ -86,12 +86,12 @@ struct Tester {
     const UnitBank::Reservation own = bank.reserve(before.first, tests);
     return {own.first, before.last > before.first ? std::max(own.last, before.last + bank.latency()) : own.last};
   }
-  Cycle boxes(const UnitBank::Reservation& moved, const TestCounts& counts) {
+  Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts) {
     if (order_ == Order::kBoxFirst || counts.plane == 0)
       return tested(plane, tested(box, moved, counts.box), counts.plane).last;
     return tested(box, tested(plane, moved, counts.plane), counts.box).last;
   }
-  Cycle primitives(const UnitBank::Reservation& moved, const TestCounts& counts) {
+  Cycle primitives(const UnitBank::Reservation& moved, const IntersectionCounts& counts) {
     UnitBank::Reservation met = tested(triangle, moved, counts.triangle);
     if (counts.procedural > 0) {
       const UnitBank::Reservation others = tested(procedural, moved, counts.procedural);
@@ -99,11 +99,11 @@ struct Tester {
     }
     return tested(any_hit, met, lookups(counts)).last;
   }
-  std::uint64_t lookups(const TestCounts& counts) const { return inline_ ? counts.asked : 0; }
-  static std::uint64_t passes(const TestCounts& counts) {
+  std::uint64_t lookups(const IntersectionCounts& counts) const { return inline_ ? counts.any_hit_calls : 0; }
+  static std::uint64_t passes(const IntersectionCounts& counts) {
     return counts.transforms + accel::kInversionPasses * counts.inversions;
   }
-  Cycle inverted(Cycle at, const TestCounts& counts) {
+  Cycle inverted(Cycle at, const IntersectionCounts& counts) {
     return transform.reserve(at, accel::kInversionPasses * counts.inversions).last;
   }
 

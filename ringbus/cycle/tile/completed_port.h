@@ -26,7 +26,7 @@ class CompletedPort {
   }
 
   /// Behind the rays it has sent.
-  void tell(CompletedRays::Note note, Cycle now) {
+  void notify(CompletedRays::Note note, Cycle now) {
     completed_.send(std::max(free_at_, now) + latency_, {{}, {}, note});
   }
 

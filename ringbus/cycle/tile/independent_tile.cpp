@@ -37,7 +37,7 @@ void IndependentTile::run(Cycle end) {
 void IndependentTile::step(Cycle now) {
   take_new_rays(now);
   while (ports_.answers != nullptr && ports_.answers->next() <= now)
-    for (const std::uint32_t slot : ports_.answers->take().slots) go_on(slot, now);
+    for (const std::uint32_t slot : ports_.answers->take().slots) keep_running(slot, now);
   while (fetches_.next() <= now)
     for (const std::uint32_t slot : fetches_.take()) fetched(slot, now);
   do {
@@ -45,17 +45,17 @@ void IndependentTile::step(Cycle now) {
       const std::uint32_t slot = tests_.top().slot;
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
-      if (const std::uint64_t times = std::exchange(threads_[slot].asks, 0); times > 0)
+      if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0)
         ports_.questions->send(now + control_latency(machine_.config), {{slot}, times});
       else
-        go_on(slot, now);
+        keep_running(slot, now);
     }
   } while (help_.step(now, tests_.empty()));
   if (!help_.holds()) test_held_back(now);
   hand_over(now);
   const TileState state = classify();
   clock_.enter(state, now);
-  help_.tell(now, state == TileState::kIdle);
+  help_.notify(now, state == TileState::kIdle);
 }
 
 TileState IndependentTile::classify() const {
@@ -74,14 +74,14 @@ void IndependentTile::take_new_rays(Cycle now) {
       ++active_;
       threads_[slot].ray = id;
       threads_[slot].walk.start(machine_.accel.root_key());
-      go_on(slot, now);
+      keep_running(slot, now);
     }
   }
 }
 
 // ---- a ray's turns
 
-void IndependentTile::go_on(std::uint32_t slot, Cycle now) {
+void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
   Thread& thread = threads_[slot];
   stack_held_ -= thread.walk.stack_bytes().held;
   const std::optional<accel::NodeKey> next = thread.walk.next(store_.record(slot));
@@ -120,9 +120,9 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   }
   Thread& thread = threads_[slot];
   stack_held_ -= thread.walk.stack_bytes().held;
-  const TestCounts counts = thread.walk.test(machine_.accel, thread.strip,
-                                             {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
-  if (ports_.questions != nullptr) thread.asks = counts.asked;
+  const IntersectionCounts counts = thread.walk.test(
+      machine_.accel, thread.strip, {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
+  if (ports_.questions != nullptr) thread.calls_any_hit = counts.any_hit_calls;
   const std::uint64_t held = thread.walk.stack_bytes().held;
   stack_held_ += held;
   stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);

@@ -44,9 +44,9 @@ class IndependentTile final : public ResourceAgent {
   struct Thread {
     RayId ray;
     RayWalk walk;
-    accel::NodeKey strip;    // fetched or in test
-    bool fetches_transform;  // first
-    std::uint64_t asks;      // of a shader worker, when it has been tested
+    accel::NodeKey strip;         // fetched or in test
+    bool fetches_transform;       // first
+    std::uint64_t calls_any_hit;  // of a shader worker, when it has been tested
   };
   /// A ray in test. Of those that end at one time the one that began first goes on first.
   struct Test {
@@ -58,7 +58,7 @@ class IndependentTile final : public ResourceAgent {
 
   void step(Cycle now);
   void take_new_rays(Cycle now);
-  void go_on(std::uint32_t slot, Cycle now);
+  void keep_running(std::uint32_t slot, Cycle now);
   void test(std::uint32_t slot, Cycle now);
   void fetched(std::uint32_t slot, Cycle now);
   void want_strip(std::uint32_t slot, Cycle now);
@@ -91,7 +91,7 @@ class IndependentTile final : public ResourceAgent {
   HitBatch completed_;
   std::vector<std::uint32_t> freed_slots_;
   std::uint64_t stack_held_ = 0;
-  StackLedger stack_;
+  StackTraffic stack_;
   StateClock<TileState, kTileStates> clock_;
   std::vector<OutPort> no_links_;
 };

@@ -42,18 +42,18 @@ NextNode RayWalk::pop() {
   return top;
 }
 
-void RayWalk::enter(std::uint32_t instance, std::uint32_t slot, TestCounts& tests) {
+void RayWalk::enter(std::uint32_t instance, std::uint32_t slot, IntersectionCounts& tests) {
   instance_ = instance;
   if (!transforms_->moves(instance) || !transforms_->needs(slot, instance)) return;
   tests.transforms = 1;
   tests.inversions = transforms_->inverts(instance);
 }
 
-TestCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray) {
+IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray) {
   std::uint8_t mask = 0;
   float nearest[accel::kMaxWidth], entry[accel::kMaxWidth];
   std::fill(std::begin(nearest), std::end(nearest), kInfinity);
-  TestCounts tests;
+  IntersectionCounts tests;
   accel::test_strip(accel, key, ~0u, ray, {&mask, nearest, entry}, tests);
   tests.transforms = 0;  // the kernel's own, for every strip
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);

@@ -25,7 +25,7 @@ class RayWalk {
   /// The strip the ray has to be tested against next; nothing when it is through, or needs to know no more.
   std::optional<accel::NodeKey> next(const RayRecord& record);
   /// Tests the ray, the one member of `ray`, against that strip. Returns what the hardware has to do for it.
-  TestCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
+  IntersectionCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
 
   /// Whether a strip of `instance` would be one of another instance than the last.
   bool enters(std::uint32_t instance) const { return instance != instance_; }
@@ -38,7 +38,7 @@ class RayWalk {
 
  private:
   NextNode pop();
-  void enter(std::uint32_t instance, std::uint32_t slot, TestCounts& tests);
+  void enter(std::uint32_t instance, std::uint32_t slot, IntersectionCounts& tests);
 
   TransformAccount* transforms_;
   std::vector<NextNode> stack_;  // and on top of it the nearest child

@@ -14,7 +14,7 @@ class RoundTrips {
   /// For packets `first` to `first + packets - 1`.
   RoundTrips(std::uint32_t first, std::size_t packets) : first_(first), left_at_(packets) {}
 
-  void leave(std::uint32_t packet, Cycle now) {
+  void inject(std::uint32_t packet, Cycle now) {
     left_at_[packet - first_] = now;
     count(now);
     ++out_;

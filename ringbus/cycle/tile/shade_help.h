@@ -39,7 +39,7 @@ class ShadeHelp {
     return shaded_ = true;
   }
   /// At the end of a step: what there is to say, if anything.
-  void tell(Cycle now, bool idle) {
+  void notify(Cycle now, bool idle) {
     if (jobs_ == nullptr || stopped_ || holds() || (!shaded_ && idle == told_idle_)) return;
     notes_->send(now + latency_, {shaded_, idle});
     told_idle_ = idle;

@@ -4,25 +4,26 @@
 
 namespace carousel::ringbus::cycle {
 
-void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) {
+void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) {
   account_.chain = 0;
   account_.strips.clear();
   account_.instances.clear();
   entered_.clear();
   std::fill(seen_.begin(), seen_.end(), 0);
   for (std::size_t i = 0; i < members.count; ++i)
-    account_.chain = std::max(account_.chain, walk_ray(from, {members.records, members.slots + i, 1, members.culls},
-                                                       members.asked == nullptr ? nullptr : members.asked + i, counts));
+    account_.chain = std::max(account_.chain,
+                              walk_ray(from, {members.records, members.slots + i, 1, members.culls},
+                                       members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i, counts));
 }
 
-std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* asked,
-                                    TestCounts& counts) {
+std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* any_hit_calls,
+                                    IntersectionCounts& counts) {
   const RayRecord& record = ray.records[*ray.slots];
   std::uint64_t cycles = 0;
   walk_.start(from);
   while (const std::optional<accel::NodeKey> key = walk_.next(record)) {
     note(*key);
-    TestCounts tests = walk_.test(accel_, *key, ray);
+    IntersectionCounts tests = walk_.test(accel_, *key, ray);
     if (tests.transforms > 0 && !entered_.insert(key->instance).second)
       tests.inversions = 0;  // another ray's visit has done it
     else if (tests.transforms > 0)
@@ -31,8 +32,9 @@ std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers
     if (tests.box > 0) cycles += step_.box;  // none are left where planes, tested first, have culled all children
     if (tests.triangle > 0) cycles += step_.triangle;
     if (tests.procedural > 0) cycles += step_.procedural;
-    if (tests.asked > 0) cycles += step_.any_hit;
-    if (asked != nullptr) *asked = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, *asked + tests.asked));
+    if (tests.any_hit_calls > 0) cycles += step_.any_hit;
+    if (any_hit_calls != nullptr)
+      *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, *any_hit_calls + tests.any_hit_calls));
     cycles += (tests.transforms + accel::kInversionPasses * tests.inversions) * step_.transform;
     counts += tests;
   }

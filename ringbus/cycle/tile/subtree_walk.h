@@ -29,12 +29,13 @@ class SubtreeWalk final : public SubtreeTracer {
   SubtreeWalk(const accel::Accel& accel, const StepCycles& step, TransformAccount& transforms)
       : accel_(accel), step_(step), walk_(transforms) {}
 
-  void trace(accel::NodeKey from, const accel::RayMembers& members, TestCounts& counts) override;
+  void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) override;
   /// Of the last trace().
   const Account& account() const { return account_; }
 
  private:
-  std::uint64_t walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* asked, TestCounts& counts);
+  std::uint64_t walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* any_hit_calls,
+                         IntersectionCounts& counts);
   void note(accel::NodeKey key);
 
   const accel::Accel& accel_;

@@ -49,7 +49,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
   pause_after_ = static_cast<std::uint64_t>(fault.after_rays);
   resource_.set_subtree_tracer(&walk_);
   resource_.set_transform_account(&transforms_);
-  resource_.hold_askers(ports_.questions != nullptr);
+  resource_.hold_any_hit_rays(ports_.questions != nullptr);
   for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
     if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
 }
@@ -86,18 +86,18 @@ bool Tile::wants_credit() const {
   return bubble_ && !issue_.empty() && issue_.front().ready();
 }
 
-Cycle Tile::next_in_hand() const {
+Cycle Tile::next_egress() const {
   Cycle first = kNever;
   const auto consider = [&](Cycle at) {
     if (at > now_ && at < first) first = at;
   };
   for (const Context& context : contexts_)
     if (context.phase == Context::Phase::kComputing || context.subtree) consider(context.done);
-  if (handler_free_ > now_ && handler_free_ < first && handler_wanted()) first = handler_free_;
+  if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
 }
 
-bool Tile::handler_wanted() const {
+bool Tile::dispatch_wanted() const {
   // Collections that are not full go when the handler has nothing else to do.
   if (issue_.empty() ? !resource_.idle() : issue_.front().ready()) return true;
   return std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now_; });
@@ -135,17 +135,17 @@ void Tile::step(Cycle now) {
   hand_over(now);
   if (drains_ && !told_drained_ && drained()) {
     told_drained_ = true;
-    completed_port_.tell(CompletedRays::Note::kDrained, now);
+    completed_port_.notify(CompletedRays::Note::kDrained, now);
   }
   if (pauses_ && sink_.statistics().rays_completed >= pause_after_) {
     // The handler takes nothing up; what is in test is finished.
-    handler_free_ = std::max(handler_free_, now) + static_cast<Cycle>(machine_.config.faults.resource.cycles);
+    dispatch_free_ = std::max(dispatch_free_, now) + static_cast<Cycle>(machine_.config.faults.resource.cycles);
     pauses_ = false;
   }
   const TileState state = classify(now);
   clock_.enter(state, now);
-  help_.tell(now, state != TileState::kTesting && state != TileState::kMemory);
-  next_here_ = next_in_hand();
+  help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
+  next_here_ = next_egress();
   may_send_ = wants_credit() ||
               std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
 }
@@ -176,7 +176,7 @@ void Tile::take_new_rays(Cycle now) {
   while (ports_.new_rays->next() <= now) {
     NewRays rays = ports_.new_rays->take();
     if (rays.order != NewRays::Order::kTake)
-      obey(rays.order, now);
+      on_order(rays.order, now);
     else if (!only_forwards())
       waiting_.push_back(std::move(rays));
   }
@@ -234,7 +234,7 @@ TileResult Tile::result() const {
   TileResult t;
   t.states = clock_.times();
   tester_.account(t);
-  t.handler.busy = handler_busy_;
+  t.dispatch.busy = dispatch_busy_;
   t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();
   t.packet_cycles = trips_.packet_cycles();
@@ -253,7 +253,7 @@ std::string Tile::describe() const {
                                  resource_.collections().memberships(), resource_.packets_in_flight(), issue_.size());
   for (std::size_t exit = 0; exit < ports_.out.size(); ++exit)
     if (const std::string packet = blocked(exit); !packet.empty())
-      text += fmt::format("; {} cannot leave, {} more behind it", packet, ports_.out[exit].in_hand() - 1);
+      text += fmt::format("; {} cannot leave, {} more behind it", packet, ports_.out[exit].egress() - 1);
   return text;
 }
 

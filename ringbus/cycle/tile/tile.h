@@ -67,9 +67,9 @@ class Tile final : public ResourceAgent {
   struct Context {
     enum class Phase : std::uint8_t { kFree, kFetching, kComputing } phase = Phase::kFree;
     PacketId packet;
-    Cycle done = 0;           // kComputing: then; kFetching a subtree: of its tests
-    TestCounts counts;        // of tests that begin when the shapes are there
-    std::uint32_t reads = 0;  // records for them
+    Cycle done = 0;             // kComputing: then; kFetching a subtree: of its tests
+    IntersectionCounts counts;  // of tests that begin when the shapes are there
+    std::uint32_t reads = 0;    // records for them
     std::uint32_t bundle_passes = 0;
     AnyHitQuestion question;  // asked when the tests are done
     HitBatch completed;       // handed over then, with the slots they leave
@@ -89,7 +89,7 @@ class Tile final : public ResourceAgent {
   std::uint64_t hops() const;
   Cycle next_arrival() const;
   Cycle next_beside_ring() const;
-  Cycle next_in_hand() const;
+  Cycle next_egress() const;
   bool wants_credit() const;
   bool at_rest() const;
   void step(Cycle now);
@@ -109,7 +109,7 @@ class Tile final : public ResourceAgent {
   // When a resource has stopped (tile_stop.cpp).
   bool only_forwards() const { return stopped_ || drains_; }
   void stop(Cycle now);
-  void obey(NewRays::Order order, Cycle now);
+  void on_order(NewRays::Order order, Cycle now);
   void discard_work(Cycle now);
   void discard_home(PacketId id);
   bool drained() const;
@@ -123,15 +123,15 @@ class Tile final : public ResourceAgent {
   void end_test(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
-  void come_home(PacketId id);
+  void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
-  void occupy_handler(Cycle now, std::size_t ids);
+  void occupy_dispatch(Cycle now, std::size_t ids);
   void fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now);
-  std::size_t exit_of(const Packet& packet) const;
+  std::size_t out_port_of(const Packet& packet) const;
   std::optional<PacketId> free_packet();
   bool may_inject(const Packet& packet) const;
-  bool handler_wanted() const;
+  bool dispatch_wanted() const;
   TileState classify(Cycle now) const;
 
   CycleMachine& machine_;
@@ -154,7 +154,7 @@ class Tile final : public ResourceAgent {
   Cycle now_ = 0;
   Cycle next_here_ = kNever;  // of tests and handler, as of the last step
   bool may_send_ = false;     // likewise: something is in hand, or waits for credits
-  Cycle handler_free_ = 0, handler_busy_ = 0;
+  Cycle dispatch_free_ = 0, dispatch_busy_ = 0;
   std::size_t next_in_ = 0, next_direction_ = 0;
   std::vector<std::vector<PacketId>> free_;  // own packets at home, by direction
   std::deque<Issue> issue_;

@@ -37,9 +37,9 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   context.counts = resource_.last_tests();
   context.reads = resource_.last_reads();
   context.bundle_passes = resource_.last_bundle_passes();
-  for (const Resource::Asker& asker : resource_.last_askers()) {
-    context.question.slots.push_back(asker.slot);
-    context.question.times += asker.times;
+  for (const Resource::AnyHitCall& call : resource_.last_any_hit_calls()) {
+    context.question.slots.push_back(call.slot);
+    context.question.times += call.times;
   }
   context.completed.swap(resource_.completed());
   context.freed_slots.swap(resource_.freed_slots());
@@ -89,8 +89,8 @@ void Tile::end_test(Context& context, Cycle now) {
   ask(context, now);
   take_completed(context.completed, context.freed_slots);
   if (packet.owner == id_ && (stays_ || machine_.topology.hops(packet) == 0)) {
-    occupy_handler(now, packet.members.size());
-    come_home(id);
+    occupy_dispatch(now, packet.members.size());
+    retire_at_owner(id);
   } else {
     depart(id, now, true);
   }

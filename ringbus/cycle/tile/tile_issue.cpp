@@ -6,7 +6,7 @@
 namespace carousel::ringbus::cycle {
 
 bool Tile::may_inject(const Packet& packet) const {
-  const OutPort& out = ports_.out[exit_of(packet)];
+  const OutPort& out = ports_.out[out_port_of(packet)];
   // The bubble rule also leaves a place for the ring's own traffic.
   return out.has_place() && (!bubble_ || !ports_.out_to.empty() || out.spare_places() >= 2);
 }
@@ -21,19 +21,19 @@ bool Tile::handle_issue(Cycle now) {
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   issue_.pop_front();
-  trips_.leave(id.value, now);
+  trips_.inject(id.value, now);
   trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
-  occupy_handler(now, packet.members.size());
+  occupy_dispatch(now, packet.members.size());
   if (tested) {
-    if (travels) ports_.out[exit_of(packet)].reserve();
-    begin_test(*context, id, handler_free_);
+    if (travels) ports_.out[out_port_of(packet)].reserve();
+    begin_test(*context, id, dispatch_free_);
     return true;
   }
   if (packet.kind == PacketKind::kTest) {
     ++passed_;
     passed_rays_ += packet.members.size();
   }
-  depart(id, handler_free_, false);
+  depart(id, dispatch_free_, false);
   return true;
 }
 
@@ -56,7 +56,7 @@ bool Tile::fill_issue(Cycle now) {
   while (issue_.size() < issue_places_ && !resource_.idle()) {
     // Collections that are not full go only when there is nothing better to do: waiting fills them.
     const bool nothing_else =
-        issue_.empty() && handler_free_ <= now && testers_free() && !help_.holds() &&
+        issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
         std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
     const std::optional<PacketId> id = free_packet();
     if (!id) return moved;

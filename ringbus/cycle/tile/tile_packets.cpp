@@ -5,14 +5,14 @@
 
 namespace carousel::ringbus::cycle {
 
-std::size_t Tile::exit_of(const Packet& packet) const {
+std::size_t Tile::out_port_of(const Packet& packet) const {
   if (ports_.out_to.empty()) return machine_.topology.groups() > 0 ? 0 : packet.direction;
   return ports_.out_to[machine_.topology.next(packet, id_).value];
 }
 
 void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const Packet& packet = machine_.packet(id);
-  OutPort& out = ports_.out[exit_of(packet)];
+  OutPort& out = ports_.out[out_port_of(packet)];
   if (reserved) out.release();
   Token token{id, 0, 1, static_cast<std::uint16_t>(packet.members.size())};
   token.link_cycles = static_cast<std::uint16_t>(
@@ -21,7 +21,7 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   out.push(token, ready, !visit_all_ && token.skip > 0);
 }
 
-void Tile::come_home(PacketId id) {
+void Tile::retire_at_owner(PacketId id) {
   Packet& packet = machine_.packet(id);
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
   trips_.return_home(id.value, now_);
@@ -29,10 +29,10 @@ void Tile::come_home(PacketId id) {
   free_[packet.direction].push_back(id);
 }
 
-void Tile::occupy_handler(Cycle now, std::size_t ids) {
+void Tile::occupy_dispatch(Cycle now, std::size_t ids) {
   const Cycle cycles = std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_));
-  handler_free_ = std::max(handler_free_, now) + cycles;
-  handler_busy_ += cycles;
+  dispatch_free_ = std::max(dispatch_free_, now) + cycles;
+  dispatch_busy_ += cycles;
 }
 
 bool Tile::cut_through(Cycle now, bool at_once) {
@@ -55,7 +55,7 @@ bool Tile::cut_through(Cycle now, bool at_once) {
 }
 
 bool Tile::handle(Cycle now) {
-  if (handler_free_ > now) return false;
+  if (dispatch_free_ > now) return false;
   for (std::size_t i = 0; i < ports_.in.size(); ++i) {
     const std::size_t d = next_in_ + i < ports_.in.size() ? next_in_ + i : next_in_ + i - ports_.in.size();
     if (ports_.in[d].next() > now || !handle_arrival(d, now)) continue;
@@ -73,24 +73,24 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
     --token.skip;
     ++passed_;
     passed_rays_ += token.rays;
-    occupy_handler(now, token.rays);
-    ports_.out[d].push(token, handler_free_, false);
+    occupy_dispatch(now, token.rays);
+    ports_.out[d].push(token, dispatch_free_, false);
     return true;
   }
   const PacketId id = in.front().packet;
   Packet& packet = machine_.packet(id);
   if (packet.owner == id_) {
     in.take(now);
-    occupy_handler(now, only_forwards() ? 0 : packet.members.size());
-    only_forwards() ? discard_home(id) : come_home(id);
+    occupy_dispatch(now, only_forwards() ? 0 : packet.members.size());
+    only_forwards() ? discard_home(id) : retire_at_owner(id);
     return true;
   }
-  OutPort& out = ports_.out[exit_of(packet)];
+  OutPort& out = ports_.out[out_port_of(packet)];
   if (!out.has_place()) return false;
   if (only_forwards()) {
     in.take(now);
-    occupy_handler(now, 0);
-    depart(id, handler_free_, false);
+    occupy_dispatch(now, 0);
+    depart(id, dispatch_free_, false);
     return true;
   }
   const bool tested = packet.kind == PacketKind::kTest && machine_.topology.wanted(packet, id_);
@@ -98,10 +98,10 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   if (tested && context == nullptr) return false;
   in.take(now);
   trace_.note(now, StepKind::kTake, id.value, packet.members.size());
-  occupy_handler(now, packet.members.size());
+  occupy_dispatch(now, packet.members.size());
   if (tested) {
     out.reserve();
-    begin_test(*context, id, handler_free_);
+    begin_test(*context, id, dispatch_free_);
   } else {
     if (packet.kind == PacketKind::kMemberships && packet.home == id_) {
       resource_.join(packet);
@@ -109,7 +109,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
       ++passed_;
       passed_rays_ += packet.members.size();
     }
-    depart(id, handler_free_, false);
+    depart(id, dispatch_free_, false);
   }
   return true;
 }

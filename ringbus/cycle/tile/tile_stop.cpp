@@ -11,17 +11,17 @@ void Tile::stop(Cycle now) {
   stopped_ = true;
   discard_work(now);
   help_.stop();
-  completed_port_.tell(CompletedRays::Note::kLastBeat, now);
+  completed_port_.notify(CompletedRays::Note::kLastBeat, now);
 }
 
-void Tile::obey(NewRays::Order order, Cycle now) {
+void Tile::on_order(NewRays::Order order, Cycle now) {
   if (order == NewRays::Order::kDiscard) {
     drains_ = true;
     discard_work(now);
     return;
   }
   drains_ = told_drained_ = false;
-  resource_.lose(ResourceId(static_cast<std::uint32_t>(machine_.config.faults.resource.number)));
+  resource_.exclude(ResourceId(static_cast<std::uint32_t>(machine_.config.faults.resource.number)));
 }
 
 /// Whatever it was at. What is in test here and belongs to others goes on to them as it is.
@@ -38,7 +38,7 @@ void Tile::discard_work(Cycle now) {
     if (packet.owner != id_) {
       depart(id, now, true);
     } else {
-      if (!stays_ && machine_.topology.hops(packet) > 0) ports_.out[exit_of(packet)].release();
+      if (!stays_ && machine_.topology.hops(packet) > 0) ports_.out[out_port_of(packet)].release();
       discard_home(id);
     }
     context = Context{};

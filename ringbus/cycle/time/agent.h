@@ -15,7 +15,7 @@ class Agent {
 
   /// The next cycle in which it has something to do; kNever until something arrives.
   virtual Cycle next() const = 0;
-  /// Whether next() may change by what no WakeBoard tells of: false if its last answer holds until something is sent
+  /// Whether next() may change by what no WakeupTable tells of: false if its last answer holds until something is sent
   /// on a connected channel.
   virtual bool polled() const { return true; }
   /// Does everything there is to do before `end`, in the order of time.

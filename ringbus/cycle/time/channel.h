@@ -100,8 +100,8 @@ class Channel {
   // The sender's.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
-  Cycle unheard_ = kNever;
-  Cycle* wake_ = &unheard_;
+  Cycle unconnected_ = kNever;
+  Cycle* wake_ = &unconnected_;
   mutable std::atomic<Block*> spare_{nullptr};  // beside them: touched once a block only
 };
 

@@ -13,10 +13,11 @@ namespace carousel::ringbus::cycle {
 /// Word of what arrives, so that nobody looks into every channel before every window: for each pair of threads, the
 /// earliest arrival that the one has sent to each agent of the other. A row is written by its sending thread within
 /// a window, and read and cleared by its receiving thread between windows (windows.h); nothing in it is shared.
-class WakeBoard {
+class WakeupTable {
  public:
   /// Agents by thread, as run_windows() gets them.
-  explicit WakeBoard(std::span<const std::vector<Agent*>> parts) : threads_(parts.size()), rows_(threads_ * threads_) {
+  explicit WakeupTable(std::span<const std::vector<Agent*>> parts)
+      : threads_(parts.size()), rows_(threads_ * threads_) {
     for (std::size_t t = 0; t < threads_; ++t) {
       for (std::size_t i = 0; i < parts[t].size(); ++i) places_[parts[t][i]] = {t, i};
       for (std::size_t from = 0; from < threads_; ++from) row(t, from).assign(parts[t].size(), kNever);

@@ -67,12 +67,12 @@ class Barrier {
 
 class WindowRun {
  public:
-  WindowRun(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
-            const std::function<bool(Cycle)>& go_on)
+  WindowRun(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
+            const std::function<bool(Cycle)>& keep_running)
       : parts_(parts),
-        board_(board),
+        wakeups_(wakeups),
         lookahead_(lookahead),
-        go_on_(go_on),
+        keep_running_(keep_running),
         barrier_(parts.size()),
         next_(parts.size()) {}
 
@@ -109,7 +109,7 @@ class WindowRun {
       run_window(agents, schedule, first + lookahead_);
       if (thread == 0) {
         reached_ = first;
-        if (window % kLook == 0 && !go_on_(first)) stop_.store(true, std::memory_order_relaxed);
+        if (window % kPollInterval == 0 && !keep_running_(first)) stop_.store(true, std::memory_order_relaxed);
       }
       if (!alone) barrier_.wait(patience);
     }
@@ -132,7 +132,7 @@ class WindowRun {
   Cycle look(std::size_t thread, Schedule& schedule) {
     std::vector<Cycle>& wake = schedule.wake;
     for (std::size_t from = 0; from < parts_.size(); ++from) {
-      std::vector<Cycle>& heard = board_.row(thread, from);
+      std::vector<Cycle>& heard = wakeups_.row(thread, from);
       for (std::size_t i = 0; i < wake.size(); ++i) {
         wake[i] = std::min(wake[i], heard[i]);
         heard[i] = kNever;
@@ -164,12 +164,12 @@ class WindowRun {
     }
   }
 
-  static constexpr std::uint64_t kLook = 4096;
+  static constexpr std::uint64_t kPollInterval = 4096;
 
   std::span<const std::vector<Agent*>> parts_;
-  WakeBoard& board_;
+  WakeupTable& wakeups_;
   Cycle lookahead_;
-  const std::function<bool(Cycle)>& go_on_;
+  const std::function<bool(Cycle)>& keep_running_;
   Barrier barrier_;
   std::vector<Next> next_;
   std::atomic<bool> stop_{false};
@@ -180,9 +180,9 @@ class WindowRun {
 
 }  // namespace
 
-Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
-                  const std::function<bool(Cycle)>& go_on) {
-  return WindowRun(parts, board, lookahead, go_on).run();
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
+                  const std::function<bool(Cycle)>& keep_running) {
+  return WindowRun(parts, wakeups, lookahead, keep_running).run();
 }
 
 }  // namespace carousel::ringbus::cycle

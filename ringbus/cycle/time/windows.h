@@ -13,12 +13,12 @@ namespace carousel::ringbus::cycle {
 /// agents (conservative synchronous windows; R. Fujimoto, Parallel discrete event simulation, CACM 33 (1990)).
 /// The result is the same for any number of threads.
 ///
-/// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `go_on` is called there now and
+/// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `keep_running` is called there now and
 /// then with the time reached; when it answers false the run ends early. Exceptions of agents pass through.
 /// Returns the last window's first cycle, the time reached.
 ///
 /// Agents that are not polled() must have all their channels connected to `board`, which was made for `parts`.
-Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeBoard& board, Cycle lookahead,
-                  const std::function<bool(Cycle)>& go_on);
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
+                  const std::function<bool(Cycle)>& keep_running);
 
 }  // namespace carousel::ringbus::cycle

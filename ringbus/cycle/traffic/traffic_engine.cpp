@@ -36,8 +36,8 @@ class TrafficRun {
     const std::vector<std::vector<Agent*>> parts = share_out();
     auto last_report = start;
     bool stopped = false;
-    WakeBoard board(parts);  // whose agents are polled
-    run_windows(parts, board, link_latency(), [&](Cycle reached) {
+    WakeupTable wakeups(parts);  // whose agents are polled
+    run_windows(parts, wakeups, link_latency(), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {

@@ -60,7 +60,7 @@ Cycle TrafficNode::next_here() const {
     else if (sink_free_ > now_ && ports_.in[d].front().skip == 0)
       first = std::min(first, sink_free_);
   }
-  if (hands_ > 0)
+  if (egress_count_ > 0)
     for (const Out& out : ports_.out)
       if (!out.empty()) first = std::min(first, out.next(false));
   return first;
@@ -87,11 +87,11 @@ void TrafficNode::run(Cycle end) {
 
 void TrafficNode::step(Cycle now) {
   now_ = now;
-  if (hands_ > 0) {
+  if (egress_count_ > 0) {
     for (Out& out : ports_.out) {
       if (out.empty()) continue;
       out.take_credits(now);
-      hands_ -= out.send(now);
+      egress_count_ -= out.send(now);
     }
   }
   if (eager_ && waiting_ && ready_ <= now) inject(now);
@@ -126,7 +126,7 @@ void TrafficNode::pass(std::size_t d, Cycle now) {
     } else {
       out.push(token, now, token.skip > 0);
       out.send(now);  // does not, but counts the wait
-      ++hands_;
+      ++egress_count_;
     }
   }
 }
@@ -142,7 +142,7 @@ void TrafficNode::inject(Cycle now) {
     if (!out.has_place()) return;
     out.push(token, now, token.skip > 0);
     out.take_credits(now);
-    if (!out.send(now)) ++hands_;
+    if (!out.send(now)) ++egress_count_;
   } else {
     if (!out.open(now, places_wanted_) || !may_send_more(now)) return;
     out.launch(token, now, token.skip > 0);

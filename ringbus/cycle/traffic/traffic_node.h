@@ -91,10 +91,10 @@ class TrafficNode final : public Agent {
   std::uint32_t places_wanted_;  // in the next queue, to inject
 
   Cycle now_ = 0;
-  std::vector<Cycle> arrivals_;  // the next ones, as ports_.in; noted down when a window begins
-  std::size_t hands_ = 0;        // ways out with something in hand
-  std::size_t first_in_ = 0;     // has the sink before the others
-  Cycle sink_free_ = 0;          // for the next packet's tail
+  std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted down when a window begins
+  std::size_t egress_count_ = 0;  // ways out with something in hand
+  std::size_t first_in_ = 0;      // has the sink before the others
+  Cycle sink_free_ = 0;           // for the next packet's tail
 
   bool eager_;  // injects before it lets pass
 

@@ -21,7 +21,7 @@ struct TrafficResult {
   std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
   std::uint64_t hops = 0;                    ///< links crossed by packets
   LatencyHistogram latency;                  ///< of the packets offered
-  std::vector<cycle::LinkLedger> links;
+  std::vector<cycle::LinkUse> links;
   std::vector<std::uint64_t> link_packets;  ///< by link
   double wall_seconds = 0;
   std::size_t threads = 1;

@@ -44,7 +44,7 @@ inline BoxAnswer box_answer_everywhere(BoxLevel level, const Ray& ray, const Aab
     std::uint8_t mask = 0;
     float nearest[kMaxWidth], entries[kMaxWidth] = {};
     std::fill(nearest, nearest + kMaxWidth, kInfinity);
-    TestCounts counts;
+    IntersectionCounts counts;
     test_strip(accel, {kNoInstance, NodeRef::inner(0)}, ~0u, {&record, nullptr, 1}, {&mask, nearest, entries}, counts);
     EXPECT_EQ(mask, scalar.hit ? 0xff : 0) << enum_name(level) << " on " << enum_name(target);
     if (!scalar.hit) continue;

@@ -45,7 +45,7 @@ Verdict verdict(const std::vector<Ray>& rays, const Aabb& box, bool strict = fal
     accel.accuracy.box = level.value;
     Node node;
     set_child(node, 0, box);
-    TestCounts counts;
+    IntersectionCounts counts;
     const Verdict found = verdict(test_bundle(accel, node, 1, record_of(rays), config, counts), 0);
     if (level.value == BoxLevel::kPlain) first = found;
     EXPECT_EQ(found, first) << level.name;
@@ -121,7 +121,7 @@ TEST(BundleInterval, StrictIsOfTheBoxThatIsNotWidened) {
   Accel accel;
   Node node;
   set_child(node, 0, kUnit);
-  TestCounts counts;
+  IntersectionCounts counts;
   const BundleRecord record = record_of({ray(eye, {0.333333f, 0, 1}), ray(eye, {0.3f, 0, 1})});
   // Enters at 3, having left at 2.9999997; widening is by 16 u.
   const BundleRecord hit_by_rounding = record_of({ray(eye, {0.33333337f, 0, 1}), ray(eye, {0.3f, 0, 1})});
@@ -142,7 +142,7 @@ TEST(BundleInterval, StrictIsExactBeyondDoubles) {
     accel.accuracy.box = BoxLevel::kDouble;
     Node node;
     set_child(node, 0, box);
-    TestCounts counts;
+    IntersectionCounts counts;
     const Vec3 eye{x, 0, 0}, direction{1, 1, 0.125f};
     EXPECT_EQ(ExactBox(ray(eye, direction), box, kInfinity).hit(), x >= 0);
     const BundleRecord record = record_of({ray(eye, direction), ray(eye, direction)});
@@ -164,7 +164,7 @@ TEST(BundleInterval, SlowRaysAreNotSaidToMissWhereTheirReciprocalOverflows) {
       accel.accuracy.box = level;
       Node node;
       set_child(node, 0, kUnit);
-      TestCounts counts;
+      IntersectionCounts counts;
       EXPECT_NE(verdict(test_bundle(accel, node, 1, record_of(slow), config, counts), 0), Verdict::kMiss);
     }
   }
@@ -174,7 +174,7 @@ TEST(BundleInterval, EntryIsBeforeEveryRays) {
   Accel accel;
   Node node;
   set_child(node, 0, kUnit);
-  TestCounts counts;
+  IntersectionCounts counts;
   const auto entry = [&](const std::vector<Ray>& rays) {
     return test_bundle(accel, node, 1, record_of(rays), {}, counts).entry[0];
   };
@@ -204,13 +204,13 @@ TEST(BundleInterval, OrdersDifferInWhatTheyTestAndInWhatTheyLeaveOpen) {
                             {Order::kAnyHitOnly, 0b101, 0, 3}}) {
     BundlesConfig config;
     config.order = e.order;
-    TestCounts counts;
+    IntersectionCounts counts;
     const BundleAnswer answer = test_bundle(accel, node, 0b111, record, config, counts);
     EXPECT_EQ(answer.all, e.all) << enum_name(e.order);
     EXPECT_EQ(answer.undecided, e.undecided) << enum_name(e.order);
     EXPECT_EQ(counts.bundle, e.tests) << enum_name(e.order);
     EXPECT_EQ(answer.entry[0], 3) << enum_name(e.order);
-    TestCounts all_lanes;  // lanes beyond the node's children are nobody's
+    IntersectionCounts all_lanes;  // lanes beyond the node's children are nobody's
     EXPECT_EQ(test_bundle(accel, node, ~0u, record, config, all_lanes).all, e.all | 0b1000);
   }
 }
@@ -274,7 +274,7 @@ Share share_settled(float spread, const BundlesConfig& config) {
     alike += hits == 0 || hits == 32;
     Node node;
     set_child(node, 0, box);
-    TestCounts counts;
+    IntersectionCounts counts;
     decided += test_bundle(Accel{}, node, 1, record_of(rays), config, counts).undecided == 0;
   }
   return {double(decided) / kBundles, double(alike) / kBundles};

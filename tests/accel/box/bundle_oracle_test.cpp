@@ -65,7 +65,7 @@ Claims judge(BundlesConfig::Form form, std::uint64_t bundles, int reach, int pac
     config.order = static_cast<Order>(random.below(5));
     config.strict = random.below(2) == 0;
     const BoxLevel level = accel.accuracy.box = static_cast<BoxLevel>(random.below(3));
-    TestCounts counts;
+    IntersectionCounts counts;
     const BundleAnswer answer = test_bundle(accel, c.node, ~0u, record, config, counts);
     EXPECT_EQ(answer.all & answer.undecided, 0);
     for (int lane = 0; lane < BundleCase::kBoxes; ++lane, ++claims.boxes) {

@@ -35,7 +35,7 @@ BundleAnswer test(const std::vector<Ray>& rays, Order order, Edges edges = Edges
   config.form = BundlesConfig::Form::kSilhouette;
   config.order = order;
   config.edges = edges;
-  TestCounts counts;
+  IntersectionCounts counts;
   const BundleAnswer answer = test_bundle(accel, node, 1, record_of(rays), config, counts);
   EXPECT_GE(counts.bundle, 1u);
   return answer;

@@ -20,10 +20,10 @@ Ray ray(const Vec3& origin, const Vec3& direction, float tmin = 0) {
   r.tmin = tmin;
   return r;
 }
-float up(float x) {
+float next_up(float x) {
   return std::nextafter(x, kInfinity);
 }
-float down(float x) {
+float next_down(float x) {
   return std::nextafter(x, -kInfinity);
 }
 
@@ -84,14 +84,14 @@ TEST(HardBox, DirectionsOfOneComponentFromOutsideASlab) {
   expect_miss(ray({0, -2, -3}, {0, 0, 1}), kUnit);
   expect_miss(ray({2, -3, 0}, {0, 1, 0}), kUnit);
   expect_miss(ray({0, -3, -2}, {0, 1, 0}), kUnit);
-  expect_miss(ray({up(1), 0, -3}, {0, 0, 1}), kUnit);
-  expect_miss(ray({0, -3, down(-1)}, {-0.0f, 1, -0.0f}), kUnit);
+  expect_miss(ray({next_up(1), 0, -3}, {0, 0, 1}), kUnit);
+  expect_miss(ray({0, -3, next_down(-1)}, {-0.0f, 1, -0.0f}), kUnit);
 }
 
 TEST(HardBox, BoxBehindTheOrigin) {
   expect_miss(ray({0, 0, 3}, {0, 0, 1}), kUnit);
   expect_miss(ray({3, 3, 3}, {1, 0.5f, 0.25f}), kUnit);
-  expect_miss(ray({0, 0, up(1)}, {0, 0, 1}), kUnit);
+  expect_miss(ray({0, 0, next_up(1)}, {0, 0, 1}), kUnit);
 }
 
 TEST(HardBox, MixedNearAndFarSigns) {
@@ -152,12 +152,12 @@ TEST(HardBox, TmaxExactlyOnTheEntryFace) {
   expect_hit(ray({0, 0, -3}, {0, 0, 1}), kUnit, 2, 2.0f);
 }
 TEST(HardBox, TmaxOneUlpShortOfTheEntryFace) {
-  expect_miss(ray({0, 0, -3}, {0, 0, 1}), kUnit, down(2));
+  expect_miss(ray({0, 0, -3}, {0, 0, 1}), kUnit, next_down(2));
 }
 
 TEST(HardBox, TminOnAndOneUlpPastTheExit) {
   expect_hit(ray({0, 0, -3}, {0, 0, 1}, 4), kUnit, 4);
-  const Ray past = ray({0, 0, -3}, {0, 0, 1}, up(4));
+  const Ray past = ray({0, 0, -3}, {0, 0, 1}, next_up(4));
   EXPECT_FALSE(ExactBox(past, kUnit, kInfinity).hit());
   EXPECT_FALSE(box_answer_everywhere(BoxLevel::kPlain, past, kUnit).hit);
   // The far side is widened on purpose, by 2^-20 of the distance and no more.
@@ -169,8 +169,8 @@ TEST(HardBox, TminOnAndOneUlpPastTheExit) {
 TEST(HardBox, TmaxInfiniteWithAZeroComponent) {
   for (const float zero : {0.0f, -0.0f}) {
     expect_hit(ray({0, 1, -3}, {zero, zero, 1}), kUnit, 2, kInfinity);
-    expect_miss(ray({0, up(1), -3}, {zero, zero, 1}), kUnit, kInfinity);
-    expect_miss(ray({-1, down(-1), 0}, {zero, zero, 1}), kUnit, kInfinity);
+    expect_miss(ray({0, next_up(1), -3}, {zero, zero, 1}), kUnit, kInfinity);
+    expect_miss(ray({-1, next_down(-1), 0}, {zero, zero, 1}), kUnit, kInfinity);
   }
 }
 

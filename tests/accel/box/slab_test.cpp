@@ -20,11 +20,11 @@ bool hits(const Ray& ray, const Aabb& box) {
   float entry;
   return hits(ray, box, entry);
 }
-Ray ray(const Vec3& origin, const Vec3& direction, float tmin = 0) {
+Ray unit_ray(const Vec3& origin, const Vec3& direction, float tmin = 0) {
   return {origin, tmin, direction, kInfinity};
 }
 
-const Aabb kUnit{Vec3{-1}, Vec3{1}};
+const Aabb kUnitBox{Vec3{-1}, Vec3{1}};
 
 // The ray lies exactly in a face, along the axes: 0 * inf.
 TEST(Slab, RayInFacePlaneHits) {
@@ -33,12 +33,12 @@ TEST(Slab, RayInFacePlaneHits) {
       for (int other = 1; other < 3; ++other) {
         for (const float side : {-1.0f, 1.0f}) {
           for (const float zero : {0.0f, -0.0f}) {
-            Ray r = ray(Vec3{0}, Vec3{zero});
+            Ray r = unit_ray(Vec3{0}, Vec3{zero});
             r.origin[axis] = -3 * sign;
             r.direction[axis] = sign;
             r.origin[(axis + other) % 3] = side;
             float entry = -1;
-            EXPECT_TRUE(hits(r, kUnit, entry));
+            EXPECT_TRUE(hits(r, kUnitBox, entry));
             EXPECT_EQ(entry, 2);
           }
         }
@@ -51,46 +51,46 @@ TEST(Slab, RayBesideBoxWithZeroComponentMisses) {
   for (const float zero : {0.0f, -0.0f}) {
     for (const float side : {-1.5f, 1.5f}) {
       float entry;
-      EXPECT_FALSE(hits(ray({side, 0, -3}, {zero, zero, 1}), kUnit, entry, 1e30f));
-      EXPECT_FALSE(hits(ray({0, side, -3}, {zero, zero, 1}), kUnit, entry, 1e30f));
+      EXPECT_FALSE(hits(unit_ray({side, 0, -3}, {zero, zero, 1}), kUnitBox, entry, 1e30f));
+      EXPECT_FALSE(hits(unit_ray({0, side, -3}, {zero, zero, 1}), kUnitBox, entry, 1e30f));
     }
   }
 }
 
 TEST(Slab, FlatAndPointBoxesAreHit) {
-  EXPECT_TRUE(hits(ray({0, 0, -1}, {0, 0, 1}), {{-1, -1, 0}, {1, 1, 0}}));  // face on
-  EXPECT_TRUE(hits(ray({-2, 0, 0}, {1, 0, 0}), {{-1, -1, 0}, {1, 1, 0}}));  // edge on
-  EXPECT_TRUE(hits(ray({-2, 0, 0}, {1, 0, 0}), {{0, 0, 0}, {0, 0, 0}}));    // a point, dead on
-  EXPECT_TRUE(hits(ray({1, 2, 3}, {1, 2, 3}), {{2, 4, 6}, {2, 4, 6}}));
-  EXPECT_FALSE(hits(ray({-2, 0.001f, 0.001f}, {1, 1e-9f, 0}), {{0, 0, 0}, {0, 0, 0}}));
+  EXPECT_TRUE(hits(unit_ray({0, 0, -1}, {0, 0, 1}), {{-1, -1, 0}, {1, 1, 0}}));  // face on
+  EXPECT_TRUE(hits(unit_ray({-2, 0, 0}, {1, 0, 0}), {{-1, -1, 0}, {1, 1, 0}}));  // edge on
+  EXPECT_TRUE(hits(unit_ray({-2, 0, 0}, {1, 0, 0}), {{0, 0, 0}, {0, 0, 0}}));    // a point, dead on
+  EXPECT_TRUE(hits(unit_ray({1, 2, 3}, {1, 2, 3}), {{2, 4, 6}, {2, 4, 6}}));
+  EXPECT_FALSE(hits(unit_ray({-2, 0.001f, 0.001f}, {1, 1e-9f, 0}), {{0, 0, 0}, {0, 0, 0}}));
 }
 
 TEST(Slab, OriginInsideEntersAtTmin) {
   float entry = -1;
-  EXPECT_TRUE(hits(ray({0.5f, 0, 0}, {0.3f, -0.2f, 0.9f}), kUnit, entry));
+  EXPECT_TRUE(hits(unit_ray({0.5f, 0, 0}, {0.3f, -0.2f, 0.9f}), kUnitBox, entry));
   EXPECT_EQ(entry, 0);
-  EXPECT_TRUE(hits(ray({0.5f, 0, 0}, {0.3f, -0.2f, 0.9f}, 0.25f), kUnit, entry));
+  EXPECT_TRUE(hits(unit_ray({0.5f, 0, 0}, {0.3f, -0.2f, 0.9f}, 0.25f), kUnitBox, entry));
   EXPECT_EQ(entry, 0.25f);
 }
 
 TEST(Slab, TmaxAtEntryStillHits) {
   float entry;
-  EXPECT_TRUE(hits(ray({0, 0, -3}, {0, 0, 1}), kUnit, entry, 2.0f));
-  EXPECT_FALSE(hits(ray({0, 0, -3}, {0, 0, 1}), kUnit, entry, std::nextafter(2.0f, 0.0f)));
+  EXPECT_TRUE(hits(unit_ray({0, 0, -3}, {0, 0, 1}), kUnitBox, entry, 2.0f));
+  EXPECT_FALSE(hits(unit_ray({0, 0, -3}, {0, 0, 1}), kUnitBox, entry, std::nextafter(2.0f, 0.0f)));
 }
 
 TEST(Slab, BoxBehindOrEmptyMisses) {
-  EXPECT_FALSE(hits(ray({0, 0, 3}, {0, 0, 1}), kUnit));
-  EXPECT_FALSE(hits(ray({0, 0, -3}, {0, 0, 1}, 4.1f), kUnit));
+  EXPECT_FALSE(hits(unit_ray({0, 0, 3}, {0, 0, 1}), kUnitBox));
+  EXPECT_FALSE(hits(unit_ray({0, 0, -3}, {0, 0, 1}, 4.1f), kUnitBox));
   float entry;
-  EXPECT_FALSE(hits(ray({0, 0, -3}, {0.1f, 0.2f, 1}), Aabb{}, entry, 1e30f));
+  EXPECT_FALSE(hits(unit_ray({0, 0, -3}, {0.1f, 0.2f, 1}), Aabb{}, entry, 1e30f));
 }
 
 TEST(Slab, EmptyLanesAreNeverHitWhateverTheRay) {
   const Node node;
   Random random(1);
   for (int i = 0; i < 20000; ++i) {
-    Ray r = ray(random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1}));
+    Ray r = unit_ray(random.in_box(Vec3{-1}, Vec3{1}), random.in_box(Vec3{-1}, Vec3{1}));
     r.direction[static_cast<int>(random.below(3))] = random.below(2) ? 0.0f : random.any_bits();
     Accel accel;
     RayRecord record;
@@ -101,7 +101,7 @@ TEST(Slab, EmptyLanesAreNeverHitWhateverTheRay) {
     accel.nodes[0].count = 8;  // so that the lanes count as children
     std::uint8_t mask = 0xff;
     float nearest[kMaxWidth] = {};
-    TestCounts counts;
+    IntersectionCounts counts;
     test_strip(accel, {kNoInstance, NodeRef::inner(0)}, ~0u, {&record, nullptr, 1}, {&mask, nearest, nullptr}, counts);
     ASSERT_EQ(mask, 0) << i;
   }
@@ -109,22 +109,22 @@ TEST(Slab, EmptyLanesAreNeverHitWhateverTheRay) {
 
 TEST(Slab, DenormalDirectionsAreConservative) {
   const float tiny = std::numeric_limits<float>::denorm_min();
-  EXPECT_TRUE(hits(ray({0, 0, -1}, {tiny, tiny, 1}), kUnit));
-  EXPECT_TRUE(hits(ray({1, 0, -3}, {tiny, 0, 1}), kUnit));
-  EXPECT_TRUE(hits(ray({-1, 0, -3}, {-tiny, 0, 1}), kUnit));
+  EXPECT_TRUE(hits(unit_ray({0, 0, -1}, {tiny, tiny, 1}), kUnitBox));
+  EXPECT_TRUE(hits(unit_ray({1, 0, -3}, {tiny, 0, 1}), kUnitBox));
+  EXPECT_TRUE(hits(unit_ray({-1, 0, -3}, {-tiny, 0, 1}), kUnitBox));
   float entry = 0;
-  EXPECT_TRUE(hits(ray({0, 0, -3}, {0, 0, tiny}), kUnit, entry));  // 2 / tiny is beyond every float
+  EXPECT_TRUE(hits(unit_ray({0, 0, -3}, {0, 0, tiny}), kUnitBox, entry));  // 2 / tiny is beyond every float
 }
 
 // Their reciprocal overflows, but the distance to a near plane need not.
 TEST(Slab, DenormalDirectionsEnterNoLaterThanExactly) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const float sign : {-1.0f, 1.0f}) {
-      Ray r = ray(Vec3{0}, Vec3{0});
+      Ray r = unit_ray(Vec3{0}, Vec3{0});
       r.origin[axis] = -1.001f * sign;
       r.direction[axis] = 2e-39f * sign;  // enters at 5e35
       float entry = 0;
-      EXPECT_TRUE(hits(r, kUnit, entry, 1e38f));
+      EXPECT_TRUE(hits(r, kUnitBox, entry, 1e38f));
       EXPECT_LE(entry, 0.5e36f);
     }
   }
@@ -140,7 +140,7 @@ TEST(Slab, EnclosingBoxIsHitAndEnteredNoLater) {
     if (i % 4) inner.extend(random.in_box(Vec3{-1}, Vec3{1}));
     Aabb outer = inner;
     if (i % 3) outer.extend(random.in_box(Vec3{-2}, Vec3{2}));
-    Ray r = ray(random.in_box(Vec3{-3}, Vec3{3}), Vec3{0});
+    Ray r = unit_ray(random.in_box(Vec3{-3}, Vec3{3}), Vec3{0});
     const Vec3 target = i % 2 ? inner.lo : random.in_box(inner.lo, inner.hi);
     r.direction = target - r.origin;
     if (i % 5 == 0) r.origin[static_cast<int>(random.below(3))] = inner.hi.x;
@@ -190,7 +190,7 @@ TEST(Slab, MissesNoBoxTheExactRayMeets) {
     Aabb box;
     box.extend({grid(), grid(), grid()});
     box.extend({grid(), grid(), grid()});
-    Ray r = ray({3 * grid(), 3 * grid(), 3 * grid()}, Vec3{0});
+    Ray r = unit_ray({3 * grid(), 3 * grid(), 3 * grid()}, Vec3{0});
     // At edges and corners, where hit and miss are one unit of rounding apart.
     for (int axis = 0; axis < 3; ++axis) {
       const std::uint32_t where = random.below(3);
@@ -229,14 +229,14 @@ TEST(Slab, EveryLaneOfEveryTargetEqualsScalar) {
         }
       }
       RayRecord record;
-      record.ray = ray(random.in_box(Vec3{-2}, Vec3{2}), random.in_box(Vec3{-1}, Vec3{1}));
+      record.ray = unit_ray(random.in_box(Vec3{-2}, Vec3{2}), random.in_box(Vec3{-1}, Vec3{1}));
       if (i % 3 == 0) record.ray.direction[static_cast<int>(random.below(3))] = i % 2 ? 0.0f : -0.0f;
       if (i % 5 == 0) record.ray.origin = boxes[0].lo;
       record.hit.t = i % 2 ? kInfinity : 1.0f;
       std::uint8_t mask = 0;
       float nearest[kMaxWidth], entries[kMaxWidth];
       std::fill(nearest, nearest + kMaxWidth, kInfinity);
-      TestCounts counts;
+      IntersectionCounts counts;
       const std::uint32_t lanes = i % 4 ? ~0u : 0x55u;
       test_strip(accel, {kNoInstance, NodeRef::inner(0)}, lanes, {&record, nullptr, 1}, {&mask, nearest, entries},
                  counts);

@@ -26,7 +26,7 @@ Accel with_planes(const scene::Scene& scene, const CullPlanesConfig& planes) {
 
 struct Traced {
   std::vector<RayRecord> records;
-  TestCounts tests;
+  IntersectionCounts tests;
   CullCounts culls;
 };
 
@@ -175,7 +175,7 @@ TEST(CullPlaneCounts, OfPlanesFirstAreOfTheLanesAskedFor) {
     std::uint8_t mask = 0;
     float nearest[kMaxWidth];
     std::fill(std::begin(nearest), std::end(nearest), kInfinity);
-    TestCounts counts;
+    IntersectionCounts counts;
     CullCounts culls;
     test_strip(accel, root, 1u << lane, {&record, nullptr, 1, &culls}, {&mask, nearest, nullptr}, counts);
     EXPECT_EQ(culls.sum().children, plane_count(node, lane) > 0 ? 1u : 0u);

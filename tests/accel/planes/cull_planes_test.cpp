@@ -71,7 +71,7 @@ bool same_bits(const Hit& a, const Hit& b) {
 void expect_none_lost(const AccuracyConfig& accuracy, std::size_t total) {
   const std::vector<HardMesh> meshes = hard_meshes();
   std::size_t hits = 0, lost = 0;
-  TestCounts counts;
+  IntersectionCounts counts;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const HardMesh& mesh = meshes[m];
     const Accel plain = build_sequential(mesh.scene, 8, 1, accuracy);
@@ -233,7 +233,7 @@ TEST(CullPlanes, CullFromTheFrontFromBehindAndInParallel) {
   const Accel accel = with_planes(scene, 8, Nodes::kLeaves, 1);
   const auto counts_of = [&](const Vec3& from, const Vec3& direction) {
     HitBatch hits;
-    TestCounts counts;
+    IntersectionCounts counts;
     trace_depth_first(accel, {ray_to(from, direction)}, hits, counts);
     EXPECT_EQ(counts.triangle, 1 - counts.culled);  // the box is hit
     EXPECT_GT(counts.plane, 0u);
@@ -251,11 +251,11 @@ TEST(CullPlanes, AvoidTriangleTestsOnTerrain) {
   const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 20000);
   const RayBatch rays = whole_rays(scene, 20000, run_seed());
   HitBatch hits;
-  TestCounts plain;
+  IntersectionCounts plain;
   trace_depth_first(build_sequential(scene), rays, hits, plain);
   const std::pair<std::int64_t, double> expectations[] = {{1, 0.23}, {2, 0.34}, {4, 0.49}, {8, 0.56}};
   for (const auto& [planes, expected] : expectations) {
-    TestCounts counts;
+    IntersectionCounts counts;
     hits.clear();
     trace_depth_first(with_planes(scene, planes, Nodes::kLeaves), rays, hits, counts);
     const double avoided = 1 - double(counts.triangle) / double(plain.triangle);

@@ -116,7 +116,7 @@ struct Losses {
 /// Hits that are other with the planes than without.
 void count_losses(const Accel& plain, const Accel& planes, const RayBatch& rays, Losses& out) {
   HitBatch got;
-  TestCounts counts;
+  IntersectionCounts counts;
   trace_depth_first(planes, rays, got, counts);
   out.culled += counts.culled;
   const HitBatch expected = trace(plain, rays);
@@ -290,7 +290,7 @@ TEST(TopPlanes, GiveTheAnswersOfBruteForceAndSpareTransforms) {
       const Accel planes = built(scene, {.count = count, .nodes = Nodes::kLeaves, .levels = Levels::kTlas}, level, 2);
       EXPECT_EQ(answers.differences(planes), 0u) << enum_name(level) << " " << count;
       HitBatch hits;
-      TestCounts with, without;
+      IntersectionCounts with, without;
       trace_depth_first(planes, rays, hits, with);
       hits.clear();
       trace_depth_first(built(scene, {}, level, 2), rays, hits, without);

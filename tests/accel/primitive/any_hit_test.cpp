@@ -62,19 +62,19 @@ TEST(AnyHit, IsAskedOnlyWhereSomethingMayPass) {
   accel.any_hit = &never;
   RayBatch rays = mixed_rays(scene, 600, 5);
   HitBatch hits;
-  TestCounts counts;
+  IntersectionCounts counts;
   trace_depth_first(accel, rays, hits, counts);
-  EXPECT_GT(counts.asked, 100u);
-  EXPECT_EQ(counts.asked, never.asked());
+  EXPECT_GT(counts.any_hit_calls, 100u);
+  EXPECT_EQ(counts.any_hit_calls, never.any_hit_calls());
   for (const RayResult& r : hits)
     if (r.hit.valid())
       EXPECT_EQ(scene.meshes[0].triangle_materials[r.hit.primitive], MaterialId(0))
           << "the others let everything through";
 
   for (RayRequest& ray : rays) ray.tag.flags = kRayForceOpaque;
-  const std::uint64_t before = never.asked();
+  const std::uint64_t before = never.any_hit_calls();
   trace_depth_first(accel, rays, hits, counts);
-  EXPECT_EQ(never.asked(), before) << "wished not to be asked";
+  EXPECT_EQ(never.any_hit_calls(), before) << "wished not to be asked";
 }
 
 TEST(AnyHit, AnswersKeepTheirWishes) {

@@ -102,7 +102,7 @@ TEST(Ties, EveryOrderOfVisitsGivesSameHit) {
   do {
     RayRecord record;
     start_record(ray, record);
-    TestCounts counts;
+    IntersectionCounts counts;
     for (const int i : order)
       test_strip(accel, leaves[static_cast<std::size_t>(i)], ~0u, {&record, nullptr, 1}, {}, counts);
     ASSERT_TRUE(same_result({ray.ray, record.hit, ray.tag}, {ray.ray, expected, ray.tag}));
@@ -125,7 +125,7 @@ TEST(Ties, EveryOrderOfInstancesGivesSameHit) {
   do {
     RayRecord record;
     start_record(ray, record);
-    TestCounts counts;
+    IntersectionCounts counts;
     for (const std::uint32_t i : order)
       test_strip(accel, {i, accel.instances[i].root}, ~0u, {&record, nullptr, 1}, {}, counts);
     ASSERT_TRUE(same_result({ray.ray, record.hit, ray.tag}, {ray.ray, expected, ray.tag}));

@@ -131,7 +131,7 @@ TEST(Watertight, EveryLaneOfEveryTargetGivesSameBits) {
                 block.vertex[k][axis][lane] = corners[3 * t + static_cast<std::uint32_t>(k)][axis];
           }
           RayRecord record = start;
-          TestCounts counts;
+          IntersectionCounts counts;
           const NodeRef leaf = alone ? NodeRef::leaf(static_cast<std::uint32_t>(place / 4), 1) : NodeRef::leaf(0, 16);
           test_strip(moved, {0, leaf}, alone ? ~0u : 1u << place, {&record, nullptr, 1}, {}, counts);
           const RayResult got{record.ray, record.hit, record.tag}, want{record.ray, expected, record.tag};

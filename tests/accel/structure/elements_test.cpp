@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "accel/planes/cull_planes.h"
-#include "accel/structure/bounding_spheres.h"
+#include "accel/build/bounding_spheres.h"
+#include "accel/structure/node_spheres.h"
 #include "accel/structure/cull_plane.h"
 #include "tests/accel/structure/passing_scenes.h"
 #include "tests/accel/traverse/brute_force_answers.h"
@@ -118,7 +119,7 @@ TEST(Elements, SpheresHoldTheBoxesBelow) {
 TEST(Elements, MixedNodesSpareBoxesAndVisits) {
   const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 3000);
   const RayBatch rays = mixed_rays(scene, 2000, run_seed());
-  TestCounts plain, mixed;
+  IntersectionCounts plain, mixed;
   HitBatch hits;
   trace_depth_first(build_with(scene, Elements::kBoxes, 0), rays, hits, plain);
   trace_depth_first(build_with(scene, Elements::kBoxes, 2), rays, hits, mixed);

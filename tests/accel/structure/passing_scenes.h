@@ -15,8 +15,8 @@ namespace carousel::accel {
 class HashedStop final : public AnyHit {
  public:
   explicit HashedStop(double probability) : below_(static_cast<std::uint64_t>(probability * 0x1p32)) {}
-  bool stops(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const override {
-    asked_.fetch_add(1, std::memory_order_relaxed);
+  bool accepts(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const override {
+    any_hit_calls_.fetch_add(1, std::memory_order_relaxed);
     std::uint64_t hash = 0x9e3779b97f4a7c15u;
     const auto mix = [&](std::uint32_t bits) {
       hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
@@ -29,11 +29,11 @@ class HashedStop final : public AnyHit {
     mix(instance), mix(primitive), mix(std::bit_cast<std::uint32_t>(u)), mix(std::bit_cast<std::uint32_t>(v));
     return hash >> 32 < below_;
   }
-  std::uint64_t asked() const { return asked_; }
+  std::uint64_t any_hit_calls() const { return any_hit_calls_; }
 
  private:
   std::uint64_t below_;
-  mutable std::atomic<std::uint64_t> asked_{0};
+  mutable std::atomic<std::uint64_t> any_hit_calls_{0};
 };
 
 /// A built-in scene half of whose triangles may let rays through, with `balls` spheres, likewise, in two meshes: one of
@@ -41,19 +41,19 @@ class HashedStop final : public AnyHit {
 inline scene::Scene passing_scene(BuiltinScene builtin, std::uint32_t balls, std::uint64_t seed) {
   Random random(seed);
   scene::Scene scene = small_builtin(builtin, 250, 6);
-  const MaterialId veil(static_cast<std::uint32_t>(scene.materials.size()));
+  const MaterialId blended(static_cast<std::uint32_t>(scene.materials.size()));
   scene.materials.emplace_back().alpha_mode = scene::AlphaMode::kBlend;
   scene.materials.back().base_color.a = 0.5f;
   for (scene::Mesh& mesh : scene.meshes)
     for (MaterialId& material : mesh.triangle_materials)
-      if (random.below(2) == 0) material = veil;
+      if (random.below(2) == 0) material = blended;
   if (balls == 0) return scene;
   const Aabb bounds = scene.bounds();
   const float size = 0.2f * std::max({bounds.extent().x, bounds.extent().y, bounds.extent().z});
   scene::Mesh spheres;
   for (std::uint32_t i = 0; i < balls; ++i)
     spheres.spheres.push_back({random.in_box(bounds.lo, bounds.hi), size * random.uniform(0.05f, 1),
-                               random.below(2) == 0 ? veil : MaterialId(0)});
+                               random.below(2) == 0 ? blended : MaterialId(0)});
   scene::Mesh both = scene.meshes.front();
   both.spheres = spheres.spheres;
   const auto add = [&](scene::Mesh mesh, const scene::Affine& placement) {

@@ -22,7 +22,7 @@ class BruteForceAnswers {
     std::size_t differences = 0;
     for (auto* const tracer : {trace_depth_first, trace_depth_first_interleaved}) {
       HitBatch got;
-      TestCounts counts;
+      IntersectionCounts counts;
       tracer(accel, rays_, got, counts);
       for (std::size_t i = 0; i < expected_.size(); ++i) differences += !same_result(expected_[i], got.at(i));
     }

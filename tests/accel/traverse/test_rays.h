@@ -114,7 +114,7 @@ inline RayBatch whole_rays(const scene::Scene& scene, std::size_t count, std::ui
 
 inline HitBatch trace(const Accel& accel, const RayBatch& rays) {
   HitBatch hits;
-  TestCounts counts;
+  IntersectionCounts counts;
   trace_depth_first(accel, rays, hits, counts);
   return hits;
 }

@@ -16,8 +16,8 @@ TestersConfig bundle_testers() {
   return c;
 }
 
-TestCounts counts(std::uint64_t box, std::uint64_t bundle) {
-  TestCounts c;
+IntersectionCounts counts(std::uint64_t box, std::uint64_t bundle) {
+  IntersectionCounts c;
   c.box = box;
   c.bundle = bundle;
   return c;

@@ -103,8 +103,8 @@ TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
 TEST(PlaneUnits, AreLiftedWhereThereAreAny) {
   Config config;
   const auto has = [&] {
-    const std::vector<Lift> all = lifts(config, accel::Accel());
-    return std::any_of(all.begin(), all.end(), [](const Lift& lift) { return lift.name == "plane_tests"; });
+    const std::vector<WhatIf> all = what_ifs(config, accel::Accel());
+    return std::any_of(all.begin(), all.end(), [](const WhatIf& what_if) { return what_if.name == "plane_tests"; });
   };
   EXPECT_FALSE(has());
   config.cull_planes.count = 1;

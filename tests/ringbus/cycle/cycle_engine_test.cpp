@@ -61,10 +61,10 @@ TEST(CycleEngine, LedgersAddUp) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
   std::uint64_t transforms = 0, jobs = 0, waited = 0;
   const auto count = static_cast<std::uint32_t>(cell_count(40));
-  const auto go_on = [&](std::uint32_t done) {
+  const auto keep_running = [&](std::uint32_t done) {
     return done < count || ((jobs == 0 || transforms == 0) && done < 20 * count);
   };
-  for (std::uint32_t seed = run_seed(); go_on(seed - run_seed()); ++seed) {
+  for (std::uint32_t seed = run_seed(); keep_running(seed - run_seed()); ++seed) {
     const Cell cell = random_cell(seed + 1000);
     const Outcome out = run_cell(scene, cell);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
@@ -76,8 +76,8 @@ TEST(CycleEngine, LedgersAddUp) {
       for (const cycle::Cycle state : tile.states) sum += state;
       EXPECT_EQ(sum, c.cycles);
       const cycle::Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
-      for (const cycle::UnitLedger& bank : {tile.box, tile.triangle, tile.transform}) EXPECT_LE(bank.busy, testing);
-      EXPECT_LE(tile.handler.busy, c.cycles);
+      for (const cycle::Utilisation& bank : {tile.box, tile.triangle, tile.transform}) EXPECT_LE(bank.busy, testing);
+      EXPECT_LE(tile.dispatch.busy, c.cycles);
       // Little's law: packets under way = rate times time, over a whole run without an error.
       EXPECT_EQ(tile.round_trips.count(), out.result.resources[r].packets_issued);
       EXPECT_EQ(tile.packet_cycles, tile.round_trips.sum());

@@ -35,7 +35,7 @@ TEST(RayWalk, PushesAllChildrenHitButTheNearest) {
     std::uint8_t mask = 0;
     float nearest[accel::kMaxWidth], entry[accel::kMaxWidth];
     std::fill(std::begin(nearest), std::end(nearest), kInfinity);
-    TestCounts counts;
+    IntersectionCounts counts;
     accel::test_strip(accel, accel.root_key(), ~0u, ray, {&mask, nearest, entry}, counts);
     TransformAccount transforms({}, accel, records.size());
     RayWalk walk(transforms);
@@ -75,13 +75,13 @@ TEST(RayWalk, FindsWhatTheKernelsFindAndLeavesNothingOnTheStack) {
   std::uint64_t transforms = 0, by_strip = 0;
   TransformAccount account({}, accel, records.size());
   for (std::uint32_t slot = 0; slot < records.size(); ++slot) {
-    TestCounts ignored;
+    IntersectionCounts ignored;
     accel::trace_subtree(accel, accel.root_key(), {expected.data(), &slot, 1}, ignored);
     RayWalk walk(account);
     walk.start(accel.root_key());
     std::uint32_t last = kNoInstance;
     while (const std::optional<accel::NodeKey> key = walk.next(records[slot])) {
-      const TestCounts tests = walk.test(accel, *key, {records.data(), &slot, 1});
+      const IntersectionCounts tests = walk.test(accel, *key, {records.data(), &slot, 1});
       transforms += tests.transforms;
       by_strip += key->instance != kNoInstance && !accel.instances[key->instance].transform.identity;
       // A ray is transformed when it comes to an instance, and kept while it stays there.

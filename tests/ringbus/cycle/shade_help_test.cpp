@@ -42,11 +42,11 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   const Config config = helping_machine();
   Wires wires;
   ShadeHelp help(config, wires.ports());
-  help.tell(0, true);
+  help.notify(0, true);
   EXPECT_EQ(wires.notes.next(), kNever);  // everybody is idle at first
-  help.tell(3, false);
+  help.notify(3, false);
   expect_note(wires, 3 + kLatency, false, false);
-  help.tell(4, false);
+  help.notify(4, false);
   EXPECT_EQ(wires.notes.next(), kNever);
 
   wires.jobs.send(10, {kShade});
@@ -55,7 +55,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   EXPECT_TRUE(help.holds());
   EXPECT_FALSE(help.shading());
   EXPECT_FALSE(help.step(12, false));
-  help.tell(12, true);
+  help.notify(12, true);
   EXPECT_EQ(wires.notes.next(), kNever);  // not with a job in hand
   EXPECT_TRUE(help.step(15, true));
   EXPECT_TRUE(help.shading());
@@ -63,7 +63,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   EXPECT_FALSE(help.step(20, true));
   EXPECT_TRUE(help.step(15 + kShade, true));
   EXPECT_FALSE(help.holds());
-  help.tell(15 + kShade, true);
+  help.notify(15 + kShade, true);
   expect_note(wires, 15 + kShade + kLatency, true, true);
   EXPECT_EQ(help.next(), kNever);
 }
@@ -72,7 +72,7 @@ TEST(ShadeHelp, DoesNothingUnlessAsked) {
   Config config = helping_machine();
   ShadeHelp help(config, SidePorts{});
   EXPECT_FALSE(help.step(5, true));
-  help.tell(5, false);
+  help.notify(5, false);
   EXPECT_FALSE(help.holds());
   EXPECT_EQ(help.next(), kNever);
 }

@@ -81,8 +81,8 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
 
 TEST(WhatIf, LiftsWhatTheMachineHas) {
   const auto has = [](const Config& config, const std::string& name) {
-    const std::vector<Lift> all = lifts(config, accel::Accel());
-    return std::any_of(all.begin(), all.end(), [&](const Lift& lift) { return lift.name == name; });
+    const std::vector<WhatIf> all = what_ifs(config, accel::Accel());
+    return std::any_of(all.begin(), all.end(), [&](const WhatIf& what_if) { return what_if.name == name; });
   };
   Config c = generous_machine();
   c.topology.link.latency_cycles = 4;

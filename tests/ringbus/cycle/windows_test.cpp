@@ -41,8 +41,8 @@ TEST(Windows, AnErrorInOneThreadEndsAllOfThem) {
     for (Cycle fails_at = 1; fails_at < 60; ++fails_at) {
       std::vector<std::unique_ptr<Ticker>> agents;
       const std::vector<std::vector<Agent*>> parts = parts_of(agents, threads, fails_at);
-      WakeBoard board(parts);
-      EXPECT_THROW(run_windows(parts, board, 1, [](Cycle) { return true; }), std::runtime_error);
+      WakeupTable wakeups(parts);
+      EXPECT_THROW(run_windows(parts, wakeups, 1, [](Cycle) { return true; }), std::runtime_error);
     }
   }
 }
@@ -52,8 +52,8 @@ TEST(Windows, AStopEndsAllThreads) {
     for (int i = 0; i < 30; ++i) {
       std::vector<std::unique_ptr<Ticker>> agents;
       const std::vector<std::vector<Agent*>> parts = parts_of(agents, threads, kNever);
-      WakeBoard board(parts);
-      EXPECT_LT(run_windows(parts, board, 1, [](Cycle) { return false; }), 10u);
+      WakeupTable wakeups(parts);
+      EXPECT_LT(run_windows(parts, wakeups, 1, [](Cycle) { return false; }), 10u);
     }
   }
 }
@@ -92,10 +92,10 @@ TEST(Windows, WhoIsNotAskedIsWokenInTime) {
     std::vector<std::vector<Agent*>> parts(threads);
     parts.front().push_back(&a);
     parts.back().push_back(&b);
-    WakeBoard board(parts);
-    board.connect(there, a, b);
-    board.connect(back, b, a);
-    run_windows(parts, board, 3, [](Cycle) { return true; });
+    WakeupTable wakeups(parts);
+    wakeups.connect(there, a, b);
+    wakeups.connect(back, b, a);
+    run_windows(parts, wakeups, 3, [](Cycle) { return true; });
     ASSERT_EQ(a.heard().size() + b.heard().size(), 1001u);
     for (std::size_t i = 0; i < b.heard().size(); ++i) {
       EXPECT_EQ(a.heard()[i], 1 + 10 * i);

@@ -13,7 +13,7 @@ namespace {
 
 void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number) {
   const accel::HashedStop stop(0.4);
-  std::uint64_t asked = 0, procedural = 0;
+  std::uint64_t any_hit_calls = 0, procedural = 0;
   for (const BuiltinScene builtin : {BuiltinScene::kSpheres, BuiltinScene::kInstances}) {
     TestScene scene(accel::passing_scene(builtin, 20, run_seed()), 150, 3, 0.5f, {}, &stop);
     std::mt19937 random(number + 7919 * run_seed());
@@ -27,11 +27,11 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
       if (i % 3 == 1) cell.config.cull_planes.count = 4;
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << "CAROUSEL_SEED=" << run_seed() << " " << cell.text();
-      asked += outcome.sum.tests.asked;
+      any_hit_calls += outcome.sum.tests.any_hit_calls;
       procedural += outcome.sum.tests.procedural;
     }
   }
-  EXPECT_GT(asked, 1000u);
+  EXPECT_GT(any_hit_calls, 1000u);
   EXPECT_GT(procedural, 1000u);
 }
 
@@ -62,9 +62,9 @@ TEST(AnyHitIdentity, BundlesChangeNothing) {
 // One resource, one context, nothing else to wait for: the time that asking takes is the trip and the worker's.
 TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
   const accel::HashedStop never(0);  // every ray asks at each triangle of the veil in front of it
-  scene::Scene veils = accel::empty_scene();
-  veils.materials[0].alpha_mode = scene::AlphaMode::kBlend;
-  veils.materials[0].base_color.a = 0.5f;
+  scene::Scene blended = accel::empty_scene();
+  blended.materials[0].alpha_mode = scene::AlphaMode::kBlend;
+  blended.materials[0].base_color.a = 0.5f;
   scene::Mesh mesh;
   for (int i = 0; i < 3; ++i) {
     const float z = static_cast<float>(i);
@@ -73,13 +73,13 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
       mesh.positions.push_back(p);
     }
   }
-  accel::add_instance(veils, accel::add_mesh(veils, mesh));
+  accel::add_instance(blended, accel::add_mesh(blended, mesh));
   Config config;
   config.topology.resources = 1;
   config.engine.kind = EngineKind::kCycle;
-  accel::Accel accel = accel::build(veils, config.bvh, *make_sequential_executor());
+  accel::Accel accel = accel::build(blended, config.bvh, *make_sequential_executor());
   accel.any_hit = &never;
-  ASSERT_TRUE(accel.asks());
+  ASSERT_TRUE(accel.calls_any_hit());
 
   struct OneRay final : Workload {
     Generated generate(WorkerId, std::size_t, RayBatch& out) override {
@@ -96,7 +96,7 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
     OneRay ray;
     const RunResult result = run_cycle(config, accel, 10, ray, on_threads(1));
     EXPECT_EQ(ray.hits, 0);
-    EXPECT_EQ(result.resources[0].tests.asked, 3u);
+    EXPECT_EQ(result.resources[0].tests.any_hit_calls, 3u);
     return result.cycle->cycles;
   };
   config.testers.any_hit_unit = {1, 1, 1};

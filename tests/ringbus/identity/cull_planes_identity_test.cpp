@@ -30,7 +30,7 @@ std::string text(const CullPlanesConfig& planes) {
                      planes.shared_normals ? ", shared" : "");
 }
 
-std::vector<TestScene> scenes() {
+std::vector<TestScene> plane_scenes() {
   std::vector<TestScene> all;
   all.emplace_back(builtin_scene(BuiltinScene::kInstances, 0, 300), 150, 3);
   all.emplace_back(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 150, 3);
@@ -40,9 +40,9 @@ std::vector<TestScene> scenes() {
 }
 
 /// Each way to have planes on a machine drawn for it; somewhere they must cull.
-void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number) {
+void expect_one_plane_digest(const std::vector<Factor>& factors, std::uint32_t number) {
   std::uint64_t culled = 0, transforms_spared = 0;
-  for (TestScene& scene : scenes()) {
+  for (TestScene& scene : plane_scenes()) {
     std::mt19937 random(number + 7919 * run_seed());
     for (const CullPlanesConfig& planes : all_planes()) {
       std::vector<int> row(factors.size());
@@ -68,7 +68,7 @@ void expect_one_digest(const std::vector<Factor>& factors, std::uint32_t number)
 
 TEST(CullPlanesIdentity, TracerGivesOneDigest) {
   std::uint64_t culled = 0;
-  for (TestScene& scene : scenes())
+  for (TestScene& scene : plane_scenes())
     for (const CullPlanesConfig& planes : all_planes()) {
       ScatterWorkload workload = scene.workload();
       const accel::ReferenceRun run = accel::run_reference(scene.accel(BvhConfig{}, planes), workload);
@@ -78,10 +78,10 @@ TEST(CullPlanesIdentity, TracerGivesOneDigest) {
   EXPECT_GT(culled, 1000u);
 }
 TEST(CullPlanesIdentity, NativeRingGivesTheTracersDigest) {
-  expect_one_digest(machine_factors(), 3);
+  expect_one_plane_digest(machine_factors(), 3);
 }
 TEST(CullPlanesIdentity, CycleEngineGivesTheTracersDigest) {
-  expect_one_digest(cycle_factors(), 4);
+  expect_one_plane_digest(cycle_factors(), 4);
 }
 
 }  // namespace

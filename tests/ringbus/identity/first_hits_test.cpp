@@ -58,7 +58,7 @@ void expect_same_first_hits(const scene::Scene& scene, const Config& config, con
   RayBatch requests;
   for (const Ray& ray : rays) requests.push_back({ray, {}});
   HitBatch traced;
-  TestCounts tests;
+  IntersectionCounts tests;
   accel::trace_depth_first(accel, requests, traced, tests);
   ASSERT_EQ(raster.hits.size(), traced.size());
 
@@ -145,27 +145,27 @@ TEST(FirstHits, TiesGoToTheSmallestInstance) {
 // Cut-outs and veils, spheres among them, sides that are culled: asked, culled and left out as rays do.
 TEST(FirstHits, WithWhatLetsRaysThrough) {
   scene::Scene scene = builtin_scene(BuiltinScene::kInstances, 3000, 60);
-  const MaterialId veil(static_cast<std::uint32_t>(scene.materials.size()));
+  const MaterialId blended(static_cast<std::uint32_t>(scene.materials.size()));
   scene.materials.emplace_back().alpha_mode = scene::AlphaMode::kBlend;
   scene.materials.back().base_color.a = 0.4f;
   for (scene::Mesh& mesh : scene.meshes)
-    for (std::size_t t = 0; t < mesh.triangle_count(); t += 2) mesh.triangle_materials[t] = veil;
+    for (std::size_t t = 0; t < mesh.triangle_count(); t += 2) mesh.triangle_materials[t] = blended;
   const shading::AlphaTest alpha(scene);
   Config config = picture(64, 48, 2);
   accel::Accel accel = accel::build(scene, BvhConfig{}, *make_sequential_executor());
   accel.any_hit = &alpha;
-  for (const auto cull : {RayWishes::Cull::kNone, RayWishes::Cull::kBack, RayWishes::Cull::kFront}) {
+  for (const auto cull : {RayFlags::Cull::kNone, RayFlags::Cull::kBack, RayFlags::Cull::kFront}) {
     config.shading.camera_rays.cull = cull;
-    const std::uint8_t flags = cull == RayWishes::Cull::kBack    ? kRayCullBack
-                               : cull == RayWishes::Cull::kFront ? kRayCullFront
-                                                                 : 0;
+    const std::uint8_t flags = cull == RayFlags::Cull::kBack    ? kRayCullBack
+                               : cull == RayFlags::Cull::kFront ? kRayCullFront
+                                                                : 0;
     const auto raster = shading::rasterize_first_hits(scene, config, &alpha, *make_sequential_executor());
-    EXPECT_GT(raster.counts.asked, 100u);
+    EXPECT_GT(raster.counts.any_hit_calls, 100u);
     const std::vector<Ray> rays = camera_rays(scene, config);
     RayBatch requests;
     for (const Ray& ray : rays) requests.push_back({ray, {0, RayKind::kCamera, 0, 0, flags}});
     HitBatch traced;
-    TestCounts tests;
+    IntersectionCounts tests;
     accel::trace_depth_first(accel, requests, traced, tests);
     std::size_t different = 0, hits = 0;
     for (std::size_t i = 0; i < traced.size(); ++i) {

@@ -59,7 +59,7 @@ void expect_recovery(TestScene& scene, const Cell& cell) {
   }
   if (out.fault != "") return;
   ASSERT_TRUE(out.result.cycle->stop.has_value());
-  const cycle::StopLedger& stop = *out.result.cycle->stop;
+  const cycle::StopTimes& stop = *out.result.cycle->stop;
   EXPECT_EQ(stop.resource, cell.config.faults.resource.number);
   // Word of it, the silence, and at least the way to the resources and back.
   const auto latency = static_cast<cycle::Cycle>(cell.config.topology.link.latency_cycles);

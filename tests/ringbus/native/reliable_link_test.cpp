@@ -181,9 +181,9 @@ TEST(ReliableLink, CarriesCopiesAndNoDamagedOne) {
   EXPECT_GT(link->faults().discarded, 100u);
 }
 
-TEST(ResendPatience, LearnsHowLongAnAnswerTakesAndDoublesInVain) {
-  ResendPatience patience;
-  ResendPatience::Clock::time_point time{};
+TEST(RetransmitTimer, LearnsHowLongAnAnswerTakesAndDoublesInVain) {
+  RetransmitTimer patience;
+  RetransmitTimer::Clock::time_point time{};
   const auto now = [&] { return time; };
   const auto turns_until_it_ends = [&] {
     int turns = 1;
@@ -208,13 +208,13 @@ TEST(ResendPatience, LearnsHowLongAnAnswerTakesAndDoublesInVain) {
   EXPECT_EQ(slow, 2);
 }
 
-TEST(FaultDice, TheSameSeedGivesTheSameFates) {
+TEST(FaultInjector, TheSameSeedGivesTheSameFates) {
   Config config = faulty(0.25, 0, 0.5, 0, 0);
   LinkFaultCounts a, b, other;
-  FaultDice first(config.faults, 5), again(config.faults, 5), stream(config.faults, 6);
+  FaultInjector first(config.faults, 5), again(config.faults, 5), stream(config.faults, 6);
   std::uint64_t drops = 0, same = 0;
   for (int i = 0; i < 4000; ++i) {
-    const FrameFate fate = first.next(a), twin = again.next(b), else_where = stream.next(other);
+    const FaultDraw fate = first.next(a), twin = again.next(b), else_where = stream.next(other);
     EXPECT_EQ(fate.drop, twin.drop);
     EXPECT_EQ(fate.bits, twin.bits);
     drops += fate.drop;
@@ -279,8 +279,8 @@ TEST(LinkFaultTimer, PlacesComeBackThoughAcknowledgementsFail) {
   EXPECT_GT(timer.counts().discarded, 0u);
 }
 
-TEST(RetryLedger, HoldsWhatHasNotBeenShaded) {
-  RetryLedger ledger;
+TEST(OutstandingRays, HoldsWhatHasNotBeenShaded) {
+  OutstandingRays ledger;
   RayBatch rays(3);
   for (std::uint32_t i = 0; i < 3; ++i) rays[i].tag.path = 2 - i;
   ledger.add(rays);

@@ -51,12 +51,12 @@ TEST(Message, TellsEveryChangedBit) {
   }
 }
 
-TEST(Arrivals, NamesWhatHappened) {
+TEST(DeliveryChecker, NamesWhatHappened) {
   const auto judged = [](std::initializer_list<std::uint32_t> numbers, std::uint64_t sent) {
-    std::vector<Arrivals> all{Arrivals(1, 100)};
+    std::vector<DeliveryChecker> all{DeliveryChecker(1, 100)};
     for (const std::uint32_t number : numbers) (void)all[0].take(Message<kLine>::of({0, number}));
     const std::vector<std::uint64_t> pushed{sent};
-    return Arrivals::judge(all, pushed).names();
+    return DeliveryChecker::judge(all, pushed).names();
   };
   EXPECT_EQ(judged({0, 1, 2}, 3), "");
   EXPECT_EQ(judged({0, 2}, 3), "lost 1");
@@ -66,12 +66,12 @@ TEST(Arrivals, NamesWhatHappened) {
   EXPECT_EQ(judged({0, 1, 2, 100}, 3), "torn 1");  // nobody sent it
 }
 
-TEST(Arrivals, TwoConsumersMayNotGetTheSame) {
-  std::vector<Arrivals> all(2, Arrivals(1, 100));
+TEST(DeliveryChecker, TwoConsumersMayNotGetTheSame) {
+  std::vector<DeliveryChecker> all(2, DeliveryChecker(1, 100));
   for (const std::uint32_t number : {0, 2}) (void)all[0].take(Message<kLine>::of({0, number}));
   for (const std::uint32_t number : {1, 2}) (void)all[1].take(Message<kLine>::of({0, number}));
   const std::vector<std::uint64_t> pushed{3};
-  const Findings found = Arrivals::judge(all, pushed);
+  const Violations found = DeliveryChecker::judge(all, pushed);
   EXPECT_EQ(found.names(), "doubled 1");
 }
 
@@ -90,7 +90,7 @@ TEST_P(EveryPattern, SoundQueuesComeThrough) {
     if (!pattern_fits(queue, GetParam())) continue;
     SCOPED_TRACE(queue.name);
     const TrialResult result = run_trial(queue, short_trial(GetParam()));
-    EXPECT_EQ(result.findings.names(), "") << result.findings.detail;
+    EXPECT_EQ(result.violations.names(), "") << result.violations.detail;
     EXPECT_GT(result.messages, 0u);
     EXPECT_GT(result.seconds, 0);
     const bool round = GetParam() == Pattern::kPingPong || GetParam() == Pattern::kCirculation;
@@ -107,33 +107,37 @@ TEST(Stress, SizesOfMessagesComeThrough) {
   for (const std::size_t bytes : {kSmall, kPacket}) {
     TrialOptions options = short_trial(Pattern::kBatches);
     options.message_bytes = bytes;
-    EXPECT_EQ(run_trial(built_in_queue(QueueKind::kSpscRing), options).findings.names(), "");
-    EXPECT_EQ(run_trial(built_in_queue(QueueKind::kMpmcRing), options).findings.names(), "");
+    EXPECT_EQ(run_trial(built_in_queue(QueueKind::kSpscRing), options).violations.names(), "");
+    EXPECT_EQ(run_trial(built_in_queue(QueueKind::kMpmcRing), options).violations.names(), "");
   }
 }
 
 TEST(Stress, CatchesLossAtTheWrap) {
   for (const Pattern pattern : {Pattern::kStream, Pattern::kBatches, Pattern::kManyToMany}) {
     const TrialResult result = run_trial(queue_under_test<LosesAtWrap>("loses"), full_trial(pattern));
-    EXPECT_GT(result.findings.lost, 0u);
-    EXPECT_EQ(result.findings.doubled + result.findings.reordered + result.findings.torn, 0u);
-    EXPECT_NE(result.findings.detail, "");
+    EXPECT_GT(result.violations.lost, 0u);
+    EXPECT_EQ(result.violations.doubled + result.violations.reordered + result.violations.corrupted, 0u);
+    EXPECT_NE(result.violations.detail, "");
   }
 }
 
 TEST(Stress, CatchesReordering) {
   for (const Pattern pattern : {Pattern::kStream, Pattern::kBatches, Pattern::kCirculation}) {
     const TrialResult result = run_trial(queue_under_test<Reorders>("reorders"), full_trial(pattern));
-    EXPECT_GT(result.findings.reordered, 0u);
-    EXPECT_EQ(result.findings.lost + result.findings.doubled + result.findings.torn + result.findings.bounds, 0u);
+    EXPECT_GT(result.violations.reordered, 0u);
+    EXPECT_EQ(
+        result.violations.lost + result.violations.doubled + result.violations.corrupted + result.violations.bounds,
+        0u);
   }
 }
 
 TEST(Stress, CatchesTornPayloads) {
   for (const Pattern pattern : {Pattern::kStream, Pattern::kBatches}) {
     const TrialResult result = run_trial(queue_under_test<Tears>("tears"), full_trial(pattern));
-    EXPECT_GT(result.findings.torn, 0u);
-    EXPECT_EQ(result.findings.lost + result.findings.doubled + result.findings.reordered + result.findings.bounds, 0u);
+    EXPECT_GT(result.violations.corrupted, 0u);
+    EXPECT_EQ(
+        result.violations.lost + result.violations.doubled + result.violations.reordered + result.violations.bounds,
+        0u);
   }
 }
 
@@ -142,12 +146,12 @@ TEST(Stress, CatchesWhatIsStuckAndCallsThatNeverReturn) {
   options.messages = 100'000;
   options.stuck_after = std::chrono::milliseconds(150);
   const TrialResult sticks = run_trial(queue_under_test<Sticks>("sticks"), options);
-  EXPECT_TRUE(sticks.findings.stuck);
-  EXPECT_NE(sticks.findings.detail.find("nothing moved for 150 ms"), std::string::npos) << sticks.findings.detail;
+  EXPECT_TRUE(sticks.violations.stuck);
+  EXPECT_NE(sticks.violations.detail.find("nothing moved for 150 ms"), std::string::npos) << sticks.violations.detail;
 #ifndef __SANITIZE_THREAD__  // it leaves a thread behind, and that is what ThreadSanitizer would tell
   const TrialResult hangs = run_trial(queue_under_test<NeverReturns>("hangs"), options);
-  EXPECT_TRUE(hangs.findings.stuck);
-  EXPECT_NE(hangs.findings.detail.find("had not returned"), std::string::npos) << hangs.findings.detail;
+  EXPECT_TRUE(hangs.violations.stuck);
+  EXPECT_NE(hangs.violations.detail.find("had not returned"), std::string::npos) << hangs.violations.detail;
 #endif
 }
 
@@ -176,7 +180,7 @@ TEST(Stress, EveryQueueMeetsEveryPatternItFitsAsOftenAsTheOthers) {
   ASSERT_EQ(rows.size(), 5u);  // spsc_ring does not fit many_to_many
   for (const StressRow& row : rows) {
     EXPECT_EQ(row.rates.size(), 2u);
-    EXPECT_EQ(row.sum.findings.any(), row.queue == 2);
+    EXPECT_EQ(row.sum.violations.any(), row.queue == 2);
     EXPECT_LE(row.least(), row.median());
     EXPECT_LE(row.median(), row.most());
   }

@@ -20,7 +20,7 @@ RayId ray(std::uint32_t bits) {
   id.bits = bits;
   return id;
 }
-std::vector<RayId> rays(std::uint32_t first, std::uint32_t count) {
+std::vector<RayId> ray_ids(std::uint32_t first, std::uint32_t count) {
   std::vector<RayId> out;
   for (std::uint32_t i = 0; i < count; ++i) out.push_back(ray(first + i));
   return out;
@@ -54,26 +54,26 @@ using Keys = std::vector<std::uint32_t>;
 
 TEST(CollectionStore, FullestFirst) {
   CollectionStore store(settings(Policy::kFullest, Select::kStrict));
-  store.add(key(1), 1, 1, rays(0, 1));
-  store.add(key(2), 1, 1, rays(10, 3));
-  store.add(key(3), 1, 1, rays(20, 2));
+  store.add(key(1), 1, 1, ray_ids(0, 1));
+  store.add(key(2), 1, 1, ray_ids(10, 3));
+  store.add(key(3), 1, 1, ray_ids(20, 2));
   EXPECT_EQ(drain(store), (Keys{2, 3, 1}));
 }
 
 TEST(CollectionStore, OldestFirstAndNewestFirst) {
   for (const Policy policy : {Policy::kOldest, Policy::kNewest}) {
     CollectionStore store(settings(policy, Select::kStrict));
-    for (const std::uint32_t k : {5u, 3u, 9u}) store.add(key(k), 1, 1, rays(k, 2));
-    store.add(key(5), 1, 1, rays(50, 1));  // growing does not make it younger
+    for (const std::uint32_t k : {5u, 3u, 9u}) store.add(key(k), 1, 1, ray_ids(k, 2));
+    store.add(key(5), 1, 1, ray_ids(50, 1));  // growing does not make it younger
     EXPECT_EQ(drain(store), policy == Policy::kOldest ? (Keys{5, 3, 9}) : (Keys{9, 3, 5}));
   }
 }
 
 TEST(CollectionStore, DeepestFirst) {
   CollectionStore store(settings(Policy::kDeepest, Select::kStrict));
-  store.add(key(1), 3, 1, rays(0, 4));
-  store.add(key(2), 7, 1, rays(10, 1));
-  store.add(key(3), 5, 1, rays(20, 2));
+  store.add(key(1), 3, 1, ray_ids(0, 4));
+  store.add(key(2), 7, 1, ray_ids(10, 1));
+  store.add(key(3), 5, 1, ray_ids(20, 2));
   EXPECT_EQ(store.key(*store.deepest()), key(2));
   EXPECT_EQ(drain(store), (Keys{2, 3, 1}));
   EXPECT_FALSE(store.deepest());
@@ -81,37 +81,37 @@ TEST(CollectionStore, DeepestFirst) {
 
 TEST(CollectionStore, NearestFirstAndAnEarlierEntryBringsForward) {
   CollectionStore store(settings(Policy::kNearest, Select::kStrict));
-  store.add(key(1), 1, 8.0f, rays(0, 1));
-  store.add(key(2), 1, 0.5f, rays(10, 1));
-  store.add(key(3), 1, 2.0f, rays(20, 1));
-  store.add(key(4), 1, 0.0f, rays(30, 1));
-  store.add(key(1), 1, 1.0f, rays(40, 1));
-  store.add(key(2), 1, 9.0f, rays(50, 1));  // a later one changes nothing
+  store.add(key(1), 1, 8.0f, ray_ids(0, 1));
+  store.add(key(2), 1, 0.5f, ray_ids(10, 1));
+  store.add(key(3), 1, 2.0f, ray_ids(20, 1));
+  store.add(key(4), 1, 0.0f, ray_ids(30, 1));
+  store.add(key(1), 1, 1.0f, ray_ids(40, 1));
+  store.add(key(2), 1, 9.0f, ray_ids(50, 1));  // a later one changes nothing
   EXPECT_EQ(drain(store), (Keys{4, 2, 1, 3}));
 }
 
 TEST(CollectionStore, FullFirstOffersReadyOnesOnly) {
   for (const Policy policy : {Policy::kFullest, Policy::kOldest, Policy::kNewest, Policy::kDeepest, Policy::kNearest}) {
     CollectionStore store(settings(policy, Select::kFullFirst));
-    store.add(key(1), 9, 0.1f, rays(0, 7));
+    store.add(key(1), 9, 0.1f, ray_ids(0, 7));
     EXPECT_FALSE(store.best(false));
     EXPECT_EQ(store.key(*store.best(true)), key(1));
-    store.add(key(2), 1, 5.0f, rays(10, 8));
+    store.add(key(2), 1, 5.0f, ray_ids(10, 8));
     EXPECT_EQ(store.key(*store.best(false)), key(2));
     EXPECT_EQ(store.key(*store.best(true)), key(2));  // before better ones that are not ready
     std::vector<RayId> out;
     store.take(*store.best(false), out);
     EXPECT_FALSE(store.best(false));  // four are left: not ready any more
-    store.add(key(1), 9, 0.1f, rays(20, 1));
+    store.add(key(1), 9, 0.1f, ray_ids(20, 1));
     EXPECT_EQ(store.key(*store.best(false)), key(1));
   }
 }
 
 TEST(CollectionStore, GivesRaysBlockByBlockInTheirOrder) {
   CollectionStore store(settings(Policy::kOldest, Select::kStrict));
-  store.add(key(1), 1, 1, rays(0, 3));
-  store.add(key(1), 1, 1, rays(3, 4));
-  store.add(key(1), 1, 1, rays(7, 3));
+  store.add(key(1), 1, 1, ray_ids(0, 3));
+  store.add(key(1), 1, 1, ray_ids(3, 4));
+  store.add(key(1), 1, 1, ray_ids(7, 3));
   std::vector<RayId> out;
   for (const std::uint32_t expected : {4u, 4u, 2u}) {
     ASSERT_EQ(store.front_rays(*store.best(true)), expected);
@@ -126,10 +126,10 @@ TEST(CollectionStore, CountsBlocksBeyondItsCapacityAsSpilled) {
   CollectionStore::Settings s = settings(Policy::kOldest, Select::kStrict);
   s.capacity_blocks = 2;
   CollectionStore store(s);
-  store.add(key(1), 1, 1, rays(0, 8));
+  store.add(key(1), 1, 1, ray_ids(0, 8));
   EXPECT_EQ(store.free_blocks(), 0);
   EXPECT_EQ(store.statistics().spilled, 0u);
-  store.add(key(2), 1, 1, rays(8, 3));
+  store.add(key(2), 1, 1, ray_ids(8, 3));
   EXPECT_EQ(store.free_blocks(), -1);
   EXPECT_EQ(store.statistics().spilled, 3u);
   drain(store);
@@ -162,7 +162,7 @@ TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
         if (c.rays.empty()) c = {{}, 1e30f, static_cast<std::uint16_t>(k % 7), i};
         const float entry = 0.01f * static_cast<float>(random() % 1000);
         c.entry = std::min(c.entry, entry);
-        const auto batch = rays(next_ray, 1 + random() % s.block_rays);
+        const auto batch = ray_ids(next_ray, 1 + random() % s.block_rays);
         next_ray += static_cast<std::uint32_t>(batch.size());
         blocks -= blocks_of(c.rays.size());
         for (const RayId r : batch) c.rays.push_back(r.bits);

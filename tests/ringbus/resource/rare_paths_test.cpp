@@ -31,10 +31,10 @@ TEST(RarePaths, RunAndLoseNothing) {
   std::uint64_t spilled = 0, refusals = 0, reused = 0, waits = 0, bubbles = 0;
   const auto stalls = [&](StallReason reason) { return sum.stalls[static_cast<std::size_t>(reason)]; };
   const auto count = static_cast<std::uint32_t>(std::max(80, cell_count(80)));  // fewer might not run everything
-  const auto go_on = [&](std::uint32_t done) {
+  const auto keep_running = [&](std::uint32_t done) {
     return done < count || (stalls(StallReason::kReserve) == 0 && done < 20 * count);
   };
-  for (std::uint32_t seed = run_seed(); go_on(seed - run_seed()); ++seed) {
+  for (std::uint32_t seed = run_seed(); keep_running(seed - run_seed()); ++seed) {
     std::mt19937 random(seed * 104729);
     Cell cell;
     do {

@@ -42,7 +42,7 @@ class Shuffler {
 
   std::size_t wrong() const {
     HitBatch expected;
-    TestCounts counts;
+    IntersectionCounts counts;
     accel::trace_depth_first(ring_.accel, rays_, expected, counts);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < rays_.size(); ++i) wrong += !same_result(expected[i], got_[i]);

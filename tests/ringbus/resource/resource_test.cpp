@@ -196,7 +196,7 @@ TEST_F(ResourceTest, ShadowRayThatIsDoneIsSkippedButDrains) {
     packet_ = ring_->packet();
     ASSERT_EQ(resource(0).offer(true, packet_), Resource::Offer::kPacket);
     const bool done = ring_->record(id).hit.valid();
-    const TestCounts before = statistics(0).tests;
+    const IntersectionCounts before = statistics(0).tests;
     EXPECT_TRUE(resource(0).completed().empty());
     resource(0).test(packet_);
     if (done) {

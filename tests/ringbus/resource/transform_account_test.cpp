@@ -105,7 +105,7 @@ TEST(Tester, InvertsBeforeItTransforms) {
   TestersConfig config;
   config.transform = {1, 1, 4};
   config.box = {8, 1, 4};
-  TestCounts counts;
+  IntersectionCounts counts;
   counts.box = 24;
   counts.transforms = 3;
   cycle::Tester plain(config), inverting(config);
@@ -118,7 +118,7 @@ TEST(Tester, InvertsBeforeItTransforms) {
 
 struct Machine {
   std::string digest;
-  TestCounts tests;
+  IntersectionCounts tests;
   cycle::CycleResult cycles;
 };
 

@@ -18,13 +18,13 @@ namespace carousel::ringbus {
 class ScatterWorkload final : public Workload {
  public:
   ScatterWorkload(const Aabb& bounds, std::uint32_t count, std::uint8_t bounces, std::uint32_t seed, float away = 0.5f,
-                  bool wishes = false)
+                  bool ray_flags = false)
       : bounds_(bounds),
         count_(count),
         bounces_(bounces),
         seed_(seed),
         away_(away),
-        wishes_(wishes),
+        ray_flags_(ray_flags),
         seen_(std::size_t{count} * (2u * bounces + 1u)) {}
 
   Generated generate(WorkerId, std::size_t max_rays, RayBatch& out) override {
@@ -84,7 +84,7 @@ class ScatterWorkload final : public Workload {
   /// Most rays want nothing in particular.
   std::uint8_t wish(std::uint32_t path, std::uint32_t bounce) const {
     const float n = number(path, bounce, 9);
-    return wishes_ && n < 0.25f ? static_cast<std::uint8_t>(static_cast<int>(n * 64) & kRayWishes) : std::uint8_t{0};
+    return ray_flags_ && n < 0.25f ? static_cast<std::uint8_t>(static_cast<int>(n * 64) & kRayWishes) : std::uint8_t{0};
   }
   float number(std::uint32_t path, std::uint32_t bounce, int dimension) const {
     std::uint64_t x = (std::uint64_t{seed_} << 32 | path) * 0x9e3779b97f4a7c15ull + bounce * 64u +
@@ -102,7 +102,7 @@ class ScatterWorkload final : public Workload {
   std::uint8_t bounces_;
   std::uint32_t seed_;
   float away_;
-  bool wishes_;
+  bool ray_flags_;
   std::vector<std::atomic<std::uint8_t>> seen_;
   std::atomic<std::uint32_t> next_{0};
   std::atomic<std::uint64_t> doubled_{0};

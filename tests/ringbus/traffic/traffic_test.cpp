@@ -57,7 +57,7 @@ TEST(Traffic, EveryPacketIsDeliveredOnceAndNoneFasterThanAlone) {
     EXPECT_GT(r.offered, 0u);
     EXPECT_LE(r.accepted, r.delivered);
     EXPECT_GE(r.latency.mean(), r.zero_load_latency(c) - 1e-9);
-    for (const cycle::LinkLedger& link : r.links) EXPECT_LE(link.use.busy + link.use.stalled, r.cycles);
+    for (const cycle::LinkUse& link : r.links) EXPECT_LE(link.use.busy + link.use.stalled, r.cycles);
   }
 }
 

@@ -112,9 +112,9 @@ TEST(Disk, KeepsAreas) {
   EXPECT_NEAR(inner, kSteps * kSteps / 4, 200);
 }
 
-TEST(Frame, IsOrthonormalAndRightHanded) {
+TEST(ShadingBasis, IsOrthonormalAndRightHanded) {
   for (const Vec3& v : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{0, 1, -1e-8f}, Vec3{1, 2, -3}}) {
-    const Frame frame(glm::normalize(v));
+    const ShadingBasis frame(glm::normalize(v));
     EXPECT_NEAR(glm::dot(frame.tangent, frame.bitangent), 0, 1e-6f);
     EXPECT_NEAR(glm::dot(frame.tangent, frame.normal), 0, 1e-6f);
     EXPECT_NEAR(glm::length(frame.tangent), 1, 1e-6f);

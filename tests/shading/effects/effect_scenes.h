@@ -30,7 +30,7 @@ inline scene::Scene box_on_floor(const scene::Material& material) {
   scene.images.push_back({"noise", 2, 2, {250, 30, 60, 255, 40, 240, 90, 10, 20, 60, 250, 200, 128, 128, 255, 90}});
   scene.textures.push_back({ImageId(0), scene::Wrap::kRepeat, scene::Wrap::kRepeat, true});
   const std::uint32_t floor = add_material(scene, matte({0.7f, 0.6f, 0.5f}));
-  const std::uint32_t light = add_material(scene, lamp({6, 5, 4}));
+  const std::uint32_t light = add_material(scene, emissive_material({6, 5, 4}));
   const std::uint32_t box = add_material(scene, material);
   add_quad(scene, {-4, -1, 4}, {4, -1, 4}, {4, -1, -4}, {-4, -1, -4}, floor);
   add_quad(scene, {-1, 4, -1}, {1, 4, -1}, {1, 4, 1}, {-1, 4, 1}, light);
@@ -155,11 +155,11 @@ inline scene::Scene scene_of_everything() {
     m.specular.color = {0.9f, 0.7f, 0.5f};
     return m;
   }());
-  scene::Material veil = matte({0.2f, 0.3f, 0.9f}), flat = matte({0.3f, 0.6f, 0.2f});
-  veil.alpha_mode = scene::AlphaMode::kBlend;
-  veil.base_color.a = 0.4f;
+  scene::Material blended = matte({0.2f, 0.3f, 0.9f}), flat = matte({0.3f, 0.6f, 0.2f});
+  blended.alpha_mode = scene::AlphaMode::kBlend;
+  blended.base_color.a = 0.4f;
   flat.unlit = true;
-  const std::uint32_t v = add_material(scene, veil), f = add_material(scene, flat);
+  const std::uint32_t v = add_material(scene, blended), f = add_material(scene, flat);
   add_quad(scene, {-2, -1, 1.5f}, {0, -1, 1.5f}, {0, 1, 1.5f}, {-2, 1, 1.5f}, v);
   add_quad(scene, {1, -1, -2}, {3, -1, -2}, {3, 1, -2}, {1, 1, -2}, f);
   scene::PunctualLight light;

@@ -29,7 +29,7 @@ struct Picture {
 };
 
 Picture picture(scene::Scene scene, const Config& config) {
-  keep_effects(scene, config.shading.effects);
+  strip_effects(scene, config.shading.effects);
   const AlphaTest alpha(scene);
   PathTracer tracer(scene, config, 1000, 1);
   run_frame(tracer, BruteForceTracer(scene, &alpha), 200);

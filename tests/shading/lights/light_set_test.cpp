@@ -42,7 +42,7 @@ double sampled_irradiance(const LightSet& lights, const Vec3& p, const Vec3& n) 
 
 TEST(LightSet, RectangleGivesTheFormFactorsIrradiance) {
   scene::Scene scene = empty_scene();
-  const std::uint32_t light = add_material(scene, lamp(Vec3{1}));
+  const std::uint32_t light = add_material(scene, emissive_material(Vec3{1}));
   add_quad(scene, {-1, 2, -0.5f}, {1, 2, -0.5f}, {1, 2, 0.5f}, {-1, 2, 0.5f}, light);  // looks down
   const LightSet lights(scene);
   const std::vector<DVec3> polygon{{-1, 2, -0.5}, {1, 2, -0.5}, {1, 2, 0.5}, {-1, 2, 0.5}};
@@ -55,7 +55,7 @@ TEST(LightSet, RectangleGivesTheFormFactorsIrradiance) {
 
 TEST(LightSet, InstancedAndMirroredTrianglesGiveTheFormFactorsIrradiance) {
   scene::Scene scene = empty_scene();
-  const std::uint32_t light = add_material(scene, lamp(Vec3{1}));
+  const std::uint32_t light = add_material(scene, emissive_material(Vec3{1}));
   const scene::Affine placement{Mat3(-2, 0, 0, 0, 1, 0, 0, 0, 0.5f), {0.5f, 3, 0}};
   add_mesh(scene, {{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}}, {0, 1, 2}, light, placement);
   const LightSet lights(scene);
@@ -67,7 +67,7 @@ TEST(LightSet, InstancedAndMirroredTrianglesGiveTheFormFactorsIrradiance) {
 
 TEST(LightSet, ASphereGivesTheIrradianceOfItsDisk) {
   scene::Scene scene = empty_scene();
-  add_sphere(scene, {0, 3, 0}, 1, add_material(scene, lamp(Vec3{1})));
+  add_sphere(scene, {0, 3, 0}, 1, add_material(scene, emissive_material(Vec3{1})));
   const LightSet lights(scene);
   // pi (r / d)^2 cos, however near, as long as all of it is above the horizon.
   for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{0, 1.9f, 0}, Vec3{4, 0, 1}}) {
@@ -94,7 +94,7 @@ std::optional<Hit> meet_ellipsoid(const scene::Affine& m, const Vec3& p, const V
 TEST(LightSet, DensityOfAMetEllipsoidIsTheDensityOfChoosingIt) {
   scene::Scene scene = empty_scene();
   const scene::Affine stretched{Mat3(2, 0.3f, 0, 0, 0.5f, 0, 0, 0, -1), {0, 3, 1}};
-  add_sphere(scene, {0, 0, 0}, 1, add_material(scene, lamp(Vec3{1})), stretched);
+  add_sphere(scene, {0, 0, 0}, 1, add_material(scene, emissive_material(Vec3{1})), stretched);
   const LightSet lights(scene);
   const Vec3 p{0.5f, 0.2f, -0.3f};
   constexpr std::uint32_t kDirections = 1 << 16;
@@ -194,7 +194,7 @@ TEST(LightSet, BounceRaysAndShadowRaysFindTheSameLight) {
     scene::Scene scene = empty_scene();
     scene::Material floor = matte({0.6f, 0.6f, 0.6f});
     floor.roughness = roughness;
-    const std::uint32_t grey = add_material(scene, floor), light = add_material(scene, lamp(Vec3{2}));
+    const std::uint32_t grey = add_material(scene, floor), light = add_material(scene, emissive_material(Vec3{2}));
     add_quad(scene, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, grey);
     add_quad(scene, {0.5f, 1, -2}, {3, 1, -2}, {3, 1, 2}, {0.5f, 1, 2}, light);
     scene.cameras[0] = looking_down(0.9f, 0.4f);

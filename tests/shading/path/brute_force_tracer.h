@@ -48,7 +48,7 @@ class BruteForceTracer {
       if (!(v >= 0.0f && u + v <= 1.0f)) continue;
       const float t = glm::dot(triangle.e2, q) * inv;
       if (!(t > ray.tmin && t < tmax)) continue;
-      if (any_hit_ != nullptr && !any_hit_->stops(ray, triangle.instance, triangle.primitive, u, v)) continue;
+      if (any_hit_ != nullptr && !any_hit_->accepts(ray, triangle.instance, triangle.primitive, u, v)) continue;
       tmax = t;
       best = {t, u, v, triangle.instance, triangle.primitive};
       if (kind == RayKind::kShadow) return best;

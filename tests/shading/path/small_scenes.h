@@ -22,7 +22,7 @@ inline scene::Material matte(const Vec3& color) {
   return m;
 }
 
-inline scene::Material lamp(const Vec3& radiance) {
+inline scene::Material emissive_material(const Vec3& radiance) {
   scene::Material m = matte(Vec3{0});
   m.emissive = radiance;
   return m;
@@ -77,7 +77,7 @@ inline scene::Camera looking_down(float height, float half_size) {
 inline scene::Scene mixed_scene() {
   scene::Scene scene = empty_scene();
   const std::uint32_t white = add_material(scene, matte({0.8f, 0.7f, 0.6f}));
-  const std::uint32_t light = add_material(scene, lamp({9, 8, 7}));
+  const std::uint32_t light = add_material(scene, emissive_material({9, 8, 7}));
   scene::Material metal;
   metal.base_color = {0.9f, 0.6f, 0.3f, 1};
   metal.roughness = 0.3f;

@@ -27,19 +27,19 @@ scene::Scene cut_square(scene::AlphaMode mode, float right_alpha) {
 }
 
 /// Towards (x, y) of the square, which triangle 0 covers for y < x.
-bool stops(const scene::Scene& scene, float x, float y, const Vec3& from = {0.5f, 0.5f, 3}) {
+bool accepts(const scene::Scene& scene, float x, float y, const Vec3& from = {0.5f, 0.5f, 3}) {
   Ray ray;
   ray.origin = from;
   ray.direction = Vec3{x, y, 0} - from;
   const bool lower = y < x;  // vertices 0 1 2, else 0 2 3
-  return AlphaTest(scene).stops(ray, 0, lower ? 0 : 1, lower ? x - y : x, lower ? y : y - x);
+  return AlphaTest(scene).accepts(ray, 0, lower ? 0 : 1, lower ? x - y : x, lower ? y : y - x);
 }
 
 TEST(AlphaTest, ATextureCutsHoles) {
   const scene::Scene scene = cut_square(scene::AlphaMode::kMask, 0.25f);
   for (const float y : {0.1f, 0.45f, 0.9f}) {
-    for (const float x : {0.05f, 0.3f, 0.49f}) EXPECT_TRUE(stops(scene, x, y)) << x << " " << y;
-    for (const float x : {0.51f, 0.6f, 0.95f}) EXPECT_FALSE(stops(scene, x, y)) << x << " " << y;
+    for (const float x : {0.05f, 0.3f, 0.49f}) EXPECT_TRUE(accepts(scene, x, y)) << x << " " << y;
+    for (const float x : {0.51f, 0.6f, 0.95f}) EXPECT_FALSE(accepts(scene, x, y)) << x << " " << y;
   }
 }
 
@@ -48,19 +48,19 @@ TEST(AlphaTest, TheCutoffItselfIsSolid) {
   scene.materials[0].base_color_texture.reset();
   scene.materials[0].base_color.a = 0.3f;
   scene.materials[0].alpha_cutoff = 0.3f;
-  EXPECT_TRUE(stops(scene, 0.7f, 0.2f));
+  EXPECT_TRUE(accepts(scene, 0.7f, 0.2f));
   scene.materials[0].alpha_cutoff = 0.31f;
-  EXPECT_FALSE(stops(scene, 0.7f, 0.2f));
+  EXPECT_FALSE(accepts(scene, 0.7f, 0.2f));
 }
 
 TEST(AlphaTest, VertexColoursAndFactorCountToo) {
   scene::Scene scene = cut_square(scene::AlphaMode::kMask, 1.0f);
   scene.meshes[0].colors = {{1, 1, 1, 1}, {1, 1, 1, 0}, {1, 1, 1, 0}, {1, 1, 1, 1}};  // fades along x
-  EXPECT_TRUE(stops(scene, 0.45f, 0.2f));
-  EXPECT_FALSE(stops(scene, 0.55f, 0.2f));
+  EXPECT_TRUE(accepts(scene, 0.45f, 0.2f));
+  EXPECT_FALSE(accepts(scene, 0.55f, 0.2f));
   scene.materials[0].base_color.a = 0.75f;
-  EXPECT_FALSE(stops(scene, 0.45f, 0.2f));
-  EXPECT_TRUE(stops(scene, 0.25f, 0.2f));
+  EXPECT_FALSE(accepts(scene, 0.45f, 0.2f));
+  EXPECT_TRUE(accepts(scene, 0.25f, 0.2f));
 }
 
 TEST(AlphaTest, AVeilStopsItsShareOfRays) {
@@ -71,10 +71,10 @@ TEST(AlphaTest, AVeilStopsItsShareOfRays) {
     constexpr int kRays = 20000;
     int stopped = 0;
     for (int i = 0; i < kRays; ++i)
-      stopped += stops(scene, 0.51f + 0.48f * uniform(random), uniform(random), {uniform(random), 0.5f, 3}) ? 1 : 0;
+      stopped += accepts(scene, 0.51f + 0.48f * uniform(random), uniform(random), {uniform(random), 0.5f, 3}) ? 1 : 0;
     // Six standard deviations: one seed in half a billion fails.
     EXPECT_NEAR(double(stopped) / kRays, share, 6 * std::sqrt(share * (1 - share) / kRays) + 0.5 / 255);
-    EXPECT_TRUE(stops(scene, 0.3f, 0.7f));
+    EXPECT_TRUE(accepts(scene, 0.3f, 0.7f));
   }
 }
 
@@ -87,8 +87,8 @@ TEST(AlphaTest, RaysThroughOneTriangleAreIndependentOfAnother) {
   for (int i = 0; i < kRays; ++i) {
     Ray ray;
     ray.direction = {uniform(random), uniform(random), 1};
-    both += veil_chance(ray, 0, 0) >= 0.5f && veil_chance(ray, 0, 1) >= 0.5f ? 1 : 0;
-    both += veil_chance(ray, 0, 0) >= 0.5f && veil_chance(ray, 1, 0) >= 0.5f ? 1 : 0;
+    both += blend_chance(ray, 0, 0) >= 0.5f && blend_chance(ray, 0, 1) >= 0.5f ? 1 : 0;
+    both += blend_chance(ray, 0, 0) >= 0.5f && blend_chance(ray, 1, 0) >= 0.5f ? 1 : 0;
   }
   EXPECT_NEAR(both / (2.0 * kRays), 0.25, 0.02);
 }
@@ -96,35 +96,35 @@ TEST(AlphaTest, RaysThroughOneTriangleAreIndependentOfAnother) {
 TEST(AlphaTest, TheAnswerIsAPureFunctionOfItsArguments) {
   const scene::Scene scene = cut_square(scene::AlphaMode::kBlend, 0.5f);
   for (float x = 0.505f; x < 1; x += 0.01f) {
-    const bool first = stops(scene, x, 0.3f);
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(stops(scene, x, 0.3f), first);
+    const bool first = accepts(scene, x, 0.3f);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(accepts(scene, x, 0.3f), first);
   }
 }
 
 TEST(AlphaTest, NothingAndEverythingAreExact) {
   scene::Scene scene = cut_square(scene::AlphaMode::kBlend, 0.0f);
-  for (float x = 0.501f; x < 1; x += 0.001f) EXPECT_FALSE(stops(scene, x, 0.3f));
+  for (float x = 0.501f; x < 1; x += 0.001f) EXPECT_FALSE(accepts(scene, x, 0.3f));
   scene = cut_square(scene::AlphaMode::kBlend, 1.0f);
-  for (float x = 0.501f; x < 1; x += 0.001f) EXPECT_TRUE(stops(scene, x, 0.3f));
+  for (float x = 0.501f; x < 1; x += 0.001f) EXPECT_TRUE(accepts(scene, x, 0.3f));
 }
 
 TEST(Opacity, AsksOnlyWhereARayMayPass) {
   using scene::AlphaMode;
-  const auto asks = [](const scene::Scene& scene, std::uint32_t triangle = 0) {
+  const auto calls_any_hit = [](const scene::Scene& scene, std::uint32_t triangle = 0) {
     const scene::Opacity opacity(scene);
-    const bool may = opacity.may_let_through(scene.meshes[0], triangle);
+    const bool may = opacity.may_be_non_opaque(scene.meshes[0], triangle);
     EXPECT_TRUE(!may || opacity.any());
     return may;
   };
-  EXPECT_FALSE(asks(cut_square(AlphaMode::kOpaque, 0)));
-  EXPECT_TRUE(asks(cut_square(AlphaMode::kMask, 0.4f)));
-  EXPECT_FALSE(asks(cut_square(AlphaMode::kMask, 0.6f)));  // nowhere below the cutoff
-  EXPECT_TRUE(asks(cut_square(AlphaMode::kBlend, 0.6f)));
-  EXPECT_FALSE(asks(cut_square(AlphaMode::kBlend, 1)));
+  EXPECT_FALSE(calls_any_hit(cut_square(AlphaMode::kOpaque, 0)));
+  EXPECT_TRUE(calls_any_hit(cut_square(AlphaMode::kMask, 0.4f)));
+  EXPECT_FALSE(calls_any_hit(cut_square(AlphaMode::kMask, 0.6f)));  // nowhere below the cutoff
+  EXPECT_TRUE(calls_any_hit(cut_square(AlphaMode::kBlend, 0.6f)));
+  EXPECT_FALSE(calls_any_hit(cut_square(AlphaMode::kBlend, 1)));
   scene::Scene faded = cut_square(AlphaMode::kBlend, 1);
   faded.meshes[0].colors = {Vec4{1}, Vec4{1, 1, 1, 0.5f}, Vec4{1}, Vec4{1}};
-  EXPECT_TRUE(asks(faded, 0));
-  EXPECT_FALSE(asks(faded, 1));  // vertices 0, 2, 3
+  EXPECT_TRUE(calls_any_hit(faded, 0));
+  EXPECT_FALSE(calls_any_hit(faded, 1));  // vertices 0, 2, 3
 }
 
 TEST(Opacity, NeverCallsATriangleSolidThatLetsARayPass) {
@@ -139,8 +139,8 @@ TEST(Opacity, NeverCallsATriangleSolidThatLetsARayPass) {
     if (uniform(random) < 0.5f) scene.meshes[0].colors.assign(4, Vec4{1, 1, 1, vertex});
     const scene::Opacity opacity(scene);
     const float x = uniform(random), y = uniform(random);
-    const bool solid = stops(scene, x, y), asked = opacity.may_let_through(scene.meshes[0], y < x ? 0 : 1);
-    EXPECT_TRUE(solid || asked) << i;
+    const bool solid = accepts(scene, x, y), any_hit_calls = opacity.may_be_non_opaque(scene.meshes[0], y < x ? 0 : 1);
+    EXPECT_TRUE(solid || any_hit_calls) << i;
   }
 }
 

@@ -122,7 +122,7 @@ TEST(Surface, ASphereHasLongitudeAndLatitude) {
 }
 
 TEST(EmissivePrimitives, AreMeasuredWhereTheyStand) {
-  scene::Scene scene = triangle(lamp({1, 1, 1}), {Mat3(2.0f), {0, 0, 9}});
+  scene::Scene scene = triangle(emissive_material({1, 1, 1}), {Mat3(2.0f), {0, 0, 9}});
   scene.instances.push_back({MeshId(0), {}});
   const EmissivePrimitives lights(scene);
   ASSERT_EQ(lights.all().size(), 2u);
@@ -133,7 +133,7 @@ TEST(EmissivePrimitives, AreMeasuredWhereTheyStand) {
 }
 
 TEST(EmissivePrimitives, KnowWhatTheirTextureLeavesDark) {
-  scene::Scene scene = triangle(lamp({1, 1, 1}));
+  scene::Scene scene = triangle(emissive_material({1, 1, 1}));
   scene.materials[0].emissive_texture = scene::TextureUse{add_texel(scene, 0, 0, 0), 0, {}, {1, 1}, 0};
   EXPECT_EQ(EmissivePrimitives(scene).all()[0].flux, 0.0f);
   scene.materials[0].unlit = true;
