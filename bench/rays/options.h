@@ -26,10 +26,10 @@ struct Options {
   RingSettings ring;
   BvhConfig bvh;
   Field field;
-  std::string json;               ///< file for the results
-  std::string markdown;           ///< document whose tables are replaced
-  std::vector<std::string> from;  ///< results to tabulate instead of measuring
-  std::string micro;              ///< results of bench_kernels, tabulated as well
+  std::string json;                   ///< file for the results
+  std::vector<std::string> from;      ///< results to tabulate instead of measuring
+  std::vector<std::string> markdown;  ///< documents whose tables are replaced
+  std::string micro;                  ///< results of bench_kernels, tabulated as well
 
   /// The settings that the results name, as key and value.
   std::map<std::string, std::string> describe() const;
