@@ -40,7 +40,7 @@ class RenderJob {
   /// Absent when the rays make no picture.
   std::optional<std::string> image_digest() const;
   /// What the rasteriser did, and how long it took; absent when rays found the first hits.
-  std::optional<report::Raster> raster() const;
+  std::optional<RasterCounts> raster() const;
   std::optional<double> raster_seconds() const { return raster_seconds_; }
   /// image.png and image.exr, if there is a picture.
   void write_images(const std::filesystem::path& folder) const;

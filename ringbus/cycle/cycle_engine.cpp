@@ -291,10 +291,7 @@ class CycleRun {
       out.links.push_back(
           {wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s, {}, port.faults()});
     });
-    for (const auto& cache : caches_) {
-      const ShapeCache::Statistics& s = cache->statistics();
-      c.caches.push_back({s.requests, s.lines, s.hits, s.merged, s.misses});
-    }
+    for (const auto& cache : caches_) c.caches.push_back(cache->statistics());
     return out;
   }
 
