@@ -147,8 +147,8 @@ class Planner {
       cost.cycles_per_hit = static_cast<std::uint32_t>(shading.cycles_per_effect);
     if (effect == Effect::kAlphaMask || effect == Effect::kAlphaBlend) {
       const bool by_shader = config_.testers.any_hit == TestersConfig::AnyHit::kShader;
-      cost.cycles_per_hit = static_cast<std::uint32_t>(by_shader ? shading.cycles_per_any_hit
-                                                                 : config_.testers.any_hit_unit.interval_cycles);
+      cost.cycles_per_hit = static_cast<std::uint32_t>(
+          by_shader ? shading.cycles_per_any_hit : config_.testers.units[UnitKind::kAnyHit].interval_cycles);
     }
     if (effect == Effect::kShadowRays) {
       cost.rays_per_path = depth;

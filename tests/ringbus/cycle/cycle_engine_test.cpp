@@ -87,7 +87,7 @@ TEST(CycleEngine, LedgersAddUp) {
       EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
       jobs += job == 0 ? 0 : shaded / job;
       // What the banks did is what the resource counted, rounded up a packet at a time.
-      const TesterUnits& box = cell.config.testers.box;
+      const TesterUnits& box = cell.config.testers.units[UnitKind::kBox];
       EXPECT_GE(tile.box.busy * static_cast<std::uint64_t>(box.units), out.result.resources[r].tests.box);
       transforms += tile.transform.busy;
     }
