@@ -9,8 +9,8 @@ namespace carousel {
 /// The effect of cull planes on the children of nodes at one depth, where a child counts once for each ray. Visits are
 /// spared that would have come next; a closer hit found meanwhile would have spared some of them as well.
 struct CullLevel {
-  std::uint64_t children = 0, plane_tests = 0, boxes = 0, nodes = 0, leaves = 0, triangles = 0, transforms = 0;
-  std::uint64_t procedural = 0, instances = 0;
+  std::uint64_t children = 0, plane_tests = 0, boxes = 0, nodes = 0, leaves = 0, triangles = 0, procedural = 0;
+  std::uint64_t instances = 0, transforms = 0;
 
   static constexpr auto counters() {
     using C = CullLevel;

@@ -7,8 +7,8 @@ namespace carousel {
 /// The work of testing rays. A test is one box, triangle, procedural primitive, plane or bundle against one ray (or
 /// bundle of rays). Meanings stand in counters(); core/statistics/counters.h says how to add a counter.
 struct IntersectionCounts {
-  std::uint64_t box = 0, plane = 0, triangle = 0, bundle = 0, transforms = 0, inversions = 0, culled = 0;
-  std::uint64_t procedural = 0, any_hit_calls = 0;
+  std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
+  std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0;
 
   static constexpr auto counters() {
     using C = IntersectionCounts;

@@ -23,7 +23,7 @@ inline Report sample_report() {
   r.cull_planes = {640, 10240, 42.5};
   r.cull_planes->counts.below[3] = {
       .children = 700, .plane_tests = 1500, .boxes = 30, .nodes = 80, .leaves = 180, .triangles = 605};
-  r.cull_planes->counts.above[0] = {.children = 90, .plane_tests = 100, .nodes = 5, .transforms = 35, .instances = 35};
+  r.cull_planes->counts.above[0] = {.children = 90, .plane_tests = 100, .nodes = 5, .instances = 35, .transforms = 35};
   r.packets.emplace().counts = {.packets_issued = 500,
                                 .packets_retired = 499,
                                 .visits = 80,
