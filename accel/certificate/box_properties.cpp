@@ -19,8 +19,8 @@ bool usable(const Ray& ray, const Aabb& box) {
   return valid(ray) && std::isfinite(ray.tmin) && !box.empty();
 }
 
-/// Where conservative promises something: no difference overflows, and no distance is so small, no reciprocal so near
-/// to the denormals, that a relative widening need not widen.
+/// The range in which `conservative` makes its promise: no difference overflows, and no distance is so small and no
+/// reciprocal so near to the denormals that a relative widening could have no effect.
 bool in_range_of_floats(const Ray& ray, const Aabb& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const float d = std::fabs(ray.direction[axis]);

@@ -60,7 +60,7 @@ void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> le
   const Range range(oracle, ray);
   OneLeaf leaf({&corners, 1});
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    // Boxes of double lose nothing at any exponent, so that what is judged is the triangle test.
+    // Boxes in double miss nothing at any exponent, so that only the triangle test is judged.
     AccuracyConfig level = levels[i];
     level.box = BoxLevel::kDouble;
     const Hit hit = leaf.hit(ray, level);

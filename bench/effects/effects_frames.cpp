@@ -20,8 +20,8 @@ class MinimalTracer final : public PathTracer {
     shade_batch<false>(worker, completed, out,
                        [this](const RayResult& result, const shading::TrianglePoint& point, Worker& own, RayBatch& rays,
                               std::uint32_t& children) {
-                         shade_surface<shading::SurfaceClass::kPlain, Lights::kLamps>(result, point, own, rays,
-                                                                                      children);
+                         shade_surface<shading::SurfaceClass::kPlain, Lights::kEmissive>(result, point, own, rays,
+                                                                                         children);
                        });
   }
 };

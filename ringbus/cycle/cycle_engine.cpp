@@ -116,7 +116,8 @@ class CycleRun {
       }
       if (wire.from != node) continue;
       ports.out.emplace_back(*wires_[i], latency, depth, places);
-      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i, latency));
+      if (config_.faults.links.any())
+        ports.out.back().fail(LinkFaultTimer(config_.faults.links, config_.faults.seed, i, latency));
       ports.out_to.push_back(wire.to);
     }
     return ports;

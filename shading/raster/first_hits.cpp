@@ -121,7 +121,7 @@ class Rasterizer {
     const std::array<DVec3, 3> world = world_triangle(scene_, ref);
     const PixelBox box = screen_.bounds(world);
     const scene::Mesh& mesh = scene_.meshes[scene_.instances[ref.instance].mesh.value];
-    // Mirroring swaps the sides in world space; which one is the front, the mesh says.
+    // A mirroring transform swaps the sides in world space; the mesh says which one is the front.
     const bool mirrored = glm::determinant(DMat3(scene_.instances[ref.instance].world_from_model.linear)) < 0;
     const bool passes = any_hit_ != nullptr && opacity_.may_be_non_opaque(mesh, ref.primitive);
     const auto edges_from = [&](const Vec3& eye) {

@@ -12,7 +12,7 @@
 
 namespace carousel::shading {
 
-/// What the camera rays of a frame meet first, found without tracing them.
+/// The first hits of the camera rays of a frame, found without tracing them.
 struct FirstHits {
   using Counts = RasterCounts;
 
@@ -29,9 +29,9 @@ struct FirstHits {
 };
 
 /// A small rasteriser: triangles are sorted into tiles of 8 x 8 pixels, and in each tile evaluated at the very rays
-/// that CameraRays would send. What the config's camera_rays wish holds here too. In double throughout; the nearest t,
-/// rounded to float, wins, ties go to the smallest (instance, primitive). Cut-outs and veils ask `any_hit` (null: all
-/// is solid). The result does not depend on `executor`.
+/// that CameraRays would send. The ray flags of `shading.camera_rays` apply here as well. All arithmetic is in double;
+/// the nearest t, rounded to float, wins, and ties go to the smallest (instance, primitive). Alpha-masked and
+/// alpha-blended surfaces call `any_hit` (null: every surface is opaque). The result does not depend on `executor`.
 ///
 /// Preconditions, which the config's rules ensure: the camera is a pinhole (aperture 0); width * height below 2^32.
 /// Throws std::out_of_range if the scene has no camera `scene.camera`.
