@@ -1,4 +1,4 @@
-// bench_fewer_tests: what methods that promise fewer tests cost and save in software, on the same rays.
+// bench_fewer_tests: measures the cost and savings in software of methods that promise fewer tests, on the same rays.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -30,7 +30,7 @@ struct FewerTestsOptions {
   std::string json, markdown;
 };
 
-/// Planes for leaves, none first.
+/// Settings of planes for leaves; the first has none.
 std::vector<TestVariant> plane_variants(const scene::Scene& scene) {
   std::vector<TestVariant> variants;
   for (const std::int64_t count : {0, 1, 2, 4, 8}) {
@@ -50,7 +50,8 @@ std::vector<TestVariant> plane_variants(const scene::Scene& scene) {
   return variants;
 }
 
-/// The native ring on one resource, which crosses subtrees in one visit: without bundles first, then by their size.
+/// Settings of the native ring on one resource, which crosses subtrees in one visit: first without bundles, then by
+/// their size.
 std::vector<TestVariant> bundle_variants(const scene::Scene& scene) {
   std::vector<TestVariant> variants;
   const RingSettings settings;

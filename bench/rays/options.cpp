@@ -25,7 +25,7 @@ std::map<std::string, std::string> Options::describe() const {
 
 namespace {
 
-// Small enough for a smoke test on every push: one scene of each kind, few rays, one repetition.
+// A smoke test, small enough for every push: one scene of each kind, few rays, one repetition.
 void make_quick(Options& o) {
   o.builtins = {"terrain", "spheres"};
   o.sizes = {10'000};

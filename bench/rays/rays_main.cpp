@@ -1,5 +1,5 @@
-// bench_rays: builds scenes, traces the same rays in every way there is, checks every answer, and tells how
-// fast.
+// bench_rays: builds scenes, traces the same rays with every engine and traversal, checks every hit, and reports the
+// speed.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
