@@ -9,7 +9,7 @@ Machine::Machine(const Config& c, const accel::Accel& a, float scene_size)
     : config(c),
       accel(a),
       topology(c.topology),
-      packets_per_direction(packets_in_flight(c.topology)),
+      packets_per_direction(topology.packets_in_flight()),
       packets(make_packets(c, topology, packets_per_direction)),
       stores(make_ray_stores(c)),
       control(c, stores, Resource::initial_tests(c, a), scene_size) {
