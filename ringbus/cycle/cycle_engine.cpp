@@ -110,7 +110,8 @@ class CycleRun {
     for (const std::uint32_t i : topology.ports(node).out) {
       const Cycle latency = latency_of(topology.wires()[i]);
       ports.out.emplace_back(*wires_[i], latency, depth, places);
-      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i, latency));
+      if (config_.faults.links.any())
+        ports.out.back().fail(LinkFaultTimer(config_.faults.links, config_.faults.seed, i, latency));
     }
     return ports;
   }

@@ -19,12 +19,13 @@ constexpr std::size_t kCompletedPause = 4096;  // completed rays after which iss
 NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventSink* sink)
     : machine_(machine),
       links_fail_(machine.config.faults.links.any()),
-      fault_(ResourceFault::of(machine.config, id)),
+      fault_(ResourceFault::of(machine.config.faults.resource, machine.config.engine.clock_mhz, id)),
       stops_after_(static_cast<std::uint64_t>(machine.config.faults.resource.after_rays)),
       stops_(machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop &&
              machine.config.faults.resource.number == id.value),
       sink_(sink),
-      resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], sink),
+      resource_(resource_settings(machine.config, scene_size), machine.accel, *machine.stores[id.value],
+                {.events = sink}),
       free_(machine.topology.directions()) {
   const Topology::Ports& ports = machine.topology.ports(id);
   for (const std::uint32_t wire : ports.in)

@@ -18,7 +18,7 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   MemoryEstimate e;
   e.ray_store = resources * slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));
   if (config.bundles.size > 0) {
-    const BundleRoom room = bundle_room(config);
+    const BundleRoom room = bundle_room(config.bundles, config.rays.slots_per_resource);
     e.ray_store +=
         resources * (room.loaded + room.own) * (sizeof(accel::BundleRecord) + (room.rays + 2) * sizeof(std::uint32_t));
   }
