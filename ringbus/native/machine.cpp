@@ -9,7 +9,7 @@ Machine::Machine(const Config& c, const accel::Accel& a, float scene_size)
     : config(c),
       accel(a),
       topology(c.topology),
-      packets_per_direction(packets_in_flight(c.topology)),
+      packets_per_direction(topology.packets_in_flight()),
       packets(make_packets(c, topology, packets_per_direction)),
       stores(make_ray_stores(c.topology.resources, c.rays.slots_per_resource, c.bundles)),
       control(ray_control_settings(c, Resource::initial_tests(resource_settings(c, scene_size), a), scene_size),

@@ -17,10 +17,10 @@ CycleMachine::CycleMachine(const Config& c, const accel::Accel& a, float scene_s
               stores) {}
 
 std::uint32_t CycleMachine::packets_per_direction() const {
-  if (config.topology.shape == TopologyShape::kIndependent) return 0;
+  if (!topology.has_packets()) return 0;
   // What never travels needs no credit: one in each context, and those whose shapes are being fetched.
   if (stays()) return static_cast<std::uint32_t>(config.testers.contexts + 1 + config.memory.fetch_ahead);
-  return packets_in_flight(config.topology);
+  return topology.packets_in_flight();
 }
 
 Cycle control_latency(const Config& config) {

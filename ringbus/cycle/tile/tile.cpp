@@ -37,7 +37,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       issue_places_(static_cast<std::size_t>(machine.config.memory.fetch_ahead) + 1),
       stays_(machine.stays()),
       visit_all_(machine.config.topology.visit == Visit::kAll),
-      cuts_through_(!visit_all_ && ports_.out_to.empty()),
+      cuts_through_(!visit_all_ && !machine.topology.direct()),
       fetch_by_resource_(machine.config.memory.fetch == MemoryConfig::Fetch::kResource),
       bubble_(machine.config.topology.flow == Flow::kBubble),
       free_(machine.topology.directions()),
