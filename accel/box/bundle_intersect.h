@@ -5,7 +5,7 @@
 #include "accel/box/bundle.h"
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 namespace carousel::accel {
 

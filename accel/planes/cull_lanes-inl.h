@@ -26,8 +26,8 @@
 #include "accel/planes/cull_plane_clip.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/cull_plane.h"
-#include "core/types/cull_counts.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/cull_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {

@@ -40,7 +40,7 @@ class RenderJob {
   /// Absent if the rays make no picture.
   std::optional<std::string> image_digest() const;
   /// Counts and time of the rasteriser; absent if rays found the first hits.
-  std::optional<report::Raster> raster() const;
+  std::optional<RasterCounts> raster() const;
   std::optional<double> raster_seconds() const { return raster_seconds_; }
   /// Writes image.png and image.exr if there is a picture.
   void write_images(const std::filesystem::path& folder) const;

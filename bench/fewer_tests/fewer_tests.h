@@ -9,7 +9,7 @@
 #include "bench/common/results.h"
 #include "bench/common/stopwatch.h"
 #include "core/config/config.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/types/workload.h"
 
 namespace carousel::bench {

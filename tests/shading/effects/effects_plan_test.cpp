@@ -152,7 +152,7 @@ TEST(EffectsPlan, CyclesAreThoseOfTheConfiguration) {
   config.shading.cycles_per_shade = 20;
   config.shading.cycles_per_effect = 7;
   config.shading.cycles_per_any_hit = 11;
-  config.testers.any_hit_unit.interval_cycles = 2;
+  config.testers.units[UnitKind::kAnyHit].interval_cycles = 2;
   const EffectsPlan plan = plan_effects(scene_of_everything(), config);
   EXPECT_EQ(plan.of(Effect::kClearcoat).cost.cycles_per_hit, 7u);
   EXPECT_EQ(plan.of(Effect::kAlphaBlend).cost.cycles_per_hit, 2u);
