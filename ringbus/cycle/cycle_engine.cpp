@@ -81,7 +81,7 @@ class CycleRun {
 
  private:
   std::unique_ptr<ResourceAgent> make_tile(ResourceId id, const SidePorts& side, float scene_size) {
-    if (config_.topology.shape == TopologyShape::kIndependent)
+    if (!machine_.topology.has_packets())
       return std::make_unique<IndependentTile>(id, machine_, options_.statistics, options_.trace, side);
     return std::make_unique<Tile>(id, machine_, scene_size, options_.statistics, options_.trace, ports_of(id, side));
   }
@@ -95,7 +95,6 @@ class CycleRun {
   struct NodePorts {
     std::vector<InPort> in;
     std::vector<OutPort> out;
-    std::vector<ResourceId> out_to;  ///< as `out`
   };
   NodePorts ports_at(ResourceId node) const {
     NodePorts ports;
@@ -106,51 +105,36 @@ class CycleRun {
     // straight to their next stop, all there are fit in, as nothing else would keep circles of links from closing.
     const std::size_t places =
         hub || topology.direct() ? machine_.packets.size() : static_cast<std::size_t>(config_.testers.contexts) + 1;
-    for (std::size_t i = 0; i < topology.wires().size(); ++i) {
-      const Topology::Wire& wire = topology.wires()[i];
-      const Cycle latency = latency_of(wire);
-      if (wire.to == node) {
-        const std::size_t at = topology.direct() ? ports.in.size() : wire.direction;
-        if (ports.in.size() <= at) ports.in.resize(at + 1);
-        ports.in[at] = {wires_[i].get(), latency};
-      }
-      if (wire.from != node) continue;
+    for (const std::uint32_t i : topology.ports(node).in)
+      ports.in.push_back({wires_[i].get(), latency_of(topology.wires()[i])});
+    for (const std::uint32_t i : topology.ports(node).out) {
+      const Cycle latency = latency_of(topology.wires()[i]);
       ports.out.emplace_back(*wires_[i], latency, depth, places);
-      if (config_.faults.links.any()) ports.out.back().fail(LinkFaultTimer(config_.faults, i, latency));
-      ports.out_to.push_back(wire.to);
+      if (config_.faults.links.any())
+        ports.out.back().fail(LinkFaultTimer(config_.faults.links, config_.faults.seed, i, latency));
     }
     return ports;
   }
 
-  Cycle latency_of(const Topology::Wire& wire) const {
-    const LinkConfig& link = config_.topology.link;
-    if (!machine_.topology.bus()) return static_cast<Cycle>(link.latency_cycles);
-    return wire.from.value < machine_.topology.resources() ? Bus::latency_to(link) : Bus::latency_from(link);
-  }
+  Cycle latency_of(const Topology::Wire& wire) const { return static_cast<Cycle>(wire.latency_cycles); }
 
   Tile::Ports ports_of(ResourceId id, const SidePorts& side) const {
     NodePorts node = ports_at(id);
-    Tile::Ports ports{side, {}, {}, {}};
-    ports.in = std::move(node.in);
-    ports.out = std::move(node.out);
-    if (!machine_.topology.direct()) return ports;
-    ports.out_to.resize(machine_.topology.resources());
-    for (std::uint32_t i = 0; !machine_.topology.bus() && i < node.out_to.size(); ++i)
-      ports.out_to[node.out_to[i].value] = i;
-    return ports;
+    return {side, std::move(node.in), std::move(node.out)};
   }
 
   void make_hubs() {
     const Topology& topology = machine_.topology;
-    if (topology.resources() == 1) return;
-    const std::uint32_t first = static_cast<std::uint32_t>(topology.resources());
-    if (topology.bus()) {
-      NodePorts ports = ports_at(ResourceId(first));
-      bus_ = std::make_unique<Bus>(machine_, std::move(ports.in), std::move(ports.out));
-    }
-    for (std::uint32_t g = 0; g < topology.groups(); ++g) {
-      NodePorts ports = ports_at(ResourceId(first + g));
-      bridges_.push_back(std::make_unique<Bridge>(g, machine_, std::move(ports.in), std::move(ports.out)));
+    for (std::uint32_t hub = 0; hub < topology.hubs().size(); ++hub) {
+      NodePorts ports = ports_at(ResourceId(static_cast<std::uint32_t>(topology.resources()) + hub));
+      switch (topology.hubs()[hub]) {
+        case Topology::Hub::kBus:
+          bus_ = std::make_unique<Bus>(machine_, std::move(ports.in), std::move(ports.out));
+          break;
+        case Topology::Hub::kBridge:
+          bridges_.push_back(std::make_unique<Bridge>(hub, machine_, std::move(ports.in), std::move(ports.out)));
+          break;
+      }
     }
   }
 
@@ -291,10 +275,7 @@ class CycleRun {
       out.links.push_back(
           {wire.from, wire.to, static_cast<std::size_t>(config_.topology.link.depth), s, {}, port.faults()});
     });
-    for (const auto& cache : caches_) {
-      const ShapeCache::Statistics& s = cache->statistics();
-      c.caches.push_back({s.requests, s.lines, s.hits, s.merged, s.misses});
-    }
+    for (const auto& cache : caches_) c.caches.push_back(cache->statistics());
     return out;
   }
 

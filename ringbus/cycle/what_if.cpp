@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
 
@@ -56,7 +57,7 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   if (config.rays.reads_per_cycle > 0)
     all.push_back({"ray_reads", "twice rays.reads_per_cycle", [](Config& c) { c.rays.reads_per_cycle *= 2; }});
   all.push_back(units_what_if("transforms", UnitKind::kTransform));
-  const bool independent = config.topology.shape == TopologyShape::kIndependent;
+  const bool independent = !Topology(config.topology).has_packets();
   if (!independent)
     all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
   all.push_back({"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", [](Config& c) {

@@ -19,21 +19,18 @@ constexpr std::size_t kCompletedPause = 4096;  // completed rays after which iss
 NativePort::NativePort(ResourceId id, Machine& machine, float scene_size, EventSink* sink)
     : machine_(machine),
       links_fail_(machine.config.faults.links.any()),
-      fault_(ResourceFault::of(machine.config, id)),
+      fault_(ResourceFault::of(machine.config.faults.resource, machine.config.engine.clock_mhz, id)),
       stops_after_(static_cast<std::uint64_t>(machine.config.faults.resource.after_rays)),
       stops_(machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop &&
              machine.config.faults.resource.number == id.value),
       sink_(sink),
-      resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], sink),
-      out_port_of_(machine.topology.resources()),
+      resource_(resource_settings(machine.config, scene_size), machine.accel, *machine.stores[id.value],
+                {.events = sink}),
       free_(machine.topology.directions()) {
-  const std::vector<Topology::Wire>& wires = machine.topology.wires();
-  for (std::size_t i = 0; i < wires.size(); ++i) {
-    if (wires[i].to == id) in_ports_.push_back({machine.links[i].get(), wires[i].direction});
-    if (wires[i].from != id) continue;
-    out_port_of_[wires[i].to.value] = static_cast<std::uint32_t>(out_ports_.size());
-    out_ports_.push_back({machine.links[i].get(), {}});
-  }
+  const Topology::Ports& ports = machine.topology.ports(id);
+  for (const std::uint32_t wire : ports.in)
+    in_ports_.push_back({machine.links[wire].get(), machine.topology.wires()[wire].direction});
+  for (const std::uint32_t wire : ports.out) out_ports_.push_back({machine.links[wire].get(), {}});
   for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
     if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
   local_.owner = id;
@@ -136,11 +133,7 @@ void NativePort::arrive(PacketId id) {
 }
 
 void NativePort::forward(PacketId id) {
-  const Packet& packet = machine_.packet(id);
-  const std::size_t exit = machine_.topology.direct()
-                               ? out_port_of_[machine_.topology.next(packet, resource_.id()).value]
-                               : packet.direction;
-  out_ports_[exit].egress.push_back(id);
+  out_ports_[machine_.topology.out_port(machine_.packet(id), resource_.id())].egress.push_back(id);
   hop(id);
 }
 

@@ -90,7 +90,6 @@ class NativePort {
   };
   std::vector<InPort> in_ports_;             // incoming links
   std::vector<OutPort> out_ports_;           // a ring: one a direction
-  std::vector<std::uint32_t> out_port_of_;   // point to point: by destination
   std::vector<std::vector<PacketId>> free_;  // own packets at home, by direction
   std::size_t next_direction_ = 0;
   std::atomic<std::uint32_t> out_{0};           // own packets under way; written by the owner

@@ -36,7 +36,7 @@ void Bridge::pass_on(Token token, bool from_group, Cycle now) {
   if (from_group) {
     // It has done with this group, unless it is at home and nobody else wants it.
     enters = topology.group_of(packet.owner) == group_;
-    for (std::uint32_t g = 0; enters && g < topology.groups(); ++g)
+    for (std::uint32_t g = 0; enters && g < topology.groups().size(); ++g)
       enters = g == group_ || !topology.group_wants(packet, g);
   }
   token.skip = enters ? topology.skip_from_entrance(packet, group_) : 0;

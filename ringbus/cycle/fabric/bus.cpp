@@ -7,14 +7,6 @@ namespace carousel::ringbus::cycle {
 Bus::Bus(CycleMachine& machine, std::vector<InPort> in, std::vector<OutPort> out)
     : machine_(machine), in_(std::move(in)), out_(std::move(out)) {}
 
-Cycle Bus::latency_to(const LinkConfig& link) {
-  return way_there(link.latency_cycles);
-}
-
-Cycle Bus::latency_from(const LinkConfig& link) {
-  return way_back(link.latency_cycles);
-}
-
 Cycle Bus::next() const {
   Cycle first = kNever;
   bool waiting = false;

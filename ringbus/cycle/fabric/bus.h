@@ -9,14 +9,11 @@
 namespace carousel::ringbus::cycle {
 
 /// One medium for all: moves one packet at a time from any resource to any other. Resources take turns; one whose
-/// packet would find no place at its next stop is passed over. The way to the bus and the way from it have half of
-/// the link's latency each.
+/// packet would find no place at its next stop is passed over.
 class Bus final : public Agent {
  public:
   /// Ports by resource.
   Bus(CycleMachine& machine, std::vector<InPort> in, std::vector<OutPort> out);
-  static Cycle latency_to(const LinkConfig& link);
-  static Cycle latency_from(const LinkConfig& link);
 
   Cycle next() const override;
   void run(Cycle end) override;

@@ -2,8 +2,8 @@
 
 #include "accel/transform/instance_data.h"
 #include "core/config/config.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/types/ids.h"
-#include "core/types/intersection_counts.h"
 #include "ringbus/cycle/testers/level_cycles.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/faults/resource_fault.h"

@@ -24,7 +24,8 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       trace_(id.value, window),
       transforms_(machine.config.accuracy, machine.accel, machine.stores[id.value]->slots()),
       walk_(machine.accel, step_cycles(testers_of(machine.config, id)), transforms_),
-      resource_(machine.config, machine.accel, scene_size, *machine.stores[id.value], statistics ? &sink_ : nullptr),
+      resource_(resource_settings(machine.config, scene_size), machine.accel, *machine.stores[id.value],
+                {statistics ? &sink_ : nullptr, &walk_, &transforms_, ports.questions != nullptr}),
       ports_(std::move(ports)),
       tester_(testers_of(machine.config, id), machine.config.cull_planes.order, machine.config.rays.reads_per_cycle),
       shapes_(machine.config.memory, ports_),
@@ -36,7 +37,7 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
       issue_places_(static_cast<std::size_t>(machine.config.memory.fetch_ahead) + 1),
       stays_(machine.stays()),
       visit_all_(machine.config.topology.visit == Visit::kAll),
-      cuts_through_(!visit_all_ && ports_.out_to.empty()),
+      cuts_through_(!visit_all_ && !machine.topology.direct()),
       fetch_by_resource_(machine.config.memory.fetch == MemoryConfig::Fetch::kResource),
       bubble_(machine.config.topology.flow == Flow::kBubble),
       free_(machine.topology.directions()),
@@ -47,9 +48,6 @@ Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statisti
   pauses_ = fault.kind == FaultsConfig::Resource::Kind::kPause && fault.number == id.value;
   stops_ = fault.kind == FaultsConfig::Resource::Kind::kStop && fault.number == id.value;
   pause_after_ = static_cast<std::uint64_t>(fault.after_rays);
-  resource_.set_subtree_tracer(&walk_);
-  resource_.set_transform_account(&transforms_);
-  resource_.hold_any_hit_rays(ports_.questions != nullptr);
   for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
     if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
 }

@@ -42,8 +42,7 @@ class Tile final : public ResourceAgent {
  public:
   struct Ports : SidePorts {
     std::vector<InPort> in;
-    std::vector<OutPort> out;           ///< a ring: one a direction
-    std::vector<std::uint32_t> out_to;  ///< point to point and bus: by destination
+    std::vector<OutPort> out;
   };
 
   Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, TraceWindow window, Ports ports);

@@ -32,12 +32,12 @@ void Tile::begin_fetch(Context& context, const ShapeSpan& strip, Cycle now) {
 
 void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   Packet& packet = machine_.packet(id);
-  resource_.test(packet);
+  const TestOutcome outcome = resource_.test(packet);
   context.packet = id;
-  context.counts = resource_.last_tests();
-  context.reads = resource_.last_reads();
-  context.bundle_passes = resource_.last_bundle_passes();
-  for (const Resource::AnyHitCall& call : resource_.last_any_hit_calls()) {
+  context.counts = outcome.counts;
+  context.reads = outcome.reads;
+  context.bundle_passes = outcome.bundle_passes;
+  for (const AnyHitCall& call : outcome.any_hit_calls) {
     context.question.slots.push_back(call.slot);
     context.question.times += call.times;
   }
@@ -55,7 +55,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
     for (const accel::NodeKey key : walk_.account().strips)
       if (const ShapeSpan strip = machine_.memory.strip(key); !shapes_.has(strip)) context.strips.push_back(strip);
     std::reverse(context.strips.begin(), context.strips.end());
-    const std::size_t together = std::min({resource_.last_rays(), kSubtreeFetches, context.strips.size()});
+    const std::size_t together = std::min({outcome.rays, kSubtreeFetches, context.strips.size()});
     for (std::size_t i = 0; i < together; ++i) {
       begin_fetch(context, context.strips.back(), at);
       context.strips.pop_back();

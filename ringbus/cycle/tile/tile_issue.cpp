@@ -8,7 +8,7 @@ namespace carousel::ringbus::cycle {
 bool Tile::may_inject(const Packet& packet) const {
   const OutPort& out = ports_.out[out_port_of(packet)];
   // The bubble rule also leaves a place for the ring's own traffic.
-  return out.has_place() && (!bubble_ || !ports_.out_to.empty() || out.spare_places() >= 2);
+  return out.has_place() && (!bubble_ || machine_.topology.direct() || out.spare_places() >= 2);
 }
 
 bool Tile::handle_issue(Cycle now) {

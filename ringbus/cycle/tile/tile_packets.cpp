@@ -6,8 +6,7 @@
 namespace carousel::ringbus::cycle {
 
 std::size_t Tile::out_port_of(const Packet& packet) const {
-  if (ports_.out_to.empty()) return machine_.topology.groups() > 0 ? 0 : packet.direction;
-  return ports_.out_to[machine_.topology.next(packet, id_).value];
+  return machine_.topology.out_port(packet, id_);
 }
 
 void Tile::depart(PacketId id, Cycle ready, bool reserved) {

@@ -26,7 +26,7 @@ class TrafficRun {
       if (acknowledges()) acks_.push_back(std::make_unique<Channel<TrafficAck>>());
     }
     for (std::uint32_t r = 0; r < topology_.resources(); ++r)
-      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config,
+      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config, topology_,
                                                      TrafficSource(config, ResourceId(r), plan_.gap), plan_.packets[r],
                                                      plan_.window, ports_of(ResourceId(r))));
   }
@@ -57,28 +57,17 @@ class TrafficRun {
   }
 
  private:
-  bool point_to_point() const { return config_.topology.shape == TopologyShape::kPointToPoint; }
-  bool acknowledges() const { return config_.topology.flow == Flow::kCredits && !point_to_point(); }
+  bool acknowledges() const { return config_.topology.flow == Flow::kCredits && !topology_.direct(); }
   Cycle link_latency() const { return static_cast<Cycle>(config_.topology.link.latency_cycles); }
 
   TrafficNode::Ports ports_of(ResourceId id) const {
     TrafficNode::Ports ports;
     const std::uint32_t depth = static_cast<std::uint32_t>(config_.topology.link.depth);
-    if (point_to_point()) ports.out_to.resize(topology_.resources());
-    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
-      const Topology::Wire& wire = topology_.wires()[i];
-      const std::size_t direction = wire.direction;
-      if (wire.to == id) {
-        const std::size_t at = point_to_point() ? ports.in.size() : direction;
-        if (ports.in.size() <= at) ports.in.resize(at + 1);
-        ports.in[at] = {wires_[i].get(), link_latency()};
-        if (acknowledges()) {
-          ports.acks_in.resize(ports.in.size());
-          ports.acks_in[at] = acks_[i].get();
-        }
-      }
-      if (wire.from != id) continue;
-      if (point_to_point()) ports.out_to[wire.to.value] = static_cast<std::uint32_t>(ports.out.size());
+    for (const std::uint32_t i : topology_.ports(id).in) {
+      ports.in.push_back({wires_[i].get(), link_latency()});
+      if (acknowledges()) ports.acks_in.push_back(acks_[i].get());
+    }
+    for (const std::uint32_t i : topology_.ports(id).out) {
       ports.out.emplace_back(*wires_[i], link_latency(), depth, 1);
       if (acknowledges()) ports.acks_out.push_back(acks_[i].get());
     }

@@ -6,9 +6,9 @@
 
 namespace carousel::ringbus::cycle {
 
-TrafficNode::TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets,
-                         TrafficWindow window, Ports ports)
-    : topology_(config.topology),
+TrafficNode::TrafficNode(ResourceId id, const Config& config, const Topology& topology, TrafficSource source,
+                         std::uint64_t packets, TrafficWindow window, Ports ports)
+    : topology_(topology),
       id_(id),
       ports_(std::move(ports)),
       source_(std::move(source)),
@@ -18,7 +18,7 @@ TrafficNode::TrafficNode(ResourceId id, const Config& config, TrafficSource sour
       ack_latency_(static_cast<Cycle>(config.topology.link.latency_cycles)),
       flits_(static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(config.workload.traffic.packet_bytes),
                                                  static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle)))),
-      places_wanted_(config.topology.flow == Flow::kBubble && ports_.out_to.empty() ? 2 : 1),
+      places_wanted_(config.topology.flow == Flow::kBubble && !topology.direct() ? 2 : 1),
       arrivals_(ports_.in.size()),
       eager_(config.topology.flow == Flow::kNone),
       to_create_(packets),
@@ -33,8 +33,8 @@ void TrafficNode::create() {
   --to_create_;
   source_.advance();
   const ResourceId to = source_.destination();
-  route_ = traffic_route(topology_, id_, to, source_.random());
-  exit_ = ports_.out_to.empty() ? route_.direction : ports_.out_to[to.value];
+  route_ = topology_.route(id_, to, source_.random());
+  exit_ = topology_.direct() ? topology_.out_port_to(id_, to) : route_.direction;
   ready_ = std::max(source_.created() + inject_cycles_, inject_free_);
   if (source_.created() < window_.begin) return;
   ++offered_;
@@ -181,7 +181,7 @@ void TrafficNode::forward_acks(std::size_t a, Cycle end) {
 }
 
 void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle now) {
-  const std::size_t a = topology_.shape == TopologyShape::kBidirectional ? 1 - d : d;
+  const std::size_t a = topology_.ack_direction(d);
   forward_acks(a, now + 1);  // those that came earlier leave earlier
   ports_.acks_out[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
 }

@@ -8,9 +8,9 @@
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/traffic/traffic_route.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
 #include "ringbus/cycle/traffic/traffic_token.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -42,15 +42,14 @@ class TrafficNode final : public Agent {
   using In = InPortOf<TrafficToken>;
   using Out = OutPortOf<TrafficToken>;
   struct Ports {
-    std::vector<In> in;                                   ///< a ring: by direction
-    std::vector<Out> out;                                 ///< a ring: by direction; point to point: by `out_to`
-    std::vector<std::uint32_t> out_to;                    ///< point to point: by destination
+    std::vector<In> in;
+    std::vector<Out> out;
     std::vector<Channel<TrafficAck>*> acks_in, acks_out;  ///< by direction; empty where nobody waits for them
   };
 
   /// `packets`: that it takes from the source.
-  TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets, TrafficWindow window,
-              Ports ports);
+  TrafficNode(ResourceId id, const Config& config, const Topology& topology, TrafficSource source,
+              std::uint64_t packets, TrafficWindow window, Ports ports);
 
   Cycle next() const override;
   void run(Cycle end) override;
@@ -81,7 +80,7 @@ class TrafficNode final : public Agent {
   void deliver(const TrafficToken& token, Cycle tail);
   void create();
 
-  const TopologyConfig& topology_;
+  const Topology& topology_;
   ResourceId id_;
   Ports ports_;
   TrafficSource source_;
@@ -100,7 +99,7 @@ class TrafficNode final : public Agent {
 
   // The packet to inject next; it need not have been created yet.
   bool waiting_ = false;
-  TrafficRoute route_;
+  Topology::Route route_;
   std::size_t exit_ = 0;
   Cycle ready_ = 0, inject_free_ = 0;  // not injected before
   std::uint64_t to_create_;            // after it

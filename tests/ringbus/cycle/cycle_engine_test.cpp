@@ -101,7 +101,7 @@ TEST(CycleEngine, LedgersAddUp) {
     }
     EXPECT_EQ(hops, c.hops);
     std::uint64_t misses = 0;
-    for (const cycle::CacheResult& cache : c.caches) {
+    for (const CacheCounts& cache : c.caches) {
       EXPECT_EQ(cache.lines, cache.hits + cache.merged + cache.misses);
       misses += cache.misses;
     }

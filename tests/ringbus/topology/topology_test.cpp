@@ -123,10 +123,10 @@ TEST(Topology, CreditsStayBelowWhatTheRingHolds) {
       c.link.depth = depth;
       c.flow = Flow::kCredits;
       const auto n = static_cast<std::uint32_t>(resources), d = static_cast<std::uint32_t>(depth);
-      EXPECT_GE(packets_in_flight(c), 1u);
-      EXPECT_LT(n * packets_in_flight(c), n * d + n);  // links and one place in hand a resource
+      EXPECT_GE(Topology(c).packets_in_flight(), 1u);
+      EXPECT_LT(n * Topology(c).packets_in_flight(), n * d + n);  // links and one egress place a resource
       c.flow = Flow::kNone;
-      EXPECT_GT(n * packets_in_flight(c), n * d + n);
+      EXPECT_GT(n * Topology(c).packets_in_flight(), n * d + n);
     }
   }
 }
