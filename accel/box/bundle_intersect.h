@@ -5,11 +5,11 @@
 #include "accel/box/bundle.h"
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 namespace carousel::accel {
 
-/// What a bundle's tests say of the children of a node, a bit a lane. A lane in neither is missed by every ray.
+/// The result of a bundle's tests of the children of a node, a bit a lane. Every ray misses a lane in neither set.
 struct BundleAnswer {
   std::uint8_t all = 0;         ///< every ray hits the box, as far as is known: the bundle goes down whole
   std::uint8_t undecided = 0;   ///< some may hit and some may miss: the bundle is split for this lane

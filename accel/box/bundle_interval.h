@@ -1,6 +1,6 @@
 // The slab test of all rays of a bundle at once (US 11308683: AnyHit, AllHit), evaluated on the ranges of their origins
 // and of their rounded reciprocals with the very operations of accel/box/slab.h. Rounding is monotone, so what is
-// computed here bounds what is computed for each ray, with no slack to be proven.
+// computed here bounds the values computed for each ray, and no slack has to be proven.
 //
 // Along an axis the rays are taken in two halves by the sign bit of their directions, as the slab test chooses its
 // planes. Where there are both, directions between may be next to zero, or zero, so that a half says only who is beside
@@ -114,7 +114,7 @@ class BundleInterval {
     Real near = kEndless, far = kEndless;
   };
 
-  /// Rays with one sign bit along one axis, and what the slab test computes for them.
+  /// Rays with one sign bit along one axis, and the values that the slab test computes for them.
   struct Half {
     int axis;
     bool backwards;

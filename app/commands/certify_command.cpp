@@ -20,7 +20,7 @@ namespace carousel::app {
 
 namespace {
 
-/// None without a configuration: all levels.
+/// The configured level; empty without a configuration, which stands for all levels.
 std::optional<AccuracyConfig> configured_level(const AccuracyArguments& arguments) {
   if (arguments.config.empty() && arguments.sets.empty()) return std::nullopt;
   const LocatedConfig located = arguments.config.empty()
@@ -30,7 +30,7 @@ std::optional<AccuracyConfig> configured_level(const AccuracyArguments& argument
   return located.config.accuracy;
 }
 
-/// Cases of a file, one a line, among blank lines and comments; or the text itself.
+/// The cases of a file, one a line, among blank lines and comments; or the one case that the text itself holds.
 std::vector<CertificateCase> read_cases(const std::string& text_or_file) {
   const std::vector<accel::Property>& properties = certified_properties();
   std::error_code ignored;

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The configuration that names the scene, with everything else as it is by default or set.
+/// The configuration that names the scene; all other keys have their defaults or the values of --set.
 LocatedConfig config_for(const InspectArguments& arguments) {
   constexpr std::string_view kBuiltin = "builtin:";
   const std::string& name = arguments.scene;

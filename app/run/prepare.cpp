@@ -21,7 +21,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Runs `body`; what it finds wrong with the configuration gets its place in the user's files.
+/// Runs `body`; adds to its ConfigErrors the positions in the user's files.
 template <class Body>
 auto with_positions(const KeyPositions& positions, const Body& body) {
   try {
@@ -71,14 +71,14 @@ void build_accel(Prepared& p) {
     throw ConfigError(std::move(issues));
 }
 
-/// Everything after reading the configuration.
+/// Does all preparation after reading the configuration.
 void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
-  // A second thread pays for the cycle engine only where each has many resources (docs/performance.md).
+  // A second thread makes the cycle engine faster only if each thread has many resources (docs/performance.md).
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
-  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // meets no scene
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene
   const KeyPositions& positions = p.located.positions;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {

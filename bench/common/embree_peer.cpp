@@ -106,7 +106,7 @@ class EmbreePeer::Impl {
     }
     commit(scene_);
     for (const RTCScene one : shared)
-      if (one != nullptr) rtcReleaseScene(one);  // the instances hold on to it
+      if (one != nullptr) rtcReleaseScene(one);  // the instances keep a reference to it
     if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
       throw std::runtime_error("Embree: error " + std::to_string(error) + " while building " + scene.name);
   }

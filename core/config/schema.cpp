@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/config/fields.h"
+#include "core/config/config.h"
 #include "core/config/write.h"
 #include "core/types/effect.h"
 

@@ -6,7 +6,7 @@
 
 namespace carousel {
 
-/// Where something in a user's file stands. Lines and columns count from 1; 0 means unknown. For values that
+/// A position in a user's file. Lines and columns count from 1; 0 means unknown. For values that
 /// come from the command line, `file` is the option's text, e.g. "--set image.width=0".
 struct SourcePosition {
   std::string file;

@@ -92,10 +92,7 @@ class CycleRun {
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
     });
-    for (const auto& cache : machine_.memory().caches()) {
-      const ShapeCache::Statistics& s = cache->statistics();
-      c.caches.push_back({s.requests, s.lines, s.hits, s.merged, s.misses});
-    }
+    for (const auto& cache : machine_.memory().caches()) c.caches.push_back(cache->statistics());
     return out;
   }
 

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/config/config.h"
+#include "core/statistics/link_fault_counts.h"
 #include "core/types/ids.h"
-#include "ringbus/faults/link_fault_counts.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/queues/link_queue.h"
 #include "ringbus/results/link_statistics.h"

@@ -8,11 +8,11 @@
 
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
+#include "core/statistics/bundle_counts.h"
 #include "core/types/workload.h"
 #include "ringbus/packets/events.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/bundle_builder.h"
-#include "ringbus/rays/bundle_counts.h"
 #include "ringbus/rays/ray_store.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/resource/hooks.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 namespace carousel::ringbus {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/config/config.h"
+#include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/time/agent.h"
@@ -33,9 +34,7 @@ class ShapeCache final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override;
 
-  struct Statistics {
-    std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0;
-  };
+  using Statistics = CacheCounts;
   const Statistics& statistics() const { return statistics_; }
 
  private:

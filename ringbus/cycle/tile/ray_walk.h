@@ -6,7 +6,7 @@
 
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/resource/transform_account.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/resource/resource.h"
 

@@ -16,7 +16,7 @@ TEST(ConfigParse, GivesTheDefaultsOfTheDesignForASmallFile) {
   EXPECT_FALSE(config.engine.threads.has_value());
   EXPECT_FALSE(config.scene.sky.has_value());
   EXPECT_EQ(config.topology.link.queue, QueueKind::kSpscRing);
-  EXPECT_EQ(config.testers.box.units, 8);
+  EXPECT_EQ(config.testers.units[UnitKind::kBox].units, 8);
 }
 
 TEST(ConfigParse, ReadsEveryFormOfTheContract) {
@@ -44,12 +44,13 @@ vary: {packets.rays: [8, 16], topology.resources: 1..64*2}
   EXPECT_EQ(config.engine.threads, 3);
   EXPECT_EQ(config.engine.simd, SimdTarget::kAvx2);
   EXPECT_EQ(config.topology.shape, TopologyShape::kPointToPoint);
-  EXPECT_EQ(config.testers.triangle.units, 7);
+  EXPECT_EQ(config.testers.units[UnitKind::kTriangle].units, 7);
   EXPECT_EQ(config.testers.simd.map, TestersConfig::Simd::Map::kShapes);
   ASSERT_EQ(config.topology.overrides.size(), 1u);
-  EXPECT_EQ(config.topology.overrides[0].testers.box.units, 2);
-  EXPECT_EQ(config.topology.overrides[0].testers.box.latency_cycles, 9) << "an override starts from testers";
-  EXPECT_EQ(config.topology.overrides[0].testers.triangle.units, 7);
+  EXPECT_EQ(config.topology.overrides[0].testers.units[UnitKind::kBox].units, 2);
+  EXPECT_EQ(config.topology.overrides[0].testers.units[UnitKind::kBox].latency_cycles, 9)
+      << "an override starts from testers";
+  EXPECT_EQ(config.topology.overrides[0].testers.units[UnitKind::kTriangle].units, 7);
   EXPECT_EQ(config.verify, Verify::kReference);
   EXPECT_EQ(config.workload.kind, WorkloadConfig::Kind::kRaysFrom);
   EXPECT_EQ(config.workload.rays_from, "rays.csv");
@@ -74,7 +75,7 @@ TEST(ConfigParse, ReadsHexadecimalNumbers) {
 
 TEST(ConfigParse, ExpandsAliases) {
   const Config config = parse_config("scene: {builtin: cornell}\ntesters: {box: &t {units: 3}, plane: *t}\n", "a.yaml");
-  EXPECT_EQ(config.testers.plane.units, 3);
+  EXPECT_EQ(config.testers.units[UnitKind::kPlane].units, 3);
 }
 
 TEST(ConfigParse, ReportsAllErrorsOfAFileTogetherInItsOrder) {

@@ -74,9 +74,9 @@ Config independent_machine() {
   c.topology.resources = 1;
   c.topology.link.latency_cycles = 5;
   c.topology.link.bytes_per_cycle = 16;
-  c.testers.box = {8, 1, 7};
-  c.testers.triangle = {16, 1, 11};
-  c.testers.transform = {1, 1, 13};
+  c.testers.units[UnitKind::kBox] = {8, 1, 7};
+  c.testers.units[UnitKind::kTriangle] = {16, 1, 11};
+  c.testers.units[UnitKind::kTransform] = {1, 1, 13};
   c.memory.l2_latency_cycles = 34;
   return c;
 }
@@ -127,7 +127,7 @@ TEST(IndependentTile, AsksForAStripOnceHoweverManyWantIt) {
 TEST(IndependentTile, FewTestsOfSeveralRaysShareACycle) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 50, 1);
   Config wide = independent_machine();
-  wide.testers.box.units = 80;
+  wide.testers.units[UnitKind::kBox].units = 80;
   LoneTile one(scene, wide), ten(scene, wide);
   one.load(0, 1);
   one.run(100);

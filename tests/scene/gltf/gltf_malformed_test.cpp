@@ -35,7 +35,7 @@ TEST(GltfMalformed, DeeplyNestedExtrasDoNotOverflowTheStack) {
   std::string objects;
   for (std::size_t i = 0; i < deep; ++i) objects += "{\"a\":";
   expect_text_refused(with_extras(objects), "/extras/a/a/a/a/a", "nested more than 128 levels deep");
-  // Brackets inside strings are no nesting.
+  // Brackets inside strings do not count as nesting.
   EXPECT_NO_THROW(GltfBuilder::load_text(with_extras('"' + std::string(deep, '[') + "\\\"{\"")));
   EXPECT_NO_THROW(GltfBuilder::load_text(with_extras(std::string(100, '[') + std::string(100, ']'))));
 }
