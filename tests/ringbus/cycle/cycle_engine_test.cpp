@@ -1,4 +1,4 @@
-// The cycle engine: the same hits as everybody, and the same cycles for any number of threads.
+// The cycle engine: the same hits as the other tracers, and the same cycles for any number of threads.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TEST(CycleEngine, LedgersAddUp) {
       const cycle::Cycle job = static_cast<cycle::Cycle>(cell.config.shading.cycles_per_shade);
       EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
       jobs += job == 0 ? 0 : shaded / job;
-      // What the banks did is what the resource counted, rounded up a packet at a time.
+      // The banks are busy for the tests that the resource counted, rounded up a packet at a time.
       const TesterUnits& box = cell.config.testers.units[UnitKind::kBox];
       EXPECT_GE(tile.box.busy * static_cast<std::uint64_t>(box.units), out.result.resources[r].tests.box);
       transforms += tile.transform.busy;
