@@ -1,5 +1,7 @@
 #include "ringbus/protocol/packet_pool.h"
 
+#include "ringbus/resource/traversal/make_traversal.h"
+
 namespace carousel::ringbus {
 
 std::vector<Packet> make_packets(const Config& config, const Topology& topology, std::uint32_t per_direction) {
@@ -10,7 +12,7 @@ std::vector<Packet> make_packets(const Config& config, const Topology& topology,
     p.direction = static_cast<std::uint16_t>(i / per_direction % topology.directions());
     p.members.reserve(static_cast<std::size_t>(config.packets.rays));
     p.owners.resize((topology.resources() + 63) / 64);
-    if (config.collections.traversal == Traversal::kOrdered)
+    if (one_collection_a_ray(config.collections.traversal))
       p.next.reserve(static_cast<std::size_t>(config.packets.rays));
   }
   return packets;

@@ -7,7 +7,7 @@
 
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/cycle/time/clock.h"
-#include "ringbus/resource/transform_account.h"
+#include "ringbus/resource/visit/transform_account.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {

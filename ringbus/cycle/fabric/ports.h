@@ -140,7 +140,7 @@ class OutPortOf {
   }
   /// Credits that were lost on their way. Asking for them occupies the link like a packet, and is not waiting.
   void make_good(Cycle now) {
-    const LinkFaultTimer::Recovered made = faults_->made_good(now);
+    const LinkFaultTimer::Recovered made = faults_->recovered(now);
     credits_ += made.places;
     if (made.busy == 0) return;
     free_at_ = std::max(free_at_, now) + made.busy;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ringbus/resource/ray_stacks.h"
+#include "ringbus/resource/traversal/ray_stacks.h"
 
 namespace carousel::ringbus {
 namespace {

@@ -1,5 +1,5 @@
 // What the transform unit is charged with: never a bit of a hit, but tests, cycles and bytes.
-#include "ringbus/resource/transform_account.h"
+#include "ringbus/resource/visit/transform_account.h"
 
 #include <gtest/gtest.h>
 
