@@ -26,8 +26,8 @@
 #include "accel/planes/cull_plane_clip.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/cull_plane.h"
-#include "core/types/cull_counts.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/cull_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -65,7 +65,7 @@ struct PlaneLanes {
   using Tag = hn::CappedTag<float, kMaxWidth>;
   hn::Vec<Tag> x, y, z, distance;
 
-  /// `at(lane)` is the plane of a lane. Whole planes are loaded and turned about: gathering is slower on many machines.
+  /// `at(lane)` is the plane of a lane. Whole planes are loaded and transposed: gathering is slower on many machines.
   template <class At>
   HWY_INLINE explicit PlaneLanes(const At& at) {
     const Tag d;

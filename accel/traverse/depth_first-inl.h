@@ -17,7 +17,7 @@
 #include "accel/primitive/triangle_block-inl.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {

@@ -7,8 +7,8 @@
 
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "core/types/cull_counts.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/cull_counts.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/config/config.h"
-#include "ringbus/faults/link_fault_counts.h"
+#include "core/statistics/link_fault_counts.h"
 
 namespace carousel::ringbus {
 

@@ -58,9 +58,9 @@ class ResourceFault {
 inline void slow_down(TestersConfig& testers, const FaultsConfig& faults, ResourceId id) {
   const FaultsConfig::Resource& fault = faults.resource;
   if (fault.kind != FaultsConfig::Resource::Kind::kSlow || fault.number != id.value) return;
-  for (TesterUnits* units : {&testers.box, &testers.triangle, &testers.plane, &testers.bundle, &testers.transform}) {
-    units->interval_cycles *= fault.factor;
-    units->latency_cycles *= fault.factor;
+  for (const auto [kind, units] : testers.units) {
+    units.interval_cycles *= fault.factor;
+    units.latency_cycles *= fault.factor;
   }
 }
 

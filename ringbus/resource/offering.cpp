@@ -12,7 +12,7 @@ Offer Offering::offer(bool partial, Packet& packet) {
     const std::optional<CollectionId> chosen = choose(partial, storage);
     if (!chosen) return storage ? Offer::kStorage : Offer::kNothing;
     take(*chosen);
-  } else if (in_flight_ > 0 && !admission_.fits(traversal_.blocks_needed(block_.key, 0), 0)) {
+  } else if (in_flight_ > 0 && !storage_.fits(traversal_.blocks_needed(block_.key, 0), 0)) {
     return Offer::kStorage;
   }
   fill(packet);
@@ -24,7 +24,7 @@ std::optional<CollectionId> Offering::choose(bool partial, bool& storage) {
   const std::optional<CollectionId> best = collections_.best(partial);
   if (!best) return best;
   const std::uint32_t needed = traversal_.blocks_needed(collections_.key(*best), collections_.front_rays(*best));
-  if (admission_.fits(needed, 1)) return best;
+  if (storage_.fits(needed, 1)) return best;
   // One packet at a time, deepest first: each level down needs at most width - 1 blocks more, which the reserve holds,
   // and gives them all back when its subtree is done.
   if (in_flight_ > 0) {
@@ -63,7 +63,7 @@ void Offering::fill(Packet& packet) {
   for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0};
   traversal_.prepare(packet);
   mark_owners(packet);
-  admission_.issue(packet.reserved_blocks);
+  storage_.issue(packet.reserved_blocks);
   ++in_flight_;
   record({.kind = EventKind::kIssue,
           .resource = rays_.owner(),
@@ -82,13 +82,13 @@ void Offering::mark_owners(Packet& packet) const {
 }
 
 void Offering::retire(const Packet& packet, std::size_t joined) {
-  admission_.retire(packet.reserved_blocks, packet.members.size(), joined);
+  storage_.retire(packet.reserved_blocks, packet.members.size(), joined);
   --in_flight_;
 }
 
 std::uint32_t Offering::discard() {
   block_ = {};
-  admission_.discard();
+  storage_.discard();
   return std::exchange(in_flight_, 0);
 }
 

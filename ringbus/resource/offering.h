@@ -8,9 +8,9 @@
 #include "ringbus/packets/events.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/ray_store.h"
-#include "ringbus/resource/admission.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/resource/homes.h"
+#include "ringbus/resource/storage_rule.h"
 #include "ringbus/resource/traversal/traversal_method.h"
 
 namespace carousel::ringbus {
@@ -23,16 +23,16 @@ enum class Offer {
 };
 
 /// Fills packets from a resource's collections. The policy names the collection (collections/issue_policy.h), bounded
-/// storage may hold it back (Admission), and a block goes out in as many packets as the traversal says, one after
+/// storage may hold it back (StorageRule), and a block goes out in as many packets as the traversal says, one after
 /// another.
 class Offering {
  public:
   /// Keeps references. `local` is true if all rays of a packet live at its owner. `events` may be null.
-  Offering(const RayStore& rays, CollectionStore& collections, Admission& admission, const Homes& homes,
+  Offering(const RayStore& rays, CollectionStore& collections, StorageRule& storage, const Homes& homes,
            const TraversalMethod& traversal, bool local, EventSink* events)
       : rays_(rays),
         collections_(collections),
-        admission_(admission),
+        storage_(storage),
         homes_(homes),
         traversal_(traversal),
         local_(local),
@@ -71,7 +71,7 @@ class Offering {
 
   const RayStore& rays_;
   CollectionStore& collections_;
-  Admission& admission_;
+  StorageRule& storage_;
   const Homes& homes_;
   const TraversalMethod& traversal_;
   bool local_;

@@ -36,15 +36,15 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
       block_rays_(static_cast<std::size_t>(settings.packets.rays)),
       collections_(collection_settings(settings, accel)),
       homes_(settings.collections.home, store.owner(), settings.resources),
-      admission_(settings.collections, settings.packets.rays,
-                 reserve_blocks(settings.collections, settings.bundles, accel.width, accel.max_depth), collections_),
+      storage_(settings.collections, settings.packets.rays,
+               reserve_blocks(settings.collections, settings.bundles, accel.width, accel.max_depth), collections_),
       completion_(store, hooks.transforms),
       any_hit_(store, hooks.hold_any_hit_rays),
       traversal_(make_traversal(
           traversal_settings(settings),
           {accel, store, completion_, any_hit_, hooks.events != nullptr ? hooks.events->cull_counts() : nullptr,
            hooks.subtree_tracer, hooks.transforms})),
-      offering_(store, collections_, admission_, homes_, *traversal_,
+      offering_(store, collections_, storage_, homes_, *traversal_,
                 settings.resources == 1 || settings.collections.home == Home::kLocal, hooks.events) {}
 
 Resource::~Resource() = default;
@@ -56,7 +56,7 @@ std::int32_t Resource::initial_tests(const ResourceSettings& settings, const acc
 void Resource::admit(std::span<const RayId> rays) {
   for (std::size_t i = 0; i < rays.size(); i += block_rays_)
     collections_.add(root_, 0, 0.0f, rays.subspan(i, std::min(block_rays_, rays.size() - i)));
-  admission_.admit(rays.size());
+  storage_.admit(rays.size());
   record({.kind = EventKind::kAdmit, .resource = id(), .rays = static_cast<std::uint32_t>(rays.size())});
 }
 

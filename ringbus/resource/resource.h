@@ -11,12 +11,12 @@
 #include "ringbus/packets/events.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/ray_store.h"
-#include "ringbus/resource/admission.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/resource/homes.h"
 #include "ringbus/resource/hooks.h"
 #include "ringbus/resource/offering.h"
 #include "ringbus/resource/settings.h"
+#include "ringbus/resource/storage_rule.h"
 #include "ringbus/resource/traversal/traversal_method.h"
 #include "ringbus/resource/visit/any_hit_hold.h"
 #include "ringbus/resource/visit/completion.h"
@@ -45,7 +45,7 @@ class Resource {
   bool is_treelet(accel::NodeKey key) const { return traversal_->is_treelet(key); }
 
   /// How many rays may join the root's collection now, limited by collection storage.
-  std::size_t admissible() const { return admission_.admissible(); }
+  std::size_t admissible() const { return storage_.admissible(); }
   /// Lets rays that have been loaded, here or elsewhere, join the root's collection. Needs rays.size() <= admissible().
   void admit(std::span<const RayId> rays);
   /// Fills `packet` from the next collection: by policy, among the ready ones, or with `partial` among all.
@@ -87,7 +87,7 @@ class Resource {
   std::size_t block_rays_;
   CollectionStore collections_;
   Homes homes_;
-  Admission admission_;
+  StorageRule storage_;
   Completion completion_;
   AnyHitHold any_hit_;
   std::unique_ptr<TraversalMethod> traversal_;

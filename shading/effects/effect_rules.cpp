@@ -56,7 +56,7 @@ void make_opaque(Material& m) {
 }
 std::uint32_t any_hit_cycles(const Config& config) {
   const bool by_shader = config.testers.any_hit == TestersConfig::AnyHit::kShader;
-  return u32(by_shader ? config.shading.cycles_per_any_hit : config.testers.any_hit_unit.interval_cycles);
+  return u32(by_shader ? config.shading.cycles_per_any_hit : config.testers.units[UnitKind::kAnyHit].interval_cycles);
 }
 
 template <Kind kKind>

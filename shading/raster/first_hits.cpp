@@ -70,13 +70,7 @@ class Rasterizer {
     executor.parallel_for(bins_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t tile = begin; tile < end; ++tile) draw(static_cast<std::uint32_t>(tile), counts[tile]);
     });
-    for (const FirstHits::Counts& c : counts) {
-      out_.counts.tested += c.tested;
-      out_.counts.any_hit_calls += c.any_hit_calls;
-      out_.counts.hits += c.hits;
-      out_.counts.misses += c.misses;
-      out_.counts.left_to_rays += c.left_to_rays;
-    }
+    for (const FirstHits::Counts& c : counts) out_.counts += c;
     return std::move(out_);
   }
 

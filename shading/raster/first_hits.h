@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/config/config.h"
+#include "core/statistics/raster_counts.h"
 #include "core/system/executor.h"
 #include "core/types/any_hit.h"
 #include "core/types/ray.h"
@@ -13,13 +14,7 @@ namespace carousel::shading {
 
 /// The first hits of the camera rays of a frame, found without tracing them.
 struct FirstHits {
-  struct Counts {
-    std::uint64_t triangles = 0;      ///< of all instances
-    std::uint64_t binned = 0;         ///< entries of triangles in tiles
-    std::uint64_t tested = 0;         ///< edge tests: a triangle at a sample
-    std::uint64_t any_hit_calls = 0;  ///< samples at which a non-opaque surface took an any-hit call
-    std::uint64_t hits = 0, misses = 0, left_to_rays = 0;  ///< samples
-  };
+  using Counts = RasterCounts;
 
   std::uint32_t samples = 0;               ///< a pixel
   std::vector<Hit> hits;                   ///< pixel-major; a miss has no instance

@@ -18,10 +18,10 @@ namespace carousel::ringbus::cycle {
 ///   with `carry: data` the shapes themselves, and below an instance what is stored of its transform
 class PacketSize {
  public:
-  explicit PacketSize(const Config& config)
-      : ordered_(one_collection_a_ray(config.collections.traversal)),
-        entries_(issue_policy(config.collections.policy).reads_entries),
-        data_(config.packets.carry == PacketCarry::kData) {}
+  PacketSize(const CollectionsConfig& collections, PacketCarry carry)
+      : ordered_(one_collection_a_ray(collections.traversal)),
+        entries_(issue_policy(collections.policy).reads_entries),
+        data_(carry == PacketCarry::kData) {}
 
   std::uint32_t bytes(const Packet& packet, const ShapeMemory& memory, bool treelet) const {
     const std::uint32_t rays = static_cast<std::uint32_t>(packet.members.size());

@@ -7,6 +7,7 @@
 
 #include "accel/structure/node.h"
 #include "core/config/config.h"
+#include "core/statistics/collection_counts.h"
 #include "ringbus/rays/ray_id.h"
 #include "ringbus/resource/collections/collection_table.h"
 #include "ringbus/resource/collections/issue_policy.h"
@@ -29,21 +30,13 @@ class CollectionStore {
     float scene_size = 1;
     int max_depth = 1;  ///< of the structure, in strips
   };
-  struct Statistics {
-    std::uint64_t created = 0;
-    std::uint64_t peak = 0;              ///< collections at once
-    std::uint64_t memberships_peak = 0;  ///< ray IDs at once
-    std::uint64_t spilled = 0;           ///< ray IDs put into blocks beyond the capacity
-    std::uint64_t blocks_peak = 0;
-    std::uint64_t taken_blocks = 0;
-    std::uint64_t taken_rays = 0;
-  };
+  using Statistics = CollectionCounts;
 
   explicit CollectionStore(const Settings& settings);
 
   /// Adds rays to the collection of `key`, created if need be. `entry` is the nearest entry of any of them.
   /// Takes at most one new block when at most block_rays rays are added. Blocks beyond the capacity are taken as well
-  /// and counted as spilled; the caller says whether that may happen (Admission).
+  /// and counted as spilled; the caller says whether that may happen (StorageRule).
   void add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays);
 
   /// The collection to issue from, by policy: among those that are ready, or with `partial` among all; with

@@ -6,6 +6,7 @@
 
 #include "accel/box/bundle_intersect.h"
 #include "accel/traverse/kernels.h"
+#include "ringbus/resource/traversal/bundle_tally.h"
 
 namespace carousel::ringbus {
 
@@ -176,7 +177,7 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   packet.members[local.member].mask = enters ? std::uint8_t{0} : together;
   local.change = (enters ? 0 : std::popcount(together)) - 1;
   if (enters && together != 0) descend_into_instance(packet, rays, inside, together);
-  counts_.add_visit(rays.size(), node.count, std::popcount(answer.all), std::popcount(answer.undecided));
+  add_visit(counts_, rays.size(), node.count, std::popcount(answer.all), std::popcount(answer.undecided));
 }
 
 /// Tests single rays that are to go on in bundles.
@@ -227,8 +228,6 @@ void BundledTraversal::descend_into_instance(Packet& packet, std::span<const std
   context_.store.rebound(slot, inside);
 }
 
-// ---- the counts of bundles
-
 /// A bundle that waits for nothing any more dissolves: its rays lose the count that they held for it.
 void BundledTraversal::add_pending(std::uint32_t slot, std::int32_t change, TestOutcome& outcome) {
   RayStore& store = context_.store;
@@ -241,7 +240,7 @@ void BundledTraversal::add_pending(std::uint32_t slot, std::int32_t change, Test
   }
   if (bundle.pending > 0) return;
   const bool loaded = slot < store.slots() + store.room().loaded;
-  counts_.add_dissolved(bundle.count, loaded);
+  add_dissolved(counts_, bundle.count, loaded);
   outcome.reads += bundle.count;
   for (const std::uint32_t ray : store.rays_of(slot)) context_.completion.add_pending(ray, -1);
   store.retire(slot);

@@ -2,7 +2,7 @@
 
 #include "accel/structure/node.h"
 #include "accel/traverse/kernels.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 namespace carousel::ringbus {
 

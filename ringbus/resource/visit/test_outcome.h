@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/types/intersection_counts.h"
-#include "ringbus/rays/bundle_counts.h"
+#include "core/statistics/bundle_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 namespace carousel::ringbus {
 

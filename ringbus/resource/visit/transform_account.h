@@ -8,16 +8,11 @@
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
 #include "core/config/config.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
+#include "core/statistics/ray_bytes.h"
 #include "core/types/ray.h"
 
 namespace carousel::ringbus {
-
-/// Bytes of the model-space rays that a resource keeps beside its records (`accuracy.transformed_ray: store`).
-struct TransformedRayBytes {
-  std::uint64_t written = 0, read = 0, peak = 0;
-  friend bool operator==(const TransformedRayBytes&, const TransformedRayBytes&) = default;
-};
 
 /// Counts what it costs hardware that follows the configuration to bring a resource's rays to model space; the kernels
 /// do it anew for every strip. It belongs to one resource and is used by one thread at a time.

@@ -5,7 +5,7 @@
 
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
-#include "core/types/cull_counts.h"
+#include "core/statistics/cull_counts.h"
 #include "ringbus/rays/ray_store.h"
 #include "ringbus/resource/visit/any_hit_hold.h"
 #include "ringbus/resource/visit/completion.h"

@@ -218,7 +218,7 @@ TEST(BundlesIdentity, TheLeastStorageIsEnough) {
       cell.tight_storage = true;
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << text(c.bundles);
-      reserves += outcome.sum.stalls[static_cast<std::size_t>(StallReason::kReserve)];
+      reserves += outcome.sum.stalls[StallReason::kReserve];
       for (const BundleCounts& at_depth : outcome.sum.bundles) split += at_depth.split;
     }
   }
