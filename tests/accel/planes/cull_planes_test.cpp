@@ -65,7 +65,6 @@ bool same_bits(const Hit& a, const Hit& b) {
   return std::memcmp(&a, &b, sizeof(Hit)) == 0;
 }
 
-/// Rays in all; CAROUSEL_ORACLE_RAYS asks for more.
 // One triangle a leaf and eight planes everywhere: nothing else holds a ray up. Where every triangle has planes of its
 // own and of all nodes above, no hit may be missing, be it one that only rounding makes.
 void expect_none_lost(const AccuracyConfig& accuracy, std::size_t total) {

@@ -64,7 +64,7 @@ TEST(Elements, GiveOneAnswerAtEveryLevelAndOnEveryTarget) {
 
 // Far more rays than every primitive could be tested with: boxes are held against those, spheres against boxes.
 TEST(Elements, SpheresLoseNothingThatBoxesFind) {
-  const int rays = scaled(20000, "CAROUSEL_ELEMENTS");
+  const int rays = scaled(20000);
   std::size_t hits = 0;
   for (const float scale : {1.0f, 1e-30f, 1e12f}) {
     for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kSliver, BuiltinScene::kInstances}) {
