@@ -69,7 +69,7 @@ class IntervalForm {
   std::optional<BundleInterval<double>> exact_;
 };
 
-/// The silhouette form. What it claims of all rays to hit is exact: strict or not is the same.
+/// The silhouette form. Its claims that all rays hit are exact, with or without `strict`.
 template <class Real>
 class SilhouetteForm {
  public:
@@ -106,7 +106,7 @@ struct Verdicts {
   std::uint32_t all, undecided;
 };
 
-/// Of four boxes, in the order that is asked for; each test counts for the lanes that it is asked about.
+/// Tests four boxes in the configured order; each test counts for the lanes it is applied to.
 template <class Form>
 Verdicts verdicts(Form& form, const Node& node, int first, std::uint32_t lanes, BundlesConfig::Order order,
                   IntersectionCounts& counts) {

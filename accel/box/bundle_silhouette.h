@@ -11,15 +11,15 @@ namespace carousel::accel {
 /// says, without a division. For bundles of one octant only.
 class BundleSilhouette {
  public:
-  /// Whether there is such a test of this bundle: the directions lie in one octant, and neither they nor the range are
-  /// so large or so small that what the slab test computes of them would overflow or underflow.
+  /// True if the test exists for this bundle: the directions lie in one octant, and neither they nor the range are so
+  /// large or so small that the slab test's values would overflow or underflow.
   static bool applies(const BundleRecord& bundle);
 
   BundleSilhouette(const BundleRecord& bundle, BoxLevel level, BundlesConfig::Edges edges);
 
-  /// Whether the slab test of every ray misses. Adds the edges tested to `edges`.
+  /// True if the slab test of every ray misses. Adds the edges tested to `edges`.
   bool all_miss(const Aabb& box, unsigned& edges) const;
-  /// Whether every ray whose range ends where the bundle's does hits the box, exactly and in the slab test. Adds the
+  /// True if every ray whose range ends where the bundle's does hits the box, exactly and in the slab test. Adds the
   /// edges tested to `edges`.
   bool all_hit(const Aabb& box, unsigned& edges) const;
 

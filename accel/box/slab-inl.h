@@ -20,8 +20,8 @@ namespace carousel::accel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// a > b ? a : b and a < b ? a : b. On x86 that is what the instruction behind Max and Min does, b being kept
-// when the comparison is false or unordered; elsewhere it is spelled out.
+// a > b ? a : b and a < b ? a : b. On x86 the instruction behind Max and Min does exactly this, and keeps b
+// if the comparison is false or unordered; on other machines it is spelled out.
 template <class V>
 HWY_INLINE V keep_max(V a, V b) {
 #if HWY_ARCH_X86

@@ -12,14 +12,14 @@
 
 namespace carousel::accel {
 
-/// How much farther than computed the far planes are taken to be. Exact geometry needs 1 + 2 gamma(3), about
-/// 6 units of rounding u = 2^-24 (Ize 2013); the watertight kernel's own rounding moves a hit sideways by up to
-/// about 5 u more of the distance travelled along an axis, and near and far are each off by 3. A box that is
+/// The factor by which the distances of far planes are widened. Exact geometry needs 1 + 2 gamma(3), about 6 units of
+/// rounding u = 2^-24 (Ize 2013); the watertight kernel's own rounding moves a hit sideways by up to about 5 u more of
+/// the distance travelled along an axis, and near and far each have an error of 3 u. Without this slack a box that is
 /// right for the exact ray may disagree with the rounded triangle test, which opens leaks.
 inline constexpr float kFarWidening = 1.0f + 0x1p-20f;  // 16 u
 
-/// The widening that a level asks for. In double the slab's own rounding needs next to none of it, but the float
-/// triangle kernels move their hits as far as ever.
+/// The widening of a level. In double the slab's own rounding needs almost none of it, but the float triangle kernels
+/// move their hits as far as before.
 constexpr float far_widening(BoxLevel level) {
   return level == BoxLevel::kPlain ? 1.0f : kFarWidening;
 }

@@ -20,7 +20,7 @@ struct Blas {
   Aabb box;
 };
 
-/// Primitives that may let rays through get kNonOpaqueBit.
+/// Primitives that may be non-opaque get kNonOpaqueBit.
 Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor);
 
 }  // namespace carousel::accel

@@ -21,7 +21,7 @@ double farthest_corner2(const DVec3& centre, const Aabb& box) {
 
 void raise(const Accel& accel, const Node& node, int lane, const DVec3& centre, double& most) {
   const Aabb box = child_box(node, lane);
-  // Nothing below can reach farther than the box does.
+  // The box bounds the radius: everything below lies in it.
   if (farthest_corner2(centre, box) <= most) return;
   const NodeRef child = node.child[lane];
   if (child.is_inner()) {

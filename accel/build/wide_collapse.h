@@ -8,7 +8,7 @@
 
 namespace carousel::accel {
 
-/// What a leaf of the binary tree becomes in the wide one.
+/// A leaf of the wide tree, made from a leaf of the binary one.
 struct WideLeaf {
   NodeRef ref;
   std::uint8_t strip_size = 0;

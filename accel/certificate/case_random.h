@@ -8,7 +8,7 @@
 
 namespace carousel::accel {
 
-/// The random numbers of one case of a certificate: a pure function of seed, property and number, whoever asks.
+/// The random numbers of one case of a certificate: a pure function of seed, property and number.
 class CaseRandom {
  public:
   CaseRandom(std::uint64_t seed, std::uint32_t property, std::uint64_t number)

@@ -10,7 +10,7 @@
 
 namespace carousel::accel {
 
-/// Where a ray is in a closed box, decided by big integers on the very floats.
+/// The interval of a ray in a closed box, decided by big integers on the given floats.
 class ExactBox {
  public:
   ExactBox(const Ray& ray, const Aabb& box, float tmax)

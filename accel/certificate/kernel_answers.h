@@ -17,7 +17,7 @@ struct BoxAnswer {
   float entry = 0;  ///< valid with `hit`
 };
 
-/// What the node kernel says of up to eight boxes.
+/// The node kernel's answers for up to eight boxes.
 std::array<BoxAnswer, kMaxWidth> box_answers(BoxLevel level, const Ray& ray, std::span<const Aabb> boxes);
 
 using Corners = std::array<Vec3, 3>;

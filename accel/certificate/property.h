@@ -25,16 +25,16 @@ struct CaseField {
 /// All numbers of a case, field after field.
 using CaseValues = std::vector<float>;
 
-/// What came of a case at one level.
+/// The result of a case at one level.
 struct Judgement {
-  bool asked = false;  ///< the property says something about this case; if not, nothing else here counts
+  bool applies = false;  ///< the property applies to this case; if not, the other members have no meaning
   bool broken = false;
   double error = 0;  ///< in the property's unit
 };
 
 /// The same in words.
 struct CaseStory {
-  std::string kernel;  ///< what the level's own arithmetic answered
+  std::string kernel;  ///< the answer of the level's own arithmetic
   std::string exact;   ///< what exact arithmetic says
 };
 
@@ -47,10 +47,11 @@ struct Property {
   std::vector<AccuracyKey> keys;
   std::vector<CaseField> fields;
 
-  /// Whether the level promises the property; if not, what breaks it is only counted.
+  /// True if the level promises the property; if not, violations are only counted.
   bool (*promised)(const AccuracyConfig& level);
   CaseValues (*make)(CaseRandom& random);
-  /// One judgement a level. Any finite or infinite values are allowed. `story` is null, or told of the last level.
+  /// One judgement a level. Any finite or infinite values are allowed. `story` is null, or receives the last level's
+  /// text.
   void (*judge)(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
                 CaseStory* story);
 };

@@ -28,10 +28,10 @@ double condition(const Mat3& linear) {
   return forth * back;
 }
 
-/// How far off a level may be. Two-step rounds, beside the entries of R^-1 (from double), each product and two sums,
-/// and of a point the difference: gamma(n) of the sum of the terms' magnitudes, which is at most sqrt(3) times the
-/// result where R is S Rot. In double one rounding is left, and what inverting a matrix of that condition in double
-/// leaves. A transpose stands for an inverse from which every entry of R^T R - I takes at most 4 u.
+/// Error bound of a level. Two-step rounds the entries of R^-1 (computed in double), each product and two sums, and for
+/// a point the difference: gamma(n) times the sum of the terms' magnitudes, which is at most sqrt(3) times the result
+/// if R is S Rot. In double there is one rounding, and the error of inverting a matrix of that condition in double. A
+/// transpose replaces an inverse from which it differs by the entries of R^T R - I, each at most 4 u.
 double allowed(TransformLevel level, int roundings, double size, double terms) {
   constexpr double kLeast = 0x1p-140;  // near the denormals nothing is relative
   constexpr double kInversion = 0x1p-30;
@@ -73,7 +73,7 @@ void judge_transform(const CaseValues& values, std::span<const AccuracyConfig> l
     const Ray model = transform.to_model({point, 0, direction, kInfinity});
     const double off = QuadInverse::distance(model.origin, origin),
                  turned = QuadInverse::distance(model.direction, along);
-    out[i].asked = true;
+    out[i].applies = true;
     out[i].broken =
         !(off <= allowed(level, 5, size, origin_terms)) || !(turned <= allowed(level, 4, length, along_terms));
     if (size > 0) out[i].error = off / size;
@@ -116,7 +116,7 @@ void judge_world_box(const CaseValues& values, std::span<const AccuracyConfig> l
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (!make_transform(m, transform, levels[i].transform)) continue;
     const Aabb box = world_box(m, model, levels[i].transform);
-    out[i].asked = true;
+    out[i].applies = true;
     DVec3 rounded;
     for (int row = 0; row < 3; ++row) {
       Dyadic x(m.translation[row]);

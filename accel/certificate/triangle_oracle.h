@@ -77,7 +77,7 @@ class TriangleOracle {
   }
   static Int dot(const IVec& a, const IVec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-  /// Whether no float is nearer to n / d than x, and of two x is the even one.
+  /// True if x is the float nearest to n / d; of two equally near floats, the even one.
   static bool is_nearest(float x, Int n, Int d) {
     if (d < 0) n = -n, d = -d;
     const double kBeyond = 0x1p128;  // where infinity stands when it comes to rounding

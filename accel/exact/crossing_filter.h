@@ -8,7 +8,7 @@
 
 namespace carousel::accel {
 
-/// What double arithmetic with a proven error bound can say about a crossing (J. R. Shewchuk, "Adaptive precision
+/// The answer of double arithmetic with a proven error bound about a crossing (J. R. Shewchuk, "Adaptive precision
 /// floating-point arithmetic and fast robust geometric predicates", 1997, section 3: the filter before the exact
 /// stage).
 struct FilteredCrossing {

@@ -12,8 +12,8 @@ namespace carousel::accel {
 
 using DyadicVec = std::array<Dyadic, 3>;
 
-/// Where a ray's line crosses a triangle, without rounding: t = numerator / denominator with denominator > 0; the
-/// vertices' weights are weight[k] / denominator.
+/// The crossing of a ray's line with a triangle, without rounding: t = numerator / denominator with denominator > 0;
+/// the vertices' weights are weight[k] / denominator.
 struct ExactCrossing {
   Dyadic numerator, denominator;
   std::array<Dyadic, 3> weight;
@@ -27,7 +27,7 @@ struct ExactCrossing {
 };
 
 /// The crossing with the triangle `model` placed by R x + T, taken as the reals that the floats stand for. Edges and
-/// vertices belong to the triangle. Nothing when the line passes by, lies in the plane, or the triangle has no area.
+/// vertices belong to the triangle. Empty if the line passes by or lies in the plane, or if the triangle has no area.
 std::optional<ExactCrossing> exact_crossing(const Ray& ray, const std::array<Vec3, 3>& model,
                                             const scene::Affine& world_from_model);
 

@@ -27,7 +27,7 @@ struct Offset {
   }
 };
 
-/// What is known of a number: |number - value| <= error.
+/// A number known up to an error: |number - value| <= error.
 struct Bounded {
   double value, error;
 
@@ -37,8 +37,8 @@ int sign(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-/// Of the sum of the magnitudes of its terms, what a volume in double may be wrong by: eight roundings (one a factor,
-/// two products, a difference, two sums), with room for those of the sum itself.
+/// Error bound of a volume in double, relative to the sum of the magnitudes of its terms: eight roundings (one a
+/// factor, two products, a difference, two sums), with room for those of the sum itself.
 constexpr double kVolumeError = 10 * 0x1p-53;
 
 /// a . (b x c) for a vector `a` of doubles.

@@ -15,7 +15,7 @@ class Expansion {
   /// for a span of 1,150 bits.
   static constexpr std::size_t kCapacity = 576;
 
-  // What comes first is never read before it is written.
+  // The first element is never read before it is written.
   Expansion() {}  // NOLINT(modernize-use-equals-default,cppcoreguidelines-pro-type-member-init)
 
   /// Grow-Expansion, figure 6 there, with zeros left out.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "accel/structure/accel.h"
-#include "core/types/cull_counts.h"
+#include "core/statistics/cull_counts.h"
 
 namespace carousel::accel {
 

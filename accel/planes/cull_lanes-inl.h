@@ -1,9 +1,9 @@
-// Which children of a node their cull planes take away, all at once, in either order of planes and box. Why nothing is
-// taken that the triangle kernel hits: accel/planes/cull_plane_clip.h.
+// Culls the children of a node by their planes, all at once, in either order of planes and box.
+// accel/planes/cull_plane_clip.h proves that no child is culled in which the triangle kernel has a hit.
 //
-// What is left of the line is cut by the planes and by the box in both orders, so the same children are culled: the
-// last bounds are the same. With planes first a child that the planes alone cull needs no box test; of the others the
-// box test goes on with what the planes have left.
+// In both orders the line is clipped by the planes and by the box, so the same children are culled: the last bounds are
+// the same. With planes first a child that the planes alone cull needs no box test; for the others the box test clips
+// the part of the line that the planes have left.
 //
 // Each lane is one child. Operations are the same for every width of registers, none of them contracted, so the answers
 // are. Comparisons are false for NaN, which cuts nothing off.
@@ -26,13 +26,13 @@
 #include "accel/planes/cull_plane_clip.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/cull_plane.h"
-#include "core/types/cull_counts.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/cull_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// How many planes each child has, and how many those before it.
+/// The number of planes of each child, and of those before it.
 struct LanePlaneCounts {
   alignas(8) std::uint8_t own[kMaxWidth], before[kMaxWidth];
 
@@ -65,7 +65,7 @@ struct PlaneLanes {
   using Tag = hn::CappedTag<float, kMaxWidth>;
   hn::Vec<Tag> x, y, z, distance;
 
-  /// `at(lane)` is the plane of a lane. Whole planes are loaded and turned about: gathering is slower on many machines.
+  /// `at(lane)` is the plane of a lane. Whole planes are loaded and transposed: gathering is slower on many machines.
   template <class At>
   HWY_INLINE explicit PlaneLanes(const At& at) {
     const Tag d;
@@ -90,7 +90,7 @@ struct PlaneLanes {
   }
 };
 
-/// What planes and box leave of a ray's line in some children.
+/// The part of a ray's line that planes and box leave, for some children.
 class CutLines {
  public:
   using Tag = PlaneLanes::Tag;
@@ -144,7 +144,7 @@ class CutLines {
     exit_ = hn::IfThenElse(beside, hn::Set(d, -kInfinity), hn::IfThenElse(out, at, exit_));
   }
 
-  /// Where the line misses everything that stands in the child.
+  /// Lanes in which the line misses everything that stands in the child.
   HWY_INLINE M empty() const { return hn::Gt(entry_, exit_); }
 
  private:

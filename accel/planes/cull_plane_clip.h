@@ -1,8 +1,8 @@
 // Cull planes against a ray (US 20250259373, "Culling planes"): the part of a child's box that its planes leave is cut
 // with the ray's line, face by face and plane by plane, each bound counting for those after it.
 //
-// Nothing may be culled that the triangle kernel hits, rounding included. What the watertight kernel reports lies on
-// the ray's line to within its own rounding: the sheared corners (A.x, A.y) are computed, but of those the signs of
+// No child may be culled in which the triangle kernel has a hit, rounding included. The watertight kernel's point lies
+// on the ray's line to within its own rounding: the sheared corners (A.x, A.y) are computed, but of those the signs of
 // the edge values are exact, since rounding is monotone and a zero is settled in double. So weights a >= 0 exist with
 // sum a_i (A_i.x, A_i.y) = 0, and the triangle's point p = sum a_i V_i stands beside the line's point at the same
 // depth, t* = (p.z - o.z) / d.z. Each A.x = (V.x - o.x) - (d.x / d.z)(V.z - o.z) is off by at most 2 u |V.x - o.x| +
@@ -32,9 +32,9 @@ namespace carousel::accel {
 inline constexpr float kMarginPerReach = 0x1p-19f;  // 32 u
 inline constexpr float kLeastMargin = 0x1p-70f;
 
-/// Whether margins cover what rays of this direction may lose: outside of it n . d or a quotient by it may underflow or
-/// overflow, and such rays are not culled. Above the instances the kernel's ray is another, whose direction may be up
-/// to 2^30 longer or shorter (accel/planes/line_margin.h).
+/// True if the margins cover the rounding errors of rays of this direction. Outside of the range n . d or a quotient by
+/// it may underflow or overflow, and such rays are not culled. Above the instances the kernel's ray is another one,
+/// whose direction may be up to 2^30 longer or shorter (accel/planes/line_margin.h).
 inline bool covered_by_margin(const Vec3& direction, bool above_instances) {
   const float largest = std::fmax(std::fmax(std::fabs(direction.x), std::fabs(direction.y)), std::fabs(direction.z));
   return above_instances ? largest >= 0x1p-30f && largest <= 0x1p30f : largest >= 0x1p-60f && largest <= 0x1p60f;

@@ -51,7 +51,7 @@ class PlaneBuilder {
     });
   }
 
-  /// What planes are fitted to.
+  /// The points that planes are fitted to.
   struct Corners {
     std::vector<Vec3> points;  // of triangles, three by three, or of boxes
     std::vector<BlockSphere> spheres;
@@ -107,7 +107,7 @@ class PlaneBuilder {
     }
   }
 
-  /// What a lane's planes are fitted to.
+  /// The points that a lane's planes are fitted to.
   BoxedShape below(const Node& node, int lane) const {
     if (node.above_instances) return top_->shape(node, lane);
     const Aabb box = child_box(node, lane);

@@ -7,15 +7,15 @@
 
 namespace carousel::accel {
 
-/// Gives children of nodes up to config.count planes each (US 20250259373): below the instances, above them or both;
-/// leaves, which above are instances, inner children or all. Once a structure, which was built of `scene` without
+/// Gives children of nodes up to config.count planes each (US 20250259373): below the instances, above them or both; to
+/// leaves (above: instances), inner children or all. Call it once for a structure that was built of `scene` without
 /// planes. Deterministic for any executor. Without planes (count 0) nothing changes.
 void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor);
 
 /// The same structure with nothing but boxes: what rays are traced through to find out what planes and bounding spheres
 /// would have lost.
 Accel plain_copy(const Accel& accel);
-/// Whether that would be the structure itself.
+/// True if add_cull_planes() would return the structure unchanged.
 bool is_plain(const Accel& accel);
 
 }  // namespace carousel::accel

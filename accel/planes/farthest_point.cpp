@@ -27,7 +27,7 @@ void raise_by_leaf(const Accel& accel, NodeRef leaf, const DVec3& direction, dou
   }
 }
 
-// Children whose boxes reach farthest first; those that do not reach what has been found are left alone.
+// Visits the children whose boxes reach farthest first, and skips those that reach less far than the best point.
 void raise(const Accel& accel, NodeRef ref, const DVec3& direction, double& most) {
   if (!ref.is_inner()) {
     raise_by_leaf(accel, ref, direction, most);

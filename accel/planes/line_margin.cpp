@@ -1,19 +1,19 @@
-// What the kernel reports lies beside the ray's line; accel/planes/cull_plane_clip.h has how far in the space of the
-// ray that the kernel gets: e <= 6 u g' along any axis, g' the largest distance along an axis from its origin to a
+// A point that the kernel reports lies beside the ray's line. accel/planes/cull_plane_clip.h derives the distance in
+// the space of the kernel's ray: e <= 6 u g' along any axis, g' the largest distance along an axis from its origin to a
 // vertex.
 //
 // Seen from the world that ray is rounded. With R, T the instance's matrix and translation, M the inverse that is used,
 // o and d the ray's origin and direction, o' = M (o - T) + eo and d' = M d + ed, the triangle's point p = o' + t* d' +
-// e stands in the world at P = R p + T, exactly, which nobody computes, so that nothing of it is rounded, and
+// e stands in the world at P = R p + T. This is exact, since the program does not compute it, and
 //
 //   P - o - t* d = (R M - I)(o - T + t* d) + R (eo + t* ed + e).
 //
 // A float difference, product and two sums make |eo| <= gamma(4) |M||o - T| and |ed| <= gamma(3) |M||d|; in double all
-// is exact to 2^-50 but for one rounding to float. What the inverse is off by (its own rounding, or that of a
-// transpose) stands in R M - I, which is computed here. With g the reach in the world, h >= |R p| and a vertex's size s
-// >= |p|: |t* d| <= g + what is sought, |o - T| <= g + h, and g' <= |M| g + |M R - I| s + |eo|. Collected, what P is
-// off the line is a g + b along any axis: a in distances along an axis, as for the kernel, and b in lengths, which does
-// not depend on T.
+// is exact to 2^-50 but for one rounding to float. The error of the inverse (its own rounding, or that of a transpose)
+// stands in R M - I, which is computed here. With g the reach in the world, h >= |R p| and a vertex's size s >= |p|:
+// |t* d| <= g + the bound sought, |o - T| <= g + h, and g' <= |M| g + |M R - I| s + |eo|. Collected, P lies within
+// a g + b of the line along any axis: a in distances along an axis, as for the kernel, and b in lengths, which does not
+// depend on T.
 #include "accel/planes/line_margin.h"
 
 #include <algorithm>
@@ -29,10 +29,10 @@ namespace carousel::accel {
 
 namespace {
 
-/// The plane test's own rounding, and by what a margin is more than what was derived.
+/// Covers the plane test's own rounding, and makes a margin larger than the derived one.
 constexpr double kTestRounding = 13 * kUnitRoundoff, kReserve = 32.0 / 19;
 constexpr double kKernelRounding = 6 * kUnitRoundoff;
-/// What is of a second order in the derivation, relative to the first, where a is at most kMost.
+/// The second-order terms of the derivation, relative to the first-order ones, for a at most kMost.
 constexpr double kSecondOrder = 1.01, kMost = 0x1p-8;
 /// Of rows of R and M: within it, ray directions that CullRay takes in the world are such as it takes below.
 constexpr double kLargest = 0x1p30;
@@ -46,7 +46,7 @@ LineMargin margin(double a, double b, double least) {
   return {rounded_up(kReserve * (kTestRounding + a)), rounded_up(kReserve * b + least)};
 }
 
-/// |product - I|, with what the product itself may be off by in double.
+/// |product - I| plus the rounding error of the product in double.
 DMat3 rest_of(const DMat3& a, const DMat3& b) {
   return magnitudes(a * b - DMat3(1)) + 0x1p-50 * (magnitudes(a) * magnitudes(b));
 }

@@ -10,7 +10,7 @@
 
 namespace carousel::accel {
 
-/// How far planes and boxes are moved out when a ray's line is cut by them: Node::margin_per_reach and least_margin.
+/// The margin by which planes and boxes are moved outwards: Node::margin_per_reach and least_margin.
 struct LineMargin {
   float per_reach = 0, least = 0;
 };
@@ -26,9 +26,9 @@ DMat3 magnitudes(const DMat3& m);
 /// Below the instances, where the line is that of the ray the kernel gets.
 LineMargin margin_below();
 
-/// In the world, for one instance: its triangles are hit by the ray that `transform`, of an instance placed by
-/// `world_from_model`, has rounded. `model` holds the instance's vertices. Nothing where no bound is known that is of
-/// use: the matrix is nearly singular or its entries are too large or small. Not for inverse_matrix.
+/// The margin in the world for one instance, whose triangles are hit by the ray that `transform`, of an instance placed
+/// by `world_from_model`, has rounded. `model` holds the instance's vertices. Empty if no useful bound is known,
+/// because the matrix is nearly singular or its entries are too large or small. Not for inverse_matrix.
 std::optional<LineMargin> margin_in_world(const scene::Affine& world_from_model, const InstanceTransform& transform,
                                           const Aabb& model);
 

@@ -19,14 +19,14 @@ struct BoxedShape {
 /// The least float that is not below `x`.
 float rounded_up(double x);
 
-/// How far `n` points along the farthest of the points, from a box's plane_centre(): rounded up, so that with a plane
-/// at this distance no point is cut off. Infinite when there is no such float.
+/// Distance of the farthest of the points along `n`, from a box's plane_centre(), rounded up, so that a plane at this
+/// distance cuts off no point. Infinite if there is no such float.
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points);
 
 /// The same for a sphere.
 float distance_along(const CullPlane& plane, const Aabb& box, const Vec3& centre, float radius);
 
-/// The part of the box's volume that the plane cuts off, between 0 and 1. An estimate: it decides what is worth having.
+/// The part of the box's volume that the plane cuts off, between 0 and 1. The estimate decides if a plane is worth it.
 double empty_part(const CullPlane& plane, const Aabb& box);
 
 /// The best plane in each octant of directions: planes of different octants cut off different corners.
@@ -56,7 +56,7 @@ class PlaneChoice {
     offer(direction);
     offer(-direction);
   }
-  /// The corners of the box cut off evenly: what is there when nothing else is known.
+  /// Planes that cut off the corners of the box evenly: the candidates if nothing else is known.
   void offer_octants();
   /// Up to `most` planes, the largest empty part first; fewer when others cut nothing off.
   std::vector<CullPlane> best(int most) const;

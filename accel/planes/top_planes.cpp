@@ -87,9 +87,9 @@ double TopPlanes::farthest(NodeRef child, const DVec3& normal, const DVec3& cent
   return most;
 }
 
-// What stands turned in its box: the faces of its own box, planes through an edge of it and along an axis, its corners
-// cut off, and what is known of the shape from the planes and triangles at its root. Normals turn by the inverse's
-// transpose.
+// Candidates for an instance that stands rotated in its box: the faces of its own box, planes through an edge of it and
+// along an axis, planes that cut off its corners, and the planes and triangles at its root. Normals are transformed by
+// the transpose of the inverse.
 void TopPlanes::offer(NodeRef child, PlaneChoice& choice) const {
   const std::uint32_t instance = child.instance_index();
   const DMat3 linear(placement(instance).linear), normals = glm::transpose(glm::inverse(linear));

@@ -15,18 +15,18 @@ namespace carousel::accel {
 /// Planes of a node's children.
 using LanePlanes = std::array<std::vector<CullPlane>, kMaxWidth>;
 
-/// What cull planes above the instances need: the instances as they stand in the world.
+/// The instances in the world, from which cull planes above them are made.
 class TopPlanes {
  public:
   /// Keeps references. `found` has the planes of nodes below the instances, if there are any, by node.
   TopPlanes(const Accel& accel, const scene::Scene& scene, CullPlanesConfig::Fit fit,
             const std::vector<LanePlanes>& found);
 
-  /// What stands below a child of a node of the top level.
+  /// The contents of a child of a node of the top level.
   BoxedShape shape(const Node& node, int lane) const;
   /// Offers normals of planes for an instance.
   void offer(NodeRef instance, PlaneChoice& choice) const;
-  /// How far what is hit in the child may be off a ray's line; nothing: by more than planes make sense for.
+  /// Bound of a hit's distance from the ray's line in the child; empty: the bound is too large for planes to be useful.
   const std::optional<LineMargin>& margin(NodeRef child) const;
 
  private:

@@ -8,13 +8,13 @@
 
 namespace carousel::accel {
 
-/// Whether a hit there is to stand in the place of `hit`: ties go to the smallest (t, instance, primitive).
+/// True if a hit there replaces `hit`: the smallest (t, instance, primitive) wins.
 [[gnu::always_inline]] inline bool closer(float t, std::uint32_t instance, std::uint32_t primitive, const Hit& hit) {
   return t < hit.t ||
          (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
 }
 
-/// Whether the ray stops at a primitive that is to be asked, found in front of all that has stopped it so far.
+/// True if the ray stops at a non-opaque primitive that lies in front of the closest hit so far.
 template <class Slab>
 [[gnu::noinline]] bool any_hit_accepts(const Accel& accel, const LocalRay<Slab>& ray, const Hit& found) {
   if (accel.any_hit == nullptr || (ray.record->tag.flags & kRayForceOpaque) != 0) return true;
@@ -22,8 +22,8 @@ template <class Slab>
   return accel.any_hit->accepts(ray.record->ray, found.instance, found.primitive, found.u, found.v);
 }
 
-/// The same of a triangle, given in the frame's space, that may have to be asked, or show the wrong side. glTF turns
-/// the winding of instances that mirror, which makes the front what it is in model space.
+/// The same for a triangle, given in the local space, that may be non-opaque or may show a culled side. glTF flips the
+/// winding of instances that mirror, so the front is the same side as in model space.
 template <class Slab>
 [[gnu::noinline]] bool triangle_accepts(const Accel& accel, bool calls_any_hit, const std::array<Vec3, 3>& triangle,
                                         const LocalRay<Slab>& ray, const Hit& found) {

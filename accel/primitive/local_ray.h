@@ -8,12 +8,12 @@
 #include "accel/primitive/watertight.h"
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
 
-/// What the triangle test keeps of a ray. Which member is alive follows from accuracy.triangle.
+/// The triangle test's data of a ray. `accuracy.triangle` decides which member is used.
 union TriangleRay {
   WatertightRay<float> watertight;
   WatertightRay<double> watertight_double;
@@ -38,7 +38,7 @@ struct LocalRay {
   TriangleRay triangle;
   std::uint32_t instance;
   float instance_entry;  ///< of the ray into the instance's world box
-  // For tests that few configurations have: planes, procedural primitives, what lets rays through.
+  // For tests of few configurations: planes, procedural primitives, non-opaque materials.
   Vec3 origin, direction;
   const RayRecord* record;  ///< the ray in world space, and what it wants
   IntersectionCounts* counts;

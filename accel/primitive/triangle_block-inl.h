@@ -24,7 +24,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// What a kernel says of a block: bit l of `inside` when triangle l is crossed by the ray's line.
+/// A kernel's answer for a block: bit l of `inside` is set if the ray's line crosses triangle l.
 template <class T>
 struct Crossings {
   std::uint32_t inside = 0;

@@ -17,7 +17,7 @@ namespace carousel::accel {
 struct InstanceNode {
   NodeRef root;  ///< inner node or leaf of the mesh's BLAS
   InstanceTransform transform;
-  Aabb world;                   ///< part of what a hit is (DESIGN.md section 3)
+  Aabb world;                   ///< a hit has to lie in it (DESIGN.md section 3)
   std::uint8_t strip_size = 0;  ///< shapes below the root
   std::uint32_t triangles = 0;
 };
@@ -35,7 +35,7 @@ struct Accel {
   std::uint64_t plane_bytes = 0;        ///< of the planes, normals that are shared counted once
   std::vector<InstanceNode> instances;  ///< indexed as Scene::instances
   NodeKey root;                         ///< as root_key()
-  const AnyHit* any_hit = nullptr;      ///< who knows what lets rays through, set before tracing; null: nothing does
+  const AnyHit* any_hit = nullptr;      ///< answers any-hit calls, set before tracing; null: every surface is opaque
   AccuracyConfig accuracy;              ///< arithmetic of the tests on it
   bool procedural_primitives = false;   ///< there are some
   bool has_non_opaque = false;          ///< some primitives have kNonOpaqueBit
@@ -48,7 +48,7 @@ struct Accel {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
            plane_bytes + instances.size() * sizeof(InstanceNode);
   }
-  /// Where every ray starts: the top level's root, or the root of the only instance.
+  /// The node at which every ray starts: the top level's root, or the root of the only instance.
   NodeKey root_key() const { return root; }
   /// The node a child lane leads to; an instance child leads to the root of its BLAS.
   NodeKey child_key(NodeKey parent, int lane) const {

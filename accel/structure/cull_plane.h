@@ -18,7 +18,7 @@ struct CullPlane {
 static_assert(sizeof(CullPlane) == 16);
 inline constexpr int kMaxCullPlanes = 8;
 
-/// What the distances of a box's planes are measured from: the same float wherever it is computed.
+/// The point from which the distances of a box's planes are measured: the same float wherever it is computed.
 [[gnu::always_inline]] inline float plane_centre(float lo, float hi) {
   return 0.5f * lo + 0.5f * hi;
 }
@@ -35,7 +35,7 @@ inline std::uint32_t plane_count(const Node& node) {
   return sum;
 }
 
-/// What is stored of a node's planes: with shared normals those once, and a distance a plane.
+/// Stored bytes of a node's planes: shared normals count once, and each plane has a distance.
 inline std::uint32_t plane_bytes(const Node& node, bool shared_normals) {
   const std::uint32_t planes = node.plane_counts == 0 ? 0 : plane_count(node);
   if (!shared_normals) return planes * static_cast<std::uint32_t>(sizeof(CullPlane));

@@ -14,7 +14,7 @@ inline constexpr int kMaxWidth = 8;
 inline constexpr int kBlockTriangles = 4;
 inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
 
-/// In a block's primitive: it may let rays through and has to be asked (core/types/any_hit.h).
+/// Marks a primitive of a block that may be non-opaque and needs the any-hit call (core/types/any_hit.h).
 inline constexpr std::uint32_t kNonOpaqueBit = 1u << 31;
 inline constexpr std::uint32_t kPrimitiveMask = kNonOpaqueBit - 1;
 
@@ -56,7 +56,7 @@ inline constexpr std::uint32_t kMaxNodes = 1u << 30;
 inline constexpr std::uint32_t kMaxBlocks = 1u << 26;
 inline constexpr std::uint32_t kMaxLeafTriangles = 16;
 
-/// A node where it stands in the world: what a collection gathers for and a packet names. `instance` is
+/// A node at its place in the world. A collection gathers rays for one, and a packet names one. `instance` is
 /// kNoInstance above the instances.
 struct NodeKey {
   std::uint32_t instance = kNoInstance;
@@ -79,8 +79,8 @@ struct alignas(64) Node {
   std::uint32_t triangles = 0;     ///< below this node, instances counted each time; saturates
   std::uint32_t first_plane = 0;   ///< in Accel::planes: lane by lane, where there are any
   std::uint32_t plane_counts = 0;  ///< cull planes of each child, four bits a lane
-  /// How far its planes and boxes are moved out when lines are cut by them: by the first for each distance along an
-  /// axis from the ray's origin to the far side of the box, and by the second in any case.
+  /// The margin by which the node's planes and boxes are moved outwards before a line is clipped to them: the first
+  /// value times the distance along an axis from the ray's origin to the far side of the box, plus the second.
   float margin_per_reach = 0, least_margin = 0;
 
   Node() {

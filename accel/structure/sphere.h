@@ -6,17 +6,17 @@
 
 namespace carousel::accel {
 
-/// Where the line of a ray crosses a sphere, in double: t and the outward unit normal at the way in and at the way out.
+/// The crossings of a ray's line with a sphere, in double: t and the outward unit normal at the entry and at the exit.
 struct SphereCrossing {
   double t[2];
   DVec3 normal[2];
 };
 
-/// Whether the line of the ray (both ways, its range ignored) crosses the sphere. The discriminant is found from the
+/// True if the line of the ray (both ways, its range ignored) crosses the sphere. The discriminant is computed from the
 /// distance of the centre from the line, and the nearer root without a difference of like numbers (Haines et al.,
-/// "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019, chapter 7): in double the sphere's
-/// rounding is far below that of the float t it ends in. The same at all levels of accuracy. False for a radius or
-/// direction of zero, and for anything with a NaN.
+/// "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019, chapter 7). In double the rounding
+/// errors are far below that of the resulting float t. The test is the same at all levels of accuracy. False for a
+/// radius or direction of zero, and for anything with a NaN.
 bool cross_sphere(const Vec3& origin, const Vec3& direction, const Vec3& centre, float radius, SphereCrossing& out);
 
 /// A sphere where it stands in a block of a procedural leaf.

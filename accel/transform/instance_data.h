@@ -6,8 +6,8 @@
 
 namespace carousel::accel {
 
-/// What hardware that follows the configuration stores of each instance's transform. The program itself always keeps
-/// what its kernels need; nothing here changes a hit.
+/// Bytes that hardware built after the configuration stores of each instance's transform. The program itself always
+/// keeps the data that its kernels need; nothing here changes a hit.
 inline AccuracyConfig::InstanceData stored_instance_data(const AccuracyConfig& c) {
   using Data = AccuracyConfig::InstanceData;
   if (c.instance_data) return *c.instance_data;

@@ -26,10 +26,10 @@ DMat3 magnitudes(const DMat3& m) {
   return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
 }
 
-/// How far a level's transform may move a ray that starts in the instance's world box from a point that is as large as
-/// `size` in the model, beyond the roundings of R x + T itself: an error e of the model's point is |R| e in the world.
-/// Origin and direction are each a rounded entry, a product and two sums (in double one rounding in all); the origin's
-/// difference is rounded as well, and from there to the point it is at most twice the size of the box.
+/// Bound of the distance by which a level's transform may move a ray that starts in the instance's world box away from
+/// a point as large as `size` in the model, beyond the roundings of R x + T: an error e in the model is |R| e in the
+/// world. Origin and direction are each a rounded entry, a product and two sums (in double one rounding in all); the
+/// origin's difference is rounded as well, and from there to the point it is at most twice the size of the box.
 DVec3 transform_error(const scene::Affine& m, const DVec3& size, TransformLevel level) {
   const DMat3 linear = magnitudes(DMat3(m.linear)), inverse = magnitudes(glm::inverse(DMat3(m.linear)));
   const DVec3 back = inverse * (linear * size);  // of any point of the world box

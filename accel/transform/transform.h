@@ -15,7 +15,7 @@ namespace carousel::accel {
 /// World to model space, by the arithmetic that `accuracy.transform` chose when the structure was built. The
 /// direction is not renormalised, so t means the same in both spaces.
 struct InstanceTransform {
-  /// What a ray goes through. transpose_if_rotation is kTwoStep with another matrix.
+  /// The transform of a ray. transpose_if_rotation is kTwoStep with another matrix.
   enum class Form : std::uint8_t { kTwoStep, kTwoStepDouble, kInverseMatrix };
 
   Mat3 inverse_linear{1.0f};  ///< computed in double and rounded once; or the transpose of a rotation
@@ -55,8 +55,8 @@ bool is_rotation(const Mat3& linear);
 
 /// A world box that holds every model point of `model`, and every place where a ray that starts in the box meets
 /// `model` after the level's rounded transform: corners in double, padded by gamma(4) (sum |R x| + |T|), by |R| times
-/// what the transform may be off at such a point, and one nextafter outwards (DESIGN.md section 5). What a far origin's
-/// rounding moves has no bound, and grows with the distance as the slab test's own slack does.
+/// the transform's error at such a point, and one nextafter outwards (DESIGN.md section 5). The error for a far origin
+/// has no bound; it grows with the distance as the slab test's own slack does.
 Aabb world_box(const scene::Affine& world_from_model, const Aabb& model,
                TransformLevel level = TransformLevel::kTwoStep);
 

@@ -8,7 +8,7 @@ namespace carousel::accel {
 // linear mapping. Cancellation happens in the subtraction, where it is exact or nearly so, and not after a product
 // with a large matrix entry has been rounded.
 
-/// M^-1 v of a linear mapping, which is what a direction needs.
+/// M^-1 v of a linear mapping, as a direction needs it.
 [[gnu::always_inline]] inline Vec3 linear_step(const Mat3& inverse, const Vec3& v) {
   Vec3 out;
   for (int row = 0; row < 3; ++row) out[row] = inverse[0][row] * v.x + inverse[1][row] * v.y + inverse[2][row] * v.z;

@@ -87,7 +87,7 @@ bool crosses(TriangleLevel level, const Ray& ray, const Corners& p, Crossing& ou
   return true;
 }
 
-/// Whether the triangle shows its front, in arithmetic of its own.
+/// True if the triangle shows its front; computed independently of the product's function.
 bool shows_front(const Ray& ray, const Corners& p) {
   using Wide = long double;
   const auto edge = [&](std::size_t k, int axis) { return Wide{p[k][axis]} - Wide{p[0][axis]}; };

@@ -1,4 +1,4 @@
-// Depth-first traversal with a stack, nearest child first: the reference tracer, and what a treelet's visit does.
+// Depth-first traversal with a stack, nearest child first, for the reference tracer and for visits of a treelet.
 #if defined(CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
 #undef CAROUSEL_ACCEL_DEPTH_FIRST_INL_H_
@@ -17,7 +17,7 @@
 #include "accel/primitive/triangle_block-inl.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -40,7 +40,7 @@ HWY_INLINE void prefetch_lines(const void* bytes) {
     __builtin_prefetch(static_cast<const char*>(bytes) + line);
 }
 
-/// What waits on the stack is on its way from memory while nearer nodes are visited.
+/// Prefetches a stacked node, so that it arrives from memory while nearer nodes are visited.
 HWY_INLINE void prefetch(const Accel& accel, NodeRef ref) {
   if (ref.is_inner())
     prefetch_lines(accel.nodes.data() + ref.node());
@@ -74,7 +74,7 @@ HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint
   return NodeRef::from_bits(nearest.ref);
 }
 
-/// What a traversal counts.
+/// The counts of a traversal.
 struct TraversalCounts : IntersectionCounts {
   CullCounts* culls;  ///< RayMembers::culls
   explicit TraversalCounts(CullCounts* by_depth) : culls(by_depth) {}
@@ -95,8 +95,8 @@ HWY_INLINE void count_leaf(NodeRef leaf, IntersectionCounts& counts) {
   (HWY_UNLIKELY(leaf.is_procedural()) ? counts.procedural : counts.triangle) += leaf.triangles();
 }
 
-/// The children whose spheres the ray meets, with entries. To pass an instance's world box is part of what a hit is, so
-/// that is tested where its sphere is met, and counted.
+/// The children whose spheres the ray meets, with entries. A hit has to lie in its instance's world box, so the box is
+/// tested after its sphere, and counted.
 template <class Registers>
 HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Vec3& origin, const Vec3& direction,
                                        const Registers& ray, float tmin, float tmax, float* entry,
@@ -126,12 +126,12 @@ HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const Loc
          ~std::uint32_t{node.direct};
 }
 
-/// What is to be done after visiting something that is not an inner node.
+/// The next action after a visit of anything but an inner node.
 enum class Then { kPop, kEnter, kStop };
 
-/// Visits everything below `root`, until `visit_other(ref)`, which tests what is not an inner node, returns kStop;
-/// after kEnter it goes on with the node that `ref` has been set to. Adds the boxes and planes tested to `counts`. True
-/// when it was stopped.
+/// Visits everything below `root`, until `visit_other(ref)`, which is called for all but inner nodes, returns kStop;
+/// after kEnter the traversal goes on with the node that `ref` has been set to. Adds the boxes and planes tested to
+/// `counts`. True if it was stopped.
 template <class Slab, class VisitOther>
 HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Slab>& frame, const Hit& hit,
                             DepthFirstStack& stack, TraversalCounts& counts, const VisitOther& visit_other) {
@@ -172,7 +172,7 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Sla
   }
 }
 
-/// Stacks for what is above the instances and for what is below one.
+/// Two stacks: one for the nodes above the instances and one for the nodes of an instance.
 struct TraceStacks {
   DepthFirstStack at[2];
 };

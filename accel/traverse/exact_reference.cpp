@@ -21,7 +21,7 @@ struct WideBox {
   double lo[3], hi[3];
 };
 
-/// Where boxes of a structure lie in the world: R box + T, for each in doubles and widened.
+/// The boxes of a structure in the world: R box + T, in double and widened.
 class Placement {
  public:
   Placement() = default;
@@ -60,7 +60,7 @@ class Placement {
   double margin_ = 0;
 };
 
-/// Whether the line meets the box between tmin and tmax, or nearly; `entry` is no later than the exact entry.
+/// True if the line meets the box between tmin and tmax, or nearly so; `entry` is no later than the exact entry.
 bool meets(const Ray& ray, const WideBox& box, double tmin, double tmax, double& entry) {
   double near = tmin, far = tmax;
   for (int a = 0; a < 3; ++a) {
@@ -125,7 +125,7 @@ class ExactReference::Search {
     std::uint32_t instance = kNoInstance, primitive = 0;
     double t_lo = 0, t_hi = 0;
     bool tie = false;
-    std::optional<ExactCrossing> crossing;  // when it has been asked for
+    std::optional<ExactCrossing> crossing;  // set once it has been computed
   };
 
   std::array<Vec3, 3> vertices(std::uint32_t instance, std::uint32_t primitive) const {

@@ -8,22 +8,22 @@
 
 namespace carousel::accel {
 
-/// What a ray meets first in the scene as it is: each float of ray, matrix and mesh taken as the real number it stands
-/// for, and no rounding anywhere.
+/// The first hit of a ray by exact arithmetic: each float of ray, matrix and mesh is taken as the real number it stands
+/// for, without any rounding.
 struct ExactHit {
   Hit hit;               ///< t, u and v rounded once to the nearest float; a miss as every miss
   double t = kInfinity;  ///< rounded once to the nearest double
   bool tie = false;      ///< another triangle is met at exactly this t; `hit` is the first by (instance, primitive)
 };
 
-/// The exact closest hit of world-space rays, to hold every level of accuracy against. A hit is geometry and no
-/// kernel's verdict: edges and vertices belong to their triangles, both sides are hit, a ray in a triangle's plane
-/// passes it, nothing else lets rays through, procedural primitives are not there, and no box has a say. Instances are
-/// taken as R x + T with their exact vertices, singular ones too.
+/// The exact closest hit of world-space rays, with which every level of accuracy is compared. A hit is defined by
+/// geometry alone: edges and vertices belong to their triangles, both sides are hit, a ray in a triangle's plane passes
+/// it, every material is opaque, procedural primitives are absent, and boxes play no role. Instances, singular ones
+/// included, are R x + T with their exact vertices.
 ///
 /// Candidates come from the nodes of a built structure, whose boxes are widened by more than double arithmetic can be
-/// off. Each is decided in double with an error bound where that suffices (accel/exact/crossing_filter.h) and by exact
-/// arithmetic where not (accel/exact/exact_crossing.h). Immutable: any thread may ask.
+/// off. Each is decided in double with an error bound if that suffices (accel/exact/crossing_filter.h) and by exact
+/// arithmetic otherwise (accel/exact/exact_crossing.h). Immutable: any thread may call.
 class ExactReference {
  public:
   /// Keeps references. `accel` must have been built from `scene`, at any accuracy.

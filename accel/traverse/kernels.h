@@ -7,8 +7,8 @@
 
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "core/types/cull_counts.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/cull_counts.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -18,12 +18,11 @@ struct RayMembers {
   RayRecord* records = nullptr;
   const std::uint32_t* slots = nullptr;
   std::size_t count = 0;
-  CullCounts* culls = nullptr;  ///< where cull planes are counted by depth; null: nowhere
-  std::uint8_t* any_hit_calls =
-      nullptr;  ///< null, or one a member: how often test_strip() on a leaf asked whether it passes
+  CullCounts* culls = nullptr;            ///< where cull planes are counted by depth; null: nowhere
+  std::uint8_t* any_hit_calls = nullptr;  ///< null, or one a member: any-hit calls of test_strip() on a leaf
 };
 
-/// What a strip of boxes answers. Untouched for strips of triangles, whose answer is in the rays' hits.
+/// The answer of a strip of boxes. Strips of triangles leave it unchanged; their answer is in the rays' hits.
 struct StripHits {
   std::uint8_t* masks = nullptr;  ///< one a member: bit l set when child lane l is hit
   float* nearest = nullptr;       ///< one a lane (8): lowered to the nearest entry of any member

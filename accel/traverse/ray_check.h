@@ -7,7 +7,7 @@
 
 namespace carousel::accel {
 
-/// Whether the tests have a meaning for this ray: finite origin and direction, a direction that is not zero,
+/// True if the tests have a meaning for this ray: its origin and direction are finite, its direction is not zero, and
 /// 0 <= tmin <= tmax. Invalid rays complete at once as misses.
 inline bool valid(const Ray& ray) {
   for (int a = 0; a < 3; ++a)
@@ -26,7 +26,7 @@ inline void start_record(const RayRequest& request, RayRecord& record) {
   record.hit.t = valid(request.ray) ? request.ray.tmax : -kInfinity;
 }
 
-/// Appends what the workload gets of a completed record; a miss in its one canonical form.
+/// Appends a completed record's result for the workload; a miss has one canonical form.
 inline void finish_record(const RayRecord& record, HitBatch& out) {
   RayResult& result = out.emplace_back();
   result.ray = record.ray;

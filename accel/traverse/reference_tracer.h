@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "accel/structure/accel.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/types/workload.h"
 
 namespace carousel::accel {

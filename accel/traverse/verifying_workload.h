@@ -39,7 +39,7 @@ class VerifyingWorkload final : public Workload {
   std::optional<Mismatch> example_;
 };
 
-/// Whether two results of one ray are the same to the bit (of shadow rays: agree on occlusion).
+/// True if two results of one ray are the same to the bit (for shadow rays: if they agree on occlusion).
 bool same_result(const RayResult& a, const RayResult& b);
 
 }  // namespace carousel::accel

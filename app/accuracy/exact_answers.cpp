@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "accel/traverse/reference_tracer.h"
-#include "core/types/intersection_counts.h"
+#include "core/statistics/intersection_counts.h"
 
 namespace carousel::app {
 

@@ -1,16 +1,14 @@
 #pragma once
 
-#include <optional>
-
 #include "accel/traverse/verifying_workload.h"
 #include "app/run/prepare.h"
 #include "app/run/render_job.h"
 #include "report/run/report.h"
-#include "ringbus/native/native_engine.h"
+#include "ringbus/results/run_result.h"
 
 namespace carousel::app {
 
-/// The report of a native run. `verifying` is null unless the run was verified.
+/// The report of a run that renders a scene. `verifying` is null unless the run was verified.
 report::Report build_report(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& result,
                             const accel::VerifyingWorkload* verifying);
 

@@ -9,10 +9,10 @@
 
 namespace carousel::app {
 
-/// Which effects of light the scene calls for, which are computed, why, and what they cost.
+/// The effects that the scene calls for, with the reasons, the computed ones and their costs.
 std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan);
 
-/// Fills in the effects' part of `out`.
+/// Fills in the effects in `out`.
 void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config);
 
 }  // namespace carousel::app

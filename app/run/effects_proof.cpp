@@ -9,14 +9,9 @@ namespace carousel::app {
 namespace {
 
 std::uint64_t tests_of(const ringbus::RunResult& result) {
-  ringbus::ResourceStatistics sum;
-  for (const ringbus::ResourceStatistics& resource : result.resources) sum += resource;
-  return sum.tests.box + sum.tests.triangle + sum.tests.procedural + sum.tests.plane + sum.tests.bundle;
-}
-
-std::uint64_t tests_of(const report::Report& report) {
-  const report::Tests& t = *report.tests;
-  return t.box.count + t.triangle.count + (t.procedural ? t.procedural->count : 0) + t.plane.count + t.bundle.count;
+  IntersectionCounts sum;
+  for (const ringbus::ResourceStatistics& resource : result.resources) sum += resource.tests;
+  return sum.tests();
 }
 
 std::int64_t difference(std::uint64_t a, std::uint64_t b) {
@@ -41,7 +36,7 @@ void prove_effects(const ConfigArguments& arguments, const InterruptScope& inter
   proof.same_hits = job.hits_digest() == report.digest.hits;
   proof.same_image = job.image_digest() == report.digest.image;
   proof.rays_spared = difference(result.rays_completed, report.rays.completed);
-  proof.tests_spared = difference(tests_of(result), tests_of(report));
+  proof.tests_spared = difference(tests_of(result), report.tests->counts.tests());
   if (result.cycle && report.engine.cycles)
     proof.cycles_spared = difference(result.cycle->cycles, *report.engine.cycles);
   report.host.all_effects_seconds = result.wall_seconds;

@@ -59,10 +59,8 @@ std::optional<std::string> RenderJob::image_digest() const {
   return tracer_ ? std::optional(tracer_->image_digest()) : std::nullopt;
 }
 
-std::optional<report::Raster> RenderJob::raster() const {
-  if (!raster_seconds_) return std::nullopt;
-  const shading::FirstHits::Counts& c = first_hits_.counts;
-  return report::Raster{c.triangles, c.binned, c.tested, c.any_hit_calls, c.hits, c.misses, c.left_to_rays};
+std::optional<RasterCounts> RenderJob::raster() const {
+  return raster_seconds_ ? std::optional(first_hits_.counts) : std::nullopt;
 }
 
 void RenderJob::write_images(const std::filesystem::path& folder) const {

@@ -20,13 +20,13 @@ class MinimalTracer final : public PathTracer {
     shade_batch<false>(worker, completed, out,
                        [this](const RayResult& result, const shading::TrianglePoint& point, Worker& own, RayBatch& rays,
                               std::uint32_t& children) {
-                         shade_surface<shading::SurfaceClass::kPlain, Lights::kLamps>(result, point, own, rays,
-                                                                                      children);
+                         shade_surface<shading::SurfaceClass::kPlain, Lights::kEmissive>(result, point, own, rays,
+                                                                                         children);
                        });
   }
 };
 
-/// Times shade().
+/// Measures the time in shade().
 class TimedWorkload final : public Workload {
  public:
   explicit TimedWorkload(Workload& inner) : inner_(inner) {}
@@ -72,7 +72,7 @@ EffectsScene measure_effects(const std::string& name, const scene::Scene& scene,
   EffectsScene out{name, {}};
   std::vector<std::vector<double>> frames(ways.size()), shades(ways.size());
   out.costs.resize(ways.size());
-  for (int round = 0; round <= repetitions; ++round) {  // the first warms up
+  for (int round = 0; round <= repetitions; ++round) {  // the first round warms up
     for (std::size_t i = 0; i < ways.size(); ++i) {
       const std::size_t w = (i + static_cast<std::size_t>(round)) % ways.size();
       const std::unique_ptr<PathTracer> tracer = tracer_for(ways[w], scene, config);

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/config/fields.h"
+#include "core/config/config.h"
 #include "core/config/tree/tree.h"
 
 namespace carousel::config {

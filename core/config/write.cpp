@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/config/fields.h"
+#include "core/config/config.h"
 
 namespace carousel {
 

@@ -12,7 +12,7 @@ inline constexpr double kFixedPointOne = 0x1p28;
 /// One term is limited to this (radiance 2^20), so that 2^15 saturated terms still fit their 64-bit sum.
 inline constexpr std::int64_t kFixedPointMax = std::int64_t{1} << 48;
 
-/// Nearest fixed-point value, halves away from zero. What lies outside +-kFixedPointMax, infinities included,
+/// Nearest fixed-point value, halves away from zero. A value outside +-kFixedPointMax, infinities included,
 /// becomes the nearer limit and NaN becomes 0; each such value adds 1 to `saturated`.
 inline std::int64_t to_fixed_point(float value, std::uint64_t& saturated) {
   const double scaled = static_cast<double>(value) * kFixedPointOne;  // exact: a power of two

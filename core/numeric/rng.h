@@ -2,7 +2,7 @@
 
 // Counter-based random numbers: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers:
 // as easy as 1, 2, 3", SC 2011. Philox4x32 with 10 rounds; a number is a pure function of its key and
-// counter, so it does not depend on who asks for it, or when.
+// counter, so it depends neither on the thread nor on the time of the call.
 
 #include <array>
 #include <cstdint>
@@ -31,7 +31,7 @@ constexpr float unit_float(std::uint32_t word) {
   return static_cast<float>(word >> 8) * 0x1p-24f;
 }
 
-/// What a random number belongs to. Decisions are numbered by fixed enumerators (`dimension`), never by a
+/// The key of a random number. Decisions are numbered by fixed enumerators (`dimension`), never by a
 /// running counter, so an absent decision does not shift the others.
 struct RandomKey {
   std::uint64_t seed = 0;

@@ -6,9 +6,9 @@
 
 namespace carousel {
 
-/// A file that appears under its name whole or not at all: written beside its target, brought to the disk and
-/// renamed. What is no regular file (a pipe, /dev/stdout) is written to directly. Folders that are missing
-/// are made. Not for several threads at once.
+/// A file that appears under its name completely or not at all: it is written beside its target, flushed to the disk
+/// and renamed. A target that is no regular file (a pipe, /dev/stdout) is written to directly. Missing folders are
+/// created. Not for several threads at once.
 class AtomicFile {
  public:
   /// Throws FileError when the file cannot be made.

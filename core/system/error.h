@@ -6,7 +6,7 @@
 
 namespace carousel {
 
-/// Where something in a user's file stands. Lines and columns count from 1; 0 means unknown. For values that
+/// A position in a user's file. Lines and columns count from 1; 0 means unknown. For values that
 /// come from the command line, `file` is the option's text, e.g. "--set image.width=0".
 struct SourcePosition {
   std::string file;
@@ -55,7 +55,7 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// An invariant of ours broke or the simulation got stuck; the message holds the evidence. Exit status 1.
+/// An invariant of the program broke or the simulation got stuck; the message holds the evidence. Exit status 1.
 class SimulationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

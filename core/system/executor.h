@@ -6,8 +6,8 @@
 
 namespace carousel {
 
-/// How data-parallel work runs. The three kinds give the same results: callers write to disjoint places and
-/// reduce in a fixed order. ThreadSanitizer knows std::jthread but not Debian's TBB, hence the seam.
+/// Runs data-parallel work. The three kinds give the same results: callers write to disjoint places and
+/// reduce in a fixed order. ThreadSanitizer knows std::jthread but not Debian's TBB, so both are supported.
 class Executor {
  public:
   virtual ~Executor() = default;

@@ -9,7 +9,7 @@
 
 namespace carousel {
 
-/// Allocator for big arrays that are read in no order: asks for 2 MiB pages, since with 4 KiB ones nearly every
+/// Allocator for big arrays that are read in random order. It requests 2 MiB pages, since with 4 KiB ones nearly every
 /// access to a structure of some hundred megabytes first misses the address translation. Small arrays are
 /// allocated as usual.
 template <class T>

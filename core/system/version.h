@@ -4,7 +4,7 @@
 
 namespace carousel {
 
-/// What this program was built from, fixed when cmake configured.
+/// The commit and compiler of this program, read when cmake configures.
 struct BuildInfo {
   std::string version, commit, compiler, build_type;
   bool checked = false;  ///< CAROUSEL_CHECKED

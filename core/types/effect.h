@@ -8,7 +8,8 @@
 
 namespace carousel {
 
-/// What light, surfaces and cameras may do; a scene calls for some of it, and `shading.effects` may choose.
+/// An effect of light, surfaces or cameras. A scene calls for some effects, and `shading.effects` may choose among
+/// them. A new effect takes a value here, its name below, and its row in shading/effects/effect_rules.cpp.
 enum class Effect : std::uint8_t {
   kBaseColorTexture,
   kMetallicRoughnessTexture,
@@ -40,34 +41,35 @@ enum class Effect : std::uint8_t {
   kBounceRays,
 };
 
-inline constexpr std::array<std::string_view, 28> kEffectNames{"base_color_texture",
-                                                               "metallic_roughness_texture",
-                                                               "normal_map",
-                                                               "vertex_color",
-                                                               "reflection",
-                                                               "mirror",
-                                                               "emission",
-                                                               "transmission",
-                                                               "refraction",
-                                                               "volume",
-                                                               "ior",
-                                                               "specular",
-                                                               "clearcoat",
-                                                               "sheen",
-                                                               "iridescence",
-                                                               "anisotropy",
-                                                               "alpha_mask",
-                                                               "alpha_blend",
-                                                               "double_sided",
-                                                               "unlit",
-                                                               "point_lights",
-                                                               "spot_lights",
-                                                               "directional_lights",
-                                                               "area_lights",
-                                                               "sky",
-                                                               "depth_of_field",
-                                                               "shadow_rays",
-                                                               "bounce_rays"};
+/// In the order of the enum.
+inline constexpr auto kEffectNames = std::to_array<std::string_view>({"base_color_texture",
+                                                                      "metallic_roughness_texture",
+                                                                      "normal_map",
+                                                                      "vertex_color",
+                                                                      "reflection",
+                                                                      "mirror",
+                                                                      "emission",
+                                                                      "transmission",
+                                                                      "refraction",
+                                                                      "volume",
+                                                                      "ior",
+                                                                      "specular",
+                                                                      "clearcoat",
+                                                                      "sheen",
+                                                                      "iridescence",
+                                                                      "anisotropy",
+                                                                      "alpha_mask",
+                                                                      "alpha_blend",
+                                                                      "double_sided",
+                                                                      "unlit",
+                                                                      "point_lights",
+                                                                      "spot_lights",
+                                                                      "directional_lights",
+                                                                      "area_lights",
+                                                                      "sky",
+                                                                      "depth_of_field",
+                                                                      "shadow_rays",
+                                                                      "bounce_rays"});
 inline constexpr std::size_t kEffects = kEffectNames.size();
 
 constexpr std::string_view effect_name(Effect effect) {

@@ -1,10 +1,5 @@
 #include "report/run/report_json.h"
 
-#include <string_view>
-
-#include "report/run/report_fields.h"
-#include "report/stress/stress_fields.h"
-
 namespace carousel::report {
 
 using Json = nlohmann::ordered_json;
@@ -14,7 +9,7 @@ namespace {
 class JsonWriter {
  public:
   template <class T>
-  static Json value_of(T value) {
+  static Json value_of(const T& value) {
     JsonWriter writer;
     describe(writer, value);
     return std::move(writer.out_);
@@ -27,26 +22,28 @@ class JsonWriter {
   }
 
   template <class T>
-  void field(std::string_view key, T& value, const char*, const char*) {
-    put(key, value);
+  void field(const char* key, const T& value, const char*, const char*) {
+    out_[key] = value;
   }
   template <class T>
-  void field(std::string_view key, std::optional<T>& value, const char*, const char*) {
-    if (value) put(key, *value);
+  void field(const char* key, const std::optional<T>& value, const char*, const char*) {
+    if (value) out_[key] = *value;
   }
   template <class T>
-  void section(std::string_view key, T& value, const char*) {
-    put(key, value_of(value));
+  void section(const char* key, const T& value, const char*) {
+    out_[key] = value_of(value);
   }
   template <class T>
-  void section(std::string_view key, std::optional<T>& value, const char*) {
-    if (value) put(key, value_of(*value));
+  void section(const char* key, const std::optional<T>& value, const char*) {
+    if (value) out_[key] = value_of(*value);
   }
-  void any(std::string_view key, Json& value, const char*) { put(key, value); }
+  template <class T>
+  void section_if(bool present, const char* key, const T& value, const char*) {
+    if (present) out_[key] = value_of(value);
+  }
+  void any(const char* key, const Json& value, const char*) { out_[key] = value; }
 
  private:
-  void put(std::string_view key, Json value) { out_[std::string(key)] = std::move(value); }
-
   Json out_ = Json::object();
 };
 
@@ -75,7 +72,7 @@ Json schema_of(const std::array<double, 3>&) {
 class SchemaWriter {
  public:
   template <class T>
-  static Json schema_for(T value) {
+  static Json schema_for(const T& value) {
     SchemaWriter writer;
     describe(writer, value);
     return {{"type", "object"},
@@ -89,28 +86,32 @@ class SchemaWriter {
   }
 
   template <class T>
-  void field(std::string_view key, T& value, const char* unit, const char* meaning) {
+  void field(const char* key, const T& value, const char* unit, const char* meaning) {
     put(key, schema_of(value), true, unit, meaning);
   }
   template <class T>
-  void field(std::string_view key, std::optional<T>&, const char* unit, const char* meaning) {
+  void field(const char* key, const std::optional<T>&, const char* unit, const char* meaning) {
     put(key, schema_of(T{}), false, unit, meaning);
   }
   template <class T>
-  void section(std::string_view key, T& value, const char* meaning) {
+  void section(const char* key, const T& value, const char* meaning) {
     put(key, schema_for(value), true, "", meaning);
   }
   template <class T>
-  void section(std::string_view key, std::optional<T>&, const char* meaning) {
+  void section(const char* key, const std::optional<T>&, const char* meaning) {
     put(key, schema_for(T{}), false, "", meaning);
   }
-  void any(std::string_view key, Json&, const char* meaning) { put(key, {{"type", "object"}}, true, "", meaning); }
+  template <class T>
+  void section_if(bool, const char* key, const T& value, const char* meaning) {
+    put(key, schema_for(value), false, "", meaning);
+  }
+  void any(const char* key, const Json&, const char* meaning) { put(key, {{"type", "object"}}, true, "", meaning); }
 
  private:
-  void put(std::string_view key, Json schema, bool required, const char* unit, const char* meaning) {
+  void put(const char* key, Json schema, bool required, const char* unit, const char* meaning) {
     if (*unit) schema["unit"] = unit;
     schema["description"] = meaning;
-    properties_[std::string(key)] = std::move(schema);
+    properties_[key] = std::move(schema);
     if (required) required_.push_back(key);
   }
 

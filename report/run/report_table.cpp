@@ -28,7 +28,19 @@ class Table {
   std::string out_;
 };
 
-/// Least, mean and greatest over the resources: what balance looks like without a line for each.
+/// Names with values, side by side on one line.
+class Items {
+ public:
+  void add(std::string_view name, std::string_view value) {
+    fmt::format_to(std::back_inserter(text_), "{}{} {}", text_.empty() ? "" : "   ", name, value);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// Least, mean and greatest over the resources: the balance of the machine without a line for each resource.
 template <class Value>
 void spread_line(Table& table, std::string_view name, const std::vector<Resource>& resources, const Value& value) {
   std::uint64_t least = value(resources.front()), most = least, sum = 0;
@@ -45,22 +57,17 @@ void spread_line(Table& table, std::string_view name, const std::vector<Resource
 void resource_lines(Table& table, const std::vector<Resource>& resources) {
   table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean", fmt::format("{} of them", resources.size()),
              "least", "mean", "most");
-  spread_line(table, "rays", resources, [](const Resource& r) { return r.rays_completed; });
-  spread_line(table, "rays tested", resources, [](const Resource& r) { return r.rays_tested; });
-  spread_line(table, "box tests", resources, [](const Resource& r) { return r.box_tests; });
-  spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.triangle_tests; });
-  spread_line(table, "packets issued", resources, [](const Resource& r) { return r.packets_issued; });
-  spread_line(table, "packets seen", resources, [](const Resource& r) { return r.packets_seen; });
-  Stalls stalls;
-  for (const Resource& r : resources) {
-    stalls.credits += r.stalls.credits;
-    stalls.link += r.stalls.link;
-    stalls.slots += r.stalls.slots;
-    stalls.storage += r.stalls.storage;
-    stalls.reserve += r.stalls.reserve;
-  }
-  table.line("stalls", "credits {}   link {}   slots {}   storage {}   reserve {}", grouped(stalls.credits),
-             grouped(stalls.link), grouped(stalls.slots), grouped(stalls.storage), grouped(stalls.reserve));
+  spread_line(table, "rays", resources, [](const Resource& r) { return r.counts.rays_completed; });
+  spread_line(table, "rays tested", resources, [](const Resource& r) { return r.counts.local_rays; });
+  spread_line(table, "box tests", resources, [](const Resource& r) { return r.tests.box; });
+  spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.tests.triangle; });
+  spread_line(table, "packets issued", resources, [](const Resource& r) { return r.counts.packets_issued; });
+  spread_line(table, "packets seen", resources, [](const Resource& r) { return r.counts.visits; });
+  StallCounts stalls;
+  for (const Resource& r : resources) stalls += r.stalls;
+  Items items;
+  for (const Counter<StallCounts>& row : kCounters<StallCounts>) items.add(row.name, grouped(row.value(stalls)));
+  table.line("stalls", "{}", items.text());
 }
 
 void link_line(Table& table, const std::vector<Link>& links) {
@@ -79,41 +86,36 @@ void link_line(Table& table, const std::vector<Link>& links) {
              cycles ? "cycles stalled" : "refused");
 }
 
+/// Tests of boxes and triangles and transforms always, other counts of the tests where there are any.
 void test_line(Table& table, const Tests& t) {
-  std::string rare;
-  for (const auto& [name, test] :
-       {std::pair{"plane", t.plane}, std::pair{"culled", t.culled}, std::pair{"bundle", t.bundle}})
-    if (test.count > 0) rare += fmt::format("   {} {:.2f}", name, test.per_ray);
-  if (t.procedural) rare += fmt::format("   procedural {:.2f}", t.procedural->per_ray);
-  if (t.any_hit) rare += fmt::format("   any-hit {:.2f}", t.any_hit->per_ray);
-  table.line("tests", "per ray: box {:.2f}   triangle {:.2f}   transform {:.2f}{}", t.box.per_ray, t.triangle.per_ray,
-             t.transforms.per_ray, rare);
-  if (const auto& b = t.bundles) {
-    const std::uint64_t boxes = b->sum.all_hit + b->sum.all_miss + b->sum.split;
-    table.line("bundles", "{} of {:.1f} rays   of their boxes {} all hit, {} all missed, {} split", grouped(b->formed),
-               b->rays_mean, percent(ratio(b->sum.all_hit, boxes)), percent(ratio(b->sum.all_miss, boxes)),
-               percent(ratio(b->sum.split, boxes)));
+  using C = IntersectionCounts;
+  const auto per_ray = [&](std::uint64_t count) { return fmt::format("{:.2f}", ratio(count, t.rays)); };
+  Items items;
+  items.add("box", per_ray(t.counts.box));
+  items.add("triangle", per_ray(t.counts.triangle));
+  items.add("transform", per_ray(t.counts.transforms));
+  for (const Counter<C>& row : kCounters<C>) {
+    if (row.member == &C::box || row.member == &C::triangle || row.member == &C::transforms) continue;
+    if (row.shown == Shown::kAlways ? row.value(t.counts) > 0 : t.features.show(row.shown))
+      items.add(row.name, per_ray(row.value(t.counts)));
   }
+  table.line("tests", "per ray: {}", items.text());
+  if (!t.bundles) return;
+  const BundleCounts b = t.bundles->sum().counts;
+  const auto part = [&](std::uint64_t lanes) { return percent(ratio(lanes, b.all + b.none + b.split)); };
+  table.line("bundles", "{} of {:.1f} rays   of their boxes {} all hit, {} all missed, {} split", grouped(b.formed),
+             ratio(b.formed_rays, b.formed), part(b.all), part(b.none), part(b.split));
 }
 
-/// The depths where most was spared stand in report.json; here is their sum.
+/// The sum over all depths; report.json has each depth.
 void cull_plane_lines(Table& table, const Report& report) {
-  CullPlaneLevel sum;
-  for (const CullPlaneLevel& level : report.cull_planes->levels) {
-    sum.children_tested += level.children_tested;
-    sum.culled += level.culled;
-    sum.box_tests_spared += level.box_tests_spared;
-    sum.nodes_spared += level.nodes_spared;
-    sum.leaves_spared += level.leaves_spared;
-    sum.triangle_tests_spared += level.triangle_tests_spared;
-    sum.transforms_spared += level.transforms_spared;
-  }
+  const CullPlanes& planes = *report.cull_planes;
+  const CullLevel sum = planes.counts.sum();
   table.line("cull planes", "{} planes, {:.1f} bytes a node, found in {}   {} of {} children culled",
-             grouped(report.cull_planes->planes), report.cull_planes->bytes_per_node,
-             seconds_text(report.host.plane_seconds.value_or(0)), grouped(sum.culled), grouped(sum.children_tested));
-  table.line("", "spared: {} nodes   {} leaves of {} triangles   {} transforms   {} boxes", grouped(sum.nodes_spared),
-             grouped(sum.leaves_spared), grouped(sum.triangle_tests_spared), grouped(sum.transforms_spared),
-             grouped(sum.box_tests_spared));
+             grouped(planes.planes), planes.bytes_per_node, seconds_text(report.host.plane_seconds.value_or(0)),
+             grouped(sum.culled()), grouped(sum.children));
+  table.line("", "spared: {} nodes   {} leaves of {} triangles   {} transforms   {} boxes", grouped(sum.nodes),
+             grouped(sum.leaves), grouped(sum.triangles), grouped(sum.transforms), grouped(sum.boxes));
 }
 
 void proof_line(Table& table, const EffectsProof& proof) {
@@ -126,14 +128,17 @@ void proof_line(Table& table, const EffectsProof& proof) {
 
 void packet_lines(Table& table, const Report& report) {
   if (const auto& p = report.packets) {
-    table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(p->issued),
-               grouped(p->retired), ratio(p->issued, report.rays.completed), ratio(p->hops, p->issued));
-    table.line("", "{:.1f} rays each   {} of them local where seen   {} of visits without any", p->rays_mean,
-               percent(p->local_fraction), percent(p->bubble_fraction));
+    const ResourceCounts& c = p->counts;
+    table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(c.packets_issued),
+               grouped(c.packets_retired), ratio(c.packets_issued, report.rays.completed),
+               ratio(c.hops, c.packets_issued));
+    table.line("", "{:.1f} rays each   {} of them local where seen   {} of visits without any", p->rays_mean(),
+               percent(p->local_fraction()), percent(p->bubble_fraction()));
   }
   if (const auto& c = report.collections) {
-    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled", grouped(c->created),
-               grouped(c->peak), percent(c->fullness_mean), grouped(c->memberships_peak), grouped(c->spilled));
+    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled",
+               grouped(c->counts.created), grouped(c->counts.peak), percent(c->fullness_mean),
+               grouped(c->counts.memberships_peak), grouped(c->counts.spilled));
   }
 }
 
@@ -159,14 +164,8 @@ void cycle_lines(Table& table, const Report& report) {
   std::uint64_t dispatch = 0;
   for (const Resource& r : *report.resources) {
     if (!r.units) return;
-    const UnitCycles& u = r.units->box;
-    sum.memory += u.memory;
-    sum.link += u.link;
-    sum.credits += u.credits;
-    sum.storage += u.storage;
-    sum.shading += u.shading;
-    sum.idle += u.idle;
-    dispatch += r.units->handler_busy;
+    sum += r.units->box;
+    dispatch += r.units->dispatch_busy;
   }
   const std::uint64_t all = cycles * report.resources->size();
   const auto part = [&](std::uint64_t x) { return percent(ratio(x, all)); };
@@ -217,7 +216,7 @@ std::string report_table(const Report& report) {
   table.line("", "camera {}   bounce {}   shadow {}", grouped(rays.by_kind.camera), grouped(rays.by_kind.bounce),
              grouped(rays.by_kind.shadow));
   if (report.raster) {
-    const Raster& raster = *report.raster;
+    const RasterCounts& raster = *report.raster;
     table.line("raster", "{} triangles seen {} times by tiles   {} hits   {} left to rays   {}",
                grouped(raster.triangles), grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
                seconds_text(report.host.raster_seconds.value_or(0)));

@@ -1,15 +1,20 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
+#include "report/sections/visitor.h"
 
 namespace carousel::report {
 
 struct StressLatency {
   double p50 = 0, p99 = 0, p99_9 = 0, max = 0;
 };
+
+template <class V>
+void describe(V& v, const StressLatency& r) {
+  v.field("p50", r.p50, "ns", "median latency");
+  v.field("p99", r.p99, "ns", "latency that 99 of 100 messages did not exceed");
+  v.field("p99_9", r.p99_9, "ns", "latency that 999 of 1000 messages did not exceed");
+  v.field("max", r.max, "ns", "greatest latency");
+}
 
 /// A queue under a pattern, over all repetitions.
 struct StressRow {
@@ -23,6 +28,31 @@ struct StressRow {
   std::string found, detail;
 };
 
+template <class V>
+void describe(V& v, const StressRow& r) {
+  v.field("queue", r.queue, "", "kind of queue");
+  v.field("pattern", r.pattern, "", "pattern of the queue's threads");
+  v.field("message_bytes", r.message_bytes, "bytes", "size of a message");
+  v.field("capacity", r.capacity, "messages", "capacity of a queue");
+  v.field("threads", r.threads, "threads", "threads that took part");
+  v.field("messages", r.messages, "messages", "messages sent in all repetitions");
+  v.field("rate_median", r.rate_median, "messages/s", "median rate of the repetitions");
+  v.field("rate_least", r.rate_least, "messages/s", "rate of the slowest repetition");
+  v.field("rate_most", r.rate_most, "messages/s", "rate of the fastest repetition");
+  v.section("transit", r.transit, "time from the push that took a message to its pop");
+  v.section("round_trip", r.round_trip, "time until a message is back where it came from");
+  v.field("fairness", r.fairness, "fraction",
+          "least over most sent by a producer when the first had sent its share; worst repetition");
+  v.field("push_refused", r.push_refused, "fraction", "fraction of push calls that were refused");
+  v.field("pop_refused", r.pop_refused, "fraction", "fraction of pop calls that were refused");
+  v.field("blocked", r.blocked, "fraction",
+          "back-pressure: fraction of the producers' time in which they waited for a place");
+  v.field("memory_bytes", r.memory_bytes, "bytes", "heap of one queue that has been full");
+  v.field("found", r.found, "",
+          "faults of the queue: lost, doubled, reordered, torn, bounds, stuck; empty if there was none");
+  v.field("detail", r.detail, "", "the first fault found");
+}
+
 /// A queue of a depth inside the ring of a configuration.
 struct StressRingRow {
   std::string queue;
@@ -34,7 +64,21 @@ struct StressRingRow {
   bool same_digest = true;
 };
 
-/// `carousel stress`.
+template <class V>
+void describe(V& v, const StressRingRow& r) {
+  v.field("queue", r.queue, "", "kind of queue");
+  v.field("depth", r.depth, "packets", "capacity of each link");
+  v.field("rate_median", r.rate_median, "rays/s", "median rate of the repetitions");
+  v.field("rate_least", r.rate_least, "rays/s", "rate of the slowest repetition");
+  v.field("rate_most", r.rate_most, "rays/s", "rate of the fastest repetition");
+  v.field("relative", r.relative, "fraction", "median rate over that of the best queue and depth");
+  v.field("refused", r.refused, "fraction", "fraction of the packets offered to links that were refused");
+  v.field("occupancy_mean", r.occupancy_mean, "packets",
+          "mean of the packets waiting in a link, sampled at every eighth send");
+  v.field("same_digest", r.same_digest, "", "true if hits and picture are those of the first row");
+}
+
+/// The report of `carousel stress`.
 struct Stress {
   bool incomplete = false;
   std::uint64_t cores = 0, repetitions = 0;
@@ -51,5 +95,16 @@ struct Stress {
     return false;
   }
 };
+
+template <class V>
+void describe(V& v, const Stress& r) {
+  v.field("incomplete", r.incomplete, "", "true if the run was interrupted");
+  v.field("cores", r.cores, "cores", "hardware threads of the machine");
+  v.field("repetitions", r.repetitions, "", "repetitions of each row, in turn");
+  v.field("seconds", r.seconds, "s", "time of the whole run");
+  v.section("rows", r.rows, "queues by themselves");
+  v.section("ring", r.ring, "queues inside the ring of the configuration");
+  v.field("ring_verdict", r.ring_verdict, "", "effect of the choice of queue and depth on rays per second, in words");
+}
 
 }  // namespace carousel::report

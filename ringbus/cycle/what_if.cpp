@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
 
@@ -35,14 +36,10 @@ std::int64_t halved(std::int64_t cycles) {
   return std::max<std::int64_t>(1, cycles / 2);
 }
 
-void double_units(TestersConfig& testers, TesterUnits TestersConfig::*bank) {
-  (testers.*bank).units *= 2;
-}
-
-WhatIf units_what_if(std::string name, std::string key, TesterUnits TestersConfig::*bank) {
-  return {std::move(name), "twice testers." + key + ".units", [bank](Config& c) {
-            double_units(c.testers, bank);
-            for (ResourceOverride& one : c.topology.overrides) double_units(one.testers, bank);
+WhatIf units_what_if(std::string name, UnitKind kind) {
+  return {std::move(name), "twice testers." + std::string(unit_row(kind).key) + ".units", [kind](Config& c) {
+            c.testers.units[kind].units *= 2;
+            for (ResourceOverride& one : c.topology.overrides) one.testers.units[kind].units *= 2;
           }};
 }
 
@@ -50,18 +47,17 @@ WhatIf units_what_if(std::string name, std::string key, TesterUnits TestersConfi
 
 std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   std::vector<WhatIf> all;
-  all.push_back(units_what_if("box_tests", "box", &TestersConfig::box));
-  all.push_back(units_what_if("triangle_tests", "triangle", &TestersConfig::triangle));
-  if (accel.procedural_primitives)
-    all.push_back(units_what_if("procedural_tests", "procedural", &TestersConfig::procedural));
+  all.push_back(units_what_if("box_tests", UnitKind::kBox));
+  all.push_back(units_what_if("triangle_tests", UnitKind::kTriangle));
+  if (accel.procedural_primitives) all.push_back(units_what_if("procedural_tests", UnitKind::kProcedural));
   if (accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
-    all.push_back(units_what_if("any_hit_lookups", "any_hit_unit", &TestersConfig::any_hit_unit));
-  if (config.cull_planes.count > 0) all.push_back(units_what_if("plane_tests", "plane", &TestersConfig::plane));
-  if (config.bundles.size > 0) all.push_back(units_what_if("bundle_tests", "bundle", &TestersConfig::bundle));
+    all.push_back(units_what_if("any_hit_lookups", UnitKind::kAnyHit));
+  if (config.cull_planes.count > 0) all.push_back(units_what_if("plane_tests", UnitKind::kPlane));
+  if (config.bundles.size > 0) all.push_back(units_what_if("bundle_tests", UnitKind::kBundle));
   if (config.rays.reads_per_cycle > 0)
     all.push_back({"ray_reads", "twice rays.reads_per_cycle", [](Config& c) { c.rays.reads_per_cycle *= 2; }});
-  all.push_back(units_what_if("transforms", "transform", &TestersConfig::transform));
-  const bool independent = config.topology.shape == TopologyShape::kIndependent;
+  all.push_back(units_what_if("transforms", UnitKind::kTransform));
+  const bool independent = !Topology(config.topology).has_packets();
   if (!independent)
     all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
   all.push_back({"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", [](Config& c) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/config/config.h"
-#include "ringbus/faults/link_fault_counts.h"
+#include "core/statistics/link_fault_counts.h"
 
 namespace carousel::ringbus {
 
@@ -17,8 +17,8 @@ struct FaultDraw {
 class FaultInjector {
  public:
   /// `stream` tells links and directions apart.
-  FaultInjector(const FaultsConfig& config, std::uint64_t stream)
-      : links_(config.links), key_(mix(static_cast<std::uint64_t>(config.seed) * 0x9e3779b97f4a7c15u + stream)) {}
+  FaultInjector(const FaultsConfig::Links& links, std::int64_t seed, std::uint64_t stream)
+      : links_(links), key_(mix(static_cast<std::uint64_t>(seed) * 0x9e3779b97f4a7c15u + stream)) {}
 
   /// The next frame's; counts what it draws.
   FaultDraw next(LinkFaultCounts& counts) {

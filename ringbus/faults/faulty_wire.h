@@ -15,8 +15,8 @@ class FaultyWire {
  public:
   using Clock = std::chrono::steady_clock;
 
-  FaultyWire(Queue& queue, const FaultsConfig& config, std::uint64_t stream, std::chrono::nanoseconds delay)
-      : queue_(queue), dice_(config, stream), delay_(delay) {}
+  FaultyWire(Queue& queue, const FaultInjector& injector, std::chrono::nanoseconds delay)
+      : queue_(queue), injector_(injector), delay_(delay) {}
   ~FaultyWire() {
     for (LinkFrame& one : after_next_) one.drop();
     for (Late& one : late_) one.frame.drop();
@@ -28,7 +28,7 @@ class FaultyWire {
 
   /// Takes the frame, which is the wire's from then on.
   void put(LinkFrame frame) {
-    const FaultDraw fate = dice_.next(counts_);
+    const FaultDraw fate = injector_.next(counts_);
     if (fate.drop) {
       frame.drop();
     } else {
@@ -76,7 +76,7 @@ class FaultyWire {
   }
 
   Queue& queue_;
-  FaultInjector dice_;
+  FaultInjector injector_;
   std::chrono::nanoseconds delay_;
   std::vector<LinkFrame> after_next_;
   int quiet_ = 0;  // releases since something waits for a next one

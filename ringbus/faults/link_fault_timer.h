@@ -19,10 +19,10 @@ namespace carousel::ringbus::cycle {
 /// than that it answers.
 class LinkFaultTimer {
  public:
-  LinkFaultTimer(const FaultsConfig& config, std::uint64_t link, Cycle latency)
-      : dice_(config, 2 * link),
-        ack_dice_(config, 2 * link + 1),
-        delay_(static_cast<Cycle>(config.links.delay_cycles)),
+  LinkFaultTimer(const FaultsConfig::Links& links, std::int64_t seed, std::uint64_t link, Cycle latency)
+      : injector_(links, seed, 2 * link),
+        ack_injector_(links, seed, 2 * link + 1),
+        delay_(static_cast<Cycle>(links.delay_cycles)),
         latency_(latency) {}
 
   struct Delivery {
@@ -37,7 +37,7 @@ class LinkFaultTimer {
     Cycle start = now;
     for (bool first = true;; first = false) {
       counts_.resent += !first;
-      const FaultDraw fate = dice_.next(counts_);
+      const FaultDraw fate = injector_.next(counts_);
       out.busy += cycles * (fate.duplicate && !fate.drop ? 2 : 1);
       counts_.discarded += fate.duplicate && !fate.drop;
       // It comes before the one that was overtaken, and is not taken.
@@ -60,7 +60,7 @@ class LinkFaultTimer {
   /// The acknowledgement that would come at `at`, not before any other: how many places the sender knows to be free
   /// again by it. Call made_good(at) before.
   std::uint32_t acknowledge(Cycle at) {
-    const FaultDraw fate = ack_dice_.next(counts_);
+    const FaultDraw fate = ack_injector_.next(counts_);
     const bool lost = fate.drop || fate.corrupt;
     if (lost || fate.delay || fate.reorder) {
       // One that the next one overtakes says nothing new when it comes.
@@ -105,10 +105,10 @@ class LinkFaultTimer {
   /// The last frame once more. What it was asked for comes with the answer, if both get through.
   Cycle ask() {
     ++counts_.resent;
-    const FaultDraw frame = ack_dice_.next(counts_);
+    const FaultDraw frame = ack_injector_.next(counts_);
     counts_.discarded += !frame.drop;
     const bool through = !frame.drop && !frame.corrupt;
-    const FaultDraw answer = through ? ack_dice_.next(counts_) : FaultDraw{};
+    const FaultDraw answer = through ? ack_injector_.next(counts_) : FaultDraw{};
     if (through && !answer.drop && !answer.corrupt)
       silent_.back() =
           std::min(silent_.back(), any_hit_at_ + patience() + (frame.delay ? delay_ : 0) + (answer.delay ? delay_ : 0));
@@ -116,7 +116,7 @@ class LinkFaultTimer {
     return cycles_;
   }
 
-  FaultInjector dice_, ack_dice_;
+  FaultInjector injector_, ack_injector_;
   Cycle delay_, latency_;
   Cycle cycles_ = 1;  // of the last packet
   Cycle last_ = 0;

@@ -14,11 +14,10 @@ namespace carousel::ringbus {
 class ResourceFault {
  public:
   /// That of a resource, if it has one.
-  static std::optional<ResourceFault> of(const Config& config, ResourceId id) {
-    const FaultsConfig::Resource& fault = config.faults.resource;
+  static std::optional<ResourceFault> of(const FaultsConfig::Resource& fault, std::int64_t clock_mhz, ResourceId id) {
     using Kind = FaultsConfig::Resource::Kind;
     if ((fault.kind != Kind::kPause && fault.kind != Kind::kSlow) || fault.number != id.value) return std::nullopt;
-    return ResourceFault(config);
+    return ResourceFault(fault, clock_mhz);
   }
 
   /// Takes the step unless the resource rests; returns what the step returns.
@@ -40,11 +39,11 @@ class ResourceFault {
 
  private:
   using Clock = std::chrono::steady_clock;
-  explicit ResourceFault(const Config& config)
-      : kind_(config.faults.resource.kind),
-        after_(static_cast<std::uint64_t>(config.faults.resource.after_rays)),
-        pause_(config.faults.resource.cycles * 1000 / config.engine.clock_mhz),
-        factor_(config.faults.resource.factor) {}
+  ResourceFault(const FaultsConfig::Resource& fault, std::int64_t clock_mhz)
+      : kind_(fault.kind),
+        after_(static_cast<std::uint64_t>(fault.after_rays)),
+        pause_(fault.cycles * 1000 / clock_mhz),
+        factor_(fault.factor) {}
 
   FaultsConfig::Resource::Kind kind_;
   std::uint64_t after_;
@@ -58,9 +57,9 @@ class ResourceFault {
 inline void slow_down(TestersConfig& testers, const FaultsConfig& faults, ResourceId id) {
   const FaultsConfig::Resource& fault = faults.resource;
   if (fault.kind != FaultsConfig::Resource::Kind::kSlow || fault.number != id.value) return;
-  for (TesterUnits* units : {&testers.box, &testers.triangle, &testers.plane, &testers.bundle, &testers.transform}) {
-    units->interval_cycles *= fault.factor;
-    units->latency_cycles *= fault.factor;
+  for (const auto [kind, units] : testers.units) {
+    units.interval_cycles *= fault.factor;
+    units.latency_cycles *= fault.factor;
   }
 }
 

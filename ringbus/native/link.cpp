@@ -41,8 +41,9 @@ std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, Reso
                                 std::span<Packet> packets) {
   const LinkConfig& link = config.topology.link;
   if (!config.faults.links.any()) return make_link(link.queue, static_cast<std::size_t>(link.depth), from, to);
+  const ReliableLinkSettings settings = reliable_link_settings(link, config.faults, config.engine.clock_mhz);
   return with_queue_type(link.queue, [&](auto type) -> std::unique_ptr<Link> {
-    return std::make_unique<ReliableLink<decltype(type)::template Of>>(config, number, from, to, packets);
+    return std::make_unique<ReliableLink<decltype(type)::template Of>>(settings, number, from, to, packets);
   });
 }
 

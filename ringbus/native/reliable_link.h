@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,6 +17,20 @@
 
 namespace carousel::ringbus {
 
+/// The parts of the configuration that a reliable link follows.
+struct ReliableLinkSettings {
+  std::size_t depth = 16;
+  FaultsConfig::Links faults;
+  std::int64_t seed = 1;
+  std::chrono::nanoseconds delay{0};  ///< of a frame that is late
+};
+
+inline ReliableLinkSettings reliable_link_settings(const LinkConfig& link, const FaultsConfig& faults,
+                                                   std::int64_t clock_mhz) {
+  return {static_cast<std::size_t>(link.depth), faults.links, faults.seed,
+          std::chrono::nanoseconds(faults.links.delay_cycles * 1000 / clock_mhz)};
+}
+
 /// A link over wires that fail: frames carry sequence numbers and checksums, the receiver takes them in order and says
 /// how far it is, and after silence, or when it hears that the first one out is still missing, the sender goes back to
 /// it (go-back-N; Tanenbaum, Computer Networks, "a protocol using go-back-n"). Above it nothing is lost, doubled or out
@@ -28,16 +43,17 @@ template <template <class> class Queue>
 class ReliableLink final : public Link {
  public:
   /// Packets that are not among `packets` travel by their ID alone, for tests of links without a machine.
-  ReliableLink(const Config& config, std::uint64_t number, ResourceId from, ResourceId to, std::span<Packet> packets)
+  ReliableLink(const ReliableLinkSettings& settings, std::uint64_t number, ResourceId from, ResourceId to,
+               std::span<Packet> packets)
       : Link(from, to),
-        depth_(static_cast<std::size_t>(config.topology.link.depth)),
+        depth_(settings.depth),
         number_(number),
         packets_(packets),
         window_(depth_),
         frames_(2 * depth_ + 2),
         acks_(kAcks),
-        out_(frames_, config.faults, 2 * number, delay_of(config)),
-        back_(acks_, config.faults, 2 * number + 1, delay_of(config)) {}
+        out_(frames_, {settings.faults, settings.seed, 2 * number}, settings.delay),
+        back_(acks_, {settings.faults, settings.seed, 2 * number + 1}, settings.delay) {}
   ~ReliableLink() override {
     LinkFrame frame;
     while (frames_.try_pop(frame)) frame.drop();
@@ -98,9 +114,6 @@ class ReliableLink final : public Link {
     PacketImage image;
   };
 
-  static std::chrono::nanoseconds delay_of(const Config& config) {
-    return std::chrono::nanoseconds(config.faults.links.delay_cycles * 1000 / config.engine.clock_mhz);
-  }
   /// Differs for any two frames that differ within one word, as each step can be undone.
   std::uint64_t check(std::uint64_t sequence, std::uint64_t packet, std::span<const std::uint64_t> image) const {
     std::uint64_t x = number_ * 0x9e3779b97f4a7c15u;

@@ -5,11 +5,12 @@
 #include <span>
 
 #include "accel/structure/node.h"
-#include "core/types/cull_counts.h"
+#include "core/statistics/bundle_counts.h"
+#include "core/statistics/cull_counts.h"
+#include "core/statistics/intersection_counts.h"
+#include "core/statistics/stall_counts.h"
 #include "core/types/ids.h"
-#include "core/types/intersection_counts.h"
 #include "ringbus/packets/packet.h"
-#include "ringbus/rays/bundle_counts.h"
 
 namespace carousel::ringbus {
 
@@ -21,15 +22,6 @@ enum class EventKind : std::uint8_t {
   kRetire,    ///< a packet is back at its owner; `rays` memberships joined collections
   kComplete,  ///< `rays` rays were handed over to shading
   kStall,     ///< something could not proceed, and why
-};
-
-enum class StallReason : std::uint8_t {
-  kNone,
-  kCredits,  ///< no packet free to issue with
-  kLink,     ///< the outgoing link is full
-  kSlots,    ///< new rays wait for slots
-  kStorage,  ///< too few free collection blocks to issue or admit
-  kReserve,  ///< not a stall yet: the reserve was entered, issuing goes one packet at a time, deepest first
 };
 
 /// One thing that happened at a resource. The times are the engine's affair.

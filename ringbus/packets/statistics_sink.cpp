@@ -5,20 +5,10 @@
 namespace carousel::ringbus {
 
 ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) {
-  rays_admitted += o.rays_admitted;
-  rays_completed += o.rays_completed;
-  packets_issued += o.packets_issued;
-  packet_rays += o.packet_rays;
-  packets_retired += o.packets_retired;
-  hops += o.hops;
-  visits += o.visits;
-  bubbles += o.bubbles;
-  local_rays += o.local_rays;
-  seen_rays += o.seen_rays;
-  memberships += o.memberships;
-  for (std::size_t i = 0; i < stalls.size(); ++i) stalls[i] += o.stalls[i];
+  ResourceCounts& counts = *this;
+  counts += o;
+  stalls += o.stalls;
   tests += o.tests;
-  reads += o.reads;
   bundles.resize(std::max(bundles.size(), o.bundles.size()));
   for (std::size_t depth = 0; depth < o.bundles.size(); ++depth) bundles[depth] += o.bundles[depth];
   culls += o.culls;
@@ -58,7 +48,7 @@ void StatisticsSink::record(const Event& event) {
       s.rays_completed += event.rays;
       break;
     case EventKind::kStall:
-      ++s.stalls[static_cast<std::size_t>(event.reason)];
+      ++s.stalls[event.reason];
       break;
   }
 }

@@ -1,23 +1,16 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "core/statistics/resource_counts.h"
 #include "ringbus/packets/events.h"
 
 namespace carousel::ringbus {
 
-/// What one resource did, in counts.
-struct ResourceStatistics {
-  std::uint64_t rays_admitted = 0, rays_completed = 0;
-  std::uint64_t packets_issued = 0, packet_rays = 0, packets_retired = 0;
-  std::uint64_t hops = 0;                       ///< packets sent on
-  std::uint64_t visits = 0, bubbles = 0;        ///< packets seen; those with no local ray
-  std::uint64_t local_rays = 0, seen_rays = 0;  ///< members tested here; members of all packets seen
-  std::uint64_t memberships = 0;                ///< ray IDs that joined collections at retirement
-  std::array<std::uint64_t, 6> stalls{};        ///< by StallReason
+/// Everything counted at one resource.
+struct ResourceStatistics : ResourceCounts {
+  StallCounts stalls;
   IntersectionCounts tests;
-  std::uint64_t reads = 0;            ///< records of rays and bundles read for tests
   std::vector<BundleCounts> bundles;  ///< by depth in strips; empty without bundles
   CullCounts culls;
 
@@ -25,7 +18,7 @@ struct ResourceStatistics {
   friend bool operator==(const ResourceStatistics&, const ResourceStatistics&) = default;
 };
 
-/// The statistics sink: adds up events.
+/// Adds up the events of one resource.
 class StatisticsSink final : public EventSink {
  public:
   void record(const Event& event) override;

@@ -5,21 +5,26 @@
 
 namespace carousel::ringbus {
 
-RayControl::RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores,
-                       std::int32_t initial_tests, float scene_size)
-    : placement_(config.rays.placement),
+RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size) {
+  const bool local = config.collections.home == Home::kLocal;
+  return {config.rays.placement, local,          static_cast<std::size_t>(config.packets.rays),
+          initial_tests,         config.bundles, scene_size};
+}
+
+RayControl::RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores)
+    : placement_(settings.placement),
       rays_travel_(placement_ == Placement::kFirstTaker || placement_ == Placement::kAddressed),
-      local_(config.collections.home == Home::kLocal || config.topology.shape == TopologyShape::kIndependent),
+      local_(settings.local),
       resources_(static_cast<std::uint32_t>(stores.size())),
-      group_rays_(static_cast<std::size_t>(config.packets.rays)),
-      initial_tests_(initial_tests),
+      group_rays_(settings.group_rays),
+      initial_tests_(settings.initial_tests),
       stores_(stores),
       slots_(std::make_unique<SlotList[]>(stores.size())),
       inboxes_(std::make_unique<Inbox[]>(stores.size())) {
   free_all();
   const std::size_t total = free_slots();
   // Groups are placed whole where possible; waiting for more than a quarter of the slots would idle the ring.
-  if (config.bundles.size > 0) builder_.emplace(config.bundles, scene_size);
+  if (settings.bundles.size > 0) builder_.emplace(settings.bundles, settings.scene_size);
   enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_ : total) / 4);
 }
 

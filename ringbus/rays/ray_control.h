@@ -16,6 +16,18 @@
 
 namespace carousel::ringbus {
 
+/// The parts of the configuration and of the machine that ray control follows.
+struct RayControlSettings {
+  Placement placement = Placement::kBalanced;
+  bool local = false;              ///< a group's rays live where the group is issued
+  std::size_t group_rays = 32;     ///< packets.rays
+  std::int32_t initial_tests = 1;  ///< that a ray waits for at the root
+  BundlesConfig bundles;
+  float scene_size = 1;  ///< scale of the distances between the origins of a bundle
+};
+
+RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size);
+
 /// New rays on their way to a resource's root collection: IDs once they have slots, or the rays themselves when
 /// they are to look for slots on their way round the ring.
 struct RayGroup {
@@ -32,9 +44,8 @@ struct RayGroup {
 /// instead, and resources ask for slots as packets pass. Any thread may call.
 class RayControl {
  public:
-  /// `stores` by resource; `initial_tests` is what a ray waits for at the root.
-  RayControl(const Config& config, std::span<const std::unique_ptr<RayStore>> stores, std::int32_t initial_tests,
-             float scene_size);
+  /// `stores` by resource.
+  RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores);
 
   /// From now on `resource` gets no rays. Before the first submit(), or after discard().
   void exclude(ResourceId resource);

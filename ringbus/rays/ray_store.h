@@ -132,22 +132,22 @@ class RayStore {
 };
 
 /// Bundles have two rays or more; where a quarter of the slots is not enough, rays go on their own.
-inline BundleRoom bundle_room(const Config& config) {
-  if (config.bundles.size == 0) return {};
-  const std::uint32_t quarter = static_cast<std::uint32_t>(config.rays.slots_per_resource / 4 + 1);
-  const bool rebuilds = config.bundles.split == BundlesConfig::Split::kBuilder ||
-                        config.bundles.lifetime == BundlesConfig::Lifetime::kReformed ||
-                        config.bundles.at_instances == BundlesConfig::AtInstances::kRebound;
-  return {quarter, rebuilds ? 2 * quarter : 0, static_cast<std::uint32_t>(config.bundles.size)};
+inline BundleRoom bundle_room(const BundlesConfig& bundles, std::int64_t slots) {
+  if (bundles.size == 0) return {};
+  const std::uint32_t quarter = static_cast<std::uint32_t>(slots / 4 + 1);
+  const bool rebuilds = bundles.split == BundlesConfig::Split::kBuilder ||
+                        bundles.lifetime == BundlesConfig::Lifetime::kReformed ||
+                        bundles.at_instances == BundlesConfig::AtInstances::kRebound;
+  return {quarter, rebuilds ? 2 * quarter : 0, static_cast<std::uint32_t>(bundles.size)};
 }
 
-/// One for each resource.
-inline std::vector<std::unique_ptr<RayStore>> make_ray_stores(const Config& config) {
-  const std::uint32_t slots = static_cast<std::uint32_t>(config.rays.slots_per_resource);
-  const BundleRoom room = bundle_room(config);
+/// One for each resource, with `slots` slots each and room for bundles.
+inline std::vector<std::unique_ptr<RayStore>> make_ray_stores(std::int64_t resources, std::int64_t slots,
+                                                              const BundlesConfig& bundles) {
+  const BundleRoom room = bundle_room(bundles, slots);
   std::vector<std::unique_ptr<RayStore>> stores;
-  for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(config.topology.resources); ++r)
-    stores.push_back(std::make_unique<RayStore>(ResourceId(r), slots, room));
+  for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(resources); ++r)
+    stores.push_back(std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(slots), room));
   return stores;
 }
 

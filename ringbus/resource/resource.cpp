@@ -7,46 +7,48 @@
 
 namespace carousel::ringbus {
 
-std::uint32_t reserve_blocks(const Config& config, int width, int max_depth) {
+std::uint32_t reserve_blocks(const CollectionsConfig& collections, const BundlesConfig& bundles, int width,
+                             int max_depth) {
   // A ray is in one collection at a time, and admission counts a block for each.
-  if (config.collections.traversal == Traversal::kOrdered) return 0;
-  const int children = width * static_cast<int>(std::max<std::int64_t>(1, config.bundles.size));
+  if (collections.traversal == Traversal::kOrdered) return 0;
+  const int children = width * static_cast<int>(std::max<std::int64_t>(1, bundles.size));
   return static_cast<std::uint32_t>((children - 1) * (max_depth + 1) + children);
 }
 
 namespace {
 
-CollectionStore::Settings collection_settings(const Config& config, const accel::Accel& accel, float scene_size) {
+CollectionStore::Settings collection_settings(const ResourceSettings& config, const accel::Accel& accel) {
   CollectionStore::Settings s;
   s.block_rays = static_cast<std::uint32_t>(config.packets.rays);
   s.ready = static_cast<std::uint32_t>(config.collections.ready);
   s.capacity_blocks = static_cast<std::uint32_t>(config.collections.capacity / config.packets.rays);
   s.policy = config.collections.policy;
   s.select = config.collections.select;
-  s.scene_size = scene_size;
+  s.scene_size = config.scene_size;
   s.max_depth = accel.max_depth;
   return s;
 }
 
 }  // namespace
 
-Resource::Resource(const Config& config, const accel::Accel& accel, float scene_size, RayStore& store, EventSink* sink)
-    : config_(config),
+Resource::Resource(const ResourceSettings& config, const accel::Accel& accel, RayStore& store,
+                   const ResourceHooks& hooks)
+    : settings_(config),
       accel_(accel),
-      sink_(sink),
-      culls_(sink != nullptr ? sink->cull_counts() : nullptr),
+      hooks_(hooks),
+      culls_(hooks.events != nullptr ? hooks.events->cull_counts() : nullptr),
       ordered_(config.collections.traversal == Traversal::kOrdered),
       single_(config.packets.shapes == PacketShapes::kSingle),
       bounded_(config.collections.when_full == WhenFull::kReserve),
-      floor_blocks_(reserve_blocks(config, accel.width, accel.max_depth)),
+      floor_blocks_(reserve_blocks(config.collections, config.bundles, accel.width, accel.max_depth)),
       store_(store),
-      collections_(collection_settings(config, accel, scene_size)),
+      collections_(collection_settings(config, accel)),
       bundled_(config.bundles.size > 0),
       reformed_(config.bundles.lifetime == BundlesConfig::Lifetime::kReformed),
       rebuilds_(reformed_ || config.bundles.split == BundlesConfig::Split::kBuilder),
-      split_below_(static_cast<float>(config.bundles.split_below.box_size) * scene_size) {
+      split_below_(static_cast<float>(config.bundles.split_below.box_size) * config.scene_size) {
   if (ordered_) stacks_.emplace(store_.slots(), accel.width, accel.max_depth);
-  if (bundled_ && rebuilds_) builder_.emplace(config.bundles, scene_size);
+  if (bundled_ && rebuilds_) builder_.emplace(config.bundles, config.scene_size);
   free_own_bundles();
 }
 
@@ -63,30 +65,31 @@ std::uint32_t Resource::discard() {
   freed_slots_.clear();
   for (std::uint32_t slot = 0; slot < store_.slots(); ++slot) {
     if (ordered_) stacks_->clear(slot);
-    if (transforms_ != nullptr) transforms_->forget(slot);
+    if (hooks_.transforms != nullptr) hooks_.transforms->forget(slot);
   }
   free_own_bundles();
   reserved_blocks_ = rays_held_ = 0;
   return std::exchange(in_flight_, 0);
 }
 
-bool Resource::is_treelet(const Config& config, const accel::Accel& accel, accel::NodeKey key) {
+bool Resource::is_treelet(const ResourceSettings& config, const accel::Accel& accel, accel::NodeKey key) {
   return config.collections.traversal == Traversal::kTreelet &&
-         accel.triangles_below(key) <= static_cast<std::uint64_t>(config.bvh.treelet_triangles);
+         accel.triangles_below(key) <= static_cast<std::uint64_t>(config.treelet_triangles);
 }
 
-std::int32_t Resource::tests_of(const Config& config, const accel::Accel& accel, accel::NodeKey key, int strip_size) {
+std::int32_t Resource::tests_of(const ResourceSettings& config, const accel::Accel& accel, accel::NodeKey key,
+                                int strip_size) {
   // An empty scene's root has no shapes, but its packet must come round all the same.
   return config.packets.shapes == PacketShapes::kStrip || is_treelet(config, accel, key) ? 1 : std::max(1, strip_size);
 }
 
-std::int32_t Resource::initial_tests(const Config& config, const accel::Accel& accel) {
+std::int32_t Resource::initial_tests(const ResourceSettings& config, const accel::Accel& accel) {
   return tests_of(config, accel, accel.root_key(), accel.strip_size(accel.root_key()));
 }
 
 ResourceId Resource::home_of(accel::NodeKey key) const {
-  if (config_.collections.home != Home::kHash) return id();
-  const std::uint32_t resources = static_cast<std::uint32_t>(config_.topology.resources);
+  if (settings_.collections.home != Home::kHash) return id();
+  const std::uint32_t resources = settings_.resources;
   const ResourceId home(static_cast<std::uint32_t>(((key.bits() * 0x9e3779b97f4a7c15ull) >> 33) % resources));
   return home == excluded_ ? ResourceId((home.value + 1) % resources) : home;
 }
@@ -96,8 +99,8 @@ ResourceId Resource::home_of(accel::NodeKey key) const {
 std::size_t Resource::admissible() const {
   constexpr std::size_t kAny = std::size_t{1} << 31;
   if (!bounded_) return kAny;
-  const std::int64_t block_rays = config_.packets.rays;
-  const std::int64_t blocks = config_.collections.capacity / block_rays;
+  const std::int64_t block_rays = settings_.packets.rays;
+  const std::int64_t blocks = settings_.collections.capacity / block_rays;
   // Ordered rays may each end up alone in a block. Otherwise only above half free: what new rays put into the
   // root's collection must never crowd out their children.
   if (ordered_) return static_cast<std::size_t>(std::max<std::int64_t>(0, blocks - rays_held_));
@@ -107,7 +110,7 @@ std::size_t Resource::admissible() const {
 }
 
 void Resource::admit(std::span<const RayId> rays) {
-  const std::size_t block = static_cast<std::size_t>(config_.packets.rays);
+  const std::size_t block = static_cast<std::size_t>(settings_.packets.rays);
   for (std::size_t i = 0; i < rays.size(); i += block)
     collections_.add(accel_.root_key(), 0, 0.0f, rays.subspan(i, std::min(block, rays.size() - i)));
   rays_held_ += static_cast<std::uint32_t>(rays.size());
@@ -121,7 +124,7 @@ std::uint32_t Resource::blocks_needed(accel::NodeKey key, std::uint32_t rays) co
   if (!key.ref.is_inner() || is_treelet(key)) return 0;
   if (single_) return 1;
   return accel_.nodes[key.ref.node()].count *
-         static_cast<std::uint32_t>(std::max<std::int64_t>(1, config_.bundles.size));
+         static_cast<std::uint32_t>(std::max<std::int64_t>(1, settings_.bundles.size));
 }
 
 bool Resource::fits(std::uint32_t needed, std::uint32_t freed) const {
@@ -179,7 +182,7 @@ void Resource::fill(Packet& packet, accel::NodeKey key, std::uint16_t depth, std
   for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0};
   std::fill(packet.owners.begin(), packet.owners.end(), 0);
   // One resource, or collections that stay with their rays: the owner is this one.
-  const bool own = config_.topology.resources == 1 || config_.collections.home == Home::kLocal;
+  const bool own = settings_.resources == 1 || settings_.collections.home == Home::kLocal;
   for (const RayId ray : own ? rays.first(1) : rays) {
     const std::uint32_t owner = store_.layout().owner(ray).value;
     packet.owners[owner / 64] |= std::uint64_t{1} << (owner % 64);

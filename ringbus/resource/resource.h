@@ -8,52 +8,39 @@
 
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
-#include "core/config/config.h"
+#include "core/statistics/bundle_counts.h"
 #include "core/types/workload.h"
 #include "ringbus/packets/events.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/bundle_builder.h"
-#include "ringbus/rays/bundle_counts.h"
 #include "ringbus/rays/ray_store.h"
 #include "ringbus/resource/collections/collection_store.h"
+#include "ringbus/resource/hooks.h"
 #include "ringbus/resource/ray_stacks.h"
-#include "ringbus/resource/transform_account.h"
+#include "ringbus/resource/settings.h"
+#include "ringbus/resource/test_outcome.h"
 
 namespace carousel::ringbus {
 
-/// Collection blocks that must stay free so that draining deepest first cannot run out (DESIGN.md section 4):
-/// a packet retired at each level leaves at most width - 1 more blocks than it took, and one more strip's worth
-/// is in flight.
+/// Collection blocks that must stay free so that draining deepest first cannot run out (DESIGN.md section 4): a packet
+/// retired at each level leaves at most width - 1 more blocks than it took, and one more strip's worth is in flight.
 /// With bundles an ID may become as many at one level as a bundle has rays.
-std::uint32_t reserve_blocks(const Config& config, int width, int max_depth);
-
-/// Takes rays through a whole subtree; for an engine that wants an account of it. Without one the kernels do.
-class SubtreeTracer {
- public:
-  virtual ~SubtreeTracer() = default;
-  virtual void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) = 0;
-};
+std::uint32_t reserve_blocks(const CollectionsConfig& collections, const BundlesConfig& bundles, int width,
+                             int max_depth);
 
 /// A compute resource without a clock: its slice of the rays, its testers and its share of the collections. An
 /// engine decides when each call happens; one thread at a time.
 class Resource {
  public:
-  /// Keeps references. `sink` may be null.
-  Resource(const Config& config, const accel::Accel& accel, float scene_size, RayStore& store, EventSink* sink);
+  /// Keeps references to `accel` and `store`.
+  Resource(const ResourceSettings& settings, const accel::Accel& accel, RayStore& store, const ResourceHooks& hooks);
 
   /// How many tests a new ray waits for at the root.
-  static std::int32_t initial_tests(const Config& config, const accel::Accel& accel);
+  static std::int32_t initial_tests(const ResourceSettings& settings, const accel::Accel& accel);
 
   ResourceId id() const { return store_.owner(); }
-  /// Before the first test. Not owned.
-  void set_subtree_tracer(SubtreeTracer* tracer) { subtree_tracer_ = tracer; }
-  /// Before the first test: whose transforms are counted instead of the kernels'. Not owned.
-  void set_transform_account(TransformAccount* account) { transforms_ = account; }
-  /// Before the first test: rays about which it had to be asked whether something lets them through wait for release()
-  /// in each packet's turn, whatever else becomes of them.
-  void hold_any_hit_rays(bool hold) { hold_any_hit_rays_ = hold; }
   /// Whether `key` is a subtree that is crossed in one visit.
-  bool is_treelet(accel::NodeKey key) const { return is_treelet(config_, accel_, key); }
+  bool is_treelet(accel::NodeKey key) const { return is_treelet(settings_, accel_, key); }
 
   /// How many rays may join the root's collection now, limited by collection storage.
   std::size_t admissible() const;
@@ -67,19 +54,8 @@ class Resource {
   Offer offer(bool partial, Packet& packet);
 
   /// Tests the packet's members that live here and writes the answers into it.
-  void test(Packet& packet);
-  /// What the last test() did, with how many rays, and how many records of rays and bundles it read for that.
-  const IntersectionCounts& last_tests() const { return tests_; }
-  std::size_t last_rays() const { return local_slots_.size(); }
-  std::uint32_t last_reads() const { return reads_; }
-  /// Passes of its bundles through a bundle unit: one a test, or one an edge of a silhouette.
-  std::uint32_t last_bundle_passes() const { return bundle_passes_; }
-  /// A ray that the last test() held, and how often was asked for it.
-  struct AnyHitCall {
-    std::uint32_t slot, times;
-  };
-  std::span<const AnyHitCall> last_any_hit_calls() const { return any_hit_rays_; }
-  /// The answers are there: the ray may complete.
+  TestOutcome test(Packet& packet);
+  /// An any-hit call of the ray in `slot` has been answered: the ray may complete.
   void release(std::uint32_t slot) { add_pending(slot, -1); }
   /// Takes back a packet of its own: hits join the children's collections.
   void retire(Packet& packet);
@@ -111,9 +87,10 @@ class Resource {
     std::uint32_t next_shape = 0, shapes = 0;
   };
 
-  static bool is_treelet(const Config& config, const accel::Accel& accel, accel::NodeKey key);
+  static bool is_treelet(const ResourceSettings& settings, const accel::Accel& accel, accel::NodeKey key);
   /// Tests a ray waits for when it joins `key`: one a packet that will carry it there.
-  static std::int32_t tests_of(const Config& config, const accel::Accel& accel, accel::NodeKey key, int strip_size);
+  static std::int32_t tests_of(const ResourceSettings& settings, const accel::Accel& accel, accel::NodeKey key,
+                               int strip_size);
   ResourceId home_of(accel::NodeKey key) const;
   void free_own_bundles();
   std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const;
@@ -146,18 +123,15 @@ class Resource {
   void retire_spread(Packet& packet);
   void retire_ordered(Packet& packet);
   void record(const Event& event) {
-    if (sink_ != nullptr) [[unlikely]]
-      sink_->record(event);
+    if (hooks_.events != nullptr) [[unlikely]]
+      hooks_.events->record(event);
   }
 
-  const Config& config_;
+  ResourceSettings settings_;
   const accel::Accel& accel_;
-  EventSink* sink_;
+  ResourceHooks hooks_;
   CullCounts* culls_;
-  SubtreeTracer* subtree_tracer_ = nullptr;
-  TransformAccount* transforms_ = nullptr;
   bool ordered_, single_, bounded_;
-  bool hold_any_hit_rays_ = false;
   std::uint32_t floor_blocks_;
   std::optional<ResourceId> excluded_;
   RayStore& store_;

@@ -58,8 +58,8 @@ bool Resource::moved(accel::NodeKey key) const {
 /// Whether bundles are tested as such at the packet's node.
 bool Resource::bundles_go_on(const Packet& packet) const {
   const accel::NodeKey key = packet.key;
-  if (!key.ref.is_inner() || is_treelet(key) || packet.depth > config_.bundles.split_below.depth) return false;
-  if (moved(key) && config_.bundles.at_instances == BundlesConfig::AtInstances::kSplit) return false;
+  if (!key.ref.is_inner() || is_treelet(key) || packet.depth > settings_.bundles.split_below.depth) return false;
+  if (moved(key) && settings_.bundles.at_instances == BundlesConfig::AtInstances::kSplit) return false;
   const accel::Node& node = accel_.nodes[key.ref.node()];
   if (split_below_ > 0 && node.count > 0 && extent(node) < split_below_) return false;
   // A bundle that waits for more tests than its record can count goes on as rays.
@@ -71,7 +71,7 @@ bool Resource::bundles_go_on(const Packet& packet) const {
 /// Whether a bundle, in the node's space, is to be split there by its spread or its silhouette's area: how large a box
 /// its rays fill by the time they have come as far as the node's middle, seen from where they come.
 bool Resource::too_wide(const accel::BundleRecord& bundle, const accel::Node& node) const {
-  const auto& [spread, silhouette_area] = config_.bundles.split_above;
+  const auto& [spread, silhouette_area] = settings_.bundles.split_above;
   if ((spread <= 0 && silhouette_area <= 0) || node.count == 0) return false;
   Aabb box;
   for (int lane = 0; lane < node.count; ++lane) box.extend(accel::child_box(node, lane));
@@ -104,16 +104,17 @@ void Resource::compute_bounds(std::span<const std::uint32_t> rays, std::uint32_t
     bundle.widen(accel_.instances[instance].transform.to_model(record.ray), record.hit.t);
   }
   bundle.count = static_cast<std::uint8_t>(rays.size());
-  if (transforms_ == nullptr) tests_.transforms += rays.size();
+  if (hooks_.transforms == nullptr) tests_.transforms += rays.size();
 }
 
 /// The records of a bundle's rays are read, and the rays brought to where the node is.
 void Resource::charge_reads(std::span<const std::uint32_t> rays, accel::NodeKey key) {
   reads_ += static_cast<std::uint32_t>(rays.size());
   bundles_.touched += rays.size();
-  if (transforms_ == nullptr || !transforms_->moves(key.instance)) return;
+  if (hooks_.transforms == nullptr || !hooks_.transforms->moves(key.instance)) return;
   for (const std::uint32_t slot : rays)
-    if ((store_.record(slot).tag.flags & kRayDone) == 0) bundle_transforms_ += transforms_->needs(slot, key.instance);
+    if ((store_.record(slot).tag.flags & kRayDone) == 0)
+      bundle_transforms_ += hooks_.transforms->needs(slot, key.instance);
 }
 
 /// Puts the rays of the packet's bundles in the place of these, each with a count for the test to come.
@@ -169,7 +170,7 @@ void Resource::add_pending_bundle(std::uint32_t slot, std::int32_t pending_chang
 
 void Resource::test_whole(Packet& packet) {
   const accel::Node& node = accel_.nodes[packet.key.ref.node()];
-  const bool edge_by_edge = config_.bundles.edges == BundlesConfig::Edges::kSerial;
+  const bool edge_by_edge = settings_.bundles.edges == BundlesConfig::Edges::kSerial;
   const std::uint32_t direct = node.direct & packet.lanes,
                       boxes = packet.lanes & ~std::uint32_t{node.direct} & ((1u << node.count) - 1);
   leaving_.clear();
@@ -188,7 +189,7 @@ void Resource::test_whole(Packet& packet) {
       answer.undecided = static_cast<std::uint8_t>(boxes);
     } else {
       const std::uint64_t tests_before = tests_.bundle;
-      answer = accel::test_bundle(accel_, node, boxes, bundle, config_.bundles, tests_);
+      answer = accel::test_bundle(accel_, node, boxes, bundle, settings_.bundles, tests_);
       bundle_passes_ +=
           edge_by_edge && answer.edges > 0 ? answer.edges : static_cast<std::uint32_t>(tests_.bundle - tests_before);
     }
@@ -200,11 +201,11 @@ void Resource::test_whole(Packet& packet) {
     masks_.assign(rays.size(), 0);
     if (answer.undecided != 0 || reformed_ || enters) charge_reads(rays, packet.key);
     if (answer.undecided != 0) {
-      if (hold_any_hit_rays_) any_hit_calls_.assign(rays.size(), 0);
-      accel::test_strip(
-          accel_, packet.key, answer.undecided,
-          {store_.records(), rays.data(), rays.size(), nullptr, hold_any_hit_rays_ ? any_hit_calls_.data() : nullptr},
-          {masks_.data(), packet.nearest, nullptr}, tests_);
+      if (hooks_.hold_any_hit_rays) any_hit_calls_.assign(rays.size(), 0);
+      accel::test_strip(accel_, packet.key, answer.undecided,
+                        {store_.records(), rays.data(), rays.size(), nullptr,
+                         hooks_.hold_any_hit_rays ? any_hit_calls_.data() : nullptr},
+                        {masks_.data(), packet.nearest, nullptr}, tests_);
       hold_back(rays);
     }
     const std::uint8_t together = reformed_ ? 0 : answer.all;

@@ -50,7 +50,7 @@ void Resource::add_pending(std::uint32_t slot, std::int32_t pending_change) {
 void Resource::complete(std::uint32_t slot) {
   accel::finish_record(store_.record(slot), completed_);
   if (ordered_) stacks_->clear(slot);
-  if (transforms_ != nullptr) transforms_->forget(slot);
+  if (hooks_.transforms != nullptr) hooks_.transforms->forget(slot);
   store_.retire(slot);
   freed_slots_.push_back(slot);
 }
@@ -58,23 +58,25 @@ void Resource::complete(std::uint32_t slot) {
 // Before the tests, which may complete rays.
 IntersectionCounts Resource::transforms_of(accel::NodeKey key) {
   IntersectionCounts counts;
-  if (!transforms_->moves(key.instance)) return counts;
+  if (!hooks_.transforms->moves(key.instance)) return counts;
   for (const std::uint32_t slot : local_slots_)
-    if ((store_.record(slot).tag.flags & kRayDone) == 0) counts.transforms += transforms_->needs(slot, key.instance);
-  counts.inversions = counts.transforms > 0 && transforms_->inverts(key.instance);  // one for all rays of the visit
+    if ((store_.record(slot).tag.flags & kRayDone) == 0)
+      counts.transforms += hooks_.transforms->needs(slot, key.instance);
+  counts.inversions =
+      counts.transforms > 0 && hooks_.transforms->inverts(key.instance);  // one for all rays of the visit
   return counts;
 }
 
 /// Where the kernels are to note how often they asked, a member each; null when nobody wants to know.
 std::uint8_t* Resource::any_hit_counters() {
-  if (!hold_any_hit_rays_) return nullptr;
+  if (!hooks_.hold_any_hit_rays) return nullptr;
   any_hit_calls_.assign(local_slots_.size(), 0);
   return any_hit_calls_.data();
 }
 
 /// Gives the rays that asked a count to wait for, before those of the test are taken from them.
 void Resource::hold_back(std::span<const std::uint32_t> slots) {
-  if (!hold_any_hit_rays_) return;
+  if (!hooks_.hold_any_hit_rays) return;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (any_hit_calls_[i] == 0) continue;
     ++store_.record(slots[i]).pending;
@@ -82,7 +84,7 @@ void Resource::hold_back(std::span<const std::uint32_t> slots) {
   }
 }
 
-void Resource::test(Packet& packet) {
+TestOutcome Resource::test(Packet& packet) {
   any_hit_rays_.clear();
   gather_local(packet);
   tests_ = IntersectionCounts{};
@@ -94,7 +96,8 @@ void Resource::test(Packet& packet) {
   const bool whole = bundled_ && bundles_go_on(packet);
   if (!local_bundles_.empty() && !whole) expand_bundles(packet);
   if (seen > 0) {
-    const bool accounted = transforms_ != nullptr && !is_treelet(packet.key);  // a subtree's tracer does it itself
+    const bool accounted =
+        hooks_.transforms != nullptr && !is_treelet(packet.key);  // a subtree's tracer does it itself
     const IntersectionCounts moved = accounted ? transforms_of(packet.key) : IntersectionCounts{};
     if (ordered_)
       test_ordered(packet);
@@ -107,7 +110,7 @@ void Resource::test(Packet& packet) {
       const std::uint64_t of_bundles = whole ? bundle_transforms_ : 0;
       tests_.transforms = moved.transforms + of_bundles;
       tests_.inversions = moved.inversions;
-      if (moved.transforms == 0 && of_bundles > 0) tests_.inversions = transforms_->inverts(packet.key.instance);
+      if (moved.transforms == 0 && of_bundles > 0) tests_.inversions = hooks_.transforms->inverts(packet.key.instance);
     }
   }
   record({.kind = EventKind::kTest,
@@ -119,14 +122,15 @@ void Resource::test(Packet& packet) {
           .tests = tests_,
           .bundles = bundled_ ? &bundles_ : nullptr,
           .members = packet.members});
+  return {tests_, local_slots_.size(), reads_, bundle_passes_, any_hit_rays_};
 }
 
 void Resource::test_spread(Packet& packet) {
   const accel::RayMembers members{store_.records(), local_slots_.data(), local_slots_.size(), culls_,
                                   any_hit_counters()};
   if (is_treelet(packet.key) || !packet.key.ref.is_inner()) {
-    if (is_treelet(packet.key) && subtree_tracer_ != nullptr)
-      subtree_tracer_->trace(packet.key, members, tests_);
+    if (is_treelet(packet.key) && hooks_.subtree_tracer != nullptr)
+      hooks_.subtree_tracer->trace(packet.key, members, tests_);
     else if (is_treelet(packet.key))
       accel::trace_interleaved(accel_, packet.key, members, tests_);
     else
@@ -148,7 +152,7 @@ void Resource::test_spread(Packet& packet) {
   // One shape a packet: a hit child brings as many tests as it has shapes (DESIGN.md section 4).
   const int lane = std::countr_zero(packet.lanes);
   const accel::Node& node = accel_.nodes[packet.key.ref.node()];
-  const std::int32_t below = tests_of(config_, accel_, accel_.child_key(packet.key, lane), node.strip_size[lane]);
+  const std::int32_t below = tests_of(settings_, accel_, accel_.child_key(packet.key, lane), node.strip_size[lane]);
   for (std::size_t i = 0; i < local_slots_.size(); ++i) {
     packet.members[local_members_[i]].mask = masks_[i];
     add_pending(local_slots_[i], (masks_[i] != 0 ? below : 0) - 1);

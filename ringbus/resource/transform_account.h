@@ -7,14 +7,9 @@
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
 #include "core/config/config.h"
+#include "core/statistics/ray_bytes.h"
 
 namespace carousel::ringbus {
-
-/// Bytes of the model-space rays that a resource keeps beside its records (`accuracy.transformed_ray: store`).
-struct TransformedRayBytes {
-  std::uint64_t written = 0, read = 0, peak = 0;
-  friend bool operator==(const TransformedRayBytes&, const TransformedRayBytes&) = default;
-};
 
 /// What bringing a resource's rays to model space costs hardware that follows the configuration: the kernels do it
 /// anew for every strip. One resource's, one thread at a time.

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "core/numeric/latency_histogram.h"
+#include "core/statistics/cache_counts.h"
+#include "core/statistics/ray_bytes.h"
 #include "ringbus/cycle/time/clock.h"
-#include "ringbus/resource/transform_account.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -29,14 +30,6 @@ struct Utilisation {
   Cycle busy = 0;     ///< cycles in which it worked
   Cycle stalled = 0;  ///< it had work and could not do it
   friend bool operator==(const Utilisation&, const Utilisation&) = default;
-};
-
-/// What the stacks of a resource's rays moved, for `shape: independent`.
-struct StackTraffic {
-  std::uint64_t pushed_bytes = 0, popped_bytes = 0;
-  std::uint64_t peak_bytes = 0;      ///< of all its rays at once
-  std::uint64_t ray_peak_bytes = 0;  ///< of one ray
-  friend bool operator==(const StackTraffic&, const StackTraffic&) = default;
 };
 
 struct TileResult {
@@ -65,11 +58,6 @@ struct LinkUse {
   friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
-struct CacheResult {
-  std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0;
-  friend bool operator==(const CacheResult&, const CacheResult&) = default;
-};
-
 /// A resource stopped for good: when it did, when ray control gave it up, and when everything had been drained and rays
 /// began again (0 when all had come back meanwhile).
 struct StopTimes {
@@ -85,7 +73,7 @@ struct CycleResult {
   double steady_spread = 0;       ///< by how much the rates of their halves differ, as a fraction
   std::vector<TileResult> tiles;  ///< by resource
   std::vector<LinkUse> links;
-  std::vector<CacheResult> caches;
+  std::vector<CacheCounts> caches;
   std::uint64_t memory_lines = 0;
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help

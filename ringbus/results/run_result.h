@@ -7,8 +7,8 @@
 #include <stop_token>
 #include <vector>
 
+#include "core/statistics/link_fault_counts.h"
 #include "core/types/ids.h"
-#include "ringbus/faults/link_fault_counts.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/cycle_result.h"

@@ -61,7 +61,7 @@ Icosphere subdivide(const Icosphere& coarse) {
 }
 
 const Icosphere& icosphere(int level) {
-  // Built once per level: a field of spheres asks for the same one many times.
+  // Each level is built once: a field of spheres uses the same one many times.
   thread_local std::vector<Icosphere> levels;
   if (levels.empty()) levels.push_back(icosahedron());
   while (levels.size() <= static_cast<std::size_t>(level)) levels.push_back(subdivide(levels.back()));

@@ -27,8 +27,8 @@ namespace carousel::scene {
 
 namespace {
 
-/// Reads the meshes that instances name (by the file's indices, then those of `spheres`) and renames them to ours, in
-/// the file's order.
+/// Reads the meshes that instances name (by the file's indices, then those of `spheres`) and renumbers them for the
+/// scene, in the file's order.
 void read_used_meshes(MeshReader& reader, DracoReader& draco, std::size_t file_meshes, std::vector<Mesh> spheres,
                       Scene& scene) {
   std::vector<std::optional<MeshId>> ids(file_meshes + spheres.size());

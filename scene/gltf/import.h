@@ -12,8 +12,8 @@
 namespace carousel::scene {
 
 /// Reads a glTF 2.0 file (.gltf or .glb, told apart by content). The scene's sky is black; the caller sets
-/// it. Images that `images` does not want are not even looked for; without it all that a material names are decoded.
-/// Throws SceneError naming file, JSON path and what is wrong, for whatever bytes the file holds.
+/// it. Images that `images` excludes are not opened; without `images` every image that a material names is decoded. For
+/// any contents of the file the function returns a scene or throws a SceneError that names file, JSON path and error.
 Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn = {}, const ImageChoice& images = {});
 
 /// The same from memory; `name` stands for the file in messages. Buffers and images must be embedded.

@@ -11,7 +11,7 @@
 
 namespace carousel::scene {
 
-/// What one primitive brings along; empty where the attribute is absent.
+/// The attributes of one primitive; empty where an attribute is absent.
 struct MeshReader::Attributes {
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uv0, uv1;

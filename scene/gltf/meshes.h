@@ -11,10 +11,10 @@
 
 namespace carousel::scene {
 
-/// Turns glTF meshes into ours.
+/// Turns glTF meshes into scene::Mesh.
 class MeshReader {
  public:
-  /// `default_material` stands where a primitive names none.
+  /// `default_material` is the material of primitives that name none.
   MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
              ImportBudget& budget, MaterialId default_material);
   ~MeshReader();

@@ -30,7 +30,7 @@ class NodeReader {
   std::vector<Mesh> take_spheres() { return std::move(spheres_); }
 
   void walk(const std::vector<int>& roots) {
-    // A stack of our own: a chain of nodes may be as long as the file.
+    // An explicit stack instead of recursion: a chain of nodes may be as long as the file.
     struct Visit {
       int node;
       DMat4 parent;

@@ -11,7 +11,7 @@
 
 namespace carousel::scene {
 
-/// T * R * S in double; the quaternion (x, y, z, w) is normalised first. Nothing when it has no direction.
+/// T * R * S in double; the quaternion (x, y, z, w) is normalised first. Empty if it has no direction.
 std::optional<DMat4> compose_trs(const DVec3& translation, const double (&rotation)[4], const DVec3& scale);
 
 /// The local transform of a node. Throws SceneError at `path`: a matrix that is no affine map, a quaternion
@@ -21,8 +21,8 @@ DMat4 node_transform(const GltfDocument& document, const tinygltf::Node& node, c
 /// Rounds to single precision, once. Throws SceneError at `path` when an entry is not finite there.
 Affine rounded(const GltfDocument& document, const DMat4& world, const std::string& path);
 
-/// Right, up and back of something that looks along its own -z (cameras, lights), scale and mirroring taken
-/// out. Nothing when the map flattens the view direction.
+/// Right, up and back of an object that looks along its own -z (cameras, lights), without scale and mirroring. Empty if
+/// the map flattens the view direction.
 struct Frame {
   Vec3 right, up, back;
 };

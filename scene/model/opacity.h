@@ -7,17 +7,17 @@
 
 namespace carousel::scene {
 
-/// Alphas this near are equal: interpolation of the vertices' and filtering of the texels' may round by less.
+/// Alphas that differ by less count as equal: interpolation between vertices and filtering of texels round by less.
 inline constexpr float kAlphaTolerance = 0x1p-20f;
 
-/// Which triangles may let rays through: those of which core/types/any_hit.h has to be asked. A cut-out whose alpha is
-/// nowhere below its cutoff and a veil whose alpha is 1 everywhere are solid, whatever their mode says.
+/// Tells which triangles may be non-opaque and so need the any-hit call (core/types/any_hit.h). An alpha-masked surface
+/// whose alpha is nowhere below its cutoff, and an alpha-blended one whose alpha is 1 everywhere, are opaque.
 class Opacity {
  public:
   /// Looks through the images that such materials read for their least alpha. Keeps a reference to `scene`.
   explicit Opacity(const Scene& scene);
 
-  /// True if some material does, so that somebody has to be there to be asked.
+  /// True if some material may be non-opaque, so that an AnyHit has to be present.
   bool any() const { return any_; }
   /// Precondition: triangle < mesh.triangle_count(). Any thread.
   bool may_be_non_opaque(const Mesh& mesh, std::uint32_t triangle) const;

@@ -21,7 +21,7 @@ struct Image {
 
 enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
 
-/// An image with its sampler. Whether the RGB channels are sRGB-encoded depends on the use, not the image.
+/// An image with its sampler. The use of an image, not the image, decides if its RGB channels are sRGB-encoded.
 struct Texture {
   ImageId image;
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
@@ -63,7 +63,7 @@ struct Material {
   struct Volume {                                 ///< KHR_materials_volume
     float thickness = 0;                          ///< 0: a thin wall, which does not refract
     std::optional<TextureUse> thickness_texture;  ///< G, linear; rays measure the way themselves
-    Vec3 attenuation_color{1};                    ///< what is left after attenuation_distance
+    Vec3 attenuation_color{1};                    ///< share of the light left after attenuation_distance
     float attenuation_distance = std::numeric_limits<float>::infinity();  ///< scene units
   } volume;
   struct Specular {  ///< KHR_materials_specular

@@ -24,8 +24,8 @@ Bsdf::Bsdf(const MaterialPoint& material, const Vec3& wo) : wo_(wo) {
   const GgxAlbedo& table = GgxAlbedo::table();
   const GgxAlbedo::Pair view = table.directional(wo.z, alpha_), mean = table.average(alpha_);
   diffuse_ = albedo * (kInvPi * (1.0f - view.dielectric) / std::max(1.0f - mean.dielectric, kLeastShare));
-  // Light between several microfacets meets Fresnel's factor several times: not linear in F0, so the two
-  // kinds of surface are mixed after, not before.
+  // Light between several microfacets meets Fresnel's factor several times. The result is not linear in F0, so metal
+  // and dielectric are mixed afterwards, not before.
   auto scattered_back = [&](const Vec3& f0) {
     const Vec3 fresnel = (20.0f * f0 + 1.0f) * (1.0f / 21.0f);  // Schlick's, averaged over the cosine
     return fresnel * fresnel * mean.metal / (Vec3{1} - fresnel * (1.0f - mean.metal));
@@ -38,7 +38,7 @@ Bsdf::Bsdf(const MaterialPoint& material, const Vec3& wo) : wo_(wo) {
   const float specular = luminance(f0_ + (Vec3{1} - f0_) * weight) * view.metal;
   const float matte = luminance(albedo) * (1.0f - view.dielectric) + luminance(returned) * (1.0f - view.metal);
   const float all = specular + matte;
-  // Never so little that a bright lobe is left to rare samples of the other.
+  // The probability never gets so small that a bright lobe depends on rare samples of the other.
   specular_share_ = all > 0.0f ? std::clamp(specular / all, 0.1f, 0.9f) : 0.5f;
 }
 

@@ -4,16 +4,15 @@
 
 namespace carousel::shading {
 
-/// A material at one point, textures and vertex colours applied. Colours are linear.
+/// A material at one point, with textures and vertex colours applied. Colours are linear.
 struct MaterialPoint {
   Vec3 base_color{1};
   float metallic = 0, roughness = 1;
 };
 
-/// The roughness of a surface that is seen by way of a wide lobe: at least 0.55. A narrow lobe there would
-/// focus light onto rare paths (caustics) and the picture be full of sparks; blurring it, where nobody looks
-/// at it directly, is the "regularisation" of M. Pharr, W. Jakob, G. Humphreys, "Physically based
-/// rendering", 4th edition, section 14.5.
+/// The roughness of a surface that is seen by way of a wide lobe: at least 0.55. A narrow lobe there would focus light
+/// onto rare paths (caustics), which show as bright specks. The lobe is blurred where it is not seen directly: the
+/// "regularisation" of M. Pharr, W. Jakob, G. Humphreys, "Physically based rendering", 4th edition, section 14.5.
 float widened_roughness(float roughness);
 
 /// f * cos of the incoming direction, and the density with which sample() chooses that direction.
@@ -23,10 +22,10 @@ struct BsdfValue {
 };
 
 /// glTF's metallic-roughness surface seen from one direction: a GGX lobe over a diffuse base. Local
-/// coordinates, z is the shading normal on the viewer's side; directions are unit and point away. Reciprocal,
-/// and reflects what arrives but for the base colour: light that the single-scattering lobe loses between
-/// microfacets comes back as a diffuse-like lobe (Kulla, Conty 2017), and the base gets what the dielectric
-/// coat lets through (C. Kelemen, L. Szirmay-Kalos, "A microfacet based coupled specular-matte BRDF model",
+/// coordinates, z is the shading normal on the viewer's side; directions are unit and point away. The function is
+/// reciprocal, and conserves energy except for the base colour: light that the single-scattering lobe loses between
+/// microfacets returns as a diffuse-like lobe (Kulla, Conty 2017), and the base receives the light that the dielectric
+/// coat transmits (C. Kelemen, L. Szirmay-Kalos, "A microfacet based coupled specular-matte BRDF model",
 /// Eurographics 2001).
 class Bsdf {
  public:
@@ -35,14 +34,14 @@ class Bsdf {
 
   /// Zero for wi.z <= 0.
   BsdfValue evaluate(const Vec3& wi) const;
-  /// A direction with the density that evaluate() reports; wi.z may come out <= 0, then it carries nothing.
+  /// A direction with the density that evaluate() reports. If its z is <= 0, it carries no light.
   Vec3 sample(float lobe, const Vec2& u) const;
   /// True if sample() with this `lobe` spreads too widely to show an image in it.
   bool is_wide(float lobe) const;
 
  private:
   Vec3 wo_, f0_;
-  Vec3 diffuse_;   // base albedo / pi, times what the view direction lets through
+  Vec3 diffuse_;   // base albedo / pi, times the share transmitted for the view direction
   Vec3 multiple_;  // the lobe of light reflected several times, likewise
   float alpha_;
   float specular_share_;  // probability of sampling the GGX lobe

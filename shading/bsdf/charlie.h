@@ -1,7 +1,7 @@
 #pragma once
 
-// The sheen of cloth: A. C. Estevez, C. Kulla, "Production friendly microfacet sheen BRDF", SIGGRAPH course, 2017:
-// a distribution of fibres that stand up, equation 2, and their masking, equations 3 and 4. Local coordinates.
+// The sheen of cloth: A. C. Estevez, C. Kulla, "Production friendly microfacet sheen BRDF", SIGGRAPH course, 2017.
+// Equation 2 is the distribution of upright fibres, equations 3 and 4 are their masking. Coordinates are local.
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,8 @@
 
 namespace carousel::shading {
 
-/// Below this the fitted masking lets the lobe return more light than arrives at grazing directions: 26 % more at
-/// roughness 0.15 and cosine 0.02.
+/// Below this roughness the lobe with the fitted masking returns more light than arrives at grazing directions: 26 %
+/// more at roughness 0.15 and cosine 0.02.
 inline constexpr float kMinSheenRoughness = 0.25f;
 
 inline float charlie_alpha(float roughness) {

@@ -9,8 +9,8 @@ namespace carousel::shading {
 
 namespace {
 
-/// Midpoints over the half of the hemisphere that its mirror image repeats. Cosines are squared: the lobe lives at the
-/// horizon.
+/// Midpoint rule over one half of the hemisphere; the other half is its mirror image. Cosines are squared, since the
+/// lobe is strongest at the horizon.
 float integrate(float cos_theta, float alpha) {
   constexpr int kPolar = 48, kAround = 24;
   const Vec3 wo{std::sqrt(std::max(0.0f, 1.0f - cos_theta * cos_theta)), 0.0f, cos_theta};

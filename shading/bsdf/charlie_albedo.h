@@ -4,7 +4,7 @@
 
 namespace carousel::shading {
 
-/// Share of light that white sheen sends back, over direction and roughness: what the layers below are denied.
+/// Share of light that white sheen reflects, over direction and roughness. The layers below do not receive this share.
 class CharlieAlbedo {
  public:
   /// The one table; computed on first use (some 100 ms), then read-only. Any thread.

@@ -15,7 +15,8 @@ inline float f0_of_eta(float eta) {
   return r * r;
 }
 
-/// What happens to light at a smooth boundary: `eta` is the index behind over the index before. A. J. Fresnel, 1823.
+/// Reflection and refraction at a smooth boundary: `eta` is the index behind over the index before. A. J. Fresnel,
+/// 1823.
 struct Refraction {
   float reflected = 1;  ///< share, unpolarised; 1 beyond the critical angle
   float cosine = 0;     ///< of the refracted direction, positive; 0 beyond the critical angle
@@ -33,7 +34,8 @@ inline Refraction refraction(float cos_incident, float eta) {
   return r;
 }
 
-/// Where light from `w` goes behind a boundary of normal `h`, both unit and on one side; `cosine` as above.
+/// The refracted direction of light from `w` behind a boundary of normal `h`, both unit and on one side; `cosine` as
+/// above.
 inline Vec3 refract(const Vec3& w, const Vec3& h, float eta, float cosine) {
   return (glm::dot(w, h) / eta - cosine) * h - w * (1.0f / eta);
 }

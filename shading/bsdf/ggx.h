@@ -15,13 +15,13 @@
 
 namespace carousel::shading {
 
-/// Below this a lobe is as good as a mirror, and its peak (1 / (pi alpha^2)) still harmless in float.
+/// At this alpha a lobe is as good as a mirror, and its peak (1 / (pi alpha^2)) still far from float's limits.
 inline constexpr float kMinAlpha = 1e-3f;
 
-/// From here on a lobe spreads too widely to show an image in it.
+/// From this alpha on a lobe spreads too widely to show an image in it.
 inline constexpr float kWideAlpha = 0.3f;
 
-/// What is divided by where a share that a mirror does not lose would be 0 / 0.
+/// The least divisor of a lost share: a mirror loses nothing, and the share would be 0 / 0.
 inline constexpr float kLeastShare = 1e-6f;
 
 /// Reflectance of glTF's dielectrics at normal incidence: index of refraction 1.5.
@@ -45,7 +45,7 @@ inline float ggx_lambda(const Vec3& w, float alpha) {
   return 0.5f * (std::sqrt(1.0f + alpha * alpha * tan2) - 1.0f);
 }
 
-/// F. Schlick, "An inexpensive BRDF model", Eurographics 1994: the part that F0 is lerped with to 1.
+/// F. Schlick, "An inexpensive BRDF model", Eurographics 1994: the weight of the interpolation from F0 to 1.
 inline float schlick_weight(float cos_theta) {
   const float m = std::clamp(1.0f - cos_theta, 0.0f, 1.0f);
   return (m * m) * (m * m) * m;

@@ -20,7 +20,7 @@ Integral integrate_albedo(float cos_theta, float alpha) {
   Integral sum;
   for (int i = 0; i < kStrata; ++i) {
     for (int j = 0; j < kStrata; ++j) {
-      // Closer together where microfacets are seen edge-on: there masking changes fastest.
+      // Samples stand closer together where microfacets are seen edge-on, since masking changes fastest there.
       const float v = 1.0f - (float(j) + 0.5f) / kStrata, stretch = 2.0f * v;
       const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};  // the other half is this one's mirror image
       const Vec3 h = sample_visible_normal(wo, alpha, u);
@@ -45,7 +45,7 @@ GgxAlbedo::Split lerp(const GgxAlbedo::Split& a, const GgxAlbedo::Split& b, floa
   return {a.full + t * (b.full - a.full), a.schlick + t * (b.schlick - a.schlick)};
 }
 
-/// Where `x` of 0 to 1 falls between the entries of a row.
+/// Position of `x`, 0 to 1, between the entries of a row.
 template <class Row>
 auto between(const Row& row, float x) {
   const float scaled = std::clamp(x, 0.0f, 1.0f) * float(row.size() - 1);

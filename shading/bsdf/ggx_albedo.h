@@ -4,17 +4,18 @@
 
 namespace carousel::shading {
 
-/// How much light one bounce between GGX microfacets returns, tabulated over direction and roughness. The
-/// rest is what the single-scattering lobe loses; bsdf.h gives it back: C. Kulla, A. Conty, "Revisiting
-/// physically based shading at Imageworks", SIGGRAPH course, 2017.
+/// The share of light that one bounce between GGX microfacets returns, tabulated over direction and roughness. The
+/// single-scattering lobe loses the rest, and bsdf.h adds it again: C. Kulla, A. Conty, "Revisiting physically based
+/// shading at Imageworks", SIGGRAPH course, 2017.
 class GgxAlbedo {
  public:
   /// The one table; computed on first use (a few milliseconds), then read-only. Any thread.
   static const GgxAlbedo& table();
 
   struct Pair {
-    float metal = 0;       ///< F = 1: the albedo of the bare lobe
-    float dielectric = 0;  ///< F0 = 0.04, what it loses given back: what a diffuse base below is denied
+    float metal = 0;  ///< F = 1: the albedo of the bare lobe
+    float dielectric =
+        0;  ///< F0 = 0.04 with the lost energy returned; a diffuse base below does not receive this share
   };
   /// Share of light arriving from (or leaving to) direction cosine `cos_theta` that is reflected.
   Pair directional(float cos_theta, float alpha) const;
@@ -30,7 +31,7 @@ class GgxAlbedo {
 
  private:
   GgxAlbedo();
-  // Nodes are even in sqrt(cosine) and in sqrt(alpha): both change fastest near 0.
+  // Nodes are evenly spaced in sqrt(cosine) and in sqrt(alpha), since the albedo changes fastest near 0.
   static constexpr int kSize = 32;
   using Row = std::array<Pair, kSize>;
   static Pair at(const Row& row, float cos_theta);

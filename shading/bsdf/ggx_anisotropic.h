@@ -25,7 +25,7 @@ inline float ggx_lambda(const Vec3& w, const Vec2& alpha) {
   return 0.5f * (std::sqrt(1.0f + (x * x + y * y) / (w.z * w.z)) - 1.0f);
 }
 
-/// As the isotropic one.
+/// Samples as the isotropic function does.
 inline Vec3 sample_visible_normal(const Vec3& wo, const Vec2& alpha, const Vec2& u) {
   const Vec3 stretched = glm::normalize(Vec3{wo.x * alpha.x, wo.y * alpha.y, wo.z});
   const SinCos phi = sin_cos_turns(u.x);

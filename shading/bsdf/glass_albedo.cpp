@@ -25,7 +25,7 @@ Shares lerp(const Shares& a, const Shares& b, float t) {
           a.through_w + t * (b.through_w - a.through_w)};
 }
 
-/// Where one facet after the other sends the light of `wo`.
+/// Sums the light of `wo` over facets, by where each facet sends it.
 class FacetSum {
  public:
   FacetSum(const Vec3& wo, const Vec2& alpha, float eta)
@@ -69,7 +69,7 @@ Shares integrate(float cos_theta, float alpha, float eta) {
   FacetSum sum(wo, Vec2{alpha}, eta);
   for (int i = 0; i < kStrata; ++i) {
     for (int j = 0; j < kStrata; ++j) {
-      // Closer together where microfacets are seen edge-on: there masking and refraction change fastest.
+      // Samples stand closer together where microfacets are seen edge-on: masking and refraction change fastest there.
       const float v = 1.0f - (float(j) + 0.5f) / kStrata, stretch = 2.0f * v;
       const Vec2 u{0.5f * (float(i) + 0.5f) / kStrata, 1.0f - v * v};  // the other half is this one's mirror image
       sum.add(sample_visible_normal(wo, alpha, u), stretch / (kStrata * kStrata));

@@ -17,15 +17,15 @@ namespace carousel::shading {
 
 namespace {
 
-constexpr Vec3 kNowhere{1, 0, 0};  // along the surface: carries nothing
+constexpr Vec3 kNowhere{1, 0, 0};  // along the surface, so that it carries no light
 
-/// Share of light lost between microfacets that comes back by further ones: C. Kulla, A. Conty, 2017.
+/// The share of light lost between microfacets that further microfacets return: C. Kulla, A. Conty, 2017.
 Vec3 returned_share(const Vec3& f0, float f90, float average) {
   const Vec3 fresnel = f0 + (Vec3{f90} - f0) * (1.0f / 21.0f);
   return fresnel * fresnel * average / (Vec3{1} - fresnel * (1.0f - average));
 }
 
-/// Of the lobe of single scattering; two roughnesses are too many for GgxAlbedo's table.
+/// Albedo of the single-scattering lobe; GgxAlbedo's table has one roughness only.
 GgxAlbedo::Split single_split(const Vec3& wo, const Vec2& alpha) {
   if (alpha.x == alpha.y) return GgxAlbedo::table().split(wo.z, alpha.x);
   const float lambda_o = ggx_lambda(wo, alpha);
@@ -56,7 +56,7 @@ InterfaceBsdf<kTransmits>::InterfaceBsdf(const InterfacePoint& point, const Vec3
     opaque_lobes();
 }
 
-/// Everything but refraction, thin walls included: the lobes are those of Bsdf with another Fresnel factor.
+/// Evaluates everything but refraction, thin walls included: the lobes are those of Bsdf with another Fresnel factor.
 template <bool kTransmits>
 void InterfaceBsdf<kTransmits>::opaque_lobes() {
   const MaterialPoint& m = point_.material;
@@ -96,8 +96,8 @@ void InterfaceBsdf<kTransmits>::glass_lobes() {
   const float dielectric = 1.0f - m.metallic;
   const Vec3& f0 = point_.dielectric_f0;
   const float f90 = point_.dielectric_f90;
-  // What the base takes is what the boundary does not send up: between the table's nodes at the critical angle that
-  // would be wrong by a tenth.
+  // The base could receive all that the boundary does not reflect, but between the table's nodes at the critical angle
+  // that would be wrong by a tenth.
   const bool table_will_do = !anisotropic_ && (point_.transmission == 1.0f || point_.eta > 1.0f);
   const GlassAlbedo::Shares s =
       table_will_do ? point_.glass->directional(wo_.z, point_.alpha.x) : glass_shares(wo_, point_.alpha, point_.eta);
@@ -128,7 +128,7 @@ void InterfaceBsdf<kTransmits>::choose_shares(const Vec3& single, const Vec3& ma
   const float all = specular + above + below;
   if (!(all > 0.0f)) return;
   interface_share_ = specular / all;
-  // As in Bsdf; clear glass has next to nothing but its boundary, and needs no samples of the rest.
+  // As in Bsdf. Clear glass consists of little but its boundary, and needs no samples of the other lobes.
   if (interface_share_ < 0.99f) interface_share_ = std::clamp(interface_share_, 0.1f, 0.9f);
   const float rest = above + below;
   above_share_ = rest > 0.0f ? (1.0f - interface_share_) * (above / rest) : 1.0f - interface_share_;
@@ -234,7 +234,7 @@ Vec3 InterfaceBsdf<kTransmits>::sample(float lobe, const Vec2& u) const {
       return wi.z < 0.0f ? wi : kNowhere;
     }
   }
-  // What a microfacet sends to the wrong side must not be taken for the other lobe's.
+  // Light that a microfacet sends to the wrong side must not be counted for the other lobe.
   return mirrored.z > 0.0f ? mirrored : kNowhere;
 }
 

@@ -14,8 +14,8 @@ namespace carousel::shading {
 
 namespace {
 
-/// What the eye's three sensitivities, Gaussians in the Fourier domain, make of a path difference; `shift` is the phase
-/// of each RGB channel in turns, which the fit takes for X, Y and Z alike.
+/// The response of the eye's three sensitivities, Gaussians in the Fourier domain, to a path difference; `shift` is the
+/// phase of each RGB channel in turns, which the fit takes for X, Y and Z alike.
 Vec3 sensitivity(float path_nm, const Vec3& shift) {
   struct Gaussian {
     float height, position, variance;
@@ -23,7 +23,7 @@ Vec3 sensitivity(float path_nm, const Vec3& shift) {
   constexpr Gaussian kFits[4]{{5.4856e-13f, 1.6810e+06f, 4.3278e+09f},
                               {4.4201e-13f, 1.7953e+06f, 9.3046e+09f},
                               {5.2481e-13f, 2.2084e+06f, 6.6121e+09f},
-                              {9.7470e-14f, 2.2399e+06f, 4.5282e+09f}};  // X has a second one
+                              {9.7470e-14f, 2.2399e+06f, 4.5282e+09f}};  // X has a second Gaussian
   const float path = path_nm * 1e-9f;
   const float phase = 2.0f * kPi * path;
   const auto term = [&](const Gaussian& g, float turns) {
@@ -41,7 +41,7 @@ Vec3 sensitivity(float path_nm, const Vec3& shift) {
 }  // namespace
 
 Vec3 film_reflectance(float cos_theta, float film_ior, float thickness_nm, const Vec3& base_f0) {
-  // A film that thins out to nothing must not leave its own boundary behind.
+  // As the film's thickness goes to 0, its boundary must vanish as well.
   const float fade = std::clamp(thickness_nm / 0.03f, 0.0f, 1.0f);
   const float ior = 1.0f + (film_ior - 1.0f) * (fade * fade * (3.0f - 2.0f * fade));
   const float sine2 = (1.0f - cos_theta * cos_theta) / (ior * ior);

@@ -15,7 +15,8 @@ namespace carousel::shading {
 
 namespace {
 
-/// Enough for a layer's own light not to be left to rare samples of others; none for a layer that is not there.
+/// A sampling weight large enough that a layer's own light does not depend on rare samples of the other lobes; 0 for an
+/// absent layer.
 float share_of(float albedo) {
   return albedo > 0.0f ? std::clamp(albedo, 0.1f, 0.4f) : 0.0f;
 }
@@ -77,10 +78,10 @@ bool Layers::sample(float& lobe, const Vec2& u, Vec3& wi) const {
   if (coat) {
     const Vec3 h = sample_visible_normal(coat_wo_, coat_alpha_, u);
     wi = ShadingBasis(point_.coat_normal).to_world(2.0f * glm::dot(coat_wo_, h) * h - coat_wo_);
-    if (!(wi.z > 0.0f)) wi = {1, 0, 0};  // must not be taken for the base's light from below
+    if (!(wi.z > 0.0f)) wi = {1, 0, 0};  // a direction below must not be counted as the base's transmitted light
     return true;
   }
-  const SinCos phi = sin_cos_turns(u.y);  // evenly over the hemisphere: the lobe lives at the horizon
+  const SinCos phi = sin_cos_turns(u.y);  // uniform over the hemisphere, since the lobe is strongest at the horizon
   const float sine = std::sqrt(std::max(0.0f, 1.0f - u.x * u.x));
   wi = {sine * phi.cos, sine * phi.sin, u.x};
   return true;

@@ -8,7 +8,7 @@
 
 namespace carousel::shading {
 
-/// Clearcoat and sheen at one point, directions local to the shading normal.
+/// Clearcoat and sheen at one point; directions are local to the shading normal.
 struct LayerPoint {
   float coat = 0, coat_roughness = 0;
   Vec3 coat_normal{0, 0, 1};
@@ -16,14 +16,14 @@ struct LayerPoint {
   float sheen_roughness = 0;
 };
 
-/// What a layer sends back by itself, and what of the light from `wo` it lets the layers below have.
+/// The light that the layers reflect, and the share of the light from `wo` that they pass to the base below.
 class Layers {
  public:
   Layers(const LayerPoint& point, const Vec3& wo);
 
-  /// Adds the layers' own light to `value`, which is that of all below.
+  /// Adds the layers' own light to `value`, which is the light of everything below them.
   void add(const Vec3& wi, BsdfValue& value) const;
-  /// True, with a direction in `wi`, if `lobe` falls to a layer; else `lobe` is spread over [0, 1) again.
+  /// True, with a direction in `wi`, if `lobe` chooses a layer; otherwise `lobe` is rescaled to [0, 1).
   bool sample(float& lobe, const Vec2& u, Vec3& wi) const;
   bool is_wide(float& lobe, bool& wide) const;
 
@@ -38,10 +38,10 @@ class Layers {
   float coat_share_ = 0, sheen_share_ = 0;  // probabilities
 };
 
-/// glTF's clearcoat over sheen over any base. A layer takes from what lies below the share it reflects towards the
-/// viewer, whatever the light's direction (Khronos, KHR_materials_clearcoat and KHR_materials_sheen, "layering"): so
-/// no light is lost or made, and a path that starts at the camera is right, but the whole is not reciprocal, though
-/// each layer is. With weights of 0 this is the base to the bit.
+/// glTF's clearcoat over sheen over any base. A layer dims everything below by the share that it reflects towards the
+/// viewer, for any direction of the light (Khronos, KHR_materials_clearcoat and KHR_materials_sheen, "layering"). So
+/// energy is conserved and a path that starts at the camera is right, but the whole is not reciprocal, though each
+/// layer is. With weights of 0 the result equals that of the base to the bit.
 template <class Base>
 class LayeredBsdf {
  public:

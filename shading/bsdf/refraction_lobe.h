@@ -1,8 +1,8 @@
 #pragma once
 
 // Light through a rough boundary: B. Walter, S. Marschner, H. Li, K. Torrance, "Microfacet models for refraction
-// through rough surfaces", EGSR 2007, equations 16, 17 and 21. Radiance over the square of the index of refraction is
-// what rays carry here: nothing changes it on the way through, and a path that leaves again is right as it is.
+// through rough surfaces", EGSR 2007, equations 16, 17 and 21. Rays carry radiance over the square of the index of
+// refraction here: refraction does not change this quantity, so a path that leaves the volume again needs no factor.
 
 #include <cmath>
 
@@ -34,7 +34,7 @@ inline ThroughValue refracted_value(const Vec3& wo, const Vec3& wi, const Vec2& 
   return {base / (1.0f + lambda_o + ggx_lambda(wi, alpha)), base / (1.0f + lambda_o), h};
 }
 
-/// A thin wall: both of its boundaries undo each other's refraction, and light goes on as if mirrored and put through.
+/// A thin wall: its two boundaries undo each other's refraction, and light goes on as if reflected and then flipped.
 inline ThroughValue thin_value(const Vec3& wo, const Vec3& wi, const Vec2& alpha) {
   const Vec3 mirrored{wi.x, wi.y, -wi.z};
   const Vec3 sum = wo + mirrored;

@@ -7,7 +7,7 @@ namespace carousel::shading {
 
 namespace {
 
-/// Of two numbers that follow each other in Fibonacci's sequence.
+/// The lattice of two successive Fibonacci numbers.
 template <std::size_t kPoints, std::size_t kBefore>
 std::array<LatticePoint, kPoints> fibonacci_lattice() {
   std::array<LatticePoint, kPoints> points;

@@ -1,10 +1,10 @@
 #pragma once
 
-// Integrals over the microfacet normals that are visible from one direction, for what has too many parameters for a
-// table: a Fibonacci lattice (I. Sloan, S. Joe, "Lattice methods for multiple integration", 1994, section 5.1), whose
-// points stand closer together where facets are seen edge-on, since there masking changes fastest. Against
-// 9,216 points the albedo of any two roughnesses, cosine 0.03 to 1, was off by 0.07 % in the mean and 0.5 % at most
-// with 144 of them. Total reflection begins so suddenly that it wants 610.
+// Integrals over the microfacet normals that are visible from one direction, for integrands with too many parameters
+// for a table. The points are a Fibonacci lattice (I. Sloan, S. Joe, "Lattice methods for multiple integration", 1994,
+// section 5.1), closer together where facets are seen edge-on, since masking changes fastest there. With 144 points the
+// albedo of any two roughnesses, cosine 0.03 to 1, differed from that of 9,216 points by 0.07 % in the mean and 0.5 %
+// at most. Total reflection begins so suddenly that it needs 610.
 
 #include <algorithm>
 #include <cmath>

@@ -18,14 +18,15 @@ class Film {
   /// Adds one path's radiance, in fixed point, each channel within +-kFixedPointMax. Any thread.
   void add(std::uint32_t pixel, std::int64_t r, std::int64_t g, std::int64_t b) {
     std::atomic<std::int64_t>* p = &sums_[3 * std::size_t{pixel}];
-    // Relaxed: sums are read when the frame is done, and whoever joins the workers orders that.
+    // Relaxed: the sums are read when the frame is done, and joining the workers orders these additions before the
+    // reads.
     p[0].fetch_add(r, std::memory_order_relaxed);
     p[1].fetch_add(g, std::memory_order_relaxed);
     p[2].fetch_add(b, std::memory_order_relaxed);
   }
 
-  /// Mean over the samples, row-major from the top left, 3 floats a pixel. A frame still being rendered gives
-  /// what has been committed.
+  /// Mean over the samples, row-major from the top left, 3 floats a pixel. While a frame is being rendered, the sum of
+  /// the paths committed so far.
   std::vector<float> linear_rgb() const;
 
   std::uint32_t width() const { return width_; }

@@ -18,7 +18,7 @@ namespace carousel::shading {
 
 namespace {
 
-/// Encodes in memory, so that AtomicFile can do the writing. `format` is a file extension.
+/// Encodes in memory; AtomicFile writes the result. `format` is a file extension.
 void write(const std::filesystem::path& path, const std::string& format, const OIIO::ImageSpec& spec,
            OIIO::TypeDesc type, const void* pixels) {
   auto fail = [&](const std::string& why) { throw FileError(fmt::format("cannot encode {}: {}", path.string(), why)); };

@@ -6,14 +6,14 @@
 
 namespace carousel::shading {
 
-// Both write whole files or nothing (core/system/atomic_file.h), whatever the extension of `path` is. `rgb` is
-// linear, row-major from the top left, 3 * width * height floats. Throw FileError.
+// Both functions write the whole file or nothing (core/system/atomic_file.h), for any extension of `path`. `rgb` is
+// linear, row-major from the top left, 3 * width * height floats. Both throw FileError.
 
-/// For looking at: exposure 1, tone_curve(), sRGB, 8 bit.
+/// Writes a picture for display: exposure 1, tone_curve(), sRGB, 8 bit.
 void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                std::span<const float> rgb);
 
-/// For calculating with: the linear values as 32-bit float, losslessly compressed.
+/// Writes a picture for computation: the linear values as 32-bit float, losslessly compressed.
 void write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                std::span<const float> rgb);
 

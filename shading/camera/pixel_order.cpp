@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t kTile = 8;
 
-/// Every second bit of 6, packed.
+/// Packs every second of 6 bits.
 std::uint32_t even_bits(std::uint32_t z) {
   return (z & 1) | (z >> 1 & 2) | (z >> 2 & 4);
 }

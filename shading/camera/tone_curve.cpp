@@ -9,7 +9,7 @@
 namespace carousel::shading {
 
 Vec3 tone_curve(const Vec3& radiance) {
-  constexpr float kF90 = 0.04f;          // what a dielectric's reflection adds; taken off the toe
+  constexpr float kF90 = 0.04f;          // added by a dielectric's reflection; subtracted from the toe
   constexpr float kStart = 0.8f - kF90;  // where compression begins
   constexpr float kDesaturation = 0.15f;
   Vec3 color = glm::max(radiance, Vec3{0});

@@ -1,179 +1,40 @@
 #include "shading/effects/effects_plan.h"
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "shading/math/luminance.h"
 #include "shading/path/path_pool.h"
-#include "shading/surface/material_effects.h"
-#include "shading/surface/surface.h"
+#include "shading/surface/material_properties.h"
 
 namespace carousel::shading {
 
 namespace {
 
 using scene::Material;
+using Choice = ShadingConfig::Effects::Choice;
 
-bool is_of_materials(Effect effect) {
-  return effect <= Effect::kUnlit && effect != Effect::kVertexColor;
+bool is_left_out(Effect effect, const ShadingConfig::Effects& choice) {
+  return choice.choice == Choice::kList &&
+         std::find(choice.names.begin(), choice.names.end(), effect_name(effect)) == choice.names.end();
 }
 
-using Kind = scene::PunctualLight::Kind;
-
-std::optional<Kind> light_kind(Effect effect) {
-  if (effect == Effect::kPointLights) return Kind::kPoint;
-  if (effect == Effect::kSpotLights) return Kind::kSpot;
-  if (effect == Effect::kDirectionalLights) return Kind::kDirectional;
-  return std::nullopt;
+void disable_left_out(Material& material, const ShadingConfig::Effects& choice) {
+  for (const EffectRule& rule : effect_rules())
+    if (rule.disable_in_material != nullptr && is_left_out(rule.effect, choice)) rule.disable_in_material(material);
 }
 
-std::uint32_t texture_reads(Effect effect) {
-  switch (effect) {
-    case Effect::kBaseColorTexture:
-    case Effect::kMetallicRoughnessTexture:
-    case Effect::kNormalMap:
-    case Effect::kEmission:
-    case Effect::kTransmission:
-    case Effect::kAnisotropy:
-    case Effect::kAlphaMask:
-    case Effect::kAlphaBlend:
-      return 1;
-    case Effect::kSpecular:
-    case Effect::kClearcoat:
-    case Effect::kSheen:
-    case Effect::kIridescence:
-      return 2;
-    default:
-      return 0;
-  }
-}
-
-class Planner {
+/// Counts the callers of one effect, and names the first.
+class CallerCount {
  public:
-  Planner(const scene::Scene& scene, const Config& config)
-      : scene_(scene), config_(config), reached_(reached_materials(scene)) {}
-
-  EffectsPlan plan() {
-    for (std::size_t i = 0; i < kEffects; ++i) look_for(static_cast<Effect>(i));
-    secondary_rays();
-    const ShadingConfig::Effects& choice = config_.shading.effects;
-    plan_.everything = choice.choice == ShadingConfig::Effects::Choice::kAll;
-    for (std::size_t i = 0; i < kEffects; ++i) {
-      PlannedEffect& e = plan_.effects[i];
-      const auto named = std::find(choice.names.begin(), choice.names.end(), kEffectNames[i]) != choice.names.end();
-      const bool left_out = choice.choice == ShadingConfig::Effects::Choice::kList && !named;
-      e.on = plan_.everything || (e.called_for && !left_out);
-      if (left_out && e.called_for) e.why += "; left out by shading.effects";
-    }
-    for (std::size_t i = 0; i < kEffects; ++i)
-      if (plan_.effects[i].on) costs(static_cast<Effect>(i), plan_.effects[i].cost);
-    return plan_;
+  explicit CallerCount(PlannedEffect& effect) : effect_(effect) {}
+  void add(const char* kind, std::string name) {
+    if (++effect_.callers == 1) effect_.why = fmt::format("{} {}", kind, name);
   }
 
  private:
-  PlannedEffect& at(Effect effect) { return plan_.effects[static_cast<std::size_t>(effect)]; }
-
-  void look_for(Effect effect) {
-    PlannedEffect& e = at(effect);
-    if (is_of_materials(effect)) {
-      call_materials(e, [&](const Material& m) { return requires_effect(m, effect); });
-    } else if (effect == Effect::kVertexColor) {
-      for (const scene::Mesh& mesh : scene_.meshes) call(e, !mesh.colors.empty(), "mesh", mesh.name);
-    } else if (effect == Effect::kAreaLights) {
-      call_materials(e, is_emissive);
-    } else if (const auto kind = light_kind(effect)) {
-      for (std::size_t i = 0; i < scene_.lights.size(); ++i)
-        call(e, scene_.lights[i].kind == *kind && max_component(scene_.lights[i].intensity) > 0, "light",
-             std::to_string(i));
-    } else if (effect == Effect::kSky) {
-      call(e, max_component(scene_.sky.radiance) > 0, "sky", "");
-    } else if (effect == Effect::kDepthOfField) {
-      call(e, config_.camera.aperture > 0, "camera.aperture", "");
-    }
-    conclude(e);
-  }
-
-  template <class Predicate>
-  void call_materials(PlannedEffect& e, const Predicate& calls) {
-    for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
-      const std::string& name = scene_.materials[i].name;
-      call(e, reached_[i] && calls(scene_.materials[i]), "material", name.empty() ? std::to_string(i) : name);
-    }
-  }
-
-  static void call(PlannedEffect& e, bool calls, const char* what, const std::string& name) {
-    if (!calls) return;
-    if (++e.callers == 1) e.why = fmt::format("{}{}{}", what, name.empty() ? "" : " ", name);
-  }
-  static void conclude(PlannedEffect& e) {
-    e.called_for = e.callers > 0;
-    if (e.callers > 1) e.why += fmt::format(" and {} more", e.callers - 1);
-    if (!e.called_for) e.why = "nothing calls for it";
-  }
-
-  /// What they need is the other effects' presence.
-  void secondary_rays() {
-    const auto any = [&](std::initializer_list<Effect> list) {
-      return std::any_of(list.begin(), list.end(), [&](Effect effect) { return at(effect).called_for; });
-    };
-    bool lit = false;
-    for (std::size_t i = 0; i < scene_.materials.size(); ++i) lit = lit || (reached_[i] && !scene_.materials[i].unlit);
-    const bool lights =
-        any({Effect::kPointLights, Effect::kSpotLights, Effect::kDirectionalLights, Effect::kAreaLights});
-    PlannedEffect& shadow = at(Effect::kShadowRays);
-    shadow.called_for = lit && lights;
-    shadow.why = !lights ? "there is no light" : lit ? "lights and surfaces they shine on" : "no surface is lit";
-    PlannedEffect& bounce = at(Effect::kBounceRays);
-    const bool found = lights || any({Effect::kSky, Effect::kUnlit});
-    const bool deep = config_.image.max_depth > 1;
-    bounce.called_for = deep && lit && found;
-    bounce.why = !deep   ? "image.max_depth is 1"
-                 : !lit  ? "no surface is lit"
-                 : found ? "surfaces send on light"
-                         : "there is no light to find";
-    shadow.callers = shadow.called_for ? 1 : 0;
-    bounce.callers = bounce.called_for ? 1 : 0;
-  }
-
-  void costs(Effect effect, EffectCost& cost) const {
-    const auto depth = plan_.on(Effect::kBounceRays) ? static_cast<std::uint32_t>(config_.image.max_depth) : 1u;
-    const ShadingConfig& shading = config_.shading;
-    const auto shade = static_cast<std::uint32_t>(shading.cycles_per_shade);
-    cost.texture_reads = texture_reads(effect);
-    if (std::find(kExtraEffects.begin(), kExtraEffects.end(), effect) != kExtraEffects.end())
-      cost.cycles_per_hit = static_cast<std::uint32_t>(shading.cycles_per_effect);
-    if (effect == Effect::kAlphaMask || effect == Effect::kAlphaBlend) {
-      const bool by_shader = config_.testers.any_hit == TestersConfig::AnyHit::kShader;
-      cost.cycles_per_hit = static_cast<std::uint32_t>(by_shader ? shading.cycles_per_any_hit
-                                                                 : config_.testers.any_hit_unit.interval_cycles);
-    }
-    if (effect == Effect::kShadowRays) {
-      cost.rays_per_path = depth;
-      cost.path_state_bytes = depth * static_cast<std::uint32_t>(sizeof(Vec3));
-    }
-    if (effect == Effect::kBounceRays) cost.rays_per_path = depth - 1;
-    cost.cycles_per_path = cost.rays_per_path * shade;
-    if (effect == Effect::kVolume) cost.path_state_bytes = sizeof(std::uint32_t);
-  }
-
-  const scene::Scene& scene_;
-  const Config& config_;
-  std::vector<bool> reached_;
-  EffectsPlan plan_;
+  PlannedEffect& effect_;
 };
-
-/// What a list does not name.
-std::vector<Effect> left_out(const ShadingConfig::Effects& choice) {
-  std::vector<Effect> out;
-  if (choice.choice != ShadingConfig::Effects::Choice::kList) return out;
-  for (std::size_t i = 0; i < kEffects; ++i)
-    if (std::find(choice.names.begin(), choice.names.end(), kEffectNames[i]) == choice.names.end())
-      out.push_back(static_cast<Effect>(i));
-  return out;
-}
 
 }  // namespace
 
@@ -183,28 +44,71 @@ std::uint32_t EffectsPlan::path_state_bytes() const {
   return bytes;
 }
 
+PlannedEffect find_callers(const EffectRule& rule, const PlanInput& in) {
+  PlannedEffect found;
+  CallerCount callers(found);
+  const std::vector<Material>& materials = in.scene.materials;
+  for (std::size_t i = 0; i < materials.size() && rule.material != nullptr; ++i)
+    if (in.reached[i] && requires_effect(rule, materials[i]))
+      callers.add("material", materials[i].name.empty() ? std::to_string(i) : materials[i].name);
+  for (std::size_t i = 0; i < in.scene.meshes.size() && rule.mesh != nullptr; ++i)
+    if (rule.mesh(in.scene.meshes[i])) callers.add("mesh", in.scene.meshes[i].name);
+  for (std::size_t i = 0; i < in.scene.lights.size() && rule.light != nullptr; ++i)
+    if (rule.light(in.scene.lights[i])) callers.add("light", std::to_string(i));
+  if (rule.scene != nullptr) {
+    Need need = rule.scene(in);
+    found.callers = need.called_for ? 1 : 0;
+    found.why = std::move(need.why);
+  }
+  found.called_for = found.callers > 0;
+  if (found.callers > 1) found.why += fmt::format(" and {} more", found.callers - 1);
+  if (found.why.empty()) found.why = "nothing calls for it";
+  return found;
+}
+
+EffectCost cost_of(const EffectRule& rule, const Config& config, std::uint32_t depth) {
+  EffectCost cost;
+  cost.texture_reads = rule.texture_reads;
+  if (rule.extra) cost.cycles_per_hit = static_cast<std::uint32_t>(config.shading.cycles_per_effect);
+  if (rule.cycles_per_hit != nullptr) cost.cycles_per_hit = rule.cycles_per_hit(config);
+  if (rule.rays_per_path != nullptr) cost.rays_per_path = rule.rays_per_path(depth);
+  if (rule.path_state_bytes != nullptr) cost.path_state_bytes = rule.path_state_bytes(depth);
+  cost.cycles_per_path = cost.rays_per_path * static_cast<std::uint32_t>(config.shading.cycles_per_shade);
+  return cost;
+}
+
 EffectsPlan plan_effects(const scene::Scene& scene, const Config& config) {
-  return Planner(scene, config).plan();
+  EffectsPlan plan;
+  const ShadingConfig::Effects& choice = config.shading.effects;
+  plan.everything = choice.choice == Choice::kAll;
+  const std::vector<bool> reached = reached_materials(scene);
+  for (std::size_t i = 0; i < kEffects; ++i)
+    plan.effects[i] = find_callers(effect_rules()[i], {scene, config, reached, plan});
+  for (std::size_t i = 0; i < kEffects; ++i) {
+    PlannedEffect& effect = plan.effects[i];
+    const bool left_out = is_left_out(static_cast<Effect>(i), choice);
+    effect.on = plan.everything || (effect.called_for && !left_out);
+    if (left_out && effect.called_for) effect.why += "; left out by shading.effects";
+  }
+  const auto depth = plan.on(Effect::kBounceRays) ? static_cast<std::uint32_t>(config.image.max_depth) : 1u;
+  for (std::size_t i = 0; i < kEffects; ++i)
+    if (plan.effects[i].on) plan.effects[i].cost = cost_of(effect_rules()[i], config, depth);
+  return plan;
 }
 
 void strip_effects(scene::Scene& scene, const ShadingConfig::Effects& choice) {
-  for (const Effect effect : left_out(choice)) {
-    for (Material& material : scene.materials) disable(effect, material);
-    if (effect == Effect::kVertexColor)
-      for (scene::Mesh& mesh : scene.meshes) mesh.colors.clear();
-    if (effect == Effect::kSky) scene.sky.radiance = Vec3{0};
-    if (const auto kind = light_kind(effect))
-      std::erase_if(scene.lights, [&](const scene::PunctualLight& light) { return light.kind == *kind; });
-  }
+  for (Material& material : scene.materials) disable_left_out(material, choice);
+  for (const EffectRule& rule : effect_rules())
+    if (rule.disable_in_scene != nullptr && is_left_out(rule.effect, choice)) rule.disable_in_scene(scene);
 }
 
 std::vector<bool> images_read(const scene::Scene& scene, const ShadingConfig::Effects& choice) {
-  std::vector<bool> read(scene.images.size(), choice.choice == ShadingConfig::Effects::Choice::kAll);
+  std::vector<bool> read(scene.images.size(), choice.choice == Choice::kAll);
   const std::vector<bool> reached = reached_materials(scene);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     if (!reached[i]) continue;
     Material material = scene.materials[i];
-    for (const Effect effect : left_out(choice)) disable(effect, material);
+    disable_left_out(material, choice);
     for (const scene::TextureUse& use : textures_read(material))
       read[scene.textures[use.texture.value].image.value] = true;
   }

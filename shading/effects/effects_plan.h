@@ -8,62 +8,54 @@
 #include "core/config/config.h"
 #include "core/types/effect.h"
 #include "scene/model/scene.h"
+#include "shading/effects/effect_rule.h"
 
 namespace carousel::shading {
 
-/// What an effect costs where it occurs; all 0 where it is off.
+/// The costs of an effect where it occurs; all 0 if it is off.
 struct EffectCost {
   std::uint32_t rays_per_path = 0;     ///< at most
   std::uint32_t texture_reads = 0;     ///< filtered lookups at a hit, at most
-  std::uint32_t path_state_bytes = 0;  ///< a path in flight
-  std::uint32_t cycles_per_hit = 0;    ///< of a simulated shader worker or opacity unit, at a surface that has it
-  std::uint32_t cycles_per_path = 0;   ///< of simulated shader workers for its rays, at most; not the rays' tests
+  std::uint32_t path_state_bytes = 0;  ///< of a path in flight
+  std::uint32_t cycles_per_hit = 0;    ///< of a simulated shader worker or opacity unit, at a surface with the effect
+  std::uint32_t cycles_per_path = 0;   ///< of simulated shader workers for its rays, at most, without the rays' tests
 };
 
-/// Each takes `shading.cycles_per_effect` at a hit, in the cycle engine.
-inline constexpr std::array kExtraEffects{Effect::kBaseColorTexture,
-                                          Effect::kMetallicRoughnessTexture,
-                                          Effect::kNormalMap,
-                                          Effect::kTransmission,
-                                          Effect::kRefraction,
-                                          Effect::kVolume,
-                                          Effect::kIor,
-                                          Effect::kSpecular,
-                                          Effect::kClearcoat,
-                                          Effect::kSheen,
-                                          Effect::kIridescence,
-                                          Effect::kAnisotropy};
-
 struct PlannedEffect {
-  bool called_for = false;    ///< by what can be reached from the instances
-  bool on = false;            ///< computed: called for or `all`, and not left out of a list
+  bool called_for = false;    ///< by something that can be reached from the instances
+  bool on = false;            ///< the frame computes the effect
   std::uint32_t callers = 0;  ///< materials, lights or meshes that call for it
-  std::string why;            ///< which, or that nothing does
+  std::string why;            ///< names the first caller, or says that nothing calls for the effect
   EffectCost cost;
 };
 
-/// Which effects a frame computes, and why: `shading.effects`.
+/// The effects that a frame computes, and the reasons: `shading.effects`.
 struct EffectsPlan {
   std::array<PlannedEffect, kEffects> effects;
-  bool everything = false;  ///< `all`: nothing is specialised
+  bool everything = false;  ///< `all`: every material is shaded by the code that has every effect
 
   const PlannedEffect& of(Effect effect) const { return effects[static_cast<std::size_t>(effect)]; }
   bool on(Effect effect) const { return of(effect).on; }
-  /// A path in flight, all effects together.
+  /// Bytes of a path in flight, with the needs of all effects that are on.
   std::uint32_t path_state_bytes() const;
 };
 
-/// Looks at materials on triangles of instances, at lights, sky and camera. What a list names but nothing calls for is
-/// off. `scene` may have been through strip_effects().
+/// Looks at materials on triangles of instances, at lights, sky and camera, by effect_rules(). An effect that a list
+/// names but nothing calls for is off. `scene` may have been through strip_effects().
 EffectsPlan plan_effects(const scene::Scene& scene, const Config& config);
 
-/// Takes out of the scene what a list of effects does not name, as far as it stands in the scene: textures, layers,
-/// lights. Without a list nothing changes. A material without `transmission` is opaque, without `refraction` a thin
-/// wall, without `mirror` no smoother than roughness 0.3, without `reflection` matte.
+/// One row of the plan: the callers of the effect, without its cost, and `on` not yet set.
+PlannedEffect find_callers(const EffectRule& rule, const PlanInput& in);
+/// The cost of an effect that is on, in paths of `depth` surfaces.
+EffectCost cost_of(const EffectRule& rule, const Config& config, std::uint32_t depth);
+
+/// Removes from the scene the textures, layers and lights of the effects that a list does not name. Without a list
+/// nothing changes. A material without `transmission` is opaque, without `refraction` a thin wall, without `mirror` no
+/// smoother than roughness 0.3, without `reflection` matte.
 void strip_effects(scene::Scene& scene, const ShadingConfig::Effects& choice);
 
-/// By image: whether a material on a primitive of an instance has a texture of it that is read, once strip_effects()
-/// has been called with this choice (which may be before or after); all, if that is `all`. Reads no pixels.
+/// By image: true if a material on a primitive of an instance reads a texture of it once strip_effects() has been
+/// called with this choice (which may be before or after). With `all`, every image counts as read. Reads no pixels.
 std::vector<bool> images_read(const scene::Scene& scene, const ShadingConfig::Effects& choice);
 
 }  // namespace carousel::shading

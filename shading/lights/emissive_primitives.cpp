@@ -11,7 +11,7 @@ namespace carousel::shading {
 
 namespace {
 
-/// Mean luminance over a triangle: exact without a texture, else from 16 evenly spread points.
+/// Mean luminance over a triangle: exact without a texture, otherwise from 16 evenly spread points.
 float mean_luminance(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive) {
   const TrianglePoint centre = triangle_point(scene, instance, primitive, 1.0f / 3, 1.0f / 3);
   if (!centre.material->emissive_texture) return luminance(centre.material->emissive);
@@ -31,7 +31,7 @@ float mean_luminance(const scene::Scene& scene, std::uint32_t instance, std::uin
   return sum / (kRows * kRows);
 }
 
-/// As estimated from 16 points: the light of one side.
+/// The luminance of one side, as estimated from 16 points.
 float sphere_flux(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive) {
   constexpr int kRows = 4;
   float sum = 0;

@@ -21,7 +21,7 @@ class EmissivePrimitives {
   explicit EmissivePrimitives(const scene::Scene& scene);
 
   const std::vector<EmissivePrimitive>& all() const { return primitives_; }
-  /// Where one stands in all(). Precondition: its material is emissive.
+  /// Index of a primitive in all(). Precondition: its material is emissive.
   std::uint32_t index_of(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive) const {
     return first_[instance] + rank_[scene.instances[instance].mesh.value][primitive];
   }

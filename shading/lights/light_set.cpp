@@ -117,7 +117,7 @@ LightSample LightSet::sample_primitive(const EmissivePrimitive& light, float pro
   if (!(cos_light > 0.0f)) return {};
   s.pdf = probability * distance2 / (area * cos_light);
   s.radiance = emitted(scene_, point) * (1.0f / s.pdf);
-  // The shadow ray ends before the lamp, which would have let some rays pass.
+  // The shadow ray ends before the light itself, whose opacity would have passed a share of the rays.
   if (point.material->alpha_mode != scene::AlphaMode::kOpaque) s.radiance *= opacity(scene_, point);
   return s;
 }

@@ -13,9 +13,9 @@
 
 namespace carousel::shading {
 
-/// A way to the light: what a shadow ray has to be asked before `radiance` may be counted.
+/// One sampled light. `radiance` counts only if the shadow ray along `direction` finds no occluder.
 struct LightSample {
-  Vec3 direction{0};  ///< of the shadow ray, not normalised; origin is where sample() was asked from
+  Vec3 direction{0};  ///< of the shadow ray, not normalised, from the point given to sample()
   float tmax = 0;     ///< just short of the light
   Vec3 wi{0};         ///< unit direction
   Vec3 radiance{0};   ///< arriving radiance (irradiance for punctual lights) over the density; 0: no light
@@ -26,7 +26,7 @@ struct LightSample {
 /// proportion to their flux. Immutable; any thread.
 class LightSet {
  public:
-  /// Only what `punctual` and `primitives` let in is ever chosen.
+  /// `punctual` and `primitives` say which lights can be chosen.
   explicit LightSet(const scene::Scene& scene, bool punctual = true, bool primitives = true);
 
   bool empty() const { return choice_.empty(); }

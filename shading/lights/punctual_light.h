@@ -42,7 +42,7 @@ inline PunctualSample sample_punctual(const scene::PunctualLight& light, const V
   return s;
 }
 
-/// Flux, for choosing among lights; `scene_radius` bounds what a directional light shines on.
+/// Flux, for choosing among lights; `scene_radius` bounds the area that a directional light reaches.
 inline Vec3 punctual_flux(const scene::PunctualLight& light, float scene_radius) {
   using Kind = scene::PunctualLight::Kind;
   switch (light.kind) {

@@ -5,7 +5,7 @@
 
 namespace carousel::shading {
 
-/// What a ray that hits nothing sees.
+/// Radiance along a ray that hits nothing.
 inline Vec3 sky_radiance(const scene::Sky& sky, const Vec3& /*direction*/) {
   return sky.radiance;
 }

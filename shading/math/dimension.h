@@ -4,8 +4,8 @@
 
 namespace carousel::shading {
 
-/// One enumerator a random decision; the number is keyed by it (core/numeric/rng.h). Four neighbours, starting at a
-/// multiple of four, come from one call of the generator: what is needed together stands together.
+/// One enumerator for each random decision; the random number is keyed by it (core/numeric/rng.h). Four neighbours that
+/// start at a multiple of four come from one call of the generator, so numbers that are used together stand together.
 enum class Dimension : std::uint32_t {
   kPixelX = 0,
   kPixelY,

@@ -6,8 +6,8 @@
 
 namespace carousel::shading {
 
-// Our own, because glibc's expf and powf use fused multiply-add where the machine has it, and their last bit may then
-// differ. Evaluated in double, about 1e-9 off, and rounded to float once.
+// Written here, because glibc's expf and powf use fused multiply-add where the machine has it, and their last bit may
+// then differ. The functions are evaluated in double with an error of about 1e-9, and rounded to float once.
 
 /// 2^x; 0 below -126 (no denormals), infinity from 128 on.
 inline float exp2_float(double x) {

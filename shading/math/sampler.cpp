@@ -106,8 +106,8 @@ std::uint32_t Sampler::stratified(std::uint32_t sample, std::uint32_t pattern, s
   return static_cast<std::uint32_t>((stratum << 32 | jitter) / samples_);
 }
 
-// Same for all samples of a pixel. Quality demands are low here (it picks a permutation), so a short mix
-// (the finaliser of MurmurHash3, A. Appleby) does instead of another ten rounds of Philox.
+// The value is the same for all samples of a pixel. It only picks a permutation, so a short mix
+// (the finaliser of MurmurHash3, A. Appleby) is good enough instead of another ten rounds of Philox.
 std::uint32_t Sampler::pattern(const RandomKey& key, std::uint32_t dimension) const {
   auto mix = [](std::uint32_t h) {
     h ^= h >> 16;

@@ -7,7 +7,7 @@
 
 namespace carousel::shading {
 
-/// Random numbers in [0, 1) that start a path.
+/// The random numbers in [0, 1) that start a path.
 struct CameraDraw {
   Vec2 pixel;  ///< position within the pixel, from its top left
   Vec2 lens;
@@ -27,7 +27,7 @@ struct DirectionDraw {
 };
 
 /// The random numbers of a frame's paths: pure functions of (seed, pixel, sample, bounce, dimension). The
-/// samples of one pixel are stratified against each other up to the first surface, where it shows; beyond it
+/// samples of one pixel are stratified against each other up to the first surface, where it matters most; beyond it
 /// they are independent, which is cheaper.
 class Sampler {
  public:

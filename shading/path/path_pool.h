@@ -12,13 +12,13 @@
 
 namespace carousel::shading {
 
-/// The path states of a frame, used over and over, with a slot a bounce for what each path's shadow ray would
-/// bring: that never enters the ring. There is room only for what the frame's effects need.
+/// The path states of a frame, used over and over. Each state has one slot per bounce for the contribution of the
+/// shadow ray, which therefore never enters the ring. There is room only for what the frame's effects need.
 class PathPool {
  public:
   /// `paths` paths are to be traced in all, at most `states` (at least 1) at a time.
-  /// `shadow_slots` are the bounces that may send a shadow ray, 0 if none does; `media`: whether paths go through
-  /// volumes that take light.
+  /// `shadow_slots` is the number of bounces that may send a shadow ray; `media` is true if paths go through volumes
+  /// that absorb light.
   PathPool(std::size_t states, std::uint64_t paths, std::size_t shadow_slots, bool media);
 
   /// Memory a state takes, for estimates.
@@ -32,7 +32,7 @@ class PathPool {
   };
   /// Admits the next at most `max` paths, as far as states are free. Any thread; takes one lock.
   Admission admit(std::size_t max, std::vector<std::uint32_t>& indices);
-  /// Gives states back. Any thread; takes one lock, or none for an empty list.
+  /// Returns states to the pool. Any thread; takes one lock, or none for an empty list.
   void release(std::span<const std::uint32_t> indices);
 
   PathState& state(std::uint32_t index) { return states_[index]; }

@@ -7,9 +7,9 @@
 
 namespace carousel::shading {
 
-/// What shading keeps of a path while its rays are out. At most one of them is a camera or bounce ray; only
-/// the worker that shades that one touches the plain members. Its shadow rays, perhaps of several bounces,
-/// may be shaded by other workers meanwhile: they touch the atomics and read pixel and sample.
+/// Shading's record of a path while its rays are in flight. At most one of them is a camera or bounce ray; only the
+/// worker that shades that one touches the plain members. Shadow rays of several bounces may be shaded by other workers
+/// meanwhile, which touch the atomics and read pixel and sample.
 struct alignas(64) PathState {
   std::atomic<std::int64_t> radiance[3];      ///< fixed point, so far
   std::atomic<std::uint32_t> outstanding{0};  ///< rays in flight

@@ -25,7 +25,7 @@ class EdgeFunctions {
         plane_(glm::cross(p[1] - p[0], p[2] - p[0])),
         distance_(glm::dot(plane_, p[0])) {}
 
-  /// Where the line along `direction` crosses, in either direction; edges belong to the triangle. Two triangles that
+  /// The crossing of the line along `direction`, in either direction; edges belong to the triangle. Two triangles that
   /// share an edge evaluate it to the same number with opposite signs (each product and sum rounds alike), so no ray
   /// passes between them.
   std::optional<Crossing> cross(const DVec3& direction) const {

@@ -70,13 +70,7 @@ class Rasterizer {
     executor.parallel_for(bins_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t tile = begin; tile < end; ++tile) draw(static_cast<std::uint32_t>(tile), counts[tile]);
     });
-    for (const FirstHits::Counts& c : counts) {
-      out_.counts.tested += c.tested;
-      out_.counts.any_hit_calls += c.any_hit_calls;
-      out_.counts.hits += c.hits;
-      out_.counts.misses += c.misses;
-      out_.counts.left_to_rays += c.left_to_rays;
-    }
+    for (const FirstHits::Counts& c : counts) out_.counts += c;
     return std::move(out_);
   }
 
@@ -127,7 +121,7 @@ class Rasterizer {
     const std::array<DVec3, 3> world = world_triangle(scene_, ref);
     const PixelBox box = screen_.bounds(world);
     const scene::Mesh& mesh = scene_.meshes[scene_.instances[ref.instance].mesh.value];
-    // Mirroring swaps the sides in world space; which one is the front, the mesh says.
+    // A mirroring transform swaps the sides in world space; the mesh says which one is the front.
     const bool mirrored = glm::determinant(DMat3(scene_.instances[ref.instance].world_from_model.linear)) < 0;
     const bool passes = any_hit_ != nullptr && opacity_.may_be_non_opaque(mesh, ref.primitive);
     const auto edges_from = [&](const Vec3& eye) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/config/config.h"
+#include "core/statistics/raster_counts.h"
 #include "core/system/executor.h"
 #include "core/types/any_hit.h"
 #include "core/types/ray.h"
@@ -11,15 +12,9 @@
 
 namespace carousel::shading {
 
-/// What the camera rays of a frame meet first, found without tracing them.
+/// The first hits of the camera rays of a frame, found without tracing them.
 struct FirstHits {
-  struct Counts {
-    std::uint64_t triangles = 0;                           ///< of all instances
-    std::uint64_t binned = 0;                              ///< entries of triangles in tiles
-    std::uint64_t tested = 0;                              ///< edge tests: a triangle at a sample
-    std::uint64_t any_hit_calls = 0;                       ///< samples at which a cut-out or veil was asked
-    std::uint64_t hits = 0, misses = 0, left_to_rays = 0;  ///< samples
-  };
+  using Counts = RasterCounts;
 
   std::uint32_t samples = 0;               ///< a pixel
   std::vector<Hit> hits;                   ///< pixel-major; a miss has no instance
@@ -34,9 +29,9 @@ struct FirstHits {
 };
 
 /// A small rasteriser: triangles are sorted into tiles of 8 x 8 pixels, and in each tile evaluated at the very rays
-/// that CameraRays would send. What the config's camera_rays wish holds here too. In double throughout; the nearest t,
-/// rounded to float, wins, ties go to the smallest (instance, primitive). Cut-outs and veils ask `any_hit` (null: all
-/// is solid). The result does not depend on `executor`.
+/// that CameraRays would send. The ray flags of `shading.camera_rays` apply here as well. All arithmetic is in double;
+/// the nearest t, rounded to float, wins, and ties go to the smallest (instance, primitive). Alpha-masked and
+/// alpha-blended surfaces call `any_hit` (null: every surface is opaque). The result does not depend on `executor`.
 ///
 /// Preconditions, which the config's rules ensure: the camera is a pinhole (aperture 0); width * height below 2^32.
 /// Throws std::out_of_range if the scene has no camera `scene.camera`.

@@ -52,7 +52,7 @@ PixelBox Screen::bounds(std::span<const DVec3> points) const {
   if (camera_.projection == scene::Camera::Projection::kOrthographic) {
     for (std::size_t i = 0; i < points.size(); ++i) window.add(seen[i].x / half_window_.x, seen[i].y / half_window_.y);
   } else {
-    // Rays start at znear; a little before it, since they do so in single precision.
+    // Rays start at znear, in single precision, so the bound stands a little before it.
     const double near = 0.9999 * static_cast<double>(camera_.znear);
     const double least = std::max(near, 1e-9 * scale);
     const auto ahead = [&](std::size_t i) { return seen[i].z >= least; };

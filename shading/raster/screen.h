@@ -16,15 +16,15 @@ struct PixelBox {
   bool empty() const { return x0 >= x1 || y0 >= y1; }
 };
 
-/// Where things lie in the picture of a pinhole camera.
+/// Bounds of objects in the picture of a pinhole camera.
 class Screen {
  public:
   /// Keeps references to `camera` and `rays`, which is made from it for width * height pixels.
   Screen(const scene::Camera& camera, const CameraRays& rays, std::uint32_t width, std::uint32_t height);
 
   /// Every pixel with a ray that can meet the convex hull of the points (world space; 1 to 8 of them, those of a
-  /// triangle or of a box in any order). Never too small; all of the picture for what is partly behind a camera without
-  /// znear.
+  /// triangle or of a box in any order). The result is never too small; it is the whole picture for a hull that is
+  /// partly behind a camera without znear.
   PixelBox bounds(std::span<const DVec3> points) const;
 
   std::uint32_t width() const { return width_; }

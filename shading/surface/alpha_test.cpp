@@ -26,7 +26,7 @@ bool AlphaTest::accepts(const Ray& ray, std::uint32_t instance, std::uint32_t pr
       break;
   }
   const float blended = alpha(scene_, point);
-  // A ray meets a sphere twice, by the same number: where it does tells the one from the other.
+  // A ray meets a sphere twice under the same primitive number; the position tells the two hits apart.
   const bool sphere = point.mesh->positions.empty();
   const std::uint32_t meeting =
       sphere ? std::bit_cast<std::uint32_t>(u) ^ 0x9e3779b9u * std::bit_cast<std::uint32_t>(v) : 0;

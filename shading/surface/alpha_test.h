@@ -7,13 +7,13 @@
 
 namespace carousel::shading {
 
-/// Whether rays pass the cut-outs and veils of a scene. A cut-out (alpha mode mask) stops rays where its alpha, that
-/// of the base colour's factor, texture and vertices multiplied, is at least its cutoff. A veil (blend) stops a ray
-/// with probability alpha, so that a pixel's samples blend on average and no order of veils matters: E. Enderton,
-/// E. Sintorn, P. Shirley, D. Luebke, "Stochastic transparency", I3D 2010. All else stops rays.
+/// The any-hit call for the non-opaque surfaces of a scene. An alpha-masked surface stops rays where its alpha (the
+/// product of the base colour's factor, texture and vertices) is at least its cutoff. An alpha-blended surface stops a
+/// ray with probability alpha, so that a pixel's samples blend on average, in any order of the surfaces: E. Enderton,
+/// E. Sintorn, P. Shirley, D. Luebke, "Stochastic transparency", I3D 2010. All other surfaces stop rays.
 class AlphaTest final : public AnyHit {
  public:
-  /// Keeps a reference to `scene`, which must not change meanwhile. Any thread may ask.
+  /// Keeps a reference to `scene`, which must not change meanwhile. Any thread may call accepts().
   explicit AlphaTest(const scene::Scene& scene) : scene_(scene) {}
 
   bool accepts(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const override;

@@ -44,10 +44,10 @@ float offset_by_ulps(float p, float n) {
 
 }  // namespace
 
-/// What the intersection kernel itself may be off along the normal, in the space it works in. Its weights are
-/// areas, off by a few u L^2 where L is the distance of the vertices; divided by the triangle's own area and
-/// multiplied by L that makes u L (L / h), h the least height: much for slivers, whose t really is that far
-/// off. The direction cancels out, since the projected area shrinks as the ray turns away from the normal.
+/// Bound of the intersection kernel's own error along the normal, in the space it works in. Its weights are areas with
+/// an error of a few u L^2, where L is the distance of the vertices. Divided by the triangle's own area and multiplied
+/// by L the error is u L (L / h), h the least height: a large value for slivers, whose t really has such an error. The
+/// direction cancels out, since the projected area shrinks as the ray turns away from the normal.
 double kernel_error(const TriangleGeometry& g, const DVec3& p) {
   const DVec3 e0 = g.model[1] - g.model[0], e1 = g.model[2] - g.model[1], e2 = g.model[0] - g.model[2];
   double far = 0;

@@ -57,8 +57,8 @@ Vec3 normalized_or(const Vec3& v, const Vec3& fallback) {
   return length2 > 1e-30f && length2 < 1e30f ? v * (1.0f / std::sqrt(length2)) : fallback;
 }
 
-/// The frame in which textures lie comes from the coordinates' derivatives. glTF: x points along +u, y towards the top
-/// of the image, that is along -v. Nothing where the coordinates do not span the triangle.
+/// The frame of a texture, from the derivatives of the coordinates. In glTF x points along +u, and y towards the top of
+/// the image, that is along -v. Empty if the coordinates do not span the triangle.
 struct TextureFrame {
   Vec3 tangent, bitangent;
 };

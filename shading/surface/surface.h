@@ -12,9 +12,9 @@
 
 namespace carousel::shading {
 
-/// A hit triangle's entry in its mesh, and where on it. A sphere has no vertices, and so no vertex colours and no frame
-/// for normal maps; as texture coordinates it has its longitude (0 to 1 once around +y, from -z by way of -x) and its
-/// latitude (0 at +y, 1 at -y), in model space.
+/// A hit triangle's entry in its mesh, and the position on the triangle. A sphere has no vertices, and so neither
+/// vertex colours nor a frame for normal maps; its texture coordinates are its longitude (0 to 1 once around +y, from
+/// -z by way of -x) and its latitude (0 at +y, 1 at -y), in model space.
 struct TrianglePoint {
   const scene::Mesh* mesh;
   const scene::Material* material;
@@ -26,14 +26,13 @@ struct TrianglePoint {
 TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
                              float v);
 
-/// What the base colour texture, its factor and the vertex colour multiply to. For unlit materials all there
-/// is.
+/// Product of the base colour texture, its factor and the vertex colour. An unlit material shows this colour alone.
 Vec3 base_color(const scene::Scene& scene, const TrianglePoint& point);
 
-/// Base colour's alpha, of factor, texture and vertices; 0 to 1.
+/// Alpha of the base colour: the product of factor, texture and vertices; 0 to 1.
 float alpha(const scene::Scene& scene, const TrianglePoint& point);
 
-/// The share of rays that stop here: alpha for veils, 0 or 1 for cut-outs, else 1.
+/// The share of rays that stop at the point: alpha if alpha-blended, 0 or 1 if alpha-masked, 1 if opaque.
 float opacity(const scene::Scene& scene, const TrianglePoint& point);
 
 /// Base colour, metallic and roughness without textures and vertex colours.
@@ -42,10 +41,10 @@ MaterialPoint material_factors(const scene::Material& material);
 /// Base colour, metallic and roughness.
 MaterialPoint material_point(const scene::Scene& scene, const TrianglePoint& point);
 
-/// Radiance of the emitting side. Which sides emit: emits().
+/// Radiance of the emitting side; emits() says which sides emit.
 Vec3 emitted(const scene::Scene& scene, const TrianglePoint& point);
 
-/// True if the material gives off light by itself and takes part in lighting.
+/// True if the material emits light and takes part in lighting.
 bool is_emissive(const scene::Material& material);
 
 /// The front side emits, and the back if the material is double-sided.
@@ -65,7 +64,7 @@ Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const
 std::optional<Vec3> texture_tangent(const TrianglePoint& point, const TriangleGeometry& geometry,
                                     const scene::TextureUse& use, const Vec3& n);
 
-/// What a texture of the material says at the point.
+/// The value of a texture of the material at the point.
 Vec3 texture_color(const scene::Scene& scene, const TrianglePoint& point, const scene::TextureUse& use,
                    Encoding encoding);
 float texture_alpha(const scene::Scene& scene, const TrianglePoint& point, const scene::TextureUse& use);

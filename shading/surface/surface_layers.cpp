@@ -10,7 +10,7 @@
 #include "shading/bsdf/ggx.h"
 #include "shading/bsdf/iridescence.h"
 #include "shading/math/trigonometry.h"
-#include "shading/surface/material_effects.h"
+#include "shading/surface/material_properties.h"
 
 namespace carousel::shading {
 

@@ -33,7 +33,7 @@ ShadingBasis grain_frame(const SurfaceHit& hit, const Vec3& n);
 InterfacePoint interface_point(const SurfaceHit& hit, const MaterialPoint& material, const GlassTables& glass,
                                float cosine);
 
-/// Clearcoat and sheen. None from inside of what refracts: they lie on the outside.
+/// Clearcoat and sheen; both lie on the outside, so a refracting volume has none when seen from inside.
 LayerPoint layer_point(const SurfaceHit& hit, const ShadingBasis& frame, const GlassTables& glass);
 
 }  // namespace carousel::shading

@@ -46,7 +46,7 @@ bool usable(float x) {
   return x > -kFarthest && x < kFarthest;
 }
 
-/// What `texel(image, x, y)` gives, filtered by the texture's sampler.
+/// The values of `texel(image, x, y)`, filtered by the texture's sampler.
 template <class Texel>
 auto filtered(const scene::Texture& texture, const scene::Image& image, const Vec2& uv, const Texel& texel) {
   const std::int64_t w = image.width, h = image.height;

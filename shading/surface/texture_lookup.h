@@ -7,7 +7,7 @@
 
 namespace carousel::shading {
 
-/// How the RGB channels of an image are encoded; its use decides.
+/// Encoding of an image's RGB channels; it depends on the use of the image.
 enum class Encoding : std::uint8_t { kLinear, kSrgb };
 
 /// KHR_texture_transform: offset + R(rotation) * (scale * uv).

@@ -23,7 +23,7 @@ Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size
   while (!worker.held.empty() && out.size() < end) {
     out.push_back(worker.held.back());
     worker.held.pop_back();
-    // Acquire and release, as below: who reads 0 knows that this ray is in its batch.
+    // Acquire and release, as below: a thread that reads 0 knows that this ray is in its batch.
     held_.fetch_sub(1, std::memory_order_acq_rel);
   }
   std::size_t made = 0;
@@ -53,9 +53,9 @@ Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size
       out.pop_back();
       held_.fetch_add(1, std::memory_order_acq_rel);
     }
-    // After rays are held: who reads the full count here reads theirs too.
+    // Added after rays are held: a thread that reads the full count here also reads their number.
     started = generated_.fetch_add(made, std::memory_order_acq_rel) + made;
-    // Paths that end where they begin make no ray; the engine would wait for one to come back.
+    // A path that ends at its first hit has no ray; the engine would wait for one forever.
   } while (made > 0 && out.size() == before && out.size() < end);
   return {out.size() - (end - max_rays), started == paths_ && held_.load(std::memory_order_acquire) == 0};
 }

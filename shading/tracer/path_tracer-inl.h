@@ -1,6 +1,6 @@
 #pragma once
 
-// The parts of PathTracer that are made for the effects they have: included by who chooses among them.
+// The templates of PathTracer, one instance for each set of effects. path_tracer.cpp chooses among them.
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "shading/math/luminance.h"
 #include "shading/math/shading_basis.h"
-#include "shading/surface/material_effects.h"
+#include "shading/surface/material_properties.h"
 #include "shading/surface/spawn_point.h"
 #include "shading/tracer/path_tracer.h"
 
@@ -41,13 +41,13 @@ constexpr bool has_boundary(SurfaceClass c) {
 
 }  // namespace detail
 
-/// What one shader worker keeps to itself, on cache lines of its own.
+/// State of one shader worker, on cache lines of its own.
 struct alignas(128) PathTracer::Worker {
   HitsDigest digest;
   Counts counts;
-  std::vector<std::uint32_t> states;  // scratch: admitted, or to be released
-  std::vector<std::uint32_t> begun;   // scratch: admitted, where first hits are known
-  RayBatch held;                      // rays that no generate() has had room for
+  std::vector<std::uint32_t> states;  // scratch: states admitted, or states to release
+  std::vector<std::uint32_t> begun;   // scratch: admitted states whose first hits are known
+  RayBatch held;                      // rays for which no generate() call has had room
 };
 
 template <bool kMedia, class ShadeHit>
@@ -90,7 +90,7 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
     const TriangleGeometry geometry = triangle_geometry(scene_, hit.instance, hit.primitive, hit.u, hit.v);
     const Vec3 wo = -result.ray.direction;
     const bool front = glm::dot(geometry.normal, DVec3(wo)) >= 0.0;
-    if constexpr (kLights >= Lights::kLamps) {
+    if constexpr (kLights >= Lights::kEmissive) {
       if (is_emissive(*point.material)) add_emission(path, result, geometry, point, front, worker);
     }
     if (result.tag.bounce + 1u >= max_depth_ && (kLights == Lights::kNone || lights_.empty())) return;
@@ -108,24 +108,25 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
                                worker, out, children);
     } else {
       const SurfaceHit surface{scene_, point, geometry, facing, wo, front, path.scattered};
-      const GlassTables& glass = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())].glass;
+      const Surface& own = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
       const ShadingBasis frame = detail::has_boundary(kClass) ? grain_frame(surface, normal) : ShadingBasis(normal);
       const Vec3 local = frame.to_local(wo);
-      const auto go_on = [&](const auto& base) {
+      const auto shade_base = [&](const auto& base) {
         using Base = std::remove_cvref_t<decltype(base)>;
         if constexpr (detail::layered(kClass)) {
-          const LayeredBsdf<Base> bsdf(layer_point(surface, frame, glass), base, local);
+          const LayeredBsdf<Base> bsdf(layer_point(surface, frame, own.glass), base, local);
           scatter<kClass, kLights>(result, point, geometry, facing, front, frame, bsdf, worker, out, children);
         } else {
           scatter<kClass, kLights>(result, point, geometry, facing, front, frame, base, worker, out, children);
         }
       };
       if constexpr (!detail::has_boundary(kClass)) {
-        go_on(Bsdf(material, local));
-      } else if (kClass == SurfaceClass::kAnything && !has_interface(*point.material)) {
-        go_on(Bsdf(material, local));
+        shade_base(Bsdf(material, local));
+      } else if (kClass == SurfaceClass::kAnything && !own.boundary) {
+        shade_base(Bsdf(material, local));
       } else {
-        go_on(InterfaceBsdf<detail::transmits(kClass)>(interface_point(surface, material, glass, local.z), local));
+        shade_base(
+            InterfaceBsdf<detail::transmits(kClass)>(interface_point(surface, material, own.glass, local.z), local));
       }
     }
   }
@@ -136,7 +137,7 @@ template <SurfaceClass kClass, PathTracer::Lights kLights, class SomeBsdf>
 void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, const TriangleGeometry& geometry,
                          const Vec3& facing, bool front, const ShadingBasis& frame, const SomeBsdf& bsdf,
                          Worker& worker, RayBatch& out, std::uint32_t& children) {
-  constexpr bool kThrough = detail::transmits(kClass), kMedia = kLights == Lights::kLampsAndMedia;
+  constexpr bool kThrough = detail::transmits(kClass), kMedia = kLights == Lights::kEmissiveAndMedia;
   PathState& path = pool_.state(result.tag.path);
   const std::uint32_t bounce = result.tag.bounce;
   const bool last = bounce + 1 >= max_depth_;
@@ -144,7 +145,7 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
   const LightDraw light_draw = sampler_.light(path.pixel, path.sample, bounce);
   RayTag tag{result.tag.path, RayKind::kShadow, result.tag.bounce, 0, 0};
 
-  // Where the volume is in which a ray goes on: behind the surface or before it.
+  // The medium of a ray that goes on from the surface: the volume behind it or the one before it.
   const auto medium_beyond = [&](bool through) -> std::uint32_t {
     const std::uint32_t here = pool_.medium(tag.path);
     if (!through || !has_volume(*point.material)) return here;
@@ -173,7 +174,8 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
           const std::uint32_t medium = medium_beyond(side < 0.0f);
           if (medium != 0) contribution *= passed(medium, light.tmax < kInfinity ? glm::length(light.direction) : 0.0f);
         }
-        // Less than half a step of the film's fixed point adds exactly nothing: no ray. NaN passes, is counted.
+        // A contribution below half a step of the film's fixed point adds exactly nothing and needs no ray. NaN passes
+        // the comparison and is counted later.
         if (!(max_component(contribution) < 0x1p-29f)) {
           pool_.shadow_contribution(tag.path, bounce) = contribution;
           emit({start, 0.0f, light.direction, light.tmax}, tag, worker, out);

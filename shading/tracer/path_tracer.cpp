@@ -61,7 +61,7 @@ PathTracer::~PathTracer() = default;
 PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
   const PixelSample at = order_.at(ordinal);
   PathState& path = pool_.state(index);
-  // Relaxed and plain: nobody else knows of this path until the engine has handed its ray over.
+  // Relaxed and plain: no other thread knows this path until the engine has handed its ray over.
   for (auto& channel : path.radiance) channel.store(0, std::memory_order_relaxed);
   path.outstanding.store(1, std::memory_order_relaxed);
   path.pixel = at.y * film_.width() + at.x;
@@ -84,7 +84,7 @@ Workload::Generated PathTracer::generate(WorkerId worker_id, std::size_t max_ray
     emit(camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample)),
          {worker.states[i], RayKind::kCamera, 0, 0, 0}, worker, out);
   }
-  // Counted after appending, so that whoever reads the full count knows that no other call is still at it.
+  // Counted after appending, so that a thread that reads the full count knows that no other call is still appending.
   // Acquire and release pair with the same operation of the other workers' calls.
   const std::uint64_t before = generated_.fetch_add(admitted.count, std::memory_order_acq_rel);
   return {admitted.count, before + admitted.count == paths_};
@@ -124,8 +124,8 @@ Vec3 PathTracer::passed(std::uint32_t medium, float distance) const {
   return {exp_float(-a.x * distance), exp_float(-a.y * distance), exp_float(-a.z * distance)};
 }
 
-/// Beer-Lambert: what is left of the path's light after the way to the hit. A ray that leaves the scene from within a
-/// volume found a hole in its hull, and keeps its light.
+/// Applies the Beer-Lambert law over the way to the hit. A ray that leaves the scene from within a volume has found a
+/// hole in the hull and keeps its light.
 void PathTracer::absorb(const RayResult& result) {
   const std::uint32_t medium = pool_.medium(result.tag.path);
   if (medium != 0) pool_.state(result.tag.path).throughput *= passed(medium, result.hit.t);
@@ -163,19 +163,20 @@ PathTracer::ShadeSurface PathTracer::shade_of(SurfaceClass surface, Lights light
       return shade_of<Lights::kNone>(surface);
     case Lights::kPunctual:
       return shade_of<Lights::kPunctual>(surface);
-    case Lights::kLamps:
-      return shade_of<Lights::kLamps>(surface);
-    case Lights::kLampsAndMedia:
+    case Lights::kEmissive:
+      return shade_of<Lights::kEmissive>(surface);
+    case Lights::kEmissiveAndMedia:
       break;
   }
-  return shade_of<Lights::kLampsAndMedia>(surface);
+  return shade_of<Lights::kEmissiveAndMedia>(surface);
 }
 
 void PathTracer::choose_surfaces() {
   const std::vector<SurfaceClass> classes = surface_classes(scene_, plan_);
+  const std::vector<ShaderParts> parts = parts_of_materials(scene_);
   const std::vector<std::uint32_t> effects = shading::extra_effects(scene_, plan_);
-  const Lights lights = media_                        ? Lights::kLampsAndMedia
-                        : plan_.on(Effect::kEmission) ? Lights::kLamps
+  const Lights lights = media_                        ? Lights::kEmissiveAndMedia
+                        : plan_.on(Effect::kEmission) ? Lights::kEmissive
                         : !lights_.empty()            ? Lights::kPunctual
                                                       : Lights::kNone;
   surfaces_.resize(scene_.materials.size());
@@ -186,6 +187,7 @@ void PathTracer::choose_surfaces() {
     surface.glass = glass_tables(material);
     surface.absorbs = absorbs(material);
     surface.effects = effects[i];
+    surface.boundary = parts[i] & kBoundary;
     if (!surface.absorbs) continue;
     for (int c = 0; c < 3; ++c) {
       const float left = std::clamp(material.volume.attenuation_color[c], 1e-6f, 1.0f);
@@ -209,7 +211,7 @@ void PathTracer::add_emission(PathState& path, const RayResult& result, const Tr
 void PathTracer::add_radiance(PathState& path, const Vec3& radiance, Worker& worker) {
   for (int c = 0; c < 3; ++c) {
     const std::int64_t term = to_fixed_point(radiance[c], worker.counts.saturated);
-    // Relaxed: finish_ray()'s decrement, which follows, publishes it to whoever commits the path.
+    // Relaxed: finish_ray()'s decrement, which follows, publishes it to the thread that commits the path.
     if (term != 0) path.radiance[c].fetch_add(term, std::memory_order_relaxed);
   }
 }

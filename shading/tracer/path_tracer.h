@@ -30,8 +30,8 @@ namespace carousel::shading {
 /// One frame by path tracing: camera rays, at each surface one shadow ray and one bounce ray, weighted by
 /// multiple importance sampling (E. Veach, L. Guibas, SIGGRAPH 1995, balance heuristic), Russian roulette
 /// from the fourth surface on. Image and hits digest are the same bits for any number of workers, any cutting
-/// of batches and any order. Each material is shaded by the least code that has all it calls for, chosen once
-/// (effects_plan.h). Shadow rays take what transmits for opaque: light gets through it by bounce rays alone, and at
+/// of batches and any order. Each material is shaded by the least code that has all effects it calls for, chosen once
+/// (surface_class.h). Shadow rays treat transmissive surfaces as opaque: light passes them by bounce rays alone, and at
 /// points of glass by shadow rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light
 /// from the sky, which only such rays find, is not seen there.
 class PathTracer : public Workload {
@@ -43,12 +43,12 @@ class PathTracer : public Workload {
   PathTracer(const scene::Scene& scene, const Config& config, std::size_t max_paths_in_flight, std::size_t workers);
   ~PathTracer() override;
 
-  /// Every completed ray is reported to `recorder`, which must outlive the tracing; null: none is. Call
+  /// Every completed ray is reported to `recorder`, which must outlive the tracing; null turns the reports off. Call
   /// before the first generate().
   void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
 
-  /// Paths start at these hits, without camera rays where they know the hit; they must outlive the tracing. Null: all
-  /// start with a ray. Call before the first generate().
+  /// Paths start at these hits, and need no camera ray where the hit is known; `hits` must outlive the tracing. Null:
+  /// all paths start with a ray. Call before the first generate().
   void set_first_hits(const FirstHits* hits) { first_hits_ = hits; }
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
@@ -57,7 +57,7 @@ class PathTracer : public Workload {
 
   const EffectsPlan& plan() const { return plan_; }
 
-  // Results, for when the frame is done and the workers are joined.
+  // The results below are valid once the frame is done and the workers are joined.
 
   struct Counts {
     std::array<std::uint64_t, kRayKinds> emitted{};  ///< rays by RayKind
@@ -67,7 +67,7 @@ class PathTracer : public Workload {
   };
   Counts counts() const;
   HitsDigest hits_digest() const;
-  /// Of linear_rgb().
+  /// Digest of linear_rgb().
   std::string image_digest() const;
   std::vector<float> linear_rgb() const { return film_.linear_rgb(); }
   std::uint32_t width() const { return film_.width(); }
@@ -76,10 +76,10 @@ class PathTracer : public Workload {
  protected:
   struct Worker;
 
-  /// Which code the whole frame shares: what its lights are, and whether volumes take light.
-  enum class Lights : std::uint8_t { kNone, kPunctual, kLamps, kLampsAndMedia };
+  /// The kinds of lights in the frame, and whether volumes absorb. All surfaces of a frame share one value.
+  enum class Lights : std::uint8_t { kNone, kPunctual, kEmissive, kEmissiveAndMedia };
 
-  /// shade() with `shade_hit` for what a ray hit: a call that is known when the program is built.
+  /// The body of shade(). `shade_hit` shades a ray's hit; it is a template argument so that the call can be inlined.
   template <bool kMedia, class ShadeHit>
   void shade_batch(WorkerId worker, const HitBatch& completed, RayBatch& out, const ShadeHit& shade_hit);
   template <SurfaceClass kClass, Lights kLights>
@@ -88,12 +88,13 @@ class PathTracer : public Workload {
 
  private:
   using ShadeSurface = void (PathTracer::*)(const RayResult&, const TrianglePoint&, Worker&, RayBatch&, std::uint32_t&);
-  /// How a material's hits are shaded.
+  /// The shading of a material's hits.
   struct Surface {
     ShadeSurface shade = nullptr;
     GlassTables glass;
     Vec3 absorption{0};  ///< per scene unit, inside
     bool absorbs = false;
+    bool boundary = false;      ///< ShaderParts::kBoundary
     std::uint32_t effects = 0;  ///< extra_effects()
   };
 
@@ -111,7 +112,7 @@ class PathTracer : public Workload {
   /// Starts path `ordinal` of the frame in state `index`.
   PixelSample begin_path(std::uint64_t ordinal, std::uint32_t index);
   Generated generate_from_hits(WorkerId worker, std::size_t max_rays, RayBatch& out);
-  /// What a camera ray's hit would do, had there been a ray.
+  /// Shades a first hit that was found without a camera ray.
   void shade_first(const RayResult& result, Worker& worker, RayBatch& out);
   void shade_shadow(const RayResult& result, Worker& worker);
   void add_emission(PathState& path, const RayResult& result, const TriangleGeometry& geometry,

@@ -7,7 +7,7 @@
 
 namespace carousel::shading {
 
-/// Is told of every completed ray, e.g. to list them. Calls for one worker come one at a time, for different
+/// Receives every completed ray, e.g. to list them. Calls for one worker come one at a time, for different
 /// workers at the same time; the order depends on the engine.
 class RayRecorder {
  public:

@@ -1,9 +1,8 @@
 #include "shading/tracer/surface_class.h"
 
-#include <algorithm>
 #include <array>
 
-#include "shading/surface/material_effects.h"
+#include "shading/surface/material_properties.h"
 
 namespace carousel::shading {
 
@@ -18,27 +17,35 @@ std::string_view class_name(SurfaceClass surface) {
 
 namespace {
 
-SurfaceClass surface_class(const Material& m, bool colors) {
-  if (m.unlit) return SurfaceClass::kUnlit;
-  const bool layers = has_layers(m);
-  if (transmits(m)) return layers ? SurfaceClass::kLayeredTransmissive : SurfaceClass::kTransmissive;
-  if (has_interface(m)) return layers ? SurfaceClass::kLayeredOpaque : SurfaceClass::kOpaque;
+SurfaceClass surface_class(const Material& material, ShaderParts parts) {
+  if (material.unlit) return SurfaceClass::kUnlit;
+  const bool layers = parts & kLayers;
+  if (parts & kTransmission) return layers ? SurfaceClass::kLayeredTransmissive : SurfaceClass::kTransmissive;
+  if (parts & kBoundary) return layers ? SurfaceClass::kLayeredOpaque : SurfaceClass::kOpaque;
   if (layers) return SurfaceClass::kLayered;
-  const bool textures = m.base_color_texture || m.metallic_roughness_texture || m.normal_texture || colors;
-  return textures ? SurfaceClass::kTextured : SurfaceClass::kPlain;
+  return parts & kTextures ? SurfaceClass::kTextured : SurfaceClass::kPlain;
 }
 
 }  // namespace
 
-std::vector<SurfaceClass> surface_classes(const scene::Scene& scene, const EffectsPlan& plan) {
-  std::vector<bool> colors(scene.materials.size(), false);
-  for (const scene::Mesh& mesh : scene.meshes) {
-    if (mesh.colors.empty()) continue;
-    for (const MaterialId id : mesh.triangle_materials) colors[id.value] = true;
+std::vector<ShaderParts> parts_of_materials(const scene::Scene& scene) {
+  std::vector<ShaderParts> parts;
+  for (const Material& material : scene.materials) parts.push_back(shader_parts(material));
+  for (const EffectRule& rule : effect_rules()) {
+    if (rule.mesh == nullptr) continue;
+    for (const scene::Mesh& mesh : scene.meshes) {
+      if (!rule.mesh(mesh)) continue;
+      for (const MaterialId id : mesh.triangle_materials) parts[id.value] = parts[id.value] | rule.shader;
+    }
   }
+  return parts;
+}
+
+std::vector<SurfaceClass> surface_classes(const scene::Scene& scene, const EffectsPlan& plan) {
+  const std::vector<ShaderParts> parts = parts_of_materials(scene);
   std::vector<SurfaceClass> classes;
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
-    classes.push_back(plan.everything ? SurfaceClass::kAnything : surface_class(scene.materials[i], colors[i]));
+    classes.push_back(plan.everything ? SurfaceClass::kAnything : surface_class(scene.materials[i], parts[i]));
   return classes;
 }
 
@@ -56,8 +63,9 @@ std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::S
 std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan) {
   std::vector<std::uint32_t> counts;
   for (const Material& material : scene.materials) {
-    const auto has = [&](Effect effect) { return plan.everything || requires_effect(material, effect); };
-    counts.push_back(static_cast<std::uint32_t>(std::count_if(kExtraEffects.begin(), kExtraEffects.end(), has)));
+    counts.push_back(0);
+    for (const EffectRule& rule : effect_rules())
+      counts.back() += rule.extra && (plan.everything || requires_effect(rule, material)) ? 1u : 0u;
   }
   return counts;
 }

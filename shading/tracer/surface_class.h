@@ -11,26 +11,30 @@
 
 namespace carousel::shading {
 
-/// What a material needs of the shader: the least of these that has it is chosen once, not at each hit.
+/// The shading code of a material. The least code that has every effect of the material is chosen once per scene,
+/// not at each hit.
 enum class SurfaceClass : std::uint8_t {
   kUnlit,
   kPlain,     ///< metallic-roughness of the factors alone
-  kTextured,  ///< and textures, normal map or vertex colours
-  kLayered,   ///< and clearcoat or sheen
+  kTextured,  ///< also textures, normal map or vertex colours
+  kLayered,   ///< also clearcoat or sheen
   kOpaque,    ///< ior, specular, iridescence or anisotropy
   kLayeredOpaque,
   kTransmissive,
   kLayeredTransmissive,
-  kAnything,  ///< asks at each hit what there is: `all`
+  kAnything,  ///< looks up at each hit which effects the material has: `all`
 };
 inline constexpr std::size_t kSurfaceClasses = 9;
 std::string_view class_name(SurfaceClass surface);
-/// Classes of the materials on triangles of instances, as the plan has them shaded, each with how many; none of 0.
-std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::Scene& scene, const EffectsPlan& plan);
-/// By material: effects to be computed at a hit beyond those of a plain surface: textures, and what glTF's extensions
-/// add; with `all` as many as there are.
-std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan);
-/// By material: how the plan has it shaded.
+
+/// By material: the shading code that the plan chooses.
 std::vector<SurfaceClass> surface_classes(const scene::Scene& scene, const EffectsPlan& plan);
+/// The classes of the materials on triangles of instances, each with the number of its materials; none with 0.
+std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::Scene& scene, const EffectsPlan& plan);
+/// By material: the parts of the shading code that it needs, by its own effects and by those of its meshes.
+std::vector<ShaderParts> parts_of_materials(const scene::Scene& scene);
+/// By material: the number of effects that a hit computes beyond those of a plain surface (`EffectRule::extra`); with
+/// `all` every such effect counts.
+std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan);
 
 }  // namespace carousel::shading

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/config/config.h"
+#include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/time/agent.h"
@@ -13,15 +14,15 @@
 namespace carousel::ringbus::cycle {
 
 /// The L2 that some resources share: looks up a line a cycle, in the order in which requests arrive (at one time:
-/// of the resources). A line that is on its way from memory is asked for once. Read only, so nothing is written
-/// back.
+/// of the resources). A line that is on its way from memory is requested once. The cache is read only, so nothing is
+/// written back.
 class ShapeCache final : public Agent {
  public:
   struct Client {
     Channel<FetchRequest>* requests = nullptr;
     Channel<FetchAnswer>* answers = nullptr;
   };
-  /// What the parts of the latency are: half on the way in, half on the way out, at least a cycle each.
+  /// Half of the latency is spent on the way in, half on the way out, at least a cycle each.
   static Cycle request_latency(const MemoryConfig& config);
   static Cycle answer_latency(const MemoryConfig& config);
 
@@ -33,9 +34,7 @@ class ShapeCache final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override;
 
-  struct Statistics {
-    std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0;
-  };
+  using Statistics = CacheCounts;
   const Statistics& statistics() const { return statistics_; }
 
  private:

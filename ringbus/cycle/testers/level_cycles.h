@@ -13,9 +13,10 @@ inline constexpr std::int64_t kDoublePasses = 4;
 /// The testers as configured are built for 32 bits; as they are at the levels of `accuracy`.
 inline TestersConfig at_levels(TestersConfig testers, const AccuracyConfig& accuracy) {
   if (accuracy.triangle == TriangleLevel::kDouble || accuracy.triangle == TriangleLevel::kExact)
-    testers.triangle.interval_cycles *= kDoublePasses;
-  if (accuracy.box == BoxLevel::kDouble) testers.box.interval_cycles *= kDoublePasses;
-  if (accuracy.transform == TransformLevel::kTwoStepDouble) testers.transform.interval_cycles *= kDoublePasses;
+    testers.units[UnitKind::kTriangle].interval_cycles *= kDoublePasses;
+  if (accuracy.box == BoxLevel::kDouble) testers.units[UnitKind::kBox].interval_cycles *= kDoublePasses;
+  if (accuracy.transform == TransformLevel::kTwoStepDouble)
+    testers.units[UnitKind::kTransform].interval_cycles *= kDoublePasses;
   return testers;
 }
 

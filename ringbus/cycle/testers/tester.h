@@ -2,8 +2,8 @@
 
 #include "accel/transform/instance_data.h"
 #include "core/config/config.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/types/ids.h"
-#include "core/types/intersection_counts.h"
 #include "ringbus/cycle/testers/level_cycles.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/faults/resource_fault.h"
@@ -22,13 +22,13 @@ struct Tester {
   using Order = CullPlanesConfig::Order;
   /// `reads_per_cycle`: as rays.reads_per_cycle.
   explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst, std::int64_t reads_per_cycle = 0)
-      : box(config.box),
-        triangle(config.triangle),
-        plane(config.plane),
-        bundle(config.bundle),
-        transform(config.transform),
-        procedural(config.procedural),
-        any_hit(config.any_hit_unit),
+      : box(config.units[UnitKind::kBox]),
+        triangle(config.units[UnitKind::kTriangle]),
+        plane(config.units[UnitKind::kPlane]),
+        bundle(config.units[UnitKind::kBundle]),
+        transform(config.units[UnitKind::kTransform]),
+        procedural(config.units[UnitKind::kProcedural]),
+        any_hit(config.units[UnitKind::kAnyHit]),
         store({std::max<std::int64_t>(1, reads_per_cycle), 1, 1}),
         order_(order),
         reads_cost_(reads_per_cycle > 0),

@@ -74,7 +74,6 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
 
 std::uint32_t CollectionStore::new_block() {
   ++blocks_used_;
-  statistics_.blocks_peak = std::max<std::uint64_t>(statistics_.blocks_peak, blocks_used_);
   if (!free_blocks_.empty()) {
     const std::uint32_t block = free_blocks_.back();
     free_blocks_.pop_back();
@@ -144,8 +143,6 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   --blocks_used_;
   c.count -= n;
   memberships_ -= n;
-  ++statistics_.taken_blocks;
-  statistics_.taken_rays += n;
   if (c.count == 0) {
     list(c).remove(id.value);
     table_.erase(c.key);

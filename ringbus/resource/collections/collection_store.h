@@ -7,6 +7,7 @@
 
 #include "accel/structure/node.h"
 #include "core/config/config.h"
+#include "core/statistics/collection_counts.h"
 #include "ringbus/rays/ray_id.h"
 #include "ringbus/resource/collections/collection_table.h"
 #include "ringbus/resource/collections/priority_lists.h"
@@ -28,15 +29,7 @@ class CollectionStore {
     float scene_size = 1;  ///< scale of entry distances, for `nearest`
     int max_depth = 1;     ///< for `deepest`
   };
-  struct Statistics {
-    std::uint64_t created = 0;
-    std::uint64_t peak = 0;              ///< collections at once
-    std::uint64_t memberships_peak = 0;  ///< ray IDs at once
-    std::uint64_t spilled = 0;           ///< ray IDs put into blocks beyond the capacity
-    std::uint64_t blocks_peak = 0;
-    std::uint64_t taken_blocks = 0;
-    std::uint64_t taken_rays = 0;
-  };
+  using Statistics = CollectionCounts;
 
   explicit CollectionStore(const Settings& settings);
 

@@ -13,7 +13,7 @@
 
 namespace carousel::scene {
 
-/// glTF's numbers for component types.
+/// The numbers of component types in glTF.
 enum class Component : int {
   kByte = 5120,
   kUnsignedByte = 5121,
@@ -26,7 +26,7 @@ enum class Component : int {
 std::size_t size_of(Component component);
 const char* name_of(Component component);
 
-/// What an accessor is used for; decides which element and component types are allowed.
+/// The use of an accessor; it decides which element and component types are allowed.
 enum class AccessorUse {
   kPosition,
   kNormal,
@@ -45,15 +45,15 @@ class AccessorTable {
   /// `unpacked` holds the bytes of buffer views that were compressed. All arguments must outlive the table.
   AccessorTable(const GltfDocument& document, const GltfModel& model, const std::map<std::size_t, Bytes>& unpacked);
 
-  /// From here on the accessor reads `bytes`: its elements one after the other, of its own type. Whatever else the file
-  /// says of where its data lies is forgotten.
+  /// From here on the accessor reads `bytes`: its elements one after the other, of its own type. The position of its
+  /// data in the file is forgotten.
   void replace(std::size_t accessor, Bytes bytes);
 
   std::uint64_t count(std::size_t accessor) const { return accessors_[accessor].count; }
   /// Components of one element: 1 to 4, more for matrices.
   int components(std::size_t accessor) const { return accessors_[accessor].components; }
   Component component(std::size_t accessor) const { return accessors_[accessor].component; }
-  /// Whether the file holds data for it.
+  /// True if the file holds data for the accessor.
   bool stored(std::size_t accessor) const { return accessors_[accessor].base || accessors_[accessor].sparse; }
 
   /// Throws SceneError at `path` (where the accessor is referred to) unless its type fits the use, or when
@@ -72,7 +72,7 @@ class AccessorTable {
   std::vector<std::uint32_t> integers(std::size_t accessor) const;
 
  private:
-  /// Elements `stride` bytes apart; nowhere where the data is not in the file.
+  /// Elements `stride` bytes apart; null if the data is not in the file.
   struct Strided {
     const unsigned char* first = nullptr;
     std::size_t stride = 0;

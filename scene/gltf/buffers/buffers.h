@@ -21,7 +21,7 @@ class GltfResources {
   GltfResources(const GltfDocument& document, std::optional<std::filesystem::path> folder)
       : document_(document), folder_(std::move(folder)) {}
 
-  /// Exactly byteLength bytes, or nothing for a buffer without data (as compression extensions leave behind).
+  /// Exactly byteLength bytes, or none for a buffer without data (as compression extensions allow).
   /// Throws SceneError when the data cannot be found or is too short.
   std::optional<Bytes> buffer(std::size_t index) const;
   /// The encoded bytes of an image that has a `uri`.
@@ -35,7 +35,7 @@ class GltfResources {
   std::optional<std::filesystem::path> folder_;
 };
 
-/// Decodes base64 (RFC 4648; padding may be missing), at most `most_bytes` of it. Nothing when a character
+/// Decodes base64 (RFC 4648; padding may be missing), at most `most_bytes` of it. Empty if a character
 /// does not belong there.
 std::optional<Bytes> decode_base64(std::string_view text, std::uint64_t most_bytes);
 

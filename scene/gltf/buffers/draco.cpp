@@ -1,6 +1,6 @@
 // KHR_draco_mesh_compression. The stream's beginning is read here as well, by the Draco bitstream specification 2.2
 // (google.github.io/draco/spec, 3 Draco decoder, 4.2 sequential and 5 edgebreaker connectivity), because the decoder
-// allocates for what the stream announces.
+// allocates memory for the sizes that the stream declares.
 #include "scene/gltf/buffers/draco.h"
 
 #include <algorithm>
@@ -22,12 +22,12 @@ namespace carousel::scene {
 namespace {
 
 constexpr std::int64_t kIndices = -1;
-/// Real meshes take a quarter of a byte a triangle and more; a plane that one byte describes is small.
+/// Most triangles per byte: real meshes need at least a quarter of a byte per triangle.
 constexpr std::uint64_t kMostPerByte = 64, kAlwaysAllowed = 4096;
 
 using Stream = std::span<const unsigned char>;
 
-/// What the stream announces; nothing when it is no mesh of bitstream 2.2, which is all that glTF allows.
+/// The sizes that the stream declares; empty if it is no mesh of bitstream 2.2, the only kind that glTF allows.
 struct Announced {
   std::uint32_t faces = 0, vertices = 0;
 };

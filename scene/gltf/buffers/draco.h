@@ -21,7 +21,7 @@ class DracoReader {
 
   /// Gives the accessors of the mesh's compressed primitives their data; call before the mesh is read. A primitive
   /// whose accessors all have data of their own (a fallback) is left as it is. Throws SceneError for streams that are
-  /// broken, announce more triangles or vertices than so few bytes can justify (before anything is allocated for them),
+  /// broken, declare more triangles or vertices than so few bytes can hold (before anything is allocated for them),
   /// hold other numbers of elements than the accessors say, or lack an attribute.
   void decode(std::size_t mesh);
 
@@ -31,7 +31,7 @@ class DracoReader {
   const GltfDocument& document_;
   AccessorTable& accessors_;
   ImportBudget& budget_;
-  /// Where an accessor's data came from: buffer view and attribute of the stream, or kIndices.
+  /// Source of an accessor's data: buffer view and attribute of the stream, or kIndices.
   std::map<std::size_t, std::pair<std::size_t, std::int64_t>> sources_;
 };
 

@@ -10,8 +10,8 @@ namespace carousel::scene {
 
 namespace {
 
-/// 16 bytes of an attribute take at least the 2 bits of their header, a triangle's 12 bytes at least one byte, an
-/// index's 4 at least one.
+/// Most output bytes of one input byte: 16 bytes of an attribute need at least the 2 bits of their header, the 12 bytes
+/// of a triangle at least one byte, the 4 bytes of an index at least one.
 constexpr std::uint64_t kMostPacking = 64;
 
 class MeshoptView {

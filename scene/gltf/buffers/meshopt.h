@@ -9,9 +9,9 @@
 
 namespace carousel::scene {
 
-/// What EXT_meshopt_compression hides, filters undone: byteLength bytes for each buffer view that has the extension, by
-/// index of the view. Throws SceneError for parameters the extension forbids, for data that ends early or is broken,
-/// and before anything is allocated for more than such data can hold.
+/// Unpacks EXT_meshopt_compression, filters included: byteLength bytes for each buffer view with the extension, by
+/// index of the view. Throws SceneError for parameters that the extension forbids, for data that ends early or is
+/// broken, and, before anything is allocated, for sizes larger than such data can hold.
 std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, const GltfModel& model);
 
 }  // namespace carousel::scene

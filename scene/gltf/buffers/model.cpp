@@ -10,7 +10,7 @@ namespace carousel::scene {
 
 namespace {
 
-/// What tinygltf's callbacks see. Addresses in the document it parses are "carousel-buffer-3" and
+/// The data of tinygltf's callbacks. Addresses in the document it parses are "carousel-buffer-3" and
 /// "carousel-image-0", so that it never opens a file itself.
 struct Feed {
   std::vector<Bytes> buffers;
@@ -29,13 +29,13 @@ bool read_address(Bytes* out, std::string*, const std::string& address, void* us
   return true;
 }
 
-/// Pixels are read_images()'s business.
+/// Leaves the pixels to read_images().
 bool take_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
   return true;
 }
 
-/// The document with addresses replaced, and with every accessor naming some buffer view: tinygltf insists on
-/// one for indices, though a sparse accessor may do without.
+/// The document with addresses replaced, and with a buffer view for every accessor: tinygltf requires one for indices,
+/// though a sparse accessor may have none.
 std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buffers) {
   Json json = checked;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -58,13 +58,13 @@ std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buf
   return json.dump();
 }
 
-/// Only for readers that know no EXT_meshopt_compression.
+/// True for a buffer that only readers without EXT_meshopt_compression use.
 bool is_fallback(const Json& buffer) {
   const Json::json_pointer pointer("/extensions/EXT_meshopt_compression/fallback");
   return buffer.contains(pointer) && buffer.at(pointer).get<bool>();
 }
 
-/// Every image in a buffer view must find its bytes there, before tinygltf looks.
+/// Checks that every image in a buffer view has its bytes there, before tinygltf reads them.
 void check_embedded_images(const GltfDocument& document, const std::vector<bool>& has_data) {
   if (!document.json.contains("images")) return;
   const Json& images = document.json["images"];

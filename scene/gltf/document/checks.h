@@ -10,8 +10,8 @@ namespace carousel::scene {
 /// it was parsed, before check_schema.
 void check_extensions(const GltfDocument& document, const WarningSink& warn);
 
-/// What the schema cannot say, for the JSON after check_schema: buffer views lie inside their buffers, an
-/// image has one source, indices are stored somewhere, cameras and spot lights have their details, animation
+/// Checks rules that the schema cannot express, on the JSON after check_schema: buffer views lie inside their buffers,
+/// an image has one source, indices are stored somewhere, cameras and spot lights have their details, animation
 /// channels name a sampler, and the nodes form trees of which scenes name the roots. Throws SceneError.
 void check_links(const GltfDocument& document);
 

@@ -21,7 +21,7 @@ std::uint32_t read_u32(std::span<const std::byte> bytes, std::size_t at) {
   return value;
 }
 
-/// Finds values nested too deeply without recursion, whether or not the text is proper JSON.
+/// Finds values that are nested too deeply, without recursion, in any text, valid JSON or not.
 class NestingScan {
  public:
   NestingScan(const GltfDocument& document, std::string_view text) : document_(document), text_(text) {}
@@ -68,7 +68,7 @@ class NestingScan {
   void open() {
     if (levels_.size() == kDeepestNesting) {
       std::string path;
-      for (std::size_t i = 0; i < 6; ++i) {  // enough to find the place; the rest is more of the same
+      for (std::size_t i = 0; i < 6; ++i) {  // enough to find the place
         path = levels_[i].is_array ? json_path(path, levels_[i].index) : json_path(path, levels_[i].key.substr(0, 64));
       }
       document_.fail(path, "nested more than 128 levels deep (at byte " + std::to_string(at_) + ")");

@@ -16,9 +16,9 @@ using Json = nlohmann::json;
 std::string json_path(const std::string& path, std::string_view key);
 std::string json_path(const std::string& path, std::size_t index);
 
-/// A glTF file taken apart, before anything in it is believed.
+/// The parts of a glTF file, none of them checked yet.
 struct GltfDocument {
-  std::string file;  ///< how messages name it
+  std::string file;  ///< its name in messages
   Json json;         ///< an object; `asset.version` is 2.x
   bool is_glb = false;
   std::span<const std::byte> binary_chunk;  ///< of a .glb; refers to the bytes that were parsed
@@ -31,16 +31,15 @@ struct GltfDocument {
 /// SceneError for a broken container, broken JSON, nesting beyond 128 levels or another glTF version.
 GltfDocument parse_document(std::span<const std::byte> bytes, const std::string& file);
 
-/// What an import may create in all: vertices, triangles and instances count one each. Accessors without data
-/// and accessors shared by many meshes let a small file ask for any amount; no real file comes near the
-/// limit.
+/// The limit of an import's size: vertices, triangles and instances count one each. With accessors without data or
+/// shared by many meshes a small file could request any amount of memory; no real file comes near the limit.
 class ImportBudget {
  public:
   ImportBudget(const GltfDocument& document, std::uint64_t bytes_read)
       : document_(document), left_((std::uint64_t{1} << 20) + 16 * bytes_read) {}
   /// Throws SceneError at `path` when more than the budget would be spent; call before allocating.
   void spend(std::uint64_t elements, const std::string& path);
-  /// More bytes came out of compressed data than bytes_read counted.
+  /// Raises the limit for bytes that were unpacked from compressed data.
   void earn(std::uint64_t bytes) { left_ += 16 * bytes; }
 
  private:

@@ -53,7 +53,7 @@ void check_extensions(const GltfDocument& document, const WarningSink& warn) {
   if (has_entries(json, "extensionsRequired")) {
     const Json& required = json["extensionsRequired"];
     for (std::size_t i = 0; i < required.size(); ++i) {
-      if (!required[i].is_string()) continue;  // the schema check says it better
+      if (!required[i].is_string()) continue;  // the schema check reports this with a better message
       const auto& name = required[i].get_ref<const std::string&>();
       if (std::ranges::find(kRead, name) == kRead.end()) {
         document.fail(json_path("/extensionsRequired", i),

@@ -61,7 +61,7 @@ void check_details(const GltfDocument& document) {
   }
 }
 
-/// Indices must be stored somewhere. (Attributes without data are zeros.)
+/// Checks that every accessor of indices has data. (Attributes without data are zeros.)
 void check_primitives(const GltfDocument& document) {
   const Json& accessors = entries(document.json, "accessors");
   const Json& meshes = entries(document.json, "meshes");
@@ -79,7 +79,7 @@ void check_primitives(const GltfDocument& document) {
   }
 }
 
-/// A sphere stands in for a mesh.
+/// Checks that a node with a sphere has no mesh, since the sphere takes its place.
 void check_spheres(const GltfDocument& document) {
   const Json& nodes = entries(document.json, "nodes");
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -107,7 +107,7 @@ std::string node_name(std::size_t node) {
   return "node " + std::to_string(node);
 }
 
-/// Every node has at most one parent, and nobody is his own ancestor; then the roots span all nodes.
+/// Checks that every node has at most one parent and that no node is its own ancestor; then the roots span all nodes.
 void check_nodes(const GltfDocument& document) {
   const Json& nodes = entries(document.json, "nodes");
   std::vector<std::optional<std::size_t>> parents(nodes.size());
@@ -124,7 +124,7 @@ void check_nodes(const GltfDocument& document) {
       parents[child] = i;
     }
   }
-  // With one parent each, walking up either ends at a root or goes round. Each node is walked over once.
+  // With one parent each, a walk upwards ends at a root or runs in a circle. Each node is visited once.
   std::vector<std::size_t> seen_from(nodes.size(), nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (std::size_t at = i; seen_from[at] == nodes.size(); at = *parents[at]) {

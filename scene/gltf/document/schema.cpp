@@ -25,7 +25,7 @@ std::string found(const Json& value) {
   }
 }
 
-/// 12 rather than 12.0 where a number is whole.
+/// Writes a whole number as 12, not as 12.0.
 std::string shown(double value) {
   if (std::abs(value) < 1e15 && value == std::floor(value)) return std::to_string(static_cast<std::int64_t>(value));
   return Json(value).dump();
@@ -181,7 +181,7 @@ class Checker {
 }  // namespace
 
 void check_schema(GltfDocument& document) {
-  // First, or an index into something that is no array would be blamed for it.
+  // This check comes first: otherwise an index into a value that is no array would get the blame.
   for (const SchemaRule& rule : gltf_schema()) {
     const auto entry = document.json.find(rule.key);
     if (rule.kind == SchemaKind::kObjects && entry != document.json.end() && !entry->is_array()) {

@@ -4,10 +4,10 @@
 
 namespace carousel::scene {
 
-/// Replaces document.json by a copy that holds only what the importer knows, each value of the right type and
-/// range, each index inside the array it refers to, required keys present, whole numbers as integers. Extras
-/// and unknown extensions are gone, so that what tinygltf sees is bounded in depth and in kind. Throws
-/// SceneError at the first value that is wrong.
+/// Replaces document.json by a copy that holds only the keys that the importer knows, each value of the right type and
+/// range, each index inside the array it refers to, required keys present, whole numbers as integers. Extras and
+/// unknown extensions are removed, so that tinygltf's input is bounded in depth and in kind. Throws SceneError at the
+/// first wrong value.
 void check_schema(GltfDocument& document);
 
 }  // namespace carousel::scene

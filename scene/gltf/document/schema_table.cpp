@@ -194,7 +194,7 @@ const Schema kNode{text("name"),
                    {.key = "extras", .kind = K::kExtras, .child = &kNodeExtras}};
 const Schema kScene{text("name"), indices("nodes", "/nodes")};
 
-// Read for their indices only.
+// These objects are read for their indices only.
 const Schema kSkin{index("inverseBindMatrices", "/accessors"), index("skeleton", "/nodes"),
                    indices("joints", "/nodes", true)};
 const Schema kTarget{index("node", "/nodes"), text("path", true)};
@@ -202,7 +202,7 @@ const Schema kChannel{integer("sampler", 0, kMostSparse, true), object("target",
 const Schema kAnimationSampler{index("input", "/accessors", true), index("output", "/accessors", true)};
 const Schema kAnimation{objects("channels", kChannel, true), objects("samplers", kAnimationSampler, true)};
 
-// In the order in which they are checked: extensions before the nodes whose indices lead into them.
+// The order of the checks: extensions come before the nodes whose indices refer to them.
 const Schema kRoot{object("asset", kAsset, true),
                    texts("extensionsUsed"),
                    texts("extensionsRequired"),

@@ -23,10 +23,10 @@ enum class SchemaKind {
   kIntegerMap,  ///< object of integers in [min, max]
   kObject,      ///< with the rules of `child`
   kObjects,     ///< array of such
-  kExtras,      ///< with the rules of `child` where it is an object; anything else is somebody else's
+  kExtras,      ///< with the rules of `child` if it is an object; other values belong to other programs and are ignored
 };
 
-/// What one key of a JSON object must look like.
+/// The rule for one key of a JSON object.
 struct SchemaRule {
   const char* key;
   SchemaKind kind;

@@ -1,4 +1,4 @@
-// The one place where tinygltf is compiled. Its warnings are not ours to fix.
+// The one place where tinygltf is compiled. Its warnings are turned off.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"

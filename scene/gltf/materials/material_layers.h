@@ -8,9 +8,9 @@
 
 namespace carousel::scene {
 
-/// Fills what the extensions KHR_materials_ior, transmission, volume, specular, clearcoat, sheen, iridescence and
-/// anisotropy say of a material. `extensions` is its `extensions` object at JSON path `path`, perhaps empty. A layer
-/// whose weight is 0 keeps its defaults, since nobody can see the rest of it.
+/// Reads the extensions KHR_materials_ior, transmission, volume, specular, clearcoat, sheen, iridescence and anisotropy
+/// of a material. `extensions` is its `extensions` object at JSON path `path`, perhaps empty. A layer whose weight is 0
+/// keeps its defaults, since its other values have no effect.
 void read_material_layers(const Json& extensions, const std::string& path, TextureReader& textures, Material& to);
 
 }  // namespace carousel::scene

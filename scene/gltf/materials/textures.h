@@ -12,18 +12,18 @@
 
 namespace carousel::scene {
 
-/// Turns the texture slots of materials into ours. Textures and images nobody uses are left out.
+/// Turns the texture slots of materials into scene::TextureUse. Unused textures and images are left out.
 class TextureReader {
  public:
   /// Fills `scene.textures`. The document has passed check_schema.
   TextureReader(const GltfDocument& document, Scene& scene) : document_(document), scene_(scene) {}
 
   /// The texture in slot `slot` of `owner` (a material, or one of its extension objects at JSON path `path`), with
-  /// KHR_texture_transform and either of the first two sets of texture coordinates. Nothing where the slot is empty or
-  /// its texture cannot be had, which is counted. Throws SceneError for a texture that is Basis Universal only.
+  /// KHR_texture_transform and either of the first two sets of texture coordinates. Empty if the slot is empty, or if
+  /// its texture cannot be read, which is counted. Throws SceneError for a texture that is Basis Universal only.
   std::optional<TextureUse> use(const Json& owner, const char* slot, const std::string& path);
 
-  /// One warning of all uses that were dropped.
+  /// Emits one warning that covers all dropped uses.
   void warn_of_dropped_uses(const WarningSink& warn) const;
   /// Image i of the scene is this one of the file.
   const std::vector<std::size_t>& images() const { return images_; }

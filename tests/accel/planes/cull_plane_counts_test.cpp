@@ -7,7 +7,7 @@
 #include "accel/traverse/kernels.h"
 #include "accel/traverse/ray_check.h"
 #include "core/config/enum_names.h"
-#include "core/types/cull_counts.h"
+#include "core/statistics/cull_counts.h"
 #include "tests/accel/planes/plane_rays.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"

@@ -35,7 +35,7 @@ TEST(ConfigSet, IndexesLists) {
   const Config made = with(kScene, {"topology.overrides.0.resource=3", "topology.overrides.0.testers.box=2"});
   ASSERT_EQ(made.topology.overrides.size(), 1u);
   EXPECT_EQ(made.topology.overrides[0].resource, 3);
-  EXPECT_EQ(made.topology.overrides[0].testers.box.units, 2);
+  EXPECT_EQ(made.topology.overrides[0].testers.units[UnitKind::kBox].units, 2);
   const Config changed = with("scene: {builtin: cornell}\ntopology: {overrides: [{resource: 1}, {resource: 2}]}\n",
                               {"topology.overrides.1.resource=5"});
   EXPECT_EQ(changed.topology.overrides[1].resource, 5);
@@ -43,8 +43,8 @@ TEST(ConfigSet, IndexesLists) {
 
 TEST(ConfigSet, KeepsABareNumberOfUnits) {
   const Config config = with("scene: {builtin: cornell}\ntesters: {box: 3}\n", {"testers.box.latency_cycles=8"});
-  EXPECT_EQ(config.testers.box.units, 3);
-  EXPECT_EQ(config.testers.box.latency_cycles, 8);
+  EXPECT_EQ(config.testers.units[UnitKind::kBox].units, 3);
+  EXPECT_EQ(config.testers.units[UnitKind::kBox].latency_cycles, 8);
 }
 
 TEST(ConfigSet, TurnsTheWorkloadIntoAMap) {

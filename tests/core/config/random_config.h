@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/config/fields.h"
+#include "core/config/config.h"
 
 namespace carousel {
 

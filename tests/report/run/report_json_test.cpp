@@ -18,7 +18,11 @@ TEST(ReportJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(json["rays"]["by_kind"]["bounce"], 300);
   EXPECT_EQ(json["tests"]["triangle"]["per_ray"], 2.25);
   EXPECT_EQ(json["links"][1]["occupancy_max"], 11);
-  EXPECT_EQ(json["cull_planes"]["levels"][0]["triangle_tests_spared"], 605);
+  EXPECT_EQ(json["cull_planes"]["levels"][0]["structure"], "top");
+  EXPECT_EQ(json["cull_planes"]["levels"][0]["culled"], 40);
+  EXPECT_EQ(json["cull_planes"]["levels"][1]["structure"], "bottom");
+  EXPECT_EQ(json["cull_planes"]["levels"][1]["depth"], 3);
+  EXPECT_EQ(json["cull_planes"]["levels"][1]["triangle_tests_spared"], 605);
   EXPECT_EQ(json["host"]["plane_seconds"], 0.125);
   EXPECT_EQ(json["host"]["raster_seconds"], 0.25);
   EXPECT_EQ(json["raster"]["left_to_rays"], 3);

@@ -10,9 +10,9 @@ constexpr auto kOrder = CullPlanesConfig::Order::kBoxFirst;
 
 TestersConfig bundle_testers() {
   TestersConfig c;
-  c.box = {8, 1, 4};
-  c.bundle = {1, 1, 3};
-  c.triangle = {2, 1, 5};
+  c.units[UnitKind::kBox] = {8, 1, 4};
+  c.units[UnitKind::kBundle] = {1, 1, 3};
+  c.units[UnitKind::kTriangle] = {2, 1, 5};
   return c;
 }
 

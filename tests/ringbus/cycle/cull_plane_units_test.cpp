@@ -14,8 +14,8 @@ namespace {
 
 TestersConfig plane_testers() {
   TestersConfig c;
-  c.box = {8, 1, 4};
-  c.plane = {2, 3, 5};
+  c.units[UnitKind::kBox] = {8, 1, 4};
+  c.units[UnitKind::kPlane] = {2, 3, 5};
   return c;
 }
 
@@ -51,7 +51,7 @@ TEST(PlaneUnits, ComeBeforeTheBoxesThatAreLeft) {
   EXPECT_EQ(tester.strip(300, {.plane = 2}), 305);
   EXPECT_EQ(tester.ray(400, {.box = 8, .plane = 2}), 405 + 4);
   EXPECT_EQ(tester.ray(500, {.plane = 2}), 505);
-  EXPECT_EQ(tester.strip(600, {.triangle = 4}), 600 + TestersConfig{}.triangle.latency_cycles);
+  EXPECT_EQ(tester.strip(600, {.triangle = 4}), 600 + TestersConfig{}.units[UnitKind::kTriangle].latency_cycles);
 }
 
 TEST(PlaneUnits, ServeSingleRaysAndWalks) {

@@ -69,7 +69,7 @@ TEST(CycleEngine, LedgersAddUp) {
       EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
       jobs += job == 0 ? 0 : shaded / job;
       // What the banks did is what the resource counted, rounded up a packet at a time.
-      const TesterUnits& box = cell.config.testers.box;
+      const TesterUnits& box = cell.config.testers.units[UnitKind::kBox];
       EXPECT_GE(tile.box.busy * static_cast<std::uint64_t>(box.units), out.result.resources[r].tests.box);
       transforms += tile.transform.busy;
     }
@@ -83,7 +83,7 @@ TEST(CycleEngine, LedgersAddUp) {
     }
     EXPECT_EQ(hops, c.hops);
     std::uint64_t misses = 0;
-    for (const cycle::CacheResult& cache : c.caches) {
+    for (const CacheCounts& cache : c.caches) {
       EXPECT_EQ(cache.lines, cache.hits + cache.merged + cache.misses);
       misses += cache.misses;
     }

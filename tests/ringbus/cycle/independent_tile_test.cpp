@@ -16,7 +16,9 @@ class LoneTile {
       : config_(config),
         machine_(config_, scene.accel(config_.bvh), scene.size()),
         scene_(scene),
-        tile_(ResourceId(0), machine_, true, TraceWindow{}, {&new_rays_, &completed_, &fetch_, &fetched_}) {}
+        memory_(machine_.accel, config_.accuracy),
+        tile_(ResourceId(0), machine_, memory_, tile_settings(config_, ResourceId(0), scene.size(), true, {}),
+              {&new_rays_, &completed_, &fetch_, &fetched_}) {}
 
   /// Loads the scene's rays [first, first + count), at cycle 0; `copies` times each.
   void load(std::size_t first, std::size_t count, int copies = 1) {
@@ -55,8 +57,9 @@ class LoneTile {
 
  private:
   Config config_;
-  CycleMachine machine_;
+  Machine machine_;
   TestScene& scene_;
+  ShapeMemory memory_;
   Channel<NewRays> new_rays_;
   Channel<CompletedRays> completed_;
   Channel<FetchRequest> fetch_;
@@ -71,9 +74,9 @@ Config independent_machine() {
   c.topology.resources = 1;
   c.topology.link.latency_cycles = 5;
   c.topology.link.bytes_per_cycle = 16;
-  c.testers.box = {8, 1, 7};
-  c.testers.triangle = {16, 1, 11};
-  c.testers.transform = {1, 1, 13};
+  c.testers.units[UnitKind::kBox] = {8, 1, 7};
+  c.testers.units[UnitKind::kTriangle] = {16, 1, 11};
+  c.testers.units[UnitKind::kTransform] = {1, 1, 13};
   c.memory.l2_latency_cycles = 34;
   return c;
 }
@@ -124,7 +127,7 @@ TEST(IndependentTile, AsksForAStripOnceHoweverManyWantIt) {
 TEST(IndependentTile, FewTestsOfSeveralRaysShareACycle) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 50, 1);
   Config wide = independent_machine();
-  wide.testers.box.units = 80;
+  wide.testers.units[UnitKind::kBox].units = 80;
   LoneTile one(scene, wide), ten(scene, wide);
   one.load(0, 1);
   one.run(100);

@@ -17,7 +17,8 @@ Config generous_machine() {
   c.packets.ids_per_cycle = 1024;
   c.collections.when_full = WhenFull::kSpill;
   c.rays.slots_per_resource = 512;
-  c.testers.box = c.testers.triangle = c.testers.transform = {256, 1, 1};
+  c.testers.units[UnitKind::kBox] = c.testers.units[UnitKind::kTriangle] =
+      c.testers.units[UnitKind::kTransform] = {256, 1, 1};
   c.testers.contexts = 4;
   c.memory.l2_latency_cycles = c.memory.dram_latency_cycles = 2;
   c.memory.dram_bytes_per_cycle = 65536;
@@ -36,11 +37,11 @@ std::vector<Plant> plants() {
   return {
       {"box_tests",
        [](Config& c) {
-         c.testers.box = {1, 8, 8};
+         c.testers.units[UnitKind::kBox] = {1, 8, 8};
        }},
       {"triangle_tests",
        [](Config& c) {
-         c.testers.triangle = {1, 40, 40};
+         c.testers.units[UnitKind::kTriangle] = {1, 40, 40};
        }},
       {"handling", [](Config& c) { c.packets.ids_per_cycle = 1, c.packets.rays = c.collections.ready = 128; }},
       {"link_bandwidth", [](Config& c) { c.topology.link.bytes_per_cycle = 1; }},
@@ -110,8 +111,8 @@ Config random_machine(std::uint32_t seed) {
   c.collections.traversal = random() % 2 == 0 ? Traversal::kSpread : Traversal::kTreelet;
   c.bvh.treelet_triangles = 64;
   c.rays.slots_per_resource = pick(random, {16, 64});
-  c.testers.box = {pick(random, {1, 4, 16}), 1, pick(random, {1, 8})};
-  c.testers.triangle = {pick(random, {1, 4}), pick(random, {1, 4}), 4};
+  c.testers.units[UnitKind::kBox] = {pick(random, {1, 4, 16}), 1, pick(random, {1, 8})};
+  c.testers.units[UnitKind::kTriangle] = {pick(random, {1, 4}), pick(random, {1, 4}), 4};
   c.testers.contexts = pick(random, {1, 2, 4});
   c.memory.l2_latency_cycles = pick(random, {10, 100});
   c.memory.dram_latency_cycles = pick(random, {50, 400});

@@ -48,13 +48,13 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
     EXPECT_EQ(result.resources[0].tests.any_hit_calls, 3u);
     return result.cycle->cycles;
   };
-  config.testers.any_hit_unit = {1, 1, 1};
+  config.testers.units[UnitKind::kAnyHit] = {1, 1, 1};
   const cycle::Cycle at_once = cycles();
-  config.testers.any_hit_unit = {1, 1, 21};
+  config.testers.units[UnitKind::kAnyHit] = {1, 1, 21};
   EXPECT_EQ(cycles() - at_once, 20u);
-  config.testers.any_hit_unit = {1, 10, 1};
+  config.testers.units[UnitKind::kAnyHit] = {1, 10, 1};
   EXPECT_EQ(cycles() - at_once, 18u) << "two more of the three wait for the unit, nine cycles longer each";
-  config.testers.any_hit_unit = {3, 1, 1};
+  config.testers.units[UnitKind::kAnyHit] = {3, 1, 1};
   EXPECT_EQ(at_once - cycles(), 2u);
 
   config.testers.any_hit = TestersConfig::AnyHit::kShader;

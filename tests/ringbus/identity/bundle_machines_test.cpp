@@ -123,7 +123,7 @@ TEST(BundleMachines, TheLeastStorageIsEnough) {
       cell.tight_storage = true;
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << cell.text();
-      reserves += outcome.sum.stalls[static_cast<std::size_t>(StallReason::kReserve)];
+      reserves += outcome.sum.stalls[StallReason::kReserve];
       for (const BundleCounts& at_depth : outcome.sum.bundles) split += at_depth.split;
     }
   }

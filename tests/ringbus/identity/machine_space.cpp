@@ -240,7 +240,7 @@ Cell MachineSpace::cell(const Row& row) const {
     else
       keys[pointers_[f]] = nlohmann::json::accept(value) ? nlohmann::json::parse(value) : nlohmann::json(value);
   }
-  cell.config = parse_config(keys.dump(), "machine.json");
+  cell.config = load_config({keys.dump(), "machine.json"}).config;
   cell.threads = static_cast<std::size_t>(cell.config.engine.threads.value_or(1));
   return cell;
 }

@@ -211,7 +211,8 @@ TEST(RetransmitTimer, LearnsHowLongAnAnswerTakesAndDoublesInVain) {
 TEST(FaultInjector, TheSameSeedGivesTheSameFates) {
   Config config = faulty(0.25, 0, 0.5, 0, 0);
   LinkFaultCounts a, b, other;
-  FaultInjector first(config.faults, 5), again(config.faults, 5), stream(config.faults, 6);
+  const FaultsConfig& f = config.faults;
+  FaultInjector first(f.links, f.seed, 5), again(f.links, f.seed, 5), stream(f.links, f.seed, 6);
   std::uint64_t drops = 0, same = 0;
   for (int i = 0; i < 4000; ++i) {
     const FaultDraw fate = first.next(a), twin = again.next(b), else_where = stream.next(other);
@@ -229,7 +230,7 @@ TEST(FaultInjector, TheSameSeedGivesTheSameFates) {
 TEST(LinkFaultTimer, LosesTimeAndNothingElse) {
   Config config;
   config.faults.links.drop = 0.5;
-  cycle::LinkFaultTimer timer(config.faults, 0, 10);
+  cycle::LinkFaultTimer timer(config.faults.links, config.faults.seed, 0, 10);
   cycle::Cycle now = 0, last = 0;
   std::uint64_t waited = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -252,7 +253,7 @@ TEST(LinkFaultTimer, LosesTimeAndNothingElse) {
 TEST(LinkFaultTimer, PlacesComeBackThoughAcknowledgementsFail) {
   Config config;
   config.faults.links = {0.3, 0.1, 0.2, 0.1, 0.2, 70};
-  cycle::LinkFaultTimer timer(config.faults, 1, 10);
+  cycle::LinkFaultTimer timer(config.faults.links, config.faults.seed, 1, 10);
   std::uint64_t sent = 0, back = 0, late = 0;
   cycle::Cycle now = 0;
   for (int i = 0; i < 500; ++i) {

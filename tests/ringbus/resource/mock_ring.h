@@ -35,16 +35,18 @@ struct MockRing {
       stores.push_back(
           std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(c.rays.slots_per_resource)));
       sinks.push_back(std::make_unique<StatisticsSink>());
-      resources.push_back(std::make_unique<Resource>(config, accel, 10.0f, *stores.back(), sinks.back().get()));
+      resources.push_back(
+          std::make_unique<Resource>(settings(), accel, *stores.back(), ResourceHooks{.events = sinks.back().get()}));
       free_slots.emplace_back();
       for (std::uint32_t s = stores.back()->slots(); s-- > 0;) free_slots.back().push_back(s);
     }
   }
 
+  ResourceSettings settings() const { return resource_settings(config, 10.0f); }
   RayId load(std::uint32_t resource, const RayRequest& request) {
     const std::uint32_t slot = free_slots[resource].back();
     free_slots[resource].pop_back();
-    return stores[resource]->load(slot, request, Resource::initial_tests(config, accel));
+    return stores[resource]->load(slot, request, Resource::initial_tests(settings(), accel));
   }
   Packet packet() const {
     Packet p;

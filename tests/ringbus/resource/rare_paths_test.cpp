@@ -25,7 +25,7 @@ TEST(RarePaths, RunAndLoseNothing) {
                                       "faults.resource.kind=none", "bundles.size=0",        "cull_planes.count=0"};
   ResourceStatistics sum;
   std::uint64_t spilled = 0, refusals = 0, reused = 0, waits = 0, bubbles = 0;
-  const auto stalls = [&](StallReason reason) { return sum.stalls[static_cast<std::size_t>(reason)]; };
+  const auto stalls = [&](StallReason reason) { return sum.stalls[reason]; };
   const auto count = static_cast<std::uint32_t>(std::max(80, cell_count(80)));  // fewer might not run everything
   const auto keep_running = [&](std::uint32_t done) {
     return done < count || (stalls(StallReason::kReserve) == 0 && done < 20 * count);

@@ -50,8 +50,7 @@ class Shuffler {
   }
   std::uint64_t reserve_entered() const {
     std::uint64_t sum = 0;
-    for (const auto& sink : ring_.sinks)
-      sum += sink->statistics().stalls[static_cast<std::size_t>(StallReason::kReserve)];
+    for (const auto& sink : ring_.sinks) sum += sink->statistics().stalls[StallReason::kReserve];
     return sum;
   }
   std::uint64_t storage_refusals() const { return storage_refusals_; }

@@ -88,7 +88,7 @@ TEST(InstanceData, TravelsWithThePacketsThatCarryShapes) {
   c.packets.carry = PacketCarry::kData;
   const accel::Accel accel = build_at(placed_quads(), c.accuracy);
   const cycle::ShapeMemory memory(accel, c.accuracy);
-  const cycle::PacketSize size(c);
+  const cycle::PacketSize size(c.collections, c.packets.carry);
   Packet packet;
   packet.key = {0, accel.instances[0].root};
   const std::uint32_t unmoved = size.bytes(packet, memory, false);
@@ -103,8 +103,8 @@ TEST(InstanceData, TravelsWithThePacketsThatCarryShapes) {
 // Three rays in a unit that starts one a cycle and takes four; eight box units of four cycles.
 TEST(Tester, InvertsBeforeItTransforms) {
   TestersConfig config;
-  config.transform = {1, 1, 4};
-  config.box = {8, 1, 4};
+  config.units[UnitKind::kTransform] = {1, 1, 4};
+  config.units[UnitKind::kBox] = {8, 1, 4};
   IntersectionCounts counts;
   counts.box = 24;
   counts.transforms = 3;
@@ -146,7 +146,7 @@ TEST(TransformPolicies, ChangeTestsBytesAndCyclesButNoHit) {
         c.bvh.treelet_triangles = 200;
         c.rays.slots_per_resource = 64;
         c.memory.fetch = fetch;
-        c.testers.transform = {1, 200, 200};  // what a run waits for; else order and caches decide
+        c.testers.units[UnitKind::kTransform] = {1, 200, 200};  // what a run waits for; else order and caches decide
         const Machine today = run(scene, c);
         c.accuracy.instance_data = Data::kForward;
         const Machine forward = run(scene, c);

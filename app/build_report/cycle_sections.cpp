@@ -1,0 +1,96 @@
+#include "app/build_report/cycle_sections.h"
+
+#include <fmt/format.h>
+
+#include "report/text/ratio.h"
+#include "ringbus/results/run_features.h"
+
+namespace carousel::app {
+
+using report::ratio;
+
+namespace {
+
+report::Rate rate(std::uint64_t rays, std::uint64_t cycles, std::int64_t clock_mhz) {
+  const double per_cycle = ratio(rays, cycles);
+  return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
+}
+
+report::UnitCycles unit_cycles(const ringbus::cycle::Utilisation& use, const ringbus::cycle::TileResult& tile) {
+  using ringbus::cycle::TileState;
+  const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
+  return {.busy = use.busy,
+          .other_units = in(TileState::kTesting)-use.busy,
+          .memory = in(TileState::kMemory),
+          .link = in(TileState::kLink),
+          .credits = in(TileState::kCredits),
+          .storage = in(TileState::kStorage),
+          .shading = in(TileState::kShading),
+          .idle = in(TileState::kIdle)};
+}
+
+report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, const Config& config,
+                    const accel::Accel& accel) {
+  const RunFeatures features = ringbus::features_of(config, accel);
+  const auto bank = [&](const ringbus::cycle::Utilisation& use) { return unit_cycles(use, tile); };
+  report::Units out{bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.dispatch.busy,
+                    cycles - tile.dispatch.busy};
+  if (features.cull_planes) out.plane = bank(tile.plane);
+  if (features.bundles) out.bundle = bank(tile.bundle);
+  if (features.procedural) out.procedural = bank(tile.procedural);
+  if (features.any_hit_units) out.any_hit = bank(tile.any_hit);
+  if (config.rays.reads_per_cycle > 0) out.ray_reads = bank(tile.ray_reads);
+  return out;
+}
+
+void add_to_resource(report::Resource& out, const ringbus::cycle::TileResult& tile, std::uint64_t cycles,
+                     const Config& config, const accel::Accel& accel) {
+  out.units = units(tile, cycles, config, accel);
+  if (config.topology.shape == TopologyShape::kIndependent) out.stack = tile.stack;
+  if (config.accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore)
+    out.transformed_rays = tile.transformed_rays;
+}
+
+void add_to_link(report::Link& out, const ringbus::cycle::LinkUse& link, std::uint64_t cycles) {
+  out.utilisation = ratio(link.use.busy, cycles);
+  out.occupancy_mean = ratio(link.queue.packet_cycles, cycles);
+  out.occupancy_max = link.queue.most;
+  out.stalled = link.use.stalled;
+  out.cycles = report::LinkCycles{link.use.busy, link.use.stalled, cycles - link.use.busy - link.use.stalled};
+}
+
+report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& config) {
+  report::Memory out;
+  for (const CacheCounts& cache : c.caches) out.caches.push_back({cache});
+  out.dram_lines = c.memory_lines;
+  out.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.line_bytes);
+  out.dram_busy_cycles = c.memory_busy;
+  out.dram_utilisation = ratio(c.memory_busy, c.cycles);
+  return out;
+}
+
+}  // namespace
+
+void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config,
+                const accel::Accel& accel) {
+  r.engine.cycles = c.cycles;
+  report::Epochs& epochs = r.engine.epochs.emplace();
+  epochs.cycles_each = c.epochs.cycles_each;
+  for (const std::uint64_t digest : c.epochs.digests) epochs.digests.push_back(fmt::format("{:016x}", digest));
+  if (r.throughput) {
+    r.throughput->whole = rate(r.rays.completed, c.cycles, config.engine.clock_mhz);
+    if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);
+  }
+  for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i)
+    add_to_resource((*r.resources)[i], c.tiles[i], c.cycles, config, accel);
+  for (std::size_t i = 0; r.links && i < r.links->size(); ++i) add_to_link((*r.links)[i], c.links[i], c.cycles);
+  LatencyHistogram trips;
+  for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
+  if (r.packets && trips.count() > 0)
+    r.packets->latency =
+        report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
+  r.memory = memory(c, config.memory);
+  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(config.shading.workers));
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,58 @@
+#include "app/build_report/ring_sections.h"
+
+#include <chrono>
+
+#include "core/config/enum_names.h"
+#include "core/types/ray.h"
+#include "report/text/ratio.h"
+#include "ringbus/results/run_features.h"
+
+namespace carousel::app {
+
+using report::ratio;
+
+void add_ring(report::Report& r, const ringbus::RunResult& result, const Config& config, const accel::Accel& accel) {
+  const std::uint64_t rays = result.rays_completed;
+  ringbus::ResourceStatistics sum;
+  report::Collections& collections = r.collections.emplace();
+  r.resources.emplace();
+  for (std::size_t i = 0; i < result.resources.size(); ++i) {
+    const ringbus::ResourceStatistics& s = result.resources[i];
+    sum += s;
+    collections.counts += result.collections[i];
+    r.resources->push_back({i, s, s.tests, result.collections[i], s.stalls});
+  }
+  collections.fullness_mean =
+      ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.packets.rays));
+  r.tests = report::Tests{sum.tests, sum.reads, rays, ringbus::features_of(config, accel)};
+  if (!sum.bundles.empty()) r.tests->bundles = report::Bundles{sum.bundles, sizeof(RayRecord)};
+  if (!accel.planes.empty())
+    r.cull_planes = report::CullPlanes{accel.planes.size(), accel.plane_bytes,
+                                       ratio(accel.plane_bytes, accel.nodes.size()), sum.culls};
+  r.packets = report::Packets{sum};
+  r.throughput =
+      report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(sum.tests.tests(), rays)};
+}
+
+void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
+  r.links.emplace();
+  for (const ringbus::LinkResult& link : result.links) {
+    const ringbus::LinkStatistics& s = link.statistics;
+    r.links->push_back({link.from.value, link.to.value, link.depth, s.packets, ratio(s.occupancy_sum, s.samples),
+                        s.occupancy_max, s.refusals});
+    report::Link& out = r.links->back();
+    if (config.faults.links.any()) out.faults = link.faults;
+    if (config.engine.kind == EngineKind::kCycle) continue;
+    out.queue = enum_name(config.topology.link.queue);
+    out.sent_at_once = ratio(s.packets, s.batches);
+    out.received_at_once = ratio(s.packets, s.receives);
+    out.full_stalls = s.full_stalls;
+    out.empty_stalls = s.empty_stalls;
+    out.occupancy.emplace();
+    for (const ringbus::OccupancySeries::Entry& entry : link.series.entries())
+      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(),
+                                ratio(entry.sum, entry.samples), entry.most});
+  }
+}
+
+}  // namespace carousel::app

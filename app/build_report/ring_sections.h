@@ -1,0 +1,18 @@
+#pragma once
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "report/run/report.h"
+#include "ringbus/results/run_result.h"
+
+namespace carousel::app {
+
+/// Fills in the sections that come from the counters of the resources: tests, cull planes, packets, collections,
+/// resources and throughput. `result` has statistics; `report` has its rays.
+void add_ring(report::Report& report, const ringbus::RunResult& result, const Config& config,
+              const accel::Accel& accel);
+
+/// Fills in the section of the links.
+void add_links(report::Report& report, const ringbus::RunResult& result, const Config& config);
+
+}  // namespace carousel::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/fields/field.h"
+
+namespace carousel {
+
+struct BvhConfig {
+  std::int64_t width = 8;
+  std::int64_t leaf_triangles = 4;
+  std::int64_t treelet_triangles = 2048;
+  enum class Elements { kBoxes, kSpheres } elements = Elements::kBoxes;
+  std::int64_t mixed_triangles = 0;
+};
+
+template <>
+inline constexpr auto kEnumNames<BvhConfig::Elements> = [] {
+  using enum BvhConfig::Elements;
+  return names<BvhConfig::Elements>({{kBoxes, "boxes"}, {kSpheres, "spheres"}});
+}();
+
+namespace config {
+
+template <class V>
+void describe(V& v, BvhConfig& c) {
+  v.field("width", c.width, IntRange{2, 8}, "children", "The largest number of children of an inner node.");
+  v.field("leaf_triangles", c.leaf_triangles, IntRange{1, 16}, "triangles",
+          "The largest number of triangles of a leaf.");
+  v.field("treelet_triangles", c.treelet_triangles, IntRange{1, 1 << 24}, "triangles",
+          "The largest size of the subtrees that traversal: treelet crosses in one visit.");
+  v.choice("elements", c.elements, "The children of a node are bounded by boxes or by spheres.");
+  v.field(
+      "mixed_triangles", c.mixed_triangles, IntRange{0, 16}, "triangles",
+      "Leaves of at most this size have no box; their triangles are tested with the other children of their parent. "
+      "With 0 there are none.");
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/fields/field.h"
+
+namespace carousel {
+
+enum class Traversal { kSpread, kOrdered, kTreelet };
+template <>
+inline constexpr auto kEnumNames<Traversal> = [] {
+  using enum Traversal;
+  return names<Traversal>({{kSpread, "spread"}, {kOrdered, "ordered"}, {kTreelet, "treelet"}});
+}();
+
+enum class Policy { kFullest, kOldest, kNewest, kDeepest, kNearest };
+template <>
+inline constexpr auto kEnumNames<Policy> = [] {
+  using enum Policy;
+  return names<Policy>(
+      {{kFullest, "fullest"}, {kOldest, "oldest"}, {kNewest, "newest"}, {kDeepest, "deepest"}, {kNearest, "nearest"}});
+}();
+
+enum class Select { kStrict, kFullFirst };
+template <>
+inline constexpr auto kEnumNames<Select> = [] {
+  using enum Select;
+  return names<Select>({{kStrict, "strict"}, {kFullFirst, "full_first"}});
+}();
+
+enum class Home { kIssuer, kHash, kLocal };
+template <>
+inline constexpr auto kEnumNames<Home> = [] {
+  using enum Home;
+  return names<Home>({{kIssuer, "issuer"}, {kHash, "hash"}, {kLocal, "local"}});
+}();
+
+enum class WhenFull { kReserve, kSpill };
+template <>
+inline constexpr auto kEnumNames<WhenFull> = [] {
+  using enum WhenFull;
+  return names<WhenFull>({{kReserve, "reserve"}, {kSpill, "spill"}});
+}();
+
+struct CollectionsConfig {
+  std::int64_t ready = 32;
+  Traversal traversal = Traversal::kSpread;
+  Policy policy = Policy::kNearest;
+  Select select = Select::kFullFirst;
+  Home home = Home::kIssuer;
+  std::int64_t capacity = 65536;
+  WhenFull when_full = WhenFull::kReserve;
+};
+
+namespace config {
+
+template <class V>
+void describe(V& v, CollectionsConfig& c) {
+  v.field("ready", c.ready, IntRange{1, 65536}, "rays",
+          "The number of rays that make a collection ready. More than packets.rays leave in several packets.");
+  v.choice("traversal", c.traversal,
+           "The way of a ray down the tree: into all children that it hits (spread), into the nearest one first "
+           "(ordered), or through a whole subtree at one visit (treelet).");
+  v.choice("policy", c.policy, "The rule that chooses the collection that is tested next.");
+  v.choice("select", c.select, "Full collections are tested first, or the policy alone decides.");
+  v.choice("home", c.home, "The resource that keeps the collections of a packet's hits.");
+  v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource", "The storage for collections.");
+  v.choice("when_full", c.when_full,
+           "When the storage is full, a resource keeps a reserve and holds new rays back, or it spills to memory.");
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/config/fields/field.h"
+
+namespace carousel {
+
+enum class EngineKind { kNative, kCycle };
+template <>
+inline constexpr auto kEnumNames<EngineKind> = [] {
+  using enum EngineKind;
+  return names<EngineKind>({{kNative, "native"}, {kCycle, "cycle"}});
+}();
+
+enum class SimdTarget { kAuto, kScalar, kSsse3, kSse4, kAvx2, kAvx3 };
+template <>
+inline constexpr auto kEnumNames<SimdTarget> = [] {
+  using enum SimdTarget;
+  return names<SimdTarget>(
+      {{kAuto, "auto"}, {kScalar, "scalar"}, {kSsse3, "ssse3"}, {kSse4, "sse4"}, {kAvx2, "avx2"}, {kAvx3, "avx3"}});
+}();
+
+struct EngineConfig {
+  EngineKind kind = EngineKind::kNative;
+  std::optional<std::int64_t> threads;  ///< absent: `auto`
+  std::int64_t clock_mhz = 1000;
+  SimdTarget simd = SimdTarget::kAuto;
+  bool what_if = true;
+};
+
+namespace config {
+
+template <class V>
+void describe(V& v, EngineConfig& c) {
+  v.choice("kind", c.kind,
+           "The native engine has worker threads and real queues; the cycle engine simulates virtual time.");
+  v.field_or_auto("threads", c.threads, IntRange{1, 1024}, "threads",
+                  "The number of worker threads. With auto there are as many as the machine has cores.");
+  v.field("clock_mhz", c.clock_mhz, IntRange{1, 100'000}, "MHz", "The clock of the simulated machine.");
+  v.choice("simd", c.simd, "The instruction set of the test kernels. With auto it is the best that this machine has.");
+  v.field("what_if", c.what_if, "",
+          "The cycle engine finds the bottleneck: it simulates the first rays again, each time with one class of parts "
+          "relaxed.");
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/fields/field.h"
+
+namespace carousel {
+
+enum class PacketShapes { kStrip, kSingle };
+template <>
+inline constexpr auto kEnumNames<PacketShapes> = [] {
+  using enum PacketShapes;
+  return names<PacketShapes>({{kStrip, "strip"}, {kSingle, "single"}});
+}();
+
+enum class PacketCarry { kReference, kData };
+template <>
+inline constexpr auto kEnumNames<PacketCarry> = [] {
+  using enum PacketCarry;
+  return names<PacketCarry>({{kReference, "reference"}, {kData, "data"}});
+}();
+
+enum class PacketResults { kMask, kPerShape, kMessage, kImpliedOrder };
+template <>
+inline constexpr auto kEnumNames<PacketResults> = [] {
+  using enum PacketResults;
+  return names<PacketResults>(
+      {{kMask, "mask"}, {kPerShape, "per_shape"}, {kMessage, "message"}, {kImpliedOrder, "implied_order"}});
+}();
+
+struct PacketsConfig {
+  std::int64_t rays = 32;
+  PacketShapes shapes = PacketShapes::kStrip;
+  PacketCarry carry = PacketCarry::kReference;
+  PacketResults results = PacketResults::kMask;
+  std::int64_t ids_per_cycle = 16;
+};
+
+namespace config {
+
+template <class V>
+void describe(V& v, PacketsConfig& c) {
+  v.field("rays", c.rays, IntRange{1, 1024}, "rays", "The largest number of ray IDs that a packet carries.");
+  v.choice("shapes", c.shapes, "A packet carries all shapes below one node, or a single one.");
+  v.choice("carry", c.carry, "A packet carries a reference to its shapes, or their data.");
+  v.choice("results", c.results, "The way in which hits travel back to the owner of the packet.");
+  v.field("ids_per_cycle", c.ids_per_cycle, IntRange{1, 1024}, "ray IDs/cycle",
+          "The number of a packet's ray IDs that a resource reads, to find its own rays or to gather hits.");
+}
+
+}  // namespace config
+}  // namespace carousel

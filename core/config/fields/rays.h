@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/fields/field.h"
+
+namespace carousel {
+
+enum class Placement { kBalanced, kRoundRobin, kFirstTaker, kAddressed };
+template <>
+inline constexpr auto kEnumNames<Placement> = [] {
+  using enum Placement;
+  return names<Placement>(
+      {{kBalanced, "balanced"}, {kRoundRobin, "round_robin"}, {kFirstTaker, "first_taker"}, {kAddressed, "addressed"}});
+}();
+
+struct RaysConfig {
+  std::int64_t slots_per_resource = 1024;
+  Placement placement = Placement::kBalanced;
+  std::int64_t reads_per_cycle = 0;
+};
+
+namespace config {
+
+template <class V>
+void describe(V& v, RaysConfig& c) {
+  v.field("slots_per_resource", c.slots_per_resource, IntRange{1, kMaxSlots}, "rays",
+          "The number of rays that a resource stores at a time.");
+  v.choice("placement", c.placement, "The rule that chooses the resource of a new ray.");
+  v.field("reads_per_cycle", c.reads_per_cycle, IntRange{0, 1024}, "records/cycle",
+          "The number of rays or bundles whose data the testers of a resource read from its store. With 0 there is no "
+          "limit.");
+}
+
+}  // namespace config
+}  // namespace carousel

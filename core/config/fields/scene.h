@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/config/fields/field.h"
+#include "core/types/vec.h"
+
+namespace carousel {
+
+enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver };
+template <>
+inline constexpr auto kEnumNames<BuiltinScene> = [] {
+  using enum BuiltinScene;
+  return names<BuiltinScene>({{kCornell, "cornell"},
+                              {kSpheres, "spheres"},
+                              {kTerrain, "terrain"},
+                              {kInstances, "instances"},
+                              {kSliver, "sliver"}});
+}();
+
+struct SkyConfig {
+  Vec3 color{0.6f, 0.7f, 0.9f};
+  float strength = 1;
+};
+
+struct SceneConfig {
+  std::string file;
+  std::optional<BuiltinScene> builtin;
+  bool procedural = false;
+  std::int64_t triangles = 20000;
+  std::int64_t instances = 1000;
+  std::int64_t seed = 1;
+  std::int64_t camera = 0;
+  std::optional<SkyConfig> sky;
+};
+
+namespace config {
+
+template <class V>
+void describe(V& v, SkyConfig& c) {
+  v.field("color", c.color, RealRange{0, 1e6}, "linear RGB", "The colour of the sky.");
+  v.field("strength", c.strength, RealRange{0, 1e6}, "", "A factor on the colour. With 0 there is no sky.");
+}
+
+template <class V>
+void describe(V& v, SceneConfig& c) {
+  v.field("file", c.file, "", "A glTF file. Its path is relative to the config's folder, then to the working one.");
+  v.choice("builtin", c.builtin, "A generated scene. A config gives either this or a file.");
+  v.field("procedural", c.procedural, "",
+          "The built-in spheres are procedural primitives, as many as there would be triangles.");
+  v.field("triangles", c.triangles, IntRange{1, 100'000'000}, "triangles",
+          "The approximate number of triangles of the built-in spheres, terrain and sliver.");
+  v.field("instances", c.instances, IntRange{1, 10'000'000}, "instances",
+          "The number of instances of the built-in scene of instances.");
+  v.field("seed", c.seed, kSeed, "", "The seed of the built-in spheres, terrain, instances and sliver.");
+  v.field("camera", c.camera, IntRange{0, 65535}, "", "The index of the camera among those of the scene.");
+  v.section("sky", c.sky,
+            "A sky of one colour. Without this key a built-in scene has its own sky, and a file has the default.");
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/config/fields/field.h"
+
+namespace carousel {
+
+/// The flags that shaders give their rays of one kind (core/types/ray.h).
+struct RayFlags {
+  enum class Cull { kNone, kBack, kFront } cull = Cull::kNone;
+  bool force_opaque = false;
+};
+
+struct ShadingConfig {
+  std::int64_t workers = 2;
+  struct Effects {
+    enum class Choice { kAuto, kAll, kList } choice = Choice::kAuto;
+    std::vector<std::string> names;  ///< for kList
+  } effects;
+  bool idle_resources_shade = false;
+  std::int64_t cycles_per_shade = 20;
+  enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
+  std::int64_t cycles_per_any_hit = 10, cycles_per_effect = 5;
+  RayFlags camera_rays{}, bounce_rays{}, shadow_rays{};
+};
+
+template <>
+inline constexpr auto kEnumNames<RayFlags::Cull> = [] {
+  using enum RayFlags::Cull;
+  return names<RayFlags::Cull>({{kNone, "none"}, {kBack, "back"}, {kFront, "front"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<ShadingConfig::Distribute> = [] {
+  using enum ShadingConfig::Distribute;
+  return names<ShadingConfig::Distribute>(
+      {{kFifoFill, "fifo_fill"}, {kLoad, "load"}, {kRoundRobin, "round_robin"}, {kRandom, "random"}});
+}();
+
+namespace config {
+
+template <class V>
+void describe(V& v, RayFlags& c) {
+  v.choice("cull", c.cull, "These rays pass through triangles that show them their back, or their front.");
+  v.field("force_opaque", c.force_opaque, "", "These rays take every triangle for opaque.");
+}
+
+template <class V>
+void describe(V& v, ShadingConfig& c) {
+  v.field("workers", c.workers, IntRange{1, 256}, "workers", "The number of shader workers.");
+  v.effects("effects", c.effects,
+            "The effects of light: those that the scene calls for (auto), all of them (nothing is specialised), or of "
+            "those that the scene calls for only the named ones.");
+  v.field("idle_resources_shade", c.idle_resources_shade, "", "Idle resources help the shader workers.");
+  v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles",
+          "The time to shade a ray that hit a plain surface or nothing.");
+  v.field("cycles_per_effect", c.cycles_per_effect, IntRange{0, 1'000'000}, "cycles",
+          "The additional time for each texture or layer that the surface has; with effects: all, for each that a "
+          "surface could have.");
+  v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
+          "The time in which a shader worker decides if a non-opaque primitive is hit, with testers.any_hit: shader.");
+  v.section("camera_rays", c.camera_rays, "The flags of camera rays.");
+  v.section("bounce_rays", c.bounce_rays, "The flags of bounce rays.");
+  v.section("shadow_rays", c.shadow_rays, "The flags of shadow rays.");
+  v.choice("distribute", c.distribute, "The rule that chooses the worker of a completed ray.");
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/fields/field.h"
+#include "core/types/unit_kind.h"
+
+namespace carousel {
+
+/// The units of one kind that a resource has.
+struct TesterUnits {
+  std::int64_t units = 1;
+  std::int64_t interval_cycles = 1;
+  std::int64_t latency_cycles = 4;
+};
+
+constexpr PerUnit<TesterUnits> default_tester_units() {
+  PerUnit<TesterUnits> out;
+  for (const UnitKindRow& row : kUnitKinds) out[row.kind] = {row.units, row.interval_cycles, row.latency_cycles};
+  return out;
+}
+
+struct TestersConfig {
+  PerUnit<TesterUnits> units = default_tester_units();
+  struct Simd {
+    std::int64_t lanes = 8;
+    enum class Map { kRays, kShapes } map = Map::kRays;
+  } simd;
+  std::int64_t contexts = 1;
+  enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
+};
+
+template <>
+inline constexpr auto kEnumNames<TestersConfig::Simd::Map> = [] {
+  using enum TestersConfig::Simd::Map;
+  return names<TestersConfig::Simd::Map>({{kRays, "rays"}, {kShapes, "shapes"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<TestersConfig::AnyHit> = [] {
+  using enum TestersConfig::AnyHit;
+  return names<TestersConfig::AnyHit>({{kInline, "inline"}, {kShader, "shader"}});
+}();
+
+namespace config {
+
+template <class V>
+void describe(V& v, TesterUnits& c) {
+  v.field("units", c.units, IntRange{1, 1024}, "units", "The number of units of this kind in a resource.");
+  v.field("interval_cycles", c.interval_cycles, kCycles, "cycles", "The time between two tests that a unit starts.");
+  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "The time from the start of a test to its result.");
+}
+
+template <class V>
+void describe(V& v, TestersConfig::Simd& c) {
+  v.field("lanes", c.lanes, IntRange{1, 64}, "lanes", "The number of tests that a unit does side by side.");
+  v.choice("map", c.map, "The lanes hold rays that are tested against one shape, or shapes tested against one ray.");
+}
+
+template <class V>
+void describe(V& v, TestersConfig& c) {
+  for (const UnitKindRow& row : kUnitKinds) v.section_or_number(row.key, c.units[row.kind], row.meaning);
+  v.section("simd", c.simd, "The lanes of the units.");
+  v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.");
+  v.choice("any_hit", c.any_hit,
+           "The unit that meets a non-opaque primitive decides at once if it is hit, or a shader worker decides.");
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/config/fields/field.h"
+#include "core/config/fields/testers.h"
+
+namespace carousel {
+
+enum class TopologyShape {
+  kRing,
+  kBidirectional,
+  kMultiRing,
+  kHierarchical,
+  kPointToPoint,
+  kBus,
+  kCentral,
+  kIndependent
+};
+template <>
+inline constexpr auto kEnumNames<TopologyShape> = [] {
+  using enum TopologyShape;
+  return names<TopologyShape>({{kRing, "ring"},
+                               {kBidirectional, "bidirectional"},
+                               {kMultiRing, "multi_ring"},
+                               {kHierarchical, "hierarchical"},
+                               {kPointToPoint, "point_to_point"},
+                               {kBus, "bus"},
+                               {kCentral, "central"},
+                               {kIndependent, "independent"}});
+}();
+
+enum class CentralForm { kCells, kDistributor };
+template <>
+inline constexpr auto kEnumNames<CentralForm> = [] {
+  using enum CentralForm;
+  return names<CentralForm>({{kCells, "cells"}, {kDistributor, "distributor"}});
+}();
+
+enum class Visit { kAll, kOwners };
+template <>
+inline constexpr auto kEnumNames<Visit> = [] {
+  using enum Visit;
+  return names<Visit>({{kAll, "all"}, {kOwners, "owners"}});
+}();
+
+enum class Flow { kCredits, kBubble, kNone };
+template <>
+inline constexpr auto kEnumNames<Flow> = [] {
+  using enum Flow;
+  return names<Flow>({{kCredits, "credits"}, {kBubble, "bubble"}, {kNone, "none"}});
+}();
+
+enum class QueueKind { kSpscRing, kMpmcRing, kTbbBounded, kMoodycamel, kAtomicQueue, kBoostSpsc, kMutex };
+template <>
+inline constexpr auto kEnumNames<QueueKind> = [] {
+  using enum QueueKind;
+  return names<QueueKind>({{kSpscRing, "spsc_ring"},
+                           {kMpmcRing, "mpmc_ring"},
+                           {kTbbBounded, "tbb_bounded"},
+                           {kMoodycamel, "moodycamel"},
+                           {kAtomicQueue, "atomic_queue"},
+                           {kBoostSpsc, "boost_spsc"},
+                           {kMutex, "mutex"}});
+}();
+
+struct LinkConfig {
+  QueueKind queue = QueueKind::kSpscRing;
+  std::int64_t depth = 16;
+  std::int64_t latency_cycles = 4;
+  std::int64_t bytes_per_cycle = 32;
+};
+
+/// The testers of one resource that differs from the rest.
+struct ResourceOverride {
+  std::int64_t resource = 0;
+  TestersConfig testers;
+};
+
+struct TopologyConfig {
+  std::int64_t resources = 8;
+  TopologyShape shape = TopologyShape::kRing;
+  std::int64_t rings = 2;
+  std::int64_t groups = 4;
+  CentralForm form = CentralForm::kCells;
+  Visit visit = Visit::kAll;
+  Flow flow = Flow::kCredits;
+  LinkConfig link;
+  std::vector<ResourceOverride> overrides;
+};
+
+namespace config {
+
+template <class V>
+void describe(V& v, LinkConfig& c) {
+  v.choice("queue", c.queue, "The queue that carries a link in the native engine.");
+  v.field("depth", c.depth, IntRange{1, 65536}, "packets", "The number of packets that a link holds.");
+  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "The time that a packet takes over a link.");
+  v.field("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle", "The width of a link.");
+}
+
+template <class V>
+void describe(V& v, ResourceOverride& c) {
+  v.field("resource", c.resource, IntRange{0, kMaxResources - 1}, "", "The number of the resource.");
+  v.section("testers", c.testers, "Its testers. A key that is not given is as in `testers` of the whole machine.");
+}
+
+template <class V>
+void describe(V& v, TopologyConfig& c) {
+  v.field("resources", c.resources, IntRange{1, kMaxResources}, "resources", "The number of compute resources.");
+  v.choice("shape", c.shape, "The network that links the resources.");
+  v.field("rings", c.rings, IntRange{1, 64}, "rings", "The number of rings of a multi_ring.");
+  v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "The number of groups of a hierarchical network.");
+  v.choice("form", c.form, "The form of a central network.");
+  v.choice("visit", c.visit, "A packet is handled by all resources, or only by the owners of its rays.");
+  v.choice("flow", c.flow, "The rule that keeps the links from filling up. The value none needs --force.");
+  v.section("link", c.link, "Properties of every link.");
+  v.list("overrides", c.overrides, "Resources that differ from the rest.");
+}
+
+}  // namespace config
+}  // namespace carousel

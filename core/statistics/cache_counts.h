@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/statistics/counters.h"
+
+namespace carousel {
+
+/// Use of a cache of shape data.
+struct CacheCounts {
+  std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0;
+
+  static constexpr auto counters() {
+    using C = CacheCounts;
+    return std::array{
+        Counter{"requests", &C::requests, "strips", "strips requested"},
+        Counter{"lines", &C::lines, "lines", "lines looked up"},
+        Counter{"hits", &C::hits, "lines", "lines found"},
+        Counter{"merged", &C::merged, "lines", "lines already on their way from memory"},
+        Counter{"misses", &C::misses, "lines", "lines fetched from memory"},
+    };
+  }
+  friend bool operator==(const CacheCounts&, const CacheCounts&) = default;
+};
+
+}  // namespace carousel

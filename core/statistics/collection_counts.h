@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/statistics/counters.h"
+
+namespace carousel {
+
+/// Use of a resource's collections. A sum over resources adds up their peaks, which need not have been at one time.
+struct CollectionCounts {
+  std::uint64_t created = 0, peak = 0, memberships_peak = 0, spilled = 0;
+
+  static constexpr auto counters() {
+    using C = CollectionCounts;
+    return std::array{
+        Counter{"collections_created", &C::created, "collections", "collections created in all"},
+        Counter{"collections_peak", &C::peak, "collections", "most collections at one time"},
+        Counter{"memberships_peak", &C::memberships_peak, "ray IDs", "most ray IDs in collections at one time"},
+        Counter{"spilled", &C::spilled, "ray IDs", "ray IDs stored in blocks beyond the capacity"},
+    };
+  }
+  friend bool operator==(const CollectionCounts&, const CollectionCounts&) = default;
+};
+
+}  // namespace carousel

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/statistics/counters.h"
+
+namespace carousel {
+
+/// The work of testing rays. A test is one box, triangle, procedural primitive, plane or bundle against one ray (or
+/// bundle of rays). Meanings stand in counters(); core/statistics/counters.h says how to add a counter.
+struct IntersectionCounts {
+  std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
+  std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0;
+
+  static constexpr auto counters() {
+    using C = IntersectionCounts;
+    return std::array{
+        Counter{"box", &C::box, "tests", "tests of a ray against a box"},
+        Counter{"plane", &C::plane, "tests", "tests of a ray against a cull plane"},
+        Counter{"triangle", &C::triangle, "tests", "tests of a ray against a triangle"},
+        Counter{"bundle", &C::bundle, "tests", "tests of a bundle of rays against a box"},
+        Counter{"transforms", &C::transforms, "tests", "transformations of a ray from world to model space"},
+        Counter{"inversions", &C::inversions, "tests",
+                "inversions of an instance's matrix at a visit, with accuracy.invert: visit"},
+        Counter{"culled", &C::culled, "tests",
+                "children whose box the ray hits and which a cull plane showed to be missed"},
+        Counter{"procedural", &C::procedural, "tests",
+                "tests of a ray against a procedural primitive; only if the scene has any", Shown::kProcedural},
+        Counter{"any_hit", &C::any_hit_calls, "tests",
+                "any-hit calls: lookups of the opacity of a primitive that is not opaque; only if the scene has any",
+                Shown::kAnyHit},
+    };
+  }
+  /// The counters above that are tests; a new kind of test belongs here too.
+  constexpr std::uint64_t tests() const { return box + plane + triangle + procedural + bundle; }
+  friend bool operator==(const IntersectionCounts&, const IntersectionCounts&) = default;
+};
+
+}  // namespace carousel

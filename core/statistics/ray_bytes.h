@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/statistics/counters.h"
+
+namespace carousel {
+
+/// Traffic of the stacks of a resource's rays (`topology.shape: independent`).
+struct StackTraffic {
+  std::uint64_t pushed_bytes = 0, popped_bytes = 0, peak_bytes = 0, ray_peak_bytes = 0;
+
+  static constexpr auto counters() {
+    using C = StackTraffic;
+    return std::array{
+        Counter{"pushed_bytes", &C::pushed_bytes, "bytes", "bytes pushed: 4 for an inner node, 12 for a leaf"},
+        Counter{"popped_bytes", &C::popped_bytes, "bytes", "bytes popped; rays left the rest when they ended early"},
+        Counter{"peak_bytes", &C::peak_bytes, "bytes", "most bytes of all rays of the resource at one time"},
+        Counter{"ray_peak_bytes", &C::ray_peak_bytes, "bytes", "most bytes of one ray at one time"},
+    };
+  }
+  friend bool operator==(const StackTraffic&, const StackTraffic&) = default;
+};
+
+/// Bytes of the model-space rays that a resource keeps beside its records (`accuracy.transformed_ray: store`).
+struct TransformedRayBytes {
+  std::uint64_t written = 0, read = 0, peak = 0;
+
+  static constexpr auto counters() {
+    using C = TransformedRayBytes;
+    return std::array{
+        Counter{"written_bytes", &C::written, "bytes", "bytes written: 24 for each ray and instance"},
+        Counter{"read_bytes", &C::read, "bytes", "bytes read at later visits"},
+        Counter{"peak_bytes", &C::peak, "bytes", "most bytes kept at one time"},
+    };
+  }
+  friend bool operator==(const TransformedRayBytes&, const TransformedRayBytes&) = default;
+};
+
+}  // namespace carousel

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+
+namespace carousel {
+
+/// The runs whose report shows a number.
+enum class Shown : std::uint8_t {
+  kAlways,      ///< every run
+  kNever,       ///< no run: the number is only an ingredient of others
+  kCullPlanes,  ///< runs with cull planes
+  kBundles,     ///< runs with bundles of rays
+  kProcedural,  ///< runs whose scene has procedural primitives
+  kAnyHit,      ///< runs whose scene has primitives that are not opaque
+  kAnyHitUnit,  ///< runs that look up the opacity of such primitives in units beside the testers
+};
+
+/// The features of a machine and its scene that decide which numbers its report shows.
+struct RunFeatures {
+  bool cull_planes = false, bundles = false, procedural = false, any_hit = false, any_hit_units = false;
+
+  constexpr bool show(Shown shown) const {
+    switch (shown) {
+      case Shown::kAlways:
+        return true;
+      case Shown::kNever:
+        return false;
+      case Shown::kCullPlanes:
+        return cull_planes;
+      case Shown::kBundles:
+        return bundles;
+      case Shown::kProcedural:
+        return procedural;
+      case Shown::kAnyHit:
+        return any_hit;
+      case Shown::kAnyHitUnit:
+        return any_hit_units;
+    }
+    return false;
+  }
+};
+
+}  // namespace carousel

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+/// Digests of every step of a run, one for each stretch of equal length.
+struct Epochs {
+  std::uint64_t cycles_each = 0;
+  std::vector<std::string> digests;
+};
+
+template <class V>
+void describe(V& v, const Epochs& r) {
+  v.field("cycles_each", r.cycles_each, "cycles", "length of an epoch");
+  v.field("digests", r.digests, "", "64 bits for each epoch over every step in it");
+}
+
+struct Engine {
+  std::string kind;
+  std::optional<std::uint64_t> cycles{};
+  std::optional<Epochs> epochs{};
+  bool deterministic = false;
+  std::string reason;
+};
+
+template <class V>
+void describe(V& v, const Engine& r) {
+  v.field("kind", r.kind, "", "native or cycle");
+  v.field("cycles", r.cycles, "cycles", "simulated cycles until everything had come to rest");
+  v.section("epochs", r.epochs, "digests that locate the first difference of two runs; see carousel compare");
+  v.field("deterministic", r.deterministic, "", "true if everything outside of host is the same in every run");
+  v.field("reason", r.reason, "", "reason for the value of deterministic");
+}
+
+}  // namespace carousel::report

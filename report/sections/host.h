@@ -1,0 +1,49 @@
+#pragma once
+
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+struct Machine {
+  std::string cpu, system;
+  std::uint64_t cores = 0, memory_bytes = 0;
+};
+
+template <class V>
+void describe(V& v, const Machine& r) {
+  v.field("cpu", r.cpu, "", "processor");
+  v.field("system", r.system, "", "operating system");
+  v.field("cores", r.cores, "cores", "hardware threads");
+  v.field("memory_bytes", r.memory_bytes, "bytes", "memory of the machine");
+}
+
+struct Host {
+  std::uint64_t threads = 0;
+  double wall_seconds = 0, rays_per_second = 0, scene_seconds = 0, build_seconds = 0;
+  std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
+  std::string simd;
+  Machine machine;
+  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{}, all_effects_seconds{};
+};
+
+template <class V>
+void describe(V& v, const Host& r) {
+  v.field("threads", r.threads, "threads", "worker threads");
+  v.field("wall_seconds", r.wall_seconds, "s",
+          "time of the simulation, with verification, without loading and building");
+  v.field("rays_per_second", r.rays_per_second, "rays/s", "completed rays over wall_seconds");
+  v.field("scene_seconds", r.scene_seconds, "s", "time to load or generate the scene");
+  v.field("build_seconds", r.build_seconds, "s", "time to build the acceleration structure, without cull planes");
+  v.field("plane_seconds", r.plane_seconds, "s", "time to find the cull planes");
+  v.field("raster_seconds", r.raster_seconds, "s", "time to rasterise the first hits of camera rays");
+  v.field("all_effects_seconds", r.all_effects_seconds, "s",
+          "time of the run with all effects; wall_seconds is of the run without");
+  v.field("recovery_seconds", r.recovery_seconds, "s",
+          "time from the last sign of life of a resource that stopped until its rays were restarted");
+  v.field("accel_bytes", r.accel_bytes, "bytes", "size of the acceleration structure");
+  v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "most resident memory of the process");
+  v.field("simd", r.simd, "", "instruction set of the intersection kernels");
+  v.section("machine", r.machine, "machine that ran the simulation");
+}
+
+}  // namespace carousel::report

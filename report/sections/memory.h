@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/statistics/cache_counts.h"
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+struct Cache {
+  CacheCounts counts;
+};
+
+template <class V>
+void describe(V& v, const Cache& r) {
+  describe(v, r.counts);
+  v.field("hit_fraction", ratio(r.counts.hits, r.counts.lines), "fraction", "hits over lines");
+}
+
+struct Memory {
+  std::vector<Cache> caches;
+  std::uint64_t dram_lines = 0, dram_bytes = 0, dram_busy_cycles = 0;
+  double dram_utilisation = 0;
+};
+
+template <class V>
+void describe(V& v, const Memory& r) {
+  v.section("caches", r.caches, "use of each L2 cache");
+  v.field("dram_lines", r.dram_lines, "lines", "lines read from DRAM");
+  v.field("dram_bytes", r.dram_bytes, "bytes", "bytes read from DRAM");
+  v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "cycles in which DRAM moved lines");
+  v.field("dram_utilisation", r.dram_utilisation, "fraction", "fraction of the run's cycles in which DRAM moved lines");
+}
+
+}  // namespace carousel::report

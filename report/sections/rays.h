@@ -1,0 +1,34 @@
+#pragma once
+
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+struct RaysByKind {
+  std::uint64_t camera = 0, bounce = 0, shadow = 0;
+};
+
+template <class V>
+void describe(V& v, const RaysByKind& r) {
+  v.field("camera", r.camera, "rays", "rays from the camera");
+  v.field("bounce", r.bounce, "rays", "rays from a surface that seek the closest hit");
+  v.field("shadow", r.shadow, "rays", "rays from a surface that seek any hit");
+}
+
+struct Rays {
+  std::uint64_t emitted = 0, completed = 0, lost = 0, restarted = 0, paths_restarted = 0;
+  RaysByKind by_kind;
+};
+
+template <class V>
+void describe(V& v, const Rays& r) {
+  v.field("emitted", r.emitted, "rays", "rays emitted by shading");
+  v.field("completed", r.completed, "rays", "rays returned to shading");
+  v.field("lost", r.lost, "rays", "rays emitted and never completed; 0 in a complete run");
+  v.field("restarted", r.restarted, "rays", "unfinished rays traced again from the root after a resource stopped");
+  v.field("paths_restarted", r.paths_restarted, "(pixel, sample)s",
+          "paths of the restarted rays; light gathered before was kept");
+  v.section("by_kind", r.by_kind, "emitted rays by kind");
+}
+
+}  // namespace carousel::report

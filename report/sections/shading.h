@@ -1,0 +1,106 @@
+#pragma once
+
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+struct EffectCost {
+  std::uint64_t rays = 0, texture_reads = 0, path_state_bytes = 0, cycles_per_hit = 0, cycles_per_path = 0;
+};
+
+template <class V>
+void describe(V& v, const EffectCost& r) {
+  v.field("rays", r.rays, "rays", "most rays that the effect adds to a path");
+  v.field("texture_reads", r.texture_reads, "lookups", "most filtered texture lookups at a hit");
+  v.field("path_state_bytes", r.path_state_bytes, "bytes", "state of a path in flight");
+  v.field("cycles_per_hit", r.cycles_per_hit, "cycles",
+          "modelled cycles of a shader worker or opacity unit at a surface with the effect");
+  v.field("cycles_per_path", r.cycles_per_path, "cycles",
+          "most modelled cycles of shader workers for the rays added to a path, without their tests");
+}
+
+struct Effect {
+  std::string name;
+  bool on = false, called_for = false;
+  std::uint64_t callers = 0;
+  std::string why;
+  EffectCost cost;
+};
+
+template <class V>
+void describe(V& v, const Effect& r) {
+  v.field("name", r.name, "", "name of the effect");
+  v.field("on", r.on, "", "true if the effect was computed");
+  v.field("called_for", r.called_for, "", "true if the scene requires the effect");
+  v.field("callers", r.callers, "callers", "materials, meshes or lights that require the effect");
+  v.field("why", r.why, "", "reason why the effect is required, or that nothing requires it");
+  v.section("cost", r.cost, "cost of the effect where it occurs; zero if it is off");
+}
+
+struct ShaderClass {
+  std::string name;
+  std::uint64_t materials = 0;
+};
+
+template <class V>
+void describe(V& v, const ShaderClass& r) {
+  v.field("name", r.name, "",
+          "unlit, plain, textured, layered, opaque (other boundaries than glTF's core), transmissive, or anything");
+  v.field("materials", r.materials, "materials", "materials shaded by the code of this class");
+}
+
+struct EffectsSaved {
+  std::uint64_t path_state_bytes = 0, images_not_decoded = 0;
+};
+
+template <class V>
+void describe(V& v, const EffectsSaved& r) {
+  v.field("path_state_bytes", r.path_state_bytes, "bytes", "state of a path in flight that only disabled effects need");
+  v.field("images_not_decoded", r.images_not_decoded, "images", "images that no enabled effect reads");
+}
+
+/// The outcome of `verify: effects`.
+struct EffectsProof {
+  bool same_hits = false, same_image = false;
+  std::int64_t rays_spared = 0, tests_spared = 0;
+  std::optional<std::int64_t> cycles_spared{};
+};
+
+template <class V>
+void describe(V& v, const EffectsProof& r) {
+  v.field("same_hits", r.same_hits, "", "true if digest.hits is the same");
+  v.field("same_image", r.same_image, "", "true if digest.image is the same");
+  v.field("rays_spared", r.rays_spared, "rays", "additional rays of the run with all effects");
+  v.field("tests_spared", r.tests_spared, "tests",
+          "additional box, triangle, procedural, plane and bundle tests of that run; they vary in the native engine");
+  v.field("cycles_spared", r.cycles_spared, "cycles", "additional cycles of the simulated machine in that run");
+}
+
+struct Shading {
+  std::uint64_t workers = 0, shaded = 0, saturated = 0;
+  std::optional<double> utilisation{};
+  std::vector<Effect> effects{};
+  std::string effects_choice{};
+  std::uint64_t path_state_bytes = 0;
+  EffectsSaved saved{};
+  std::vector<ShaderClass> classes{};
+  std::optional<EffectsProof> proof{};
+};
+
+template <class V>
+void describe(V& v, const Shading& r) {
+  v.field("workers", r.workers, "workers", "shader workers");
+  v.field("shaded", r.shaded, "rays", "completed rays shaded");
+  v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
+  v.field("utilisation", r.utilisation, "fraction",
+          "fraction of the workers' cycles spent on shading and on making camera rays");
+  v.section("effects", r.effects, "every effect of light");
+  v.field("effects_choice", r.effects_choice, "",
+          "shading.effects: auto, all, or the list; a list changes digest.image");
+  v.field("path_state_bytes", r.path_state_bytes, "bytes", "state of a path in flight");
+  v.section("saved", r.saved, "memory not needed because effects are off");
+  v.section("proof", r.proof, "comparison with a run with all effects, with verify: effects");
+  v.section("classes", r.classes, "materials of triangles by the code that shades them");
+}
+
+}  // namespace carousel::report

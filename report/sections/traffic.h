@@ -1,0 +1,49 @@
+#pragma once
+
+#include "report/sections/latency.h"
+
+namespace carousel::report {
+
+struct LinkUse {
+  double mean = 0, max = 0;
+};
+
+template <class V>
+void describe(V& v, const LinkUse& r) {
+  v.field("mean", r.mean, "fraction", "mean of all links, over the whole run");
+  v.field("max", r.max, "fraction", "utilisation of the busiest link");
+}
+
+/// A run of synthetic traffic (workload: {traffic: ...}).
+struct Traffic {
+  std::uint64_t packets = 0, delivered = 0, flits_per_packet = 0;
+  std::uint64_t window_begin = 0, window_end = 0;
+  std::uint64_t measured = 0;
+  double offered = 0, accepted = 0;
+  double routers_mean = 0, zero_load_latency = 0;
+  Latency latency;
+  LinkUse link_utilisation;
+  std::uint64_t flit_hops = 0;
+};
+
+template <class V>
+void describe(V& v, const Traffic& r) {
+  v.field("packets", r.packets, "packets", "packets created");
+  v.field("delivered", r.delivered, "packets", "packets delivered; equal to packets in a complete run");
+  v.field("flits_per_packet", r.flits_per_packet, "flits", "flits of a packet: cycles for which it occupies a link");
+  v.field("window_begin", r.window_begin, "cycle", "first cycle of the window of measurement");
+  v.field("window_end", r.window_end, "cycle", "cycle after the last one in which packets were created");
+  v.field("measured", r.measured, "packets", "packets created within the window");
+  v.field("offered", r.offered, "packets/resource/cycle", "load of the packets created within the window");
+  v.field("accepted", r.accepted, "packets/resource/cycle",
+          "load of the packets delivered within the window; less than offered in a saturated network");
+  v.field("routers_mean", r.routers_mean, "resources",
+          "resources that a measured packet visited, the first and the last included");
+  v.field("zero_load_latency", r.zero_load_latency, "cycles",
+          "mean latency of the measured packets if each were alone");
+  v.section("latency", r.latency, "latency of the measured packets, from creation to delivery of the last flit");
+  v.section("link_utilisation", r.link_utilisation, "fraction of the run's cycles in which a link moved a flit");
+  v.field("flit_hops", r.flit_hops, "flits", "flits moved, summed over all links");
+}
+
+}  // namespace carousel::report

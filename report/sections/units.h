@@ -1,0 +1,46 @@
+#pragma once
+
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+/// Cycles of a group of equal units; they add up to the run.
+struct UnitCycles {
+  std::uint64_t busy = 0, other_units = 0, memory = 0, link = 0, credits = 0, storage = 0, shading = 0, idle = 0;
+
+  static constexpr auto counters() {
+    using C = UnitCycles;
+    return std::array{
+        Counter{"busy", &C::busy, "cycles", "a test was started, or the units' interval kept one from starting"},
+        Counter{"other_units", &C::other_units, "cycles", "a packet was tested in other units or passed through"},
+        Counter{"memory", &C::memory, "cycles", "a packet waited for shape data"},
+        Counter{"link", &C::link, "cycles", "a packet waited to leave"},
+        Counter{"credits", &C::credits, "cycles", "no packet was free to issue with"},
+        Counter{"storage", &C::storage, "cycles", "too few collection blocks were free"},
+        Counter{"shading", &C::shading, "cycles", "the resource helped the shader workers"},
+        Counter{"idle", &C::idle, "cycles", "there was nothing to test"},
+    };
+  }
+};
+
+struct Units {
+  UnitCycles box, triangle, transform;
+  std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
+  std::optional<UnitCycles> plane{}, bundle{}, ray_reads{}, procedural{}, any_hit{};
+};
+
+template <class V>
+void describe(V& v, const Units& r) {
+  v.section("box", r.box, "units that test rays against boxes");
+  v.section("triangle", r.triangle, "units that test rays against triangles");
+  v.section("plane", r.plane, "units that test rays against cull planes");
+  v.section("bundle", r.bundle, "units that test bundles of rays against boxes");
+  v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
+  v.section("procedural", r.procedural, "units that test rays against procedural primitives");
+  v.section("any_hit", r.any_hit, "units that look up opacity, with testers.any_hit: inline");
+  v.section("transform", r.transform, "units that transform rays to model space");
+  v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
+  v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/config.h"
+
+namespace carousel::ringbus {
+
+/// The parts of the configuration that a resource follows.
+struct ResourceSettings {
+  CollectionsConfig collections;
+  PacketsConfig packets;
+  BundlesConfig bundles;
+  std::int64_t treelet_triangles = 2048;  ///< treelet traversal: a subtree of so many or fewer is one test
+  std::uint32_t resources = 1;            ///< of the machine, for `home: hash`
+  float scene_size = 1;                   ///< scale of entry distances and of boxes
+};
+
+inline ResourceSettings resource_settings(const Config& config, float scene_size) {
+  return {config.collections,
+          config.packets,
+          config.bundles,
+          config.bvh.treelet_triangles,
+          static_cast<std::uint32_t>(config.topology.resources),
+          scene_size};
+}
+
+}  // namespace carousel::ringbus
