@@ -41,9 +41,9 @@ void expect_note(Wires& wires, Cycle at, bool shaded, bool idle) {
 TEST(ShadeHelp, DoesAJobBetweenTests) {
   const Config config = helping_machine();
   Wires wires;
-  ShadeHelp help(config, wires.ports());
+  ShadeHelp help(config.topology.link, wires.ports());
   help.notify(0, true);
-  EXPECT_EQ(wires.notes.next(), kNever);  // everybody is idle at first
+  EXPECT_EQ(wires.notes.next(), kNever);  // all resources are idle at first
   help.notify(3, false);
   expect_note(wires, 3 + kLatency, false, false);
   help.notify(4, false);
@@ -56,7 +56,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   EXPECT_FALSE(help.shading());
   EXPECT_FALSE(help.step(12, false));
   help.notify(12, true);
-  EXPECT_EQ(wires.notes.next(), kNever);  // not with a job in hand
+  EXPECT_EQ(wires.notes.next(), kNever);  // no note while it has a job
   EXPECT_TRUE(help.step(15, true));
   EXPECT_TRUE(help.shading());
   EXPECT_EQ(help.next(), 15 + kShade);
@@ -70,7 +70,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
 
 TEST(ShadeHelp, DoesNothingUnlessAsked) {
   Config config = helping_machine();
-  ShadeHelp help(config, SidePorts{});
+  ShadeHelp help(config.topology.link, SidePorts{});
   EXPECT_FALSE(help.step(5, true));
   help.notify(5, false);
   EXPECT_FALSE(help.holds());
