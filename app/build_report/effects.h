@@ -9,10 +9,10 @@
 
 namespace carousel::app {
 
-/// Which effects of light the scene calls for, which are computed, why, and what they cost.
+/// Every effect of light with the reason why the scene requires it or not, and its cost.
 std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan);
 
-/// Fills in the effects' part of `out`.
+/// Fills in the parts of `out` that concern effects.
 void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config);
 
 }  // namespace carousel::app
