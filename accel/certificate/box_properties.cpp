@@ -65,10 +65,10 @@ void judge_box(const CaseValues& values, std::span<const AccuracyConfig> levels,
   const ExactBox exact(ray, box, ray.tmax);
   const bool modest = in_range_of_floats(ray, box);
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    out[i].asked = exact.hit() && (modest || levels[i].box == BoxLevel::kDouble);
-    if (!out[i].asked && story == nullptr) continue;
+    out[i].applies = exact.hit() && (modest || levels[i].box == BoxLevel::kDouble);
+    if (!out[i].applies && story == nullptr) continue;
     const BoxAnswer answer = box_answers(levels[i].box, ray, {&box, 1})[0];
-    out[i].broken = out[i].asked && !answer.hit;
+    out[i].broken = out[i].applies && !answer.hit;
     if (story != nullptr) *story = {described(answer), described(exact)};
   }
 }
@@ -101,7 +101,7 @@ void judge_nested(const CaseValues& values, std::span<const AccuracyConfig> leve
     if (boxes[1].lo[axis] > boxes[0].lo[axis] || boxes[1].hi[axis] < boxes[0].hi[axis]) return;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const auto answers = box_answers(levels[i].box, ray, boxes);
-    out[i].asked = answers[0].hit;
+    out[i].applies = answers[0].hit;
     out[i].broken = answers[0].hit && !(answers[1].hit && answers[1].entry <= answers[0].entry);
     if (story != nullptr)
       *story = {"inner box " + described(answers[0]) + "; outer box " + described(answers[1]),

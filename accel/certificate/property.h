@@ -27,7 +27,7 @@ using CaseValues = std::vector<float>;
 
 /// The result of a case at one level.
 struct Judgement {
-  bool asked = false;  ///< the property applies to this case; if not, the other members have no meaning
+  bool applies = false;  ///< the property applies to this case; if not, the other members have no meaning
   bool broken = false;
   double error = 0;  ///< in the property's unit
 };

@@ -73,7 +73,7 @@ void judge_transform(const CaseValues& values, std::span<const AccuracyConfig> l
     const Ray model = transform.to_model({point, 0, direction, kInfinity});
     const double off = QuadInverse::distance(model.origin, origin),
                  turned = QuadInverse::distance(model.direction, along);
-    out[i].asked = true;
+    out[i].applies = true;
     out[i].broken =
         !(off <= allowed(level, 5, size, origin_terms)) || !(turned <= allowed(level, 4, length, along_terms));
     if (size > 0) out[i].error = off / size;
@@ -116,7 +116,7 @@ void judge_world_box(const CaseValues& values, std::span<const AccuracyConfig> l
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (!make_transform(m, transform, levels[i].transform)) continue;
     const Aabb box = world_box(m, model, levels[i].transform);
-    out[i].asked = true;
+    out[i].applies = true;
     DVec3 rounded;
     for (int row = 0; row < 3; ++row) {
       Dyadic x(m.translation[row]);

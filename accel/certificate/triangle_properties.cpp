@@ -65,7 +65,7 @@ void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> le
     level.box = BoxLevel::kDouble;
     const Hit hit = leaf.hit(ray, level);
     Judgement& judgement = out[i];
-    judgement.asked = !range.at_an_end;
+    judgement.applies = !range.at_an_end;
     judgement.broken = !range.at_an_end && hit.valid() != range.inside;
     if (hit.valid() && range.inside) judgement.error = ulps(hit.t, oracle.t());
     if (story != nullptr) *story = {text(hit), described(oracle)};
@@ -151,8 +151,8 @@ void judge_closed_mesh(const CaseValues& values, std::span<const AccuracyConfig>
   OneLeaf leaf(triangles);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const Hit hit = leaf.hit(ray, levels[i]);
-    out[i].asked = ahead > 0 && behind > 0;
-    out[i].broken = out[i].asked && !hit.valid();
+    out[i].applies = ahead > 0 && behind > 0;
+    out[i].broken = out[i].applies && !hit.valid();
     if (story != nullptr)
       *story = {text(hit), fmt::format("{} of {} triangles crossed ahead, {} behind", ahead, triangles.size(), behind)};
   }

@@ -14,7 +14,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Reads along one line; what it refuses has a column.
+/// Reads words from one line; its errors name the column.
 class CaseLine {
  public:
   CaseLine(std::string_view text, const SourcePosition& place) : text_(text), place_(place) {}
@@ -23,7 +23,7 @@ class CaseLine {
     std::string text;
     std::size_t at;
   };
-  /// Up to the next blank; empty at the end.
+  /// The text up to the next blank; empty at the end.
   Word word() {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
     const std::size_t begin = at_;
@@ -61,7 +61,7 @@ std::optional<float> number(const std::string& text) {
   if (text.empty() || std::isspace(static_cast<unsigned char>(text[0]))) return std::nullopt;
   char* end = nullptr;
   const float x = std::strtof(text.c_str(), &end);
-  const bool named = text.find_first_of("iI") != std::string::npos;  // an infinity that is meant, and no overflow
+  const bool named = text.find_first_of("iI") != std::string::npos;  // a written infinity, which is no overflow
   if (*end != '\0' || (std::isinf(x) && !named)) return std::nullopt;
   return x;
 }

@@ -17,11 +17,11 @@ struct CertificateCase {
 };
 
 /// `PROPERTY LEVEL field=number,number ... field=...`, every field of the property in its order, numbers as C's %a
-/// writes them: read back, they are the same to the bit (of a NaN, that it is one, and its sign).
+/// writes them: when read again, they are the same to the bit (except a NaN's payload).
 std::string case_text(const accel::Property& property, const AccuracyConfig& level, const accel::CaseValues& values);
 
-/// Numbers in decimal are read as well, and rounded. `place` is where the text starts. Throws a ConfigError that says
-/// where what was expected. The result points into `properties`.
+/// Numbers in decimal are read as well, and rounded. `place` is the position of the text's start. Throws a ConfigError
+/// with the position and the expected text. The result points into `properties`.
 CertificateCase parse_case(std::string_view text, std::span<const accel::Property> properties,
                            const SourcePosition& place);
 

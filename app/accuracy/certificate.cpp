@@ -14,16 +14,16 @@ constexpr std::size_t kRound = 2048;  ///< cases of a property before the next h
 constexpr std::size_t kPart = 64;     ///< of them one task
 
 void add(LevelResult& sum, const accel::Judgement& judgement, std::uint64_t number) {
-  if (!judgement.asked) return;
-  ++sum.asked;
-  if (judgement.error > sum.worst_error) sum.worst_error = judgement.error;  // an error of NaN is none
+  if (!judgement.applies) return;
+  ++sum.cases;
+  if (judgement.error > sum.worst_error) sum.worst_error = judgement.error;  // NaN does not count as an error
   if (!judgement.broken) return;
   ++sum.broken;
   if (!sum.first_broken) sum.first_broken = number;
 }
 
 void add(LevelResult& sum, const LevelResult& later) {
-  sum.asked += later.asked;
+  sum.cases += later.cases;
   sum.broken += later.broken;
   sum.worst_error = std::max(sum.worst_error, later.worst_error);
   if (!sum.first_broken) sum.first_broken = later.first_broken;

@@ -11,14 +11,14 @@
 
 namespace carousel::app {
 
-/// All that is certified, in the order in which it is shown.
+/// All certified properties, in the order of the table.
 const std::vector<accel::Property>& certified_properties();
 
-/// What came of one property at one level.
+/// The result of one property at one level.
 struct LevelResult {
   AccuracyConfig level;
-  bool promised = false;    ///< what breaks it is a violation, and not only counted
-  std::uint64_t asked = 0;  ///< cases that the property says something about
+  bool promised = false;    ///< a broken case is a violation, and not only counted
+  std::uint64_t cases = 0;  ///< cases to which the property applies
   std::uint64_t broken = 0;
   double worst_error = 0;                     ///< in the property's unit
   std::optional<std::uint64_t> first_broken;  ///< number of the case
@@ -49,7 +49,7 @@ struct CertificateLimits {
 Certificate certify(std::uint64_t seed, const CertificateLimits& limits, const std::optional<AccuracyConfig>& level,
                     Executor& executor, const std::function<bool()>& stopped);
 
-/// Case `number` of a property.
+/// The values of case `number` of a property.
 accel::CaseValues certificate_case(const accel::Property& property, std::uint64_t seed, std::uint64_t number);
 
 }  // namespace carousel::app

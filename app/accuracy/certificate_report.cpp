@@ -6,7 +6,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Of the first case that broke the property; empty if none did.
+/// Describes the first case that broke the property; empty if none did.
 std::string reproducer(const Certificate& certificate, const PropertyResult& result, const LevelResult& level) {
   if (!level.first_broken) return "";
   return case_text(*result.property, level.level,
@@ -14,13 +14,13 @@ std::string reproducer(const Certificate& certificate, const PropertyResult& res
 }
 
 std::string verdict(const Replay& replay) {
-  if (!replay.judgement.asked) return "outside of what the property speaks of";
+  if (!replay.judgement.applies) return "the property does not apply to this case";
   if (!replay.judgement.broken) return "holds";
   return replay.tried.property->promised(replay.tried.level) ? "BROKEN, and this level promises it"
                                                              : "broken, which this level does not promise";
 }
 
-/// Inputs once more, with decimals beside every bit.
+/// The inputs again, in hexadecimal and in decimal.
 std::string inputs(const CertificateCase& one) {
   std::string text;
   std::size_t at = 0;
@@ -51,7 +51,7 @@ std::string certificate_table(const Certificate& certificate) {
       const bool violated = level.promised && level.broken > 0;
       const char* const kind = violated ? "VIOLATED" : level.promised ? "promised" : "counted";
       text +=
-          fmt::format("{:<13} {:<33} {:>10} {:>10}  {}", result.property->name, name, level.asked, level.broken, kind);
+          fmt::format("{:<13} {:<33} {:>10} {:>10}  {}", result.property->name, name, level.cases, level.broken, kind);
       if (!result.property->error_unit.empty())
         text += fmt::format("; at most {:.3g} {}", level.worst_error, result.property->error_unit);
       text += "\n";
@@ -60,7 +60,7 @@ std::string certificate_table(const Certificate& certificate) {
                               name, result.property->says, reproducer(certificate, result, level));
     }
   }
-  return text + fmt::format("\n{} violations of what is promised\n", certificate.violations()) + broken;
+  return text + fmt::format("\n{} violations of promised properties\n", certificate.violations()) + broken;
 }
 
 nlohmann::json certificate_json(const Certificate& certificate) {
@@ -71,7 +71,7 @@ nlohmann::json certificate_json(const Certificate& certificate) {
                          {"level", level_name(*result.property, level.level)},
                          {"says", result.property->says},
                          {"promised", level.promised},
-                         {"cases", level.asked},
+                         {"cases", level.cases},
                          {"broken", level.broken}};
       if (!result.property->error_unit.empty()) {
         row["worst_error"] = level.worst_error;
@@ -106,7 +106,7 @@ nlohmann::json replay_json(const Replay& replay) {
   const CertificateCase& one = replay.tried;
   return {{"reproduce", case_text(*one.property, one.level, one.values)},
           {"promised", one.property->promised(one.level)},
-          {"asked", replay.judgement.asked},
+          {"asked", replay.judgement.applies},
           {"broken", replay.judgement.broken},
           {"kernel", replay.story.kernel},
           {"exact", replay.story.exact}};

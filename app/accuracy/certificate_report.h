@@ -9,12 +9,12 @@
 
 namespace carousel::app {
 
-/// A row a property and level, then a reproducer of each promise that was broken.
+/// A row for each property and level, then a reproducer of each broken promise.
 std::string certificate_table(const Certificate& certificate);
-/// The same, with a reproducer also of what is only counted.
+/// The same as JSON, with a reproducer also of violations that are only counted.
 nlohmann::json certificate_json(const Certificate& certificate);
 
-/// A case tried again.
+/// A case that is tested again.
 struct Replay {
   explicit Replay(const CertificateCase& one);
 

@@ -17,7 +17,7 @@ HitList trace(const accel::Accel& accel, const RayBatch& rays);
 /// Exact answers, in the order of the rays, on all cores. A shadow ray's is its first hit.
 std::vector<accel::ExactHit> exact_answers(const accel::ExactReference& reference, const RayBatch& rays);
 
-/// What is wrong with `hits`. Of shadow rays only whether they hit counts.
+/// The errors of `hits`. For shadow rays only occlusion counts.
 report::HitErrors compare(const RayBatch& rays, const HitList& hits, const std::vector<accel::ExactHit>& exact);
 
 }  // namespace carousel::app

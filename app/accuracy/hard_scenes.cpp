@@ -15,7 +15,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Uniform numbers that are the same on every machine, unlike std::uniform_real_distribution's.
+/// Uniform numbers, the same on every machine, unlike those of std::uniform_real_distribution.
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : engine_(seed) {}
@@ -68,7 +68,7 @@ RayRequest numbered(const Ray& ray, std::size_t index) {
   return {ray, {static_cast<std::uint32_t>(index), RayKind::kBounce, 0, 0, 0}};
 }
 
-/// From within a ball at a point of an edge, or at a vertex: the exact ray hits one of the triangles around it.
+/// Rays from within a ball to a point of an edge, or to a vertex: the exact ray hits one of the triangles around it.
 RayBatch at_edges_from_inside(const scene::Scene& scene, std::size_t count, Numbers& random) {
   const scene::Mesh& mesh = scene.meshes.front();
   const scene::Affine& m = scene.instances.front().world_from_model;
@@ -82,7 +82,7 @@ RayBatch at_edges_from_inside(const scene::Scene& scene, std::size_t count, Numb
   return rays;
 }
 
-/// From a few units away at points within triangles.
+/// Rays from a few units away to points within triangles.
 RayBatch at_triangles(const scene::Scene& scene, double distance, std::size_t count, Numbers& random) {
   const scene::Mesh& mesh = scene.meshes.front();
   const scene::Affine& m = scene.instances.front().world_from_model;
@@ -98,7 +98,7 @@ RayBatch at_triangles(const scene::Scene& scene, double distance, std::size_t co
   return rays;
 }
 
-/// Triangles a million times as long as wide, in every direction.
+/// Triangles that are a million times longer than wide, in every direction.
 scene::Mesh slivers(Numbers& random) {
   scene::Mesh mesh;
   for (std::uint32_t t = 0; t < 200; ++t) {

@@ -16,7 +16,7 @@ namespace carousel::app {
 
 namespace {
 
-/// CPU time of this thread: the wall's on a quiet machine, and on a busy one without the time others had.
+/// CPU time of this thread: wall time, without the time that other programs took.
 double thread_nanoseconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

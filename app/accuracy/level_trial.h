@@ -12,7 +12,7 @@
 
 namespace carousel::app {
 
-/// A scene's structures for all levels: built once a transform level, the other levels being a matter of the tests.
+/// A scene's structures for all levels, built once for each transform level; the other levels change only the tests.
 class LevelledAccel {
  public:
   LevelledAccel(const scene::Scene& scene, const BvhConfig& bvh) : scene_(scene), bvh_(bvh) {}
@@ -24,12 +24,12 @@ class LevelledAccel {
   std::map<TransformLevel, accel::Accel> built_;
 };
 
-/// CPU time a ray, nanoseconds on one thread, of each of `levels`: all of them in turn, `repetitions` times, each round
-/// starting with another one, so that whatever else the machine does meets all alike. `stopped` is asked in between.
+/// CPU time a ray, nanoseconds on one thread, of each of `levels`: all of them in turn, `repetitions` times. Each round
+/// starts with another level, so that other load of the machine affects all alike. `stopped` is called in between.
 std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels,
                                         const RayBatch& rays, int repetitions, const std::function<bool()>& stopped);
 
-/// None if the cycle engine has not the configured machine.
+/// Empty if the cycle engine does not support the configured machine.
 std::optional<report::ModelledCost> modelled_cost(const Config& config, const accel::Accel& accel, float scene_size,
                                                   const RayBatch& rays);
 

@@ -12,24 +12,24 @@
 
 namespace carousel::app {
 
-/// Linear RGB, as a film gives it.
+/// Linear RGB, as Film::linear_rgb() returns it.
 using Picture = std::vector<float>;
 
 /// A path-traced frame with the structure's levels, depth-first. Appends every ray to `rows` unless it is null.
 Picture render(const scene::Scene& scene, const Config& config, const accel::Accel& accel,
                std::vector<report::HitRow>* rows = nullptr);
 
-/// The same with exact hits. Rays leave surfaces as `config` says.
+/// The same with exact hits. `config` says where rays leave surfaces.
 Picture render_exact(const scene::Scene& scene, const Config& config, const accel::ExactReference& reference);
 
 report::PictureErrors compare(const Picture& picture, const Picture& exact);
 
-/// RMSE of what a screen shows, values in [0, 1], without the 2 % that are farthest off: a few paths that are far too
-/// bright would be all that counts, in the truth as well.
+/// RMSE of the displayed values, in [0, 1], without the 2 % with the largest errors: otherwise a few paths that are far
+/// too bright, in the reference picture too, would decide the result.
 double noise(const Picture& picture, const Picture& truth);
 
-/// Of `rows` as render() gives them: rays that left a triangle, and those of them that hit it again, which a flat
-/// triangle never is.
+/// Counts in `rows` as render() returns them: rays that left a triangle, and rays that hit the same triangle again,
+/// which is impossible for a flat triangle.
 struct SelfHits {
   std::uint64_t bounces = 0, self_hits = 0;
 };

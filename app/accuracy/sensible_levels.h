@@ -7,9 +7,9 @@
 
 namespace carousel::app {
 
-/// The combinations of levels worth comparing on a scene, cheapest first: each triangle test with the boxes that suit
-/// it, the transforms in turn with the default tests, and both ends of everything at once. Transforms only if an
-/// instance has one. Spawn offset and the rest are `base`'s.
+/// The combinations of levels that are worth comparing on a scene, cheapest first: each triangle test with suitable
+/// boxes, each transform with the default tests, and the cheapest and the most exact of all. Transforms vary only if an
+/// instance has one. All other keys, the spawn offset included, are those of `base`.
 std::vector<AccuracyConfig> sensible_levels(const scene::Scene& scene, const AccuracyConfig& base);
 
 }  // namespace carousel::app

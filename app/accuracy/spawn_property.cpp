@@ -70,7 +70,7 @@ void judge_spawn(const accel::CaseValues& values, std::span<const AccuracyConfig
   const DyadicVec columns[3] = {exact(m.linear[0]), exact(m.linear[1]), exact(m.linear[2])};
   const int mirrored = dot(columns[0], cross(columns[1], columns[2])).sign();
   const int facing = dot(normal, exact(direction)).sign() * mirrored;
-  if (facing == 0) return;  // along the surface, or none
+  if (facing == 0) return;  // along the surface, or no direction
 
   scene::Scene scene;
   scene::Mesh& mesh = scene.meshes.emplace_back();
@@ -87,7 +87,7 @@ void judge_spawn(const accel::CaseValues& values, std::span<const AccuracyConfig
     ray.origin = shading::spawn_point(geometry, side, levels[i].spawn);
     ray.direction = direction;
     const Hit hit = leaf.hit(ray, levels[i]);
-    out[i].asked = true;
+    out[i].applies = true;
     out[i].broken = hit.valid();
     const double moved = glm::dot(DVec3(ray.origin) - geometry.position, geometry.normal) * facing;
     out[i].error = std::max(0.0, moved);

@@ -4,6 +4,7 @@
 
 #include "report/text/ratio.h"
 #include "ringbus/results/run_features.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::app {
 
@@ -43,7 +44,7 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
 void add_to_resource(report::Resource& out, const ringbus::cycle::TileResult& tile, std::uint64_t cycles,
                      const Config& config, const accel::Accel& accel) {
   out.units = units(tile, cycles, config, accel);
-  if (config.topology.shape == TopologyShape::kIndependent) out.stack = tile.stack;
+  if (!ringbus::Topology(config.topology).has_packets()) out.stack = tile.stack;
   if (config.accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore)
     out.transformed_rays = tile.transformed_rays;
 }

@@ -25,12 +25,12 @@ namespace carousel::app {
 
 namespace {
 
-/// Pictures are made small enough that so many camera rays draw one.
+/// The number of camera rays that a picture may take; larger pictures are shrunk.
 constexpr std::int64_t kCameraRays = 20000, kSampledPixels = 48 * 48;
 constexpr std::size_t kModelledRays = 20000;
 constexpr int kSamplingSeeds = 4;
 
-/// The picture's shape with at most `pixels`.
+/// Shrinks the picture to at most `pixels`, with its shape unchanged.
 void shrink(ImageConfig& image, std::int64_t pixels) {
   while (image.width * image.height > pixels) {
     image.width = std::max<std::int64_t>(1, image.width * 3 / 4);
@@ -38,7 +38,7 @@ void shrink(ImageConfig& image, std::int64_t pixels) {
   }
 }
 
-/// Every n-th of the rays traced, as many as wanted.
+/// Every n-th of the traced rays, `wanted` of them.
 RayBatch choose_rays(const std::vector<report::HitRow>& rows, std::size_t wanted) {
   RayBatch rays;
   const std::size_t count = std::min(wanted, rows.size());
@@ -50,7 +50,7 @@ RayBatch choose_rays(const std::vector<report::HitRow>& rows, std::size_t wanted
   return rays;
 }
 
-/// One run of the command, stage by stage. Between stages it may be stopped; the tables then end where it was.
+/// One run of the command, stage by stage. It can be stopped between stages; the tables then hold the finished stages.
 class Trial {
  public:
   Trial(const Prepared& prepared, const AccuracyArguments& arguments, const InterruptScope& interrupt)
@@ -155,7 +155,7 @@ class Trial {
     done();
   }
 
-  /// Few samples of some seeds against many of another.
+  /// Compares pictures of few samples and several seeds with one of many samples and another seed.
   void try_samples() {
     Config config = small_;
     shrink(config.image, kSampledPixels);
@@ -190,7 +190,7 @@ class Trial {
   std::vector<AccuracyConfig> levels_;
   RayBatch rays_;
   std::vector<HardScene> hard_;
-  std::deque<LevelledAccel> hard_accels_;  // by hard_, whose scenes they refer to
+  std::deque<LevelledAccel> hard_accels_;  // one for each element of hard_, whose scenes they refer to
   std::vector<std::vector<accel::ExactHit>> hard_exact_;
   std::optional<report::ProgressLine> progress_;
   std::size_t step_ = 0, steps_ = 1;

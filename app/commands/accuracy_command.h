@@ -9,25 +9,25 @@
 
 namespace carousel::app {
 
-struct AccuracyArguments : ConfigArguments {  // without a configuration: the built-in instances
+struct AccuracyArguments : ConfigArguments {  // without a configuration: kBuiltInConfig
   std::filesystem::path out;
   bool json = false, quiet = false;
   std::size_t rays = 50000;       ///< of the scene, at most
   std::size_t hard_rays = 20000;  ///< of each hard case
   int repetitions = 5;
   std::uint64_t seed = 1;
-  bool certify = false;   ///< certify_command() instead
-  std::string reproduce;  ///< reproduce_command() instead, unless empty
+  bool certify = false;   ///< run certify_command() instead
+  std::string reproduce;  ///< not empty: run reproduce_command() with this instead
   std::optional<std::uint64_t> cases;
   double seconds = 10;
 };
 
-/// What is taken for a missing configuration.
+/// The configuration that is used if none is given.
 inline constexpr const char* kBuiltInConfig =
     "schema_version: 1\nscene: {builtin: instances}\nimage: {width: 96, height: 96, samples: 2}\n";
 
-/// `carousel accuracy`: runs the scene and the built-in hard ones at every sensible combination of levels against
-/// exact arithmetic; prints a table, writes accuracy.json and accuracy.svg. Returns the exit status.
+/// `carousel accuracy`: compares every sensible combination of levels with exact arithmetic, on the scene and on the
+/// built-in hard ones; prints a table, writes accuracy.json and accuracy.svg. Returns the exit status.
 int accuracy_command(const AccuracyArguments& arguments);
 
 }  // namespace carousel::app

@@ -4,12 +4,12 @@
 
 namespace carousel::app {
 
-/// `carousel accuracy --certify`: tries hard cases of everything the levels of accuracy promise. Prints counts, and of
-/// each promise that was broken a case that shows it. Returns the exit status: kBroken if any was.
+/// `carousel accuracy --certify`: tests hard cases of every promise of the levels of accuracy. Prints counts, and for
+/// each broken promise a case that shows it. Returns the exit status: kBroken if a promise was broken.
 int certify_command(const AccuracyArguments& arguments);
 
-/// `carousel accuracy --reproduce`: tries one case again, or every case in a file, and prints what the level and what
-/// exact arithmetic answered. Returns kBroken if one is still broken, promised or not.
+/// `carousel accuracy --reproduce`: tests one case again, or every case in a file, and prints the answers of the level
+/// and of exact arithmetic. Returns kBroken if a case is still broken, promised or not.
 int reproduce_command(const AccuracyArguments& arguments);
 
 }  // namespace carousel::app

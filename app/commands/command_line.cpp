@@ -45,7 +45,7 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
   return near ? fmt::format("; did you mean {}?", *near) : "";
 }
 
-/// What CLI11 has no words for: the nearest command or option.
+/// The nearest command or option, which CLI11 does not suggest.
 std::string usage_hint(const CLI::App& program, int argc, const char* const* argv) {
   if (argc < 2) return fmt::format("expected a command: {}", fmt::join(kCommands, ", "));
   const std::string first = argv[1];
@@ -75,111 +75,153 @@ struct Arguments {
   SchemaArguments schema;
 };
 
-void add_config_options(CLI::App& command, ConfigArguments& arguments, bool required = true) {
-  command.add_option("config", arguments.config, "configuration, YAML or JSON")->required(required);
-  command.add_option("--set", arguments.sets, "key.path=value: set a key of the configuration; may be repeated")
+constexpr const char* kJsonHelp = "Print the result as JSON instead of a table (default: table)";
+constexpr const char* kQuietHelp = "Print errors only, and the result if --json is given (default: progress and table)";
+
+void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
+  command
+      .add_option(
+          "--set", sets,
+          "Set one key of the configuration, e.g. image.width=256; may be repeated (default: the file's values)")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
 }
 
-void add_commands(CLI::App& program, Arguments& arguments) {
-  program.require_subcommand(1);
-  program.set_version_flag("--version", version_text);
-
-  CLI::App* run = program.add_subcommand("run", "one simulation");
-  RunArguments& r = arguments.run;
-  add_config_options(*run, r);
-  run->add_option("--out", r.out, "folder for report and picture (default out/<config name>)")->type_name("DIR");
-  run->add_flag("--hits", r.hits, "write hits.csv, one row a ray");
-  run->add_option("--dump-rays", r.dump_rays, "write all rays as CSV, to be read by workload: {rays_from: FILE}")
+void add_config_options(CLI::App& command, ConfigArguments& arguments, const char* without = nullptr) {
+  const std::string absent = without == nullptr ? "" : fmt::format(" (default: {})", without);
+  command.add_option("config", arguments.config, "Configuration file, YAML or JSON" + absent)
+      ->required(without == nullptr)
       ->type_name("FILE");
-  run->add_flag("--json", r.json, "print the report as JSON instead of the table");
-  run->add_flag("--quiet", r.quiet, "print nothing but errors (and the report with --json)");
-  run->add_flag("--force", r.force, "run although the topology can deadlock");
+  add_set_option(command, arguments.sets);
+}
 
-  CLI::App* check = program.add_subcommand("check", "validate, print the resolved config, say whether it can deadlock");
-  add_config_options(*check, arguments.check);
+void add_run(CLI::App& program, RunArguments& r) {
+  CLI::App* run = program.add_subcommand("run", "Simulate one configuration; write a report and the picture");
+  add_config_options(*run, r);
+  run->add_option("--out", r.out, "Folder for report and picture (default: out/<config name>)")->type_name("DIR");
+  run->add_flag("--hits", r.hits, "Write hits.csv, one row per ray (default: not written)");
+  run->add_option("--dump-rays", r.dump_rays,
+                  "Write all rays as CSV, which workload: {rays_from: FILE} reads (default: not written)")
+      ->type_name("FILE");
+  run->add_flag("--json", r.json, kJsonHelp);
+  run->add_flag("--quiet", r.quiet, kQuietHelp);
+  run->add_flag("--force", r.force, "Run although the topology can deadlock (default: refused)");
+}
 
-  CLI::App* stress = program.add_subcommand("stress", "queue designs under load: loss, order, throughput, latency");
-  StressArguments& s = arguments.stress;
-  add_config_options(*stress, s, false);
-  stress->add_option("--queue", s.queues, "kinds to try, as topology.link.queue (default all)")
+void add_stress(CLI::App& program, StressArguments& s) {
+  CLI::App* stress =
+      program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
+  add_config_options(*stress, s, "the queues are tested by themselves");
+  stress
+      ->add_option("--queue", s.queues,
+                   "Kinds of queue to test, comma-separated, as in topology.link.queue (default: all)")
       ->delimiter(',')
       ->type_name("KIND");
-  stress->add_option("--pattern", s.patterns, "patterns to try (default all)")->delimiter(',')->type_name("PATTERN");
-  stress->add_option("--bytes", s.bytes, "size of a message: 8, 64, 256 (default what each pattern wants)")
-      ->delimiter(',');
+  stress->add_option("--pattern", s.patterns, "Load patterns to test, comma-separated (default: all)")
+      ->delimiter(',')
+      ->type_name("PATTERN");
+  stress->add_option("--bytes", s.bytes, "Message sizes in bytes, of 8, 64 and 256 (default: chosen by the pattern)")
+      ->delimiter(',')
+      ->type_name("BYTES");
   stress
       ->add_option("--depths", s.depths,
-                   "with a configuration: depths of links to try (default 1, its own, four times its own)")
+                   "Link depths in packets to test in the configuration's ring (default: 1, its own depth, and four "
+                   "times that)")
       ->delimiter(',')
-      ->check(CLI::Range(1, 1'000'000));
-  stress->add_option("--seconds", s.seconds, "for the queues by themselves, in all")
+      ->check(CLI::Range(1, 1'000'000))
+      ->type_name("PACKETS");
+  stress->add_option("--seconds", s.seconds, "Total time in seconds for tests of queues by themselves")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  stress->add_option("--messages", s.messages, "of one trial, at most")
+  stress->add_option("--messages", s.messages, "Most messages in one trial")
       ->check(CLI::Range(1u, 100'000'000u))
       ->capture_default_str();
-  stress->add_option("--repetitions", s.repetitions, "of each trial, in turn")
+  stress->add_option("--repetitions", s.repetitions, "Number of times each trial is repeated")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  stress->add_option("--capacity", s.capacity, "of a queue by itself")
+  stress->add_option("--capacity", s.capacity, "Capacity in messages of a queue tested by itself")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  stress->add_option("--seed", s.seed, "of pauses")->capture_default_str();
-  stress->add_option("--out", s.out, "folder for stress.json (default out/stress, or out/<config name>)")
+  stress->add_option("--seed", s.seed, "Seed of the random pauses between messages")->capture_default_str();
+  stress->add_option("--out", s.out, "Folder for stress.json (default: out/stress, or out/<config name>)")
       ->type_name("DIR");
-  stress->add_flag("--json", s.json, "print JSON instead of the table");
-  stress->add_flag("--quiet", s.quiet, "print nothing but errors (and the results with --json)");
+  stress->add_flag("--json", s.json, kJsonHelp);
+  stress->add_flag("--quiet", s.quiet, kQuietHelp);
+}
 
-  CLI::App* accuracy = program.add_subcommand("accuracy", "what accuracy costs in time");
-  AccuracyArguments& a = arguments.accuracy;
-  add_config_options(*accuracy, a, false);
-  accuracy->add_option("--out", a.out, "folder for table and picture (default out/<config name>)")->type_name("DIR");
-  accuracy->add_option("--rays", a.rays, "rays of the scene to compare, at most")
+void add_accuracy(CLI::App& program, AccuracyArguments& a) {
+  CLI::App* accuracy = program.add_subcommand("accuracy", "Measure the time and the errors of every level of accuracy");
+  add_config_options(*accuracy, a, "a built-in scene of instances");
+  accuracy->add_option("--out", a.out, "Folder for accuracy.json and accuracy.svg (default: out/<config name>)")
+      ->type_name("DIR");
+  accuracy->add_option("--rays", a.rays, "Most rays of the scene to compare with exact arithmetic")
       ->check(CLI::Range(1u, 10'000'000u))
       ->capture_default_str();
-  accuracy->add_option("--hard-rays", a.hard_rays, "rays of each built-in hard case")
+  accuracy->add_option("--hard-rays", a.hard_rays, "Number of rays in each built-in hard case")
       ->check(CLI::Range(1u, 10'000'000u))
       ->capture_default_str();
-  accuracy->add_option("--repetitions", a.repetitions, "of each timing, in turn")
+  accuracy->add_option("--repetitions", a.repetitions, "Number of times each timing is repeated")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  accuracy->add_option("--seed", a.seed, "of the hard cases")->capture_default_str();
-  accuracy->add_flag("--json", a.json, "print JSON instead of the table");
-  accuracy->add_flag("--quiet", a.quiet, "print nothing but errors (and the results with --json)");
+  accuracy->add_option("--seed", a.seed, "Seed of the hard cases")->capture_default_str();
+  accuracy->add_flag("--json", a.json, kJsonHelp);
+  accuracy->add_flag("--quiet", a.quiet, kQuietHelp);
 
   CLI::Option* certify = accuracy->add_flag(
-      "--certify", a.certify, "try hard cases of what the levels promise instead; a configuration chooses one level");
-  CLI::Option* cases = accuracy->add_option("--cases", a.cases, "with --certify: of each property")->needs(certify);
-  accuracy->add_option("--seconds", a.seconds, "with --certify: until then")
+      "--certify", a.certify,
+      "Test the promises of the levels with hard random cases instead; a configuration selects one level (default: "
+      "all levels)");
+  CLI::Option* cases =
+      accuracy
+          ->add_option("--cases", a.cases, "With --certify: number of cases per property (default: --seconds decides)")
+          ->needs(certify);
+  accuracy->add_option("--seconds", a.seconds, "With --certify: time limit in seconds")
       ->check(CLI::PositiveNumber)
       ->needs(certify)
       ->excludes(cases)
       ->capture_default_str();
-  accuracy->add_option("--reproduce", a.reproduce, "try one case again, as --certify prints it, or those in a file")
+  accuracy
+      ->add_option("--reproduce", a.reproduce,
+                   "Test one case again, as --certify prints it, or the cases in a file (default: none)")
       ->excludes(certify)
       ->type_name("CASE");
+}
 
-  CLI::App* inspect = program.add_subcommand("inspect", "what a scene holds and which effects it calls for");
-  inspect->add_option("scene", arguments.inspect.scene, "glTF file, or builtin:<name>")->required();
-  inspect->add_option("--set", arguments.inspect.sets, "key.path=value: as for run, e.g. shading.effects=all")
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUE");
-  inspect->add_flag("--json", arguments.inspect.json, "print JSON instead of the table");
+void add_inspect(CLI::App& program, InspectArguments& i) {
+  CLI::App* inspect = program.add_subcommand("inspect", "List a scene's contents, the effects it needs and their cost");
+  inspect->add_option("scene", i.scene, "glTF file, or builtin:<name>")->required();
+  add_set_option(*inspect, i.sets);
+  inspect->add_flag("--json", i.json, kJsonHelp);
+}
 
-  CLI::App* compare = program.add_subcommand("compare", "two reports side by side");
-  compare->add_option("a", arguments.compare.a, "report.json, or its folder")->required();
-  compare->add_option("b", arguments.compare.b, "the other")->required();
-  compare->add_option("--expect", "identical: exit status 1 when they differ")
+void add_compare(CLI::App& program, CompareArguments& c) {
+  CLI::App* compare = program.add_subcommand("compare", "List the differences between two reports");
+  compare->add_option("a", c.a, "First report.json, or its folder")->required()->type_name("PATH");
+  compare->add_option("b", c.b, "Second report.json, or its folder")->required()->type_name("PATH");
+  compare->add_option("--expect", "With `identical`: exit status 1 if the reports differ (default: 0 in any case)")
       ->check(CLI::IsMember({"identical"}))
-      ->each([&arguments](const std::string&) { arguments.compare.expect_identical = true; });
+      ->each([&c](const std::string&) { c.expect_identical = true; });
+}
 
-  CLI::App* schema = program.add_subcommand("schema", "JSON Schema of the files");
+void add_commands(CLI::App& program, Arguments& arguments) {
+  program.require_subcommand(1);
+  program.set_help_flag("-h,--help", "Print this help and exit");
+  program.set_version_flag("--version", version_text, "Print version, commit and compiler, and exit");
+  add_run(program, arguments.run);
+  CLI::App* check = program.add_subcommand(
+      "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
+  add_config_options(*check, arguments.check);
+  add_stress(program, arguments.stress);
+  add_accuracy(program, arguments.accuracy);
+  add_inspect(program, arguments.inspect);
+  add_compare(program, arguments.compare);
+  CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
       ->check(CLI::IsMember({"config", "report"}));
-  schema->add_flag("--markdown", arguments.schema.markdown, "config only: every key as a Markdown table");
+  schema->add_flag("--markdown", arguments.schema.markdown,
+                   "With `config`: print every key as Markdown (default: JSON Schema)");
+  program.footer("carousel COMMAND --help describes the options of a command.");
 }
 
 int run_command_line(int argc, const char* const* argv) {
@@ -195,7 +237,7 @@ int run_command_line(int argc, const char* const* argv) {
     return kDone;
   } catch (const CLI::ParseError& error) {
     const std::string hint = usage_hint(program, argc, argv);
-    spdlog::error("{}\ncarousel --help tells the usage", hint.empty() ? error.what() : hint);
+    spdlog::error("{}\ncarousel --help prints the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
   log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet || arguments.stress.quiet);
@@ -228,7 +270,7 @@ int main(int argc, const char* const* argv) {
     spdlog::error("{}", error.what());
     return kUsage;
   } catch (const std::bad_alloc&) {
-    spdlog::error("not enough memory; carousel check says what the configuration needs");
+    spdlog::error("not enough memory; carousel check prints how much the configuration needs");
     return kUsage;
   } catch (const SimulationError& error) {
     spdlog::error("{}", error.what());

@@ -2,7 +2,7 @@
 
 namespace carousel::app {
 
-/// The program: parses the command line, runs the command, maps what went wrong to an exit status.
+/// The program: parses the command line, runs the command, and maps errors to an exit status.
 int main(int argc, const char* const* argv);
 
 }  // namespace carousel::app

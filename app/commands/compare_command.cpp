@@ -33,7 +33,7 @@ Json read_report(const std::string& name) {
   return json;
 }
 
-/// What the machine of a report does within some cycles.
+/// The steps of a report's machine in a range of cycles.
 std::vector<ringbus::cycle::Step> steps_of(const Json& report, const report::EpochRange& epoch) {
   const Prepared p = prepare_config(report["config"].dump(), "config of the report");
   RenderJob job(p);
@@ -50,7 +50,7 @@ std::string first_divergence(const Json& a, const Json& b) {
   const std::vector<ringbus::cycle::Step> left = steps_of(a, epoch), right = steps_of(b, epoch);
   const auto [l, r] = std::mismatch(left.begin(), left.end(), right.begin(), right.end());
   if (l == left.end() && r == right.end())
-    return text + "run again, both do the same there: one of the reports comes from another program\n";
+    return text + "a second run of both shows no difference there: one of the reports was written by another program\n";
   const auto told = [](const auto& at, const auto& end) {
     return at == end ? std::string("nothing more in this epoch") : ringbus::cycle::step_text(*at);
   };

@@ -9,8 +9,9 @@ struct CompareArguments {
   bool expect_identical = false;
 };
 
-/// `carousel compare`: says "identical" when all outside of `host` is equal, else what differs; of two runs of the
-/// cycle engine also the first thing that went differently, found by running both again. Returns the exit status.
+/// `carousel compare`: prints "identical" if everything outside of `host` is equal, otherwise the differences. For two
+/// runs of the cycle engine it also prints the first event that differs, found by running both again. Returns the exit
+/// status.
 int compare_command(const CompareArguments& arguments);
 
 }  // namespace carousel::app

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The configuration that names the scene, with everything else as it is by default or set.
+/// The configuration that names the scene; all other keys have their defaults or the values of --set.
 LocatedConfig config_for(const InspectArguments& arguments) {
   constexpr std::string_view kBuiltin = "builtin:";
   const std::string& name = arguments.scene;
@@ -27,7 +27,7 @@ LocatedConfig config_for(const InspectArguments& arguments) {
   else
     scene["file"] = name;
   const Json config{{"schema_version", 1}, {"scene", scene}};
-  return parse_located_config(config.dump(), "inspect.json", arguments.sets, {.force = true});
+  return load_config({config.dump(), "inspect.json"}, arguments.sets, {.force = true});
 }
 
 struct Holdings {

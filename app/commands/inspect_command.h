@@ -11,7 +11,7 @@ struct InspectArguments {
   bool json = false;
 };
 
-/// `carousel inspect`: what a scene holds and which effects it calls for. Returns the exit status.
+/// `carousel inspect`: lists a scene's contents and the effects that it calls for. Returns the exit status.
 int inspect_command(const InspectArguments& arguments);
 
 }  // namespace carousel::app

@@ -62,7 +62,7 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
     print_result(table + "files        " + folder.string() + "\n");
 }
 
-/// The network alone, without rays.
+/// Simulates the network alone, without rays.
 int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt) {
   std::optional<report::ProgressLine> line;
   if (!arguments.quiet) line.emplace(stderr);
@@ -91,7 +91,7 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
     if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
     if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
   }
-  // Last: who finds a report finds the files it speaks of.
+  // The report is written last, so that the files it names exist before it does.
   write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
 }
 
@@ -101,14 +101,15 @@ int run_command(const RunArguments& arguments) {
   const InterruptScope interrupt;
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
   const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits);
-  if (!p.config().vary.empty()) spdlog::warn("vary is for sweeps; run takes the values outside of it");
+  if (!p.config().vary.empty())
+    spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return run_traffic_command(arguments, p, interrupt);
 
   RenderJob job(p);
   std::optional<HitRecorder> recorder;
   if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
   std::optional<accel::VerifyingWorkload> verifying;
-  std::optional<accel::Accel> plain;  // planes and spheres are verified, too
+  std::optional<accel::Accel> plain;  // planes and spheres are verified as well
   if (p.config().verify == Verify::kReference) {
     if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
     verifying.emplace(job.workload(), plain ? *plain : p.accel);

@@ -32,7 +32,7 @@ namespace {
 
 namespace stress = ringbus::stress;
 
-/// The values that the names spell; all there are for no names. Throws ConfigError.
+/// The values with these names; all known values if no names are given. Throws ConfigError.
 template <class Value, class Known>
 std::vector<Value> chosen(const std::vector<std::string>& names, const char* option, const Known& known) {
   std::vector<Value> out;
@@ -97,7 +97,7 @@ void require_sizes(const std::vector<std::size_t>& sizes) {
             fmt::format("expected {}, {} or {}, found {}", stress::kSmall, stress::kLine, stress::kPacket, bytes)}});
 }
 
-/// Shallow, as configured, deep.
+/// The link depths to test: shallow, as configured, and deep.
 std::vector<std::int64_t> depths_about(const TopologyConfig& topology) {
   std::vector<std::int64_t> depths{topology.flow == Flow::kBubble ? 2 : 1, topology.link.depth,
                                    4 * topology.link.depth};
@@ -126,7 +126,7 @@ int stress_command(const StressArguments& arguments) {
     prepared.reset(new Prepared(prepare(arguments, {}, false)));
     if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic)
       throw ConfigError(
-          {{prepared->located.positions.find("workload"), "workload", "stress tries queues with rays; expected rays"}});
+          {{prepared->located.positions.find("workload"), "workload", "stress tests queues with rays; expected rays"}});
   }
 
   std::optional<report::ProgressLine> line;
@@ -173,7 +173,7 @@ int stress_command(const StressArguments& arguments) {
   else if (!arguments.quiet)
     print_result(report::stress_table(out) + "files: " + (folder / "stress.json").string() + "\n");
   if (out.broken()) {
-    std::string last;  // the table has the rest
+    std::string last;  // one message a queue and pattern; the table has the rest
     for (const report::StressRow& row : out.rows)
       if (!row.found.empty() && std::exchange(last, row.queue) != row.queue)
         spdlog::error("{} under {}: {} ({})", row.queue, row.pattern, row.found, row.detail);

@@ -8,11 +8,11 @@
 
 namespace carousel::app {
 
-struct StressArguments : ConfigArguments {  // without a configuration: the queues by themselves
+struct StressArguments : ConfigArguments {  // without a configuration the queues are tested by themselves
   std::vector<std::string> queues;          ///< names; empty: all
   std::vector<std::string> patterns;        ///< names; empty: all
-  std::vector<std::size_t> bytes;           ///< 8, 64, 256; empty: what each pattern wants
-  std::vector<std::int64_t> depths;         ///< inside the ring; empty: some about the configuration's
+  std::vector<std::size_t> bytes;           ///< 8, 64, 256; empty: each pattern's own sizes
+  std::vector<std::int64_t> depths;         ///< inside the ring; empty: 1, the configuration's, and four times that
   double seconds = 30;
   std::uint64_t messages = 1'000'000;
   std::size_t repetitions = 3;
@@ -22,9 +22,9 @@ struct StressArguments : ConfigArguments {  // without a configuration: the queu
   bool json = false, quiet = false;
 };
 
-/// `carousel stress`: queue designs under load, by themselves and, with a configuration, inside its ring; prints a
-/// table, writes stress.json. Returns the exit status: 1 when a queue lost, doubled, reordered or tore a message, got
-/// stuck, or changed what a ring computes.
+/// `carousel stress`: tests queue designs under load, by themselves and, with a configuration, inside its ring; prints
+/// a table and writes stress.json. Returns the exit status: 1 if a queue lost, duplicated, reordered or corrupted a
+/// message, got stuck, or changed the results of a ring.
 int stress_command(const StressArguments& arguments);
 
 }  // namespace carousel::app

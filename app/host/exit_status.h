@@ -2,7 +2,7 @@
 
 namespace carousel::app {
 
-/// DESIGN.md section 7, a contract.
+/// The exit statuses, a contract (DESIGN.md section 7).
 enum ExitStatus : int {
   kDone = 0,
   kBroken = 1,  ///< an invariant broke, a simulation got stuck, a verification failed

@@ -24,7 +24,7 @@ InterruptScope::InterruptScope() {
   g_interrupted.store(false, std::memory_order_relaxed);
   struct sigaction action {};
   action.sa_handler = on_interrupt;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal acts as usual
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal ends the program
   sigaction(SIGINT, &action, nullptr);
   watcher_ = std::jthread([this](std::stop_token ended) {
     std::mutex mutex;

@@ -5,8 +5,8 @@
 
 namespace carousel::app {
 
-/// While it lives, the first SIGINT requests a stop instead of ending the program; a second one ends it at
-/// once. One at a time.
+/// During its lifetime the first SIGINT requests a stop instead of ending the program; a second one ends it at once.
+/// At most one object may exist at a time.
 class InterruptScope {
  public:
   InterruptScope();

@@ -6,7 +6,7 @@
 
 namespace carousel::app {
 
-/// The machine this runs on; what cannot be found out is empty or 0.
+/// The machine that runs this program; a value that cannot be determined is empty or 0.
 report::Machine machine_info();
 
 /// Memory this process may use: the machine's, or its control group's limit if that is less.

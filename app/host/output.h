@@ -4,7 +4,7 @@
 
 namespace carousel::app {
 
-/// Writes results to stdout. Throws FileError when they do not arrive (disk full).
+/// Writes results to stdout. Throws FileError if they cannot be written (disk full).
 void print_result(std::string_view text);
 
 }  // namespace carousel::app

@@ -4,7 +4,7 @@
 
 namespace carousel::app {
 
-/// This program, for its reports.
+/// Version and commit of this program, for its reports.
 report::Program program_info();
 
 }  // namespace carousel::app

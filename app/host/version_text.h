@@ -4,7 +4,7 @@
 
 namespace carousel::app {
 
-/// What `carousel --version` prints: version, commit, compiler, SIMD targets.
+/// The text of `carousel --version`: version, commit, compiler, SIMD targets.
 std::string version_text();
 
 }  // namespace carousel::app

@@ -7,14 +7,14 @@
 
 namespace carousel::app {
 
-/// Counts how many rays another workload has generated: how far a frame has come, for the progress line.
+/// Counts the rays that another workload has generated, for the progress line.
 class CountingWorkload final : public Workload {
  public:
   explicit CountingWorkload(Workload& inner) : inner_(inner) {}
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     const Generated made = inner_.generate(worker, max_rays, out);
-    // Relaxed: a number to look at.
+    // Relaxed: the number is only displayed.
     generated_.fetch_add(made.rays, std::memory_order_relaxed);
     return made;
   }

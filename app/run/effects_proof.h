@@ -6,8 +6,8 @@
 
 namespace carousel::app {
 
-/// `verify: effects`: runs the configuration that made `report` again with all effects, and says in it whether that
-/// changes anything and what leaving them out spared. Nothing when the run was interrupted.
+/// `verify: effects`: runs the configuration that made `report` again with all effects, and adds to the report the
+/// result of comparing both runs and the work that was saved. Does nothing if the run was interrupted.
 void prove_effects(const ConfigArguments& arguments, const InterruptScope& interrupt, report::Report& report);
 
 }  // namespace carousel::app

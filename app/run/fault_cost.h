@@ -7,8 +7,8 @@
 
 namespace carousel::app {
 
-/// Simulates the frame once more without faults, and adds to `report` how many cycles that takes and whether hits and
-/// picture are the same. On the cycle engine. Leaves the report as it is when one of the two was interrupted.
+/// Simulates the frame once more without faults, on the cycle engine, and adds to `report` the number of cycles and the
+/// result of comparing hits and picture. Leaves the report unchanged if one of the two runs was interrupted.
 void compare_without_faults(const Prepared& prepared, std::stop_token stop, report::Report& report);
 
 }  // namespace carousel::app

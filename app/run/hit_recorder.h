@@ -18,7 +18,7 @@ class HitRecorder final : public shading::RayRecorder {
     workers_[worker.value].rows.push_back({pixel, sample, result});
   }
 
-  /// All rows, sorted; the recorder is empty afterwards. Call when nothing runs.
+  /// All rows, sorted; the recorder is empty afterwards. Call it after the run.
   std::vector<report::HitRow> take();
 
  private:

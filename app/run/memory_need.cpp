@@ -16,13 +16,13 @@ namespace carousel::app {
 
 namespace {
 
-// Measured with a million triangles (terrain, spheres, sliver) and 100,000 instances, as the peak above that
-// of a tiny scene: 200 to 225 bytes a triangle, of which the mesh keeps 27 to 52 and the structure 60; 440 an
-// instance.
+// Measured with a million triangles (terrain, spheres, sliver) and 100,000 instances, as the peak minus that of a tiny
+// scene: 200 to 225 bytes a triangle, of which the mesh keeps 27 to 52 and the structure 60; 440 bytes an instance.
 constexpr std::uint64_t kSceneBytesPerTriangle = 55;
 constexpr std::uint64_t kAccelBytesPerTriangle = 180;
 constexpr std::uint64_t kBytesPerInstance = 512;
-constexpr int kAssumedDepth = 24;  // of the structure; 8 wide, that is far more than 100 million triangles need
+constexpr int kAssumedDepth =
+    24;  // depth of the structure; with 8 children a node, 100 million triangles need far less
 
 std::uint64_t frame_paths(const Config& config) {
   return static_cast<std::uint64_t>(config.image.width) * static_cast<std::uint64_t>(config.image.height) *

@@ -12,27 +12,27 @@
 
 namespace carousel::app {
 
-/// Bytes a run needs, estimated.
+/// Estimate of the bytes that a run needs.
 struct MemoryNeed {
   std::uint64_t scene = 0;
-  std::uint64_t accel = 0;  ///< before the scene is there: with what building takes on top
+  std::uint64_t accel = 0;  ///< before the scene is loaded: including the memory of the build
   ringbus::MemoryEstimate ring;
   std::uint64_t paths = 0;  ///< states of the paths in flight
-  std::uint64_t film = 0;   ///< and the pictures made from it
+  std::uint64_t film = 0;   ///< including the pictures made from it
   std::uint64_t hits = 0;   ///< rows kept for hits.csv or a ray file, camera rays only
 
   std::uint64_t total() const { return scene + accel + ring.total() + paths + film + hits; }
 };
 
-/// Before the scene is there: a built-in scene's size is known from the configuration, a file's is not.
+/// The estimate before the scene is loaded: the configuration gives a built-in scene's size, but not a file's.
 MemoryNeed estimate_before_scene(const Config& config, bool keep_hits);
-/// With the scene and its structure.
+/// The estimate with the loaded scene and its structure.
 MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& scene, const accel::Accel& accel);
 
-/// Paths that have rays in flight at a time: one for each slot.
+/// Number of paths with rays in flight at a time: one for each slot.
 std::uint64_t paths_in_flight(const Config& config);
 
-/// Several lines, for a person.
+/// A readable text of several lines.
 std::string memory_text(const MemoryNeed& need, std::uint64_t usable_bytes);
 
 /// Throws a ConfigError at the key that weighs most unless the need is at most `usable_bytes`.

@@ -21,7 +21,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Runs `body`; what it finds wrong with the configuration gets its place in the user's files.
+/// Runs `body`; adds to its ConfigErrors the positions in the user's files.
 template <class Body>
 auto with_positions(const KeyPositions& positions, const Body& body) {
   try {
@@ -71,14 +71,14 @@ void build_accel(Prepared& p) {
     throw ConfigError(std::move(issues));
 }
 
-/// Everything after reading the configuration.
+/// Does all preparation after reading the configuration.
 void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
-  // A second thread pays for the cycle engine only where each has many resources (docs/performance.md).
+  // A second thread makes the cycle engine faster only if each thread has many resources (docs/performance.md).
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
-  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // meets no scene
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene
   const KeyPositions& positions = p.located.positions;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
@@ -97,7 +97,7 @@ float Prepared::scene_size() const {
 
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits) {
   Prepared p;
-  p.located = load_located_config(arguments.config, arguments.sets, options);
+  p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   prepare_located(p, keep_hits);
   return p;
@@ -105,7 +105,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets) {
   Prepared p;
-  p.located = parse_located_config(text, name, sets, {.force = true});
+  p.located = load_config({text, name}, sets, {.force = true});
   prepare_located(p, false);
   return p;
 }

@@ -13,7 +13,7 @@
 
 namespace carousel::app {
 
-/// What the commands that take a configuration share.
+/// Arguments of all commands that take a configuration.
 struct ConfigArguments {
   std::string config;
   std::vector<std::string> sets;
@@ -25,10 +25,10 @@ struct Prepared {
   std::filesystem::path config_folder;
   std::size_t threads = 1;  ///< engine.threads, or the machine's cores
   std::unique_ptr<scene::Scene> scene_storage = std::make_unique<scene::Scene>();
-  scene::Scene& scene = *scene_storage;  ///< stays where it is when this is moved: others refer to it
+  scene::Scene& scene = *scene_storage;  ///< keeps its address when the object is moved, since others refer to it
   std::vector<std::string> warnings;     ///< of the import
   accel::Accel accel;
-  std::unique_ptr<shading::AlphaTest> alpha_test;  ///< whom `accel` asks; null where nothing lets rays through
+  std::unique_ptr<shading::AlphaTest> alpha_test;  ///< any-hit calls of `accel`; null if every material is opaque
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }
@@ -36,14 +36,14 @@ struct Prepared {
   float scene_size() const;
 };
 
-/// Loads all of it; for synthetic traffic the configuration only. What would not fit the machine is refused before it
-/// is loaded. Throws ConfigError, SceneError and FileError; warnings go to the log.
+/// Loads configuration, scene and structure; for synthetic traffic the configuration only. Refuses a scene that would
+/// not fit into the machine's memory before loading it. Throws ConfigError, SceneError and FileError; logs warnings.
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits);
 
-/// The same for a configuration that is at hand as text; files it names are looked for in the working folder.
+/// The same for a configuration given as text; files that it names are looked for in the working folder.
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {});
 
-/// A file that a configuration names: in the configuration's folder, else in the working one.
+/// Path of a file that a configuration names: in the configuration's folder, or else in the working folder.
 std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file);
 
 }  // namespace carousel::app

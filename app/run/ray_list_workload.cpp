@@ -5,7 +5,7 @@
 namespace carousel::app {
 
 Workload::Generated RayListWorkload::generate(WorkerId worker, std::size_t max_rays, RayBatch& out) {
-  // Relaxed: hands out disjoint ranges of a list that nobody writes.
+  // Relaxed: the cursor assigns disjoint ranges of a list that is only read.
   std::size_t begin = next_.load(std::memory_order_relaxed), end = begin;
   do {
     end = begin + std::min(max_rays, rays_.size() - begin);

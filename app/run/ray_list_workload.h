@@ -18,13 +18,13 @@ class RayListWorkload final : public Workload {
   /// rays[i].tag.path must be i.
   RayListWorkload(RayBatch rays, std::size_t workers) : rays_(std::move(rays)), workers_(workers) {}
 
-  /// As PathTracer::set_recorder.
+  /// The same as PathTracer::set_recorder().
   void set_recorder(shading::RayRecorder* recorder) { recorder_ = recorder; }
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
-  // Results, for when the workers are joined.
+  // The results below are valid once the workers are joined.
 
   std::array<std::uint64_t, kRayKinds> emitted() const;  ///< by RayKind
   HitsDigest hits_digest() const;

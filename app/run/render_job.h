@@ -15,40 +15,40 @@
 
 namespace carousel::app {
 
-/// The rays of a run, whichever the configuration asks for: a picture's or a file's.
+/// The rays of a run: those of a picture or those of a file, as configured.
 class RenderJob {
  public:
   /// Reads the file of `rays_from`. Keeps references to `prepared`. Throws ConfigError and FileError.
   explicit RenderJob(const Prepared& prepared) : RenderJob(prepared, prepared.config()) {}
-  /// With another machine than the prepared one, for what-if runs. `first_hits`, if not null, are taken instead of a
-  /// raster pass of its own, and must outlive the frame.
+  /// A job for another machine than the prepared one, for what-if runs. `first_hits`, if not null, replaces a raster
+  /// pass, and must outlive the job.
   RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
   Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);
-  /// Rays that no other ray causes: what the progress is measured by.
+  /// The number of rays that no other ray causes, by which progress is measured.
   std::uint64_t first_rays() const;
 
-  /// Of the raster pass; null when rays find the first hits.
+  /// The result of the raster pass; null if rays find the first hits.
   const shading::FirstHits* first_hits() const { return raster_seconds_ ? &first_hits_ : nullptr; }
 
-  // Results, for when the workers are joined.
+  // The results below are valid once the workers are joined.
 
   std::array<std::uint64_t, kRayKinds> emitted() const;  ///< by RayKind
   std::uint64_t saturated() const;
   std::string hits_digest() const;
-  /// Absent when the rays make no picture.
+  /// Absent if the rays make no picture.
   std::optional<std::string> image_digest() const;
-  /// What the rasteriser did, and how long it took; absent when rays found the first hits.
+  /// Counts and time of the rasteriser; absent if rays found the first hits.
   std::optional<RasterCounts> raster() const;
   std::optional<double> raster_seconds() const { return raster_seconds_; }
-  /// image.png and image.exr, if there is a picture.
+  /// Writes image.png and image.exr if there is a picture.
   void write_images(const std::filesystem::path& folder) const;
 
  private:
   std::optional<double> raster_seconds_;
-  shading::FirstHits first_hits_;                // of the raster pass; the tracer reads them
-  std::unique_ptr<shading::PathTracer> tracer_;  // one of the two
+  shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads
+  std::unique_ptr<shading::PathTracer> tracer_;  // either tracer_ or list_ is set
   std::unique_ptr<RayListWorkload> list_;
   std::uint64_t first_rays_;
 };

@@ -13,7 +13,7 @@ enum class EmbreeQuality { kMedium, kHigh };  ///< high: spatial splits, its bes
 struct EmbreeSettings {
   bool robust = false;
   EmbreeQuality quality = EmbreeQuality::kHigh;
-  std::string frequency_level = "simd256";  ///< which instruction sets it may use
+  std::string frequency_level = "simd256";  ///< the instruction sets that it may use
   int build_threads = 1;
 };
 
@@ -27,13 +27,13 @@ class EmbreePeer {
   EmbreePeer(EmbreePeer&&) noexcept;
 
   double build_seconds() const;
-  /// What Embree holds after the build, its copies of vertices and indices included.
+  /// Memory that Embree holds after the build, its copies of vertices and indices included.
   std::size_t size_bytes() const;
 
   /// rtcIntersect1, or rtcOccluded1 for any-hit sets, on `threads` threads. Of an occluded ray only
   /// Hit::instance is set.
   void trace_single(const RaySet& rays, int threads, HitList& hits) const;
-  /// rtcIntersect16 or rtcOccluded16, told whether the rays are coherent.
+  /// rtcIntersect16 or rtcOccluded16, with the flag for coherent rays if they are.
   void trace_sixteen(const RaySet& rays, int threads, HitList& hits) const;
 
  private:

@@ -8,8 +8,8 @@
 
 namespace carousel::bench {
 
-/// Hands out the rays of a set in order and writes down their hits. Does nothing else, so that what is
-/// measured is the engine.
+/// Generates the rays of a set in order and records their hits. It does nothing else, so that only the engine is
+/// measured.
 class ListWorkload final : public Workload {
  public:
   /// Keeps references; `hits` has one place a ray.
@@ -18,7 +18,7 @@ class ListWorkload final : public Workload {
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
-  /// When rays were first asked for: nothing is left to do then before the first packet but to fill it.
+  /// Time of the first request for rays: only filling the first packet is left to do then.
   std::chrono::steady_clock::time_point started() const { return started_; }
 
  private:

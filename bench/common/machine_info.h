@@ -4,7 +4,7 @@
 
 namespace carousel::bench {
 
-/// This machine, this program, now. What cannot be found out is "unknown".
+/// Machine, program and date of a measurement. A value that cannot be determined is "unknown".
 MachineInfo machine_info();
 
 }  // namespace carousel::bench

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace carousel::bench {
 
-/// `text` with what stands between `<!-- bench:NAME -->` and `<!-- /bench:NAME -->` replaced by `body`, on
-/// lines of its own. Text outside the markers is not touched. Throws std::runtime_error when a marker is
-/// missing.
-std::string replace_marked(const std::string& text, const std::string& name, const std::string& body);
+/// Replaces tables in documents. A table's text stands between `<!-- bench:NAME -->` and `<!-- /bench:NAME -->`; each
+/// body goes to the first of `files` that has the markers of its name. Text outside the markers stays. Throws
+/// std::runtime_error if no file has them; then no file has changed.
+void replace_marked(const std::vector<std::string>& files, const std::map<std::string, std::string>& bodies);
 
 }  // namespace carousel::bench

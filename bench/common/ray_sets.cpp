@@ -25,7 +25,7 @@ void RaySet::push_back(const Ray& ray) {
 
 namespace {
 
-/// Where a primary ray met a surface, on the side it came from.
+/// The point where a primary ray met a surface, on the side it came from.
 struct SurfacePoint {
   Vec3 position;
   Vec3 normal;  ///< unit
@@ -62,7 +62,7 @@ std::vector<SurfacePoint> surface_points(const scene::Scene& scene, const accel:
   return points;
 }
 
-/// Towards the scene's first light, or straight up to the top of a scene that has none.
+/// A point of the scene's first light, or straight up at the top of a scene without lights.
 Ray shadow_ray(const scene::Scene& scene, const Aabb& bounds, const SurfacePoint& point) {
   Ray ray;
   ray.origin = point.position;
@@ -91,7 +91,7 @@ Ray cosine_ray(const SurfacePoint& point, std::uint64_t seed, std::uint32_t inde
   return ray;
 }
 
-// Fisher and Yates; not std::shuffle, whose order is the library's own.
+// Fisher and Yates; std::shuffle gives another order with another library.
 std::vector<std::uint32_t> random_order(std::size_t count, std::uint64_t seed) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);

@@ -14,7 +14,7 @@ namespace carousel::bench {
 
 /// Rays to be traced again and again. RayTag::path is the ray's place in the set, from 0.
 struct RaySet {
-  /// Rays of one batch: what a thread claims at once. Small enough that two threads end at nearly the same
+  /// Rays of one batch, which a thread claims at once. Small enough that two threads end at nearly the same
   /// time.
   static constexpr std::size_t kBatchRays = 1024;
 
@@ -31,7 +31,7 @@ struct RaySet {
 /// One hit a ray, by RayTag::path.
 using HitList = std::vector<Hit>;
 
-/// What a scene is measured with:
+/// The ray sets of a scene:
 /// - primary: through every pixel of a square image, tile by tile along a Z curve;
 /// - shadow: any hit, from each primary hit to the scene's first light, in the same order;
 /// - bounce: from each primary hit to a cosine-weighted direction, in the same order;

@@ -7,7 +7,7 @@
 
 namespace carousel::bench {
 
-// What the JSON of every benchmark says in the same words.
+// JSON shared by all benchmarks.
 
 inline nlohmann::ordered_json json_of(const Spread& s) {
   return {{"median", s.median}, {"min", s.min}, {"max", s.max}};

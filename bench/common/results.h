@@ -9,9 +9,9 @@
 
 namespace carousel::bench {
 
-// What a run of bench_rays measured: one JSON file, from which the tables are drawn.
+// The results of a run of bench_rays: one JSON file, from which the tables are made.
 
-/// What tracing took, a ray; 0 where it is not known (the ring tells with statistics only, Embree never).
+/// Counts per ray; 0 if unknown (the ring reports them with statistics only, Embree never).
 struct Work {
   double box_tests = 0, triangle_tests = 0;
   double memberships = 0;            ///< times it joined a collection
@@ -58,7 +58,7 @@ struct SceneResult {
 struct MachineInfo {
   std::string cpu;
   int threads = 0;     ///< logical processors
-  std::string caches;  ///< "L1d 32K, L2 1M, L3 32M", as the kernel tells
+  std::string caches;  ///< "L1d 32K, L2 1M, L3 32M", as the kernel reports
   std::string commit, compiler, build_type, simd, embree;
   std::string date;  ///< UTC, ISO 8601
 };

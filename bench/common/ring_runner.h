@@ -10,7 +10,7 @@
 
 namespace carousel::bench {
 
-/// What all ring contestants have in common.
+/// Settings common to all ring contestants.
 struct RingSettings {
   std::int64_t slots = 65536;              ///< rays.slots_per_resource
   std::int64_t packet_rays = 512;          ///< packets.rays
@@ -27,7 +27,7 @@ struct RingSettings {
 /// packet-rays, ready, capacity, treelet, link-depth, policy, select, queue. Throws ConfigError.
 RingSettings with_changes(RingSettings settings, const std::string& changes);
 
-/// One way to run the ring.
+/// One configuration of the ring.
 struct RingForm {
   Traversal traversal = Traversal::kTreelet;
   Home home = Home::kLocal;
@@ -39,7 +39,7 @@ struct RingForm {
 
 struct RingRun {
   ringbus::RunResult result;
-  double to_first_packet_seconds = 0;  ///< from the call to the first ray asked for
+  double to_first_packet_seconds = 0;  ///< from the call to the first request for rays
 };
 
 /// The configuration of a run on `threads` threads, with as many shader workers.

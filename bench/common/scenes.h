@@ -14,7 +14,7 @@ struct SceneChoice {
   std::int64_t triangles = 0;
   std::string file;
 
-  /// As the tables name it: "terrain 100k", "house.glb".
+  /// Its name in the tables: "terrain 100k", "house.glb".
   std::string name() const;
 };
 

@@ -1,4 +1,4 @@
-// bench_cycle: how fast the cycle engine simulates, on the network alone and on rays, beside other simulators.
+// bench_cycle: measures the speed of the cycle engine, on the network alone and on rays, beside other simulators.
 #include <cstdio>
 
 #include <CLI/CLI.hpp>

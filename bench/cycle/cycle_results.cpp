@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What we want to reach (issue 4): 40 times BookSim2; and by resources.
+// The goals (issue 4): 40 times BookSim2, and by the number of resources.
 constexpr double kAimFlitHops = 40 * Peers::kBookSimFlitHops, kAimHops = 20e6;
 double aim_rays(std::uint64_t resources) {
   return resources <= 16 ? 0.12e6 : 0.05e6;

@@ -9,9 +9,9 @@
 
 namespace carousel::bench {
 
-// What bench_cycle measured.
+// The results of bench_cycle.
 
-/// Simulators of others, measured once on a machine like ours; they are not run here.
+/// Other simulators, measured once on a similar machine; they are not run here.
 struct Peers {
   /// BookSim2 (github.com/booksim/booksim2), a configuration with 2 virtual channels: flit-hops per CPU-second,
   /// 16-node torus k = 16, n = 1, uniform traffic at 0.1.
@@ -42,7 +42,7 @@ struct CycleBenchResult {
 };
 
 std::string to_json_text(const CycleBenchResult& result);
-/// For a person, with the ratios to the peers.
+/// A readable table with the ratios to the other simulators.
 std::string cycle_tables(const CycleBenchResult& result);
 
 }  // namespace carousel::bench

@@ -11,7 +11,7 @@
 
 namespace carousel::bench {
 
-/// One simulated network to be timed.
+/// A simulated network whose speed is measured.
 struct TrafficCase {
   std::string name;
   Config config;
@@ -21,7 +21,7 @@ std::vector<TrafficCase> traffic_cases(std::int64_t packets);
 
 TrafficSpeed measure_traffic(const TrafficCase& one, int repetitions);
 
-/// One simulated machine to be timed.
+/// A simulated machine whose speed is measured.
 struct RayCase {
   std::string name;
   Config config;

@@ -26,7 +26,7 @@ class MinimalTracer final : public PathTracer {
   }
 };
 
-/// Times shade().
+/// Measures the time in shade().
 class TimedWorkload final : public Workload {
  public:
   explicit TimedWorkload(Workload& inner) : inner_(inner) {}
@@ -72,7 +72,7 @@ EffectsScene measure_effects(const std::string& name, const scene::Scene& scene,
   EffectsScene out{name, {}};
   std::vector<std::vector<double>> frames(ways.size()), shades(ways.size());
   out.costs.resize(ways.size());
-  for (int round = 0; round <= repetitions; ++round) {  // the first warms up
+  for (int round = 0; round <= repetitions; ++round) {  // the first round warms up
     for (std::size_t i = 0; i < ways.size(); ++i) {
       const std::size_t w = (i + static_cast<std::size_t>(round)) % ways.size();
       const std::unique_ptr<PathTracer> tracer = tracer_for(ways[w], scene, config);

@@ -14,14 +14,14 @@
 
 namespace carousel::bench {
 
-/// How a frame is shaded.
+/// The ways to shade a frame.
 enum class Shading {
   kAuto,     ///< by the effects plan
   kAll,      ///< nothing is specialised
-  kMinimal,  ///< a program that never had other surfaces than plain ones, nor other lights than lamps
+  kMinimal,  ///< code for plain surfaces and emissive lights alone
 };
 
-/// What a frame took, on one thread with the depth-first tracer.
+/// The cost of a frame, on one thread with the depth-first tracer.
 struct FrameCost {
   std::string name;
   Spread frame_seconds;  ///< CPU time, tracing and shading
@@ -37,7 +37,7 @@ struct EffectsScene {
   std::vector<FrameCost> costs;
 };
 
-/// Every way of shading once, then all of them again, so that whatever else the machine does meets all alike. Throws
+/// Runs every way of shading once, then all of them again, so that other load of the machine affects all alike. Throws
 /// WrongImage unless all pictures are the same. Precondition for kMinimal: the scene's materials are all plain.
 EffectsScene measure_effects(const std::string& name, const scene::Scene& scene, const accel::Accel& accel,
                              const Config& config, const std::vector<Shading>& ways, int repetitions);

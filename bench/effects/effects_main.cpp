@@ -1,5 +1,5 @@
-// bench_effects: what shading only the effects a scene calls for saves, and what it costs beside a program that never
-// had the others.
+// bench_effects: measures the time saved by shading only the effects that a scene calls for, and compares it with a
+// program that has no others.
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -36,7 +36,7 @@ EffectsScene run_scene(const EffectsOptions& o, const std::string& name, scene::
   return measure_effects(name, scene, accel, config, ways, o.quick ? 1 : o.repetitions);
 }
 
-/// Only diffuse surfaces and a lamp.
+/// A scene of diffuse surfaces and one emissive quad.
 scene::Scene diffuse_scene() {
   scene::Scene scene = scene::make_cornell();
   for (scene::Material& material : scene.materials) {

@@ -14,12 +14,12 @@
 
 namespace carousel::bench {
 
-// What bench_fewer_tests measures: the same rays on one thread, with a method that promises fewer tests and without.
+// Measurements of bench_fewer_tests: the same rays on one thread, with and without a method that promises fewer tests.
 
 /// One way to trace rays.
 struct TestVariant {
   std::string method;   ///< cull_planes, bundles
-  std::string setting;  ///< of the method, as a table names it
+  std::string setting;  ///< of the method, by its name in the table
   /// Writes as many hits as there are rays.
   std::function<void(const RaySet&, HitList&, IntersectionCounts&)> trace;
 };
@@ -28,7 +28,7 @@ struct VariantSpeed {
   std::string method, setting;
   IntersectionCounts tests;
   Spread nanoseconds_per_ray;  ///< CPU time
-  Spread ratio;                ///< of the time of the same round's first variant
+  Spread ratio;                ///< to the time of the same round's first variant
 };
 
 /// One set of rays in one scene.
@@ -38,8 +38,8 @@ struct FewerTestsResult {
   std::vector<VariantSpeed> variants;
 };
 
-/// Traces `rays` with every variant, all of one method, in turn, `repetitions` times, each round begun with another
-/// one. Throws std::runtime_error when a hit is not that of the first variant, to the bit.
+/// Traces `rays` with every variant of one method in turn, `repetitions` times; each round starts with another variant.
+/// Throws std::runtime_error if a hit differs from that of the first variant in any bit.
 FewerTestsResult measure_variants(const std::string& scene, const RaySet& rays,
                                   const std::vector<TestVariant>& variants, int repetitions);
 

@@ -1,8 +1,6 @@
-// bench_fewer_tests: what methods that promise fewer tests cost and save in software, on the same rays.
+// bench_fewer_tests: measures the cost and savings in software of methods that promise fewer tests, on the same rays.
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -27,10 +25,11 @@ struct FewerTestsOptions {
   bool quick = false;
   int repetitions = 7;
   std::int64_t triangles = 100'000;
-  std::string json, markdown;
+  std::string json;
+  std::vector<std::string> markdown;
 };
 
-/// Planes for leaves, none first.
+/// Settings of planes for leaves; the first has none.
 std::vector<TestVariant> plane_variants(const scene::Scene& scene) {
   std::vector<TestVariant> variants;
   for (const std::int64_t count : {0, 1, 2, 4, 8}) {
@@ -50,7 +49,8 @@ std::vector<TestVariant> plane_variants(const scene::Scene& scene) {
   return variants;
 }
 
-/// The native ring on one resource, which crosses subtrees in one visit: without bundles first, then by their size.
+/// Settings of the native ring on one resource, which crosses subtrees in one visit: first without bundles, then by
+/// their size.
 std::vector<TestVariant> bundle_variants(const scene::Scene& scene) {
   std::vector<TestVariant> variants;
   const RingSettings settings;
@@ -91,11 +91,8 @@ void run(const FewerTestsOptions& o) {
   const std::string planes = fewer_tests_table(bench, "cull_planes"), bundles = fewer_tests_table(bench, "bundles");
   fmt::print("{}\n{}", planes, bundles);
   if (!o.json.empty()) write_file(o.json, to_json_text(bench));
-  if (o.markdown.empty()) return;
-  std::ifstream in(o.markdown, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  write_file(o.markdown,
-             replace_marked(replace_marked(text, "planes in software", planes), "bundles in software", bundles));
+  if (!o.markdown.empty())
+    replace_marked(o.markdown, {{"planes in software", planes}, {"bundles in software", bundles}});
 }
 
 }  // namespace
@@ -108,9 +105,9 @@ int main(int argc, char** argv) {
   app.add_flag("--quick", o.quick, "a smoke test: few triangles, few rays, one repetition");
   app.add_option("--repetitions", o.repetitions, "rounds of all variants; tables show the median, least and greatest")
       ->check(CLI::Range(1, 100));
-  app.add_option("--triangles", o.triangles, "of each scene, about");
-  app.add_option("--json", o.json, "write the results here");
-  app.add_option("--markdown", o.markdown, "draw the table into this document");
+  app.add_option("--triangles", o.triangles, "approximate number of triangles of each scene");
+  app.add_option("--json", o.json, "file for the results");
+  app.add_option("--markdown", o.markdown, "write the tables between the markers of these documents");
   CLI11_PARSE(app, argc, argv);
   try {
     carousel::bench::run(o);

@@ -1,4 +1,4 @@
-// The collection store by itself: rays join collections of random nodes and are taken away a block at a time.
+// Measures the collection store alone: rays join collections of random nodes and are removed a block at a time.
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -1,4 +1,4 @@
-// What one test costs, and one step of the depth-first tracer, with everything in the first-level caches.
+// Measures one test, and one step of the depth-first tracer, with all data in the first-level caches.
 #include "accel/traverse/kernels.h"
 
 #include <algorithm>

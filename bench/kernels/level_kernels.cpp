@@ -1,4 +1,4 @@
-// What each level of the triangle and the box test costs, by SIMD target, and Embree on the same rays.
+// Measures each level of the triangle and the box test by SIMD target, and Embree on the same rays.
 #include <algorithm>
 #include <array>
 #include <map>

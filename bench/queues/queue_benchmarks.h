@@ -2,7 +2,7 @@
 
 namespace carousel::bench {
 
-/// Every kind of link queue inside the native engine, and what counting costs there.
+/// Measures every kind of link queue inside the native engine, and the cost of counting there.
 void enter_ring_queues();
 
 }  // namespace carousel::bench

@@ -1,5 +1,5 @@
-// Every queue against every other in one process: two pinned threads, and two producers with two consumers. Run with
-// --benchmark_enable_random_interleaving=true --benchmark_repetitions=20, so that a noisy machine meets all of them.
+// Compares all queues in one process: two pinned threads, and two producers with two consumers. Run with
+// --benchmark_enable_random_interleaving=true --benchmark_repetitions=20, so that noise affects all of them.
 #include <array>
 #include <atomic>
 #include <barrier>

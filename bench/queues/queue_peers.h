@@ -13,7 +13,7 @@ namespace carousel::bench {
 
 using ringbus::Parties;
 
-// Peers as their authors mean them: without the exact bound a link wants, and without anything of ours around them.
+// Other queues as their authors intend them: without the exact capacity that a link needs, and without a wrapper.
 
 /// AtomicQueueB2, for many producers and consumers or in its mode for one of each.
 template <class T, bool kSpsc>

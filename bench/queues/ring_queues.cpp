@@ -1,5 +1,5 @@
-// What a link's queue, and counting what passes it, mean for the whole: the native engine on a ring whose packets are
-// small, so that the links have much to do. Items are rays.
+// The effect of a link's queue, and of counting its packets, on the whole: the native engine on a ring with small
+// packets, so that the links have much to do. Items are rays.
 #include <map>
 #include <stdexcept>
 #include <string>

@@ -65,7 +65,7 @@ void Contest::add_depth_first(const char* name, decltype(accel::trace_depth_firs
              IntersectionCounts counts;
              trace(accel_, batch, found, counts);
              for (const RayResult& result : found) hits[result.tag.path] = result.hit;
-             // Relaxed: sums, read when the threads have been joined.
+             // Relaxed: the sums are read when the threads have been joined.
              boxes.fetch_add(counts.box, std::memory_order_relaxed);
              triangles.fetch_add(counts.triangle, std::memory_order_relaxed);
            };

@@ -23,26 +23,26 @@ inline constexpr const char* kEmbreeRobust = "Embree robust, single";
 inline constexpr const char* kTreeletLocal = "ring treelet, local";
 inline constexpr const char* kTreeletOwners = "ring treelet, 2 owners";
 
-/// Something that traces a ray set.
+/// A tracer of ray sets that is measured.
 struct Contestant {
   std::string name;
-  bool ours = true;  ///< must give the reference hits to the bit; others only nearly as many
+  bool ours = true;  ///< part of Carousel, whose hits must equal the reference to the bit; others may differ in a few
   std::function<Work(const RaySet& rays, int threads, HitList& hits)> trace;
 };
 
-/// Which contestants take part.
+/// The choice of contestants.
 struct Field {
   bool all_forms = false;  ///< the ring's other traversals, eight resources and statistics, and Embree 16-wide
   std::vector<std::string> variations;  ///< both treelet rings again with these changes (with_changes())
-  std::string only;                     ///< when not empty: those whose name holds this text, and no others
+  std::string only;                     ///< if not empty: only contestants whose name contains this text
   EmbreeQuality quality = EmbreeQuality::kHigh;
   std::string frequency_level = "simd256";
 };
 
-/// A scene ready to be traced, and all that trace it.
+/// A scene ready to be traced, and its contestants.
 class Contest {
  public:
-  /// Builds Embree's scenes where they are wanted. Keeps references.
+  /// Builds Embree's scenes if Embree takes part. Keeps references.
   Contest(const scene::Scene& scene, const accel::Accel& accel, const RingSettings& ring, const Field& field);
 
   const std::vector<Contestant>& contestants() const { return contestants_; }

@@ -17,17 +17,17 @@ struct MeasureOptions {
   std::function<void(const std::string&)> progress;  ///< may be empty
 };
 
-/// A contestant's hits were not what they have to be.
+/// Thrown if a contestant's hits are wrong.
 class WrongHits : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Every contestant once for each number of threads, then all of them again, as often as asked for, so that
-/// whatever else the machine does meets all alike; each round starts with another one. What takes longer than
-/// a few seconds is run once only; what is given up is rated by the rays it traced. Every other run's hits
-/// are compared with the depth-first tracer's: ours must be the same to the bit, Embree may disagree on
-/// whether there is a hit for one ray in a thousand. Throws WrongHits.
+/// Runs every contestant once for each number of threads, then all of them again, `repetitions` times, so that other
+/// load of the machine affects all alike; each round starts with another contestant. A run longer than a few seconds is
+/// not repeated; a run that is stopped early is rated by the rays it traced. The hits of every other run are compared
+/// with the depth-first tracer's: Carousel's must be the same to the bit, Embree may find a hit or a miss differently
+/// for one ray in a thousand. Throws WrongHits.
 SetResult measure(const std::vector<Contestant>& contestants, const accel::Accel& accel, const RaySet& rays,
                   const MeasureOptions& options);
 

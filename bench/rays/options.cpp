@@ -25,7 +25,7 @@ std::map<std::string, std::string> Options::describe() const {
 
 namespace {
 
-// Small enough for a smoke test on every push: one scene of each kind, few rays, one repetition.
+// A smoke test, small enough for every push: one scene of each kind, few rays, one repetition.
 void make_quick(Options& o) {
   o.builtins = {"terrain", "spheres"};
   o.sizes = {10'000};
@@ -77,7 +77,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_status) {
   add_enum(app, "--select", o.ring.select, "collections.select");
   add_enum(app, "--queue", o.ring.queue, "topology.link.queue");
   app.add_option("--json", o.json, "write the results here");
-  app.add_option("--markdown", o.markdown, "redraw the tables between this document's markers");
+  app.add_option("--markdown", o.markdown, "write the tables between the markers of these documents");
   app.add_option("--from", o.from, "draw these results; nothing is measured")->check(CLI::ExistingFile);
   app.add_option("--micro", o.micro, "with --from: bench_kernels' JSON, drawn too")->check(CLI::ExistingFile);
   try {

@@ -11,7 +11,7 @@
 
 namespace carousel::bench {
 
-/// What the command line of bench_rays asks for.
+/// The command line of bench_rays.
 struct Options {
   std::vector<std::string> builtins{"terrain", "spheres"};
   std::vector<std::int64_t> sizes{100'000};
@@ -26,16 +26,16 @@ struct Options {
   RingSettings ring;
   BvhConfig bvh;
   Field field;
-  std::string json;               ///< where to write the results
-  std::string markdown;           ///< the document whose tables to draw
-  std::vector<std::string> from;  ///< results to draw instead of measuring
-  std::string micro;              ///< bench_kernels' results, to be drawn too
+  std::string json;                   ///< file for the results
+  std::vector<std::string> from;      ///< results to tabulate instead of measuring
+  std::vector<std::string> markdown;  ///< documents whose tables are replaced
+  std::string micro;                  ///< results of bench_kernels, tabulated as well
 
-  /// What the results should name, as key and value.
+  /// The settings that the results name, as key and value.
   std::map<std::string, std::string> describe() const;
 };
 
-/// Nothing when the program is to end with `exit_status` (help, or an error that has been printed).
+/// Empty if the program has to end with `exit_status` (help, or an error that has been printed).
 std::optional<Options> parse_options(int argc, char** argv, int& exit_status);
 
 }  // namespace carousel::bench

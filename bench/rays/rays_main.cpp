@@ -1,9 +1,10 @@
-// bench_rays: builds scenes, traces the same rays in every way there is, checks every answer, and tells how
-// fast.
+// bench_rays: builds scenes, traces the same rays with every engine and traversal, checks every hit, and reports the
+// speed.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -96,13 +97,12 @@ void draw(const Options& options, const std::vector<BenchResult>& results) {
     for (const SceneResult& scene : result.scenes) names += (names.empty() ? "" : ", ") + scene.name;
     machines += fmt::format("{}{}:\n\n{}", machines.empty() ? "" : "\n", names, machine_text(result));
   }
-  std::string text = read_text(options.markdown);
-  text = replace_marked(text, "machine", machines);
-  text = replace_marked(text, "summary", summary_table(scenes));
-  text = replace_marked(text, "build", build_table(scenes));
-  text = replace_marked(text, "details", details(scenes));
-  if (!options.micro.empty()) text = replace_marked(text, "micro", micro_table(read_text(options.micro)));
-  write_file(options.markdown, text);
+  std::map<std::string, std::string> tables{{"machine", machines},
+                                            {"summary", summary_table(scenes)},
+                                            {"build", build_table(scenes)},
+                                            {"details", details(scenes)}};
+  if (!options.micro.empty()) tables["micro"] = micro_table(read_text(options.micro));
+  replace_marked(options.markdown, tables);
 }
 
 int run(int argc, char** argv) {

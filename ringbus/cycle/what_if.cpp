@@ -6,6 +6,7 @@
 
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/results/run_features.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
 
@@ -37,7 +38,7 @@ std::int64_t halved(std::int64_t cycles) {
 }
 
 bool passes_packets(const Config& c) {
-  return c.topology.shape != TopologyShape::kIndependent;
+  return Topology(c.topology).has_packets();
 }
 bool uses_links(const Config& c) {
   return passes_packets(c) && c.topology.resources > 1 && c.collections.home != Home::kLocal;

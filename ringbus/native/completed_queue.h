@@ -10,8 +10,8 @@
 
 namespace carousel::ringbus {
 
-/// Completed rays between resources and shader workers, any to any, a batch at a time. Batches hold some
-/// hundred rays, so one lock a batch costs nothing that shows; emptied batches go back to be filled again.
+/// Brings completed rays from any resource to any shader worker, a batch at a time. Batches hold some hundred rays, so
+/// one lock a batch costs nothing that shows; emptied batches go back to be filled again.
 class CompletedQueue {
  public:
   void push(HitBatch&& batch) {

@@ -47,9 +47,9 @@ class Link {
   /// Sender only: how many packets a send would surely take.
   virtual std::size_t free_places() = 0;
   virtual std::size_t capacity() const = 0;
-  /// Sender only: what a link has to do besides (see ReliableLink); whether anything moved.
+  /// Sender only: lets a link do work of its own (see ReliableLink). Returns whether anything moved.
   virtual bool tick() { return false; }
-  /// Receiver only: likewise, also when it wants nothing at present.
+  /// Receiver only: likewise, also when it receives nothing at present.
   virtual void tick_receiver() {}
 
   ResourceId from() const { return from_; }
@@ -62,9 +62,9 @@ class Link {
     s.empty_stalls = receiving_.empty_stalls;
     return s;
   }
-  /// Of the occupancy seen at samples.
+  /// The occupancy seen at samples.
   const OccupancySeries& series() const { return series_; }
-  /// What faults did; nothing on a link that has none.
+  /// Counts of faults; zero on a link that has none.
   virtual LinkFaultCounts faults() const { return {}; }
 
  private:
@@ -83,7 +83,7 @@ class Link {
 
   ResourceId from_, to_;
   bool counts_ = true;
-  // Each end writes its own; beside what both only read, they would take the line from each other.
+  // Each end writes its own counts. On one cache line the two ends would take it from each other.
   alignas(128) LinkStatistics sending_;
   OccupancySeries series_;
   struct alignas(128) Receiving {
@@ -97,9 +97,9 @@ std::unique_ptr<Link> make_link(QueueKind kind, std::size_t depth, ResourceId fr
 std::unique_ptr<Link> make_link(const Config& config, std::uint64_t number, ResourceId from, ResourceId to,
                                 std::span<Packet> packets = {});
 
-/// Whether queues of a kind serve so many producers and consumers at a time.
+/// Tells whether queues of a kind serve so many producers and consumers at a time.
 bool queue_fits(QueueKind kind, Parties producers, Parties consumers);
-/// Throws a ConfigError at `key` that lists the kinds that do when this one does not.
+/// Throws a ConfigError at `key` that lists the fitting kinds when this one does not fit.
 void require_parties(QueueKind kind, const std::string& key, Parties producers, Parties consumers);
 
 }  // namespace carousel::ringbus

@@ -14,7 +14,7 @@
 
 #include "core/system/error.h"
 #include "ringbus/faults/unfinished_rays.h"
-#include "ringbus/native/machine.h"
+#include "ringbus/native/native_machine.h"
 #include "ringbus/native/native_port.h"
 #include "ringbus/native/shader_worker.h"
 
@@ -22,7 +22,7 @@ namespace carousel::ringbus {
 
 namespace {
 
-/// One engine run: who steps what, and how it ends.
+/// One run of the engine: shares ports and workers out over threads, and finds out how the run ends.
 class NativeRun {
  public:
   NativeRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
@@ -60,19 +60,24 @@ class NativeRun {
   };
 
   using Clock = std::chrono::steady_clock;
-  // A resource that has taken no step for so long, while its thread has, is given up.
+  // A resource is given up when it has taken no step for so long while its thread has.
   static constexpr std::chrono::milliseconds kSilence{100};
 
-  /// The machine and those who step it, with nothing in it.
+  /// Makes the machine anew, with nothing in it, and the ports and workers that threads step.
   void build() {
     ports_.clear();
     workers_.clear();
-    machine_ = std::make_unique<Machine>(config_, accel_, scene_size_);
+    machine_ = std::make_unique<NativeMachine>(config_, accel_, scene_size_);
+    const NativePortSettings settings{resource_settings(config_, scene_size_), config_.faults,
+                                      config_.engine.clock_mhz};
     for (std::uint32_t r = 0; r < sinks_.size(); ++r)
-      ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, scene_size_, sinks_[r].get()));
+      ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, settings, sinks_[r].get()));
     for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
+    const std::int64_t slots = config_.topology.resources * config_.rays.slots_per_resource;
     for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(config_.shading.workers); ++w)
-      workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), *machine_, workload_, count_, ledger_.get()));
+      workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), machine_->shared.control, machine_->completed,
+                                                        workload_, count_, slots, config_.shading.workers,
+                                                        ledger_.get()));
   }
 
   void run_threads() {
@@ -83,21 +88,22 @@ class NativeRun {
     watch();
   }
 
-  /// All that was under way is gone, whoever had it; every ray that had not been handed over to shading begins again at
-  /// the resources that are left. The port of the one that stopped goes on forwarding.
+  /// Begins again without the resource that has stopped. All work that was under way is gone; every ray that had not
+  /// been handed over to shading starts anew at the resources that are left. The port of the stopped resource goes on
+  /// forwarding.
   void restart() {
     std::vector<HitBatch> handed_over;
     while (std::optional<HitBatch> batch = machine_->completed.pop()) handed_over.push_back(std::move(*batch));
     for (const auto& port : ports_) packets_discarded_ += port->resource().packets_in_flight();
     carry_links();
-    slots_used_ += machine_->control.slots_used();
-    slot_waits_ += machine_->control.slot_waits();
+    slots_used_ += machine_->shared.control.slots_used();
+    slot_waits_ += machine_->shared.control.slot_waits();
     build();
     for (HitBatch& batch : handed_over) {
       ledger_->remove(batch);
       machine_->completed.push(std::move(batch));
     }
-    machine_->control.exclude(*excluded_);
+    machine_->shared.control.exclude(*excluded_);
     for (const auto& port : ports_) port->exclude(*excluded_);
     ports_[excluded_->value]->stop();
     given_up_ = true;
@@ -105,16 +111,16 @@ class NativeRun {
     rays_restarted_ += rays.size();
     paths_restarted_ += OutstandingRays::paths_of(rays);
     recovery_seconds_ = std::chrono::duration<double>(Clock::now() - last_beat_).count();
-    if (!rays.empty()) machine_->control.submit(rays);
+    if (!rays.empty()) machine_->shared.control.submit(rays);
   }
 
-  /// What the links have counted so far goes on to be counted when they are made anew.
+  /// Keeps the counts of the links, which are about to be made anew.
   void carry_links() {
     faults_before_.resize(machine_->links.size());
     for (std::size_t i = 0; i < machine_->links.size(); ++i) faults_before_[i] += machine_->links[i]->faults();
   }
 
-  /// Whether the resource that may stop is silent; `last_beat_` is when it last was not.
+  /// Tells whether the resource that may stop is silent, and sets `last_beat_` to the time when it last was not.
   bool silent() {
     if (!ledger_ || given_up_) return false;
     const ResourceId id(static_cast<std::uint32_t>(config_.faults.resource.number));
@@ -162,15 +168,15 @@ class NativeRun {
     ended_changed_.notify_all();
   }
 
-  // When the last ray has been shaded, packets may still be on their way home, through resources of any thread.
-  // From then on none is sent out any more, so a sum of zero stays zero.
+  // When the last ray has been shaded, packets may still be on their way to their owners, through resources of any
+  // thread. From then on none is sent out any more, so a sum of zero stays zero.
   std::uint64_t packets_out() const {
     std::uint64_t out = 0;
     for (const auto& port : ports_) out += port->packets_out();
     return out;
   }
 
-  /// On the calling thread: progress reports, the request to stop, and the run that no longer moves.
+  /// Runs on the calling thread: reports progress, and looks for the request to stop and for a run that is stuck.
   void watch() {
     std::uint64_t last = 0;
     Clock::time_point last_change = Clock::now();
@@ -205,7 +211,7 @@ class NativeRun {
           fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
     for (const auto& port : ports_)
       if (!(given_up_ && port->resource().id() == *excluded_) && !port->drained())
-        throw SimulationError("not everything came home: " + port->describe());
+        throw SimulationError("something was left behind: " + port->describe());
   }
 
   RunResult result(bool complete, double wall_seconds) const {
@@ -219,8 +225,8 @@ class NativeRun {
     out.recovery_seconds = recovery_seconds_;
     out.wall_seconds = wall_seconds;
     out.threads = threads_;
-    out.slots_used = slots_used_ + machine_->control.slots_used();
-    out.slot_waits = slot_waits_ + machine_->control.slot_waits();
+    out.slots_used = slots_used_ + machine_->shared.control.slots_used();
+    out.slot_waits = slot_waits_ + machine_->shared.control.slot_waits();
     for (std::size_t r = 0; r < ports_.size(); ++r) {
       if (sinks_[r]) out.resources.push_back(sinks_[r]->statistics());
       out.collections.push_back(ports_[r]->resource().collections().statistics());
@@ -238,7 +244,7 @@ class NativeRun {
   const accel::Accel& accel_;
   float scene_size_;
   Workload& workload_;
-  std::unique_ptr<Machine> machine_;
+  std::unique_ptr<NativeMachine> machine_;
   RayCount count_;
   std::unique_ptr<OutstandingRays> ledger_;  // where a resource may stop
   std::atomic<std::uint64_t> turns_{0};      // of the thread that plays it

@@ -8,39 +8,53 @@
 #include <vector>
 
 #include "ringbus/faults/resource_fault.h"
-#include "ringbus/native/machine.h"
+#include "ringbus/native/native_machine.h"
+#include "ringbus/native/ray_rounds.h"
+#include "ringbus/protocol/port_logic.h"
 #include "ringbus/resource/resource.h"
 
 namespace carousel::ringbus {
 
-/// A resource's place on the ring in the native engine: its links, its packets, and the packets it has in hand.
-/// One thread steps it.
+/// The parts of the configuration that a port of the native engine follows.
+struct NativePortSettings {
+  ResourceSettings resource;
+  FaultsConfig faults;
+  std::int64_t clock_mhz = 1000;
+};
+
+/// A resource's place on the ring in the native engine: its links with their egress queues, and the order in which it
+/// does its work. The decisions are PortLogic's and FlowRules'. One thread steps it.
 class NativePort {
  public:
-  NativePort(ResourceId id, Machine& machine, float scene_size, EventSink* sink);
+  /// Keeps references. `sink` may be null.
+  NativePort(ResourceId id, NativeMachine& machine, const NativePortSettings& settings, EventSink* sink);
 
-  /// Does what can be done now, in the order that keeps the ring moving: send on, receive, admit, issue.
+  /// Does all that can be done now, in the order that keeps the ring moving: send on, receive, admit, issue.
   /// Returns whether anything moved.
   bool step();
 
   const Resource& resource() const { return resource_; }
   /// Own packets under way, as of some recent moment. Any thread may call.
-  // Acquire: pairs with the release in retire_at_owner; whoever sees a packet home sees what it brought.
+  // Acquire: pairs with the release in packet_returned; whoever sees a packet at home sees what it brought.
   std::uint32_t packets_out() const { return out_.load(std::memory_order_acquire); }
-  /// Nothing here: no packet of its own on the way, none in hand, no collection, no new ray.
+  /// Nothing is left here: no packet of its own on the way, no egress, no collection, no new ray.
   bool drained() const;
-  /// From now on it only forwards, as one that has stopped does.
-  void stop() { stopped_ = true; }
-  /// From now on another is known to have stopped. Before the first step.
+  /// From now on it only forwards, as a resource that has stopped does.
+  void stop() { logic_.stop(); }
+  /// From now on another resource is known to have stopped. Before the first step.
   void exclude(ResourceId stopped) { resource_.exclude(stopped); }
   /// Counts its steps, but not when it has stopped. Any thread may call.
   // Relaxed: the watcher only wants to see it change.
   std::uint64_t beats() const { return beats_.load(std::memory_order_relaxed); }
-  /// One line on what it waits for, with packet and ray IDs. Call when nothing steps.
+  /// One line that says what it waits for, with packet and ray IDs. Call when nothing steps.
   std::string describe() const;
 
  private:
-  /// Where packets leave: one link, and those that the link has not taken yet.
+  struct InPort {
+    Link* link;
+    std::uint16_t direction;
+  };
+  /// One link, and the packets that the link has not taken yet.
   struct OutPort {
     Link* link;
     std::deque<PacketId> egress;
@@ -50,54 +64,44 @@ class NativePort {
   bool tick_links();
   bool send_egress();
   bool receive();
+  std::size_t receivable(const InPort& in) const;
   void arrive(PacketId id);
   void retire_at_owner(PacketId id);
-  void discard(PacketId id);
+  void packet_returned();
   void forward(PacketId id);
   void inject(PacketId id);
 
   bool admit();
   void wait(RayGroup&& group);
-  bool admit_ids();
   bool send_rays_round();
   bool send_round(RayGroup& group);
-  void take_rays(Packet& packet);
 
   bool issue(bool partial);
-  bool may_inject(std::size_t exit) const;
-  /// A free packet of a direction it may be sent in; null when there is none.
-  bool free_packet(PacketId& id);
+  /// A free packet of a direction in which it may be sent.
+  std::optional<PacketId> free_packet();
   void flush_completed(bool all);
 
   void stall(StallReason reason) {
     if (sink_ != nullptr) sink_->record({.kind = EventKind::kStall, .resource = resource_.id(), .reason = reason});
   }
-  void hop(PacketId id) {
-    if (sink_ != nullptr) sink_->record({.kind = EventKind::kHop, .resource = resource_.id(), .packet = id});
-  }
 
   Machine& machine_;
-  bool links_fail_;
-  std::optional<ResourceFault> fault_;
-  std::uint64_t stops_after_ = 0, rays_completed_ = 0;
-  bool stops_, stopped_ = false;
-  std::atomic<std::uint64_t> beats_{0};
+  CompletedQueue& completed_;
   EventSink* sink_;
   Resource resource_;
-  struct InPort {
-    Link* link;
-    std::uint16_t direction;
-  };
-  std::vector<InPort> in_ports_;             // incoming links
-  std::vector<OutPort> out_ports_;           // a ring: one a direction
-  std::vector<std::uint32_t> out_port_of_;   // point to point: by destination
-  std::vector<std::vector<PacketId>> free_;  // own packets at home, by direction
-  std::size_t next_direction_ = 0;
-  std::atomic<std::uint32_t> out_{0};           // own packets under way; written by the owner
-  Packet local_;                                // never travels: collections that are tested on the spot
-  std::deque<std::vector<RayId>> waiting_ids_;  // new rays that have slots, oldest first
-  std::vector<RayGroup> waiting_rays_;          // new rays without, oldest first
-  std::vector<RayGroup> arrived_;               // scratch of admit() and send_rays_round()
+  PortLogic logic_;
+  RayRounds rounds_;
+  bool links_fail_;
+  std::optional<ResourceFault> fault_;
+  std::optional<std::uint64_t> stops_after_;  // rays completed here
+  std::uint64_t rays_completed_ = 0;
+  std::atomic<std::uint64_t> beats_{0};
+  std::vector<InPort> in_ports_;
+  std::vector<OutPort> out_ports_;
+  std::size_t egress_limit_;
+  std::atomic<std::uint32_t> out_{0};  // own packets under way; written by the owner
+  Packet local_;                       // never travels: collections that are tested on the spot
+  std::vector<RayGroup> arrived_;      // scratch of admit() and send_rays_round()
 };
 
 }  // namespace carousel::ringbus

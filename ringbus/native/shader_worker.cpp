@@ -5,25 +5,28 @@
 namespace carousel::ringbus {
 
 namespace {
-// Rays asked for at once: few enough that they are still in cache when ray control puts them into their slots.
+// Rays generated at once: few enough that they are still in cache when ray control puts them into their slots.
 constexpr std::int64_t kGenerateBatch = 4096;
 }  // namespace
 
-ShaderWorker::ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, OutstandingRays* ledger)
+ShaderWorker::ShaderWorker(WorkerId id, RayControl& control, CompletedQueue& completed, Workload& workload,
+                           RayCount& count, std::int64_t slots, std::int64_t workers, OutstandingRays* ledger)
     : id_(id),
-      machine_(machine),
+      control_(control),
+      completed_(completed),
       workload_(workload),
       count_(count),
       ledger_(ledger),
-      slots_(machine.config.topology.resources * machine.config.rays.slots_per_resource) {}
+      slots_(slots),
+      workers_(workers) {}
 
 bool ShaderWorker::step() {
-  const bool placed = machine_.control.place_waiting();
+  const bool placed = control_.place_waiting();
   return shade() || generate() || placed;
 }
 
 bool ShaderWorker::shade() {
-  std::optional<HitBatch> batch = machine_.completed.pop();
+  std::optional<HitBatch> batch = completed_.pop();
   if (!batch) return false;
   rays_.clear();
   workload_.shade(id_, *batch, rays_);
@@ -38,34 +41,33 @@ bool ShaderWorker::shade() {
     ledger_->remove(*batch);
     ledger_->add(rays_);
   }
-  machine_.completed.give_back(std::move(*batch));
-  if (made > 0) machine_.control.submit(rays_);
+  completed_.give_back(std::move(*batch));
+  if (made > 0) control_.submit(rays_);
   return true;
 }
 
 bool ShaderWorker::generate() {
   // Acquire: pairs with the release below, and is only a hint here.
   if (count_.source_finished.load(std::memory_order_acquire)) return false;
-  const std::int64_t workers = machine_.config.shading.workers;
   const std::int64_t room = slots_ - count_.outstanding.load(std::memory_order_relaxed);
   // All that fit, so that resources find whole groups waiting when they come round again.
-  std::int64_t left = std::min(room, slots_ / workers + 1);
+  std::int64_t left = std::min(room, slots_ / workers_ + 1);
   bool any = false;
   while (left > 0) {
-    const std::int64_t any_hit_calls = std::min(left, kGenerateBatch);
+    const std::int64_t wanted = std::min(left, kGenerateBatch);
     // Counted before they exist, so that nobody sees the source finished with the last rays not yet counted.
-    count_.outstanding.fetch_add(any_hit_calls, std::memory_order_relaxed);
+    count_.outstanding.fetch_add(wanted, std::memory_order_relaxed);
     rays_.clear();
-    const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(any_hit_calls), rays_);
-    count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - any_hit_calls, std::memory_order_release);
+    const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(wanted), rays_);
+    count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - wanted, std::memory_order_release);
     count_.emitted.fetch_add(made.rays, std::memory_order_relaxed);
     // Release: pairs with the acquire in done().
     if (made.finished) count_.source_finished.store(true, std::memory_order_release);
     if (ledger_ != nullptr) ledger_->add(rays_);
-    if (made.rays > 0) machine_.control.submit(rays_);
+    if (made.rays > 0) control_.submit(rays_);
     any |= made.rays > 0;
-    if (made.finished || static_cast<std::int64_t>(made.rays) < any_hit_calls) break;
-    left -= any_hit_calls;
+    if (made.finished || static_cast<std::int64_t>(made.rays) < wanted) break;
+    left -= wanted;
   }
   return any;
 }

@@ -5,11 +5,12 @@
 
 #include "core/types/workload.h"
 #include "ringbus/faults/outstanding_rays.h"
-#include "ringbus/native/machine.h"
+#include "ringbus/native/completed_queue.h"
+#include "ringbus/rays/ray_control.h"
 
 namespace carousel::ringbus {
 
-/// How many rays there are, and whether more will come: the one count termination needs. A ray counts from
+/// Counts the rays there are and knows whether more will come: the one count that termination needs. A ray counts from
 /// before it is made until it has been shaded and its children are counted.
 struct RayCount {
   std::atomic<std::int64_t> outstanding{0};
@@ -23,12 +24,13 @@ struct RayCount {
   }
 };
 
-/// Takes completed rays of any resource, shades them, and hands the new rays to ray control; with nothing to
-/// shade and slots to spare it asks the workload for rays of its own. One thread steps it.
+/// Takes completed rays of any resource, shades them, and hands the new rays to ray control. With nothing to shade and
+/// slots to spare it asks the workload for rays of its own. One thread steps it.
 class ShaderWorker {
  public:
-  /// `ledger` is told of every ray; null: none is kept.
-  ShaderWorker(WorkerId id, Machine& machine, Workload& workload, RayCount& count, OutstandingRays* ledger = nullptr);
+  /// `slots`: of the whole machine, which `workers` workers fill. `ledger` is told of every ray; null: none is kept.
+  ShaderWorker(WorkerId id, RayControl& control, CompletedQueue& completed, Workload& workload, RayCount& count,
+               std::int64_t slots, std::int64_t workers, OutstandingRays* ledger = nullptr);
 
   /// Returns whether anything was done.
   bool step();
@@ -38,11 +40,12 @@ class ShaderWorker {
   bool generate();
 
   WorkerId id_;
-  Machine& machine_;
+  RayControl& control_;
+  CompletedQueue& completed_;
   Workload& workload_;
   RayCount& count_;
   OutstandingRays* ledger_;
-  std::int64_t slots_;
+  std::int64_t slots_, workers_;
   RayBatch rays_;
 };
 

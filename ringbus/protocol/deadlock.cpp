@@ -8,44 +8,11 @@
 namespace carousel::ringbus {
 
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
-  const std::int64_t resources = config.resources, depth = config.link.depth;
-  if (resources == 1) return {false, "one resource: packets are tested where they are issued, there are no links"};
-  if (config.shape == TopologyShape::kIndependent)
-    return {false, "independent: every resource traces its own rays, there are no links"};
-  if (config.shape == TopologyShape::kPointToPoint && config.flow != Flow::kNone)
-    return {false, fmt::format("credits: at most {} packets a resource are on the way, and every resource has places "
-                               "in hand for all {} of them, so an arriving packet is always taken in",
-                               packets_in_flight(config), packets_in_flight(config) * resources)};
-  if (config.shape == TopologyShape::kBus && config.flow != Flow::kNone)
-    return {
-        false,
-        "bus: every resource has places in hand for all packets there are, so what the bus brings is always taken in"};
-  if (config.shape == TopologyShape::kHierarchical)
-    return {false,
-            "bridges: a bridge has room for all packets there are, so every line and the ring of bridges can always "
-            "move on"};
-  switch (config.flow) {
-    case Flow::kCredits:
-      return {false,
-              fmt::format("credits: {0} resources with at most {1} packets each put {2} packets on a ring of {3} "
-                          "places ({0} links of depth {1} and one in hand at each resource), so one place is "
-                          "always free",
-                          resources, depth, resources * depth, resources * (depth + 1))};
-    case Flow::kBubble:
-      return {false,
-              "bubble: a packet enters only where two places of the link are free, so one stays free on the ring"};
-    case Flow::kNone:
-      return {true,
-              fmt::format("nothing bounds the packets on the way: {} resources may put {} each on links of depth {}; "
-                          "when every link and every hand is full, each waits for the next one round the ring",
-                          resources, packets_in_flight(config), depth)};
-  }
-  return {true, "unknown flow control"};
+  return Topology(config).verdict();
 }
 
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
-  if (config.collections.when_full == WhenFull::kSpill || config.topology.shape == TopologyShape::kIndependent)
-    return 0;
+  if (config.collections.when_full == WhenFull::kSpill || !Topology(config.topology).has_packets()) return 0;
   if (config.collections.traversal == Traversal::kOrdered) return config.packets.rays;
   const std::int64_t reserve = reserve_blocks(config.collections, config.bundles, width, max_depth);
   const std::int64_t children = width * std::max<std::int64_t>(1, config.bundles.size);

@@ -1,19 +1,15 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/system/error.h"
+#include "ringbus/topology/plan.h"
 
 namespace carousel::ringbus {
 
-/// Whether the links of a machine can fill up and stop, said before it runs (DESIGN.md section 4).
-struct DeadlockVerdict {
-  bool can_deadlock = false;
-  std::string rule;  ///< the rule that protects it, with its numbers; or what is missing
-};
+/// Tells before a run whether the links of a machine can fill up and stop (DESIGN.md section 4).
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
 
 /// Ray IDs of collection storage a resource needs so that bounded storage (`when_full: reserve`) cannot block:

@@ -22,19 +22,18 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
     e.ray_store +=
         resources * (room.loaded + room.own) * (sizeof(accel::BundleRecord) + (room.rays + 2) * sizeof(std::uint32_t));
   }
-  const bool independent = config.topology.shape == TopologyShape::kIndependent;
-  if (ordered || independent) {
+  const Topology topology(config.topology);
+  if (ordered || !topology.has_packets()) {
     const std::uint64_t entries = u(config.bvh.width - 1) * u(max_depth) + 1;
     e.ray_stacks = resources * slots * (entries * sizeof(NextNode) + sizeof(std::uint16_t));
   }
   // A completed ray may cause two, and both wait while slots are taken.
   e.rays_waiting = resources * slots * (2 * sizeof(RayRequest) + sizeof(RayResult));
-  if (independent) return e;
+  if (!topology.has_packets()) return e;
   // An ID, and a block's share of a collection, its place in the table and its list links.
   const std::uint64_t blocks = u(config.collections.capacity) / packet_rays + 1;
   e.collections = resources * blocks * (packet_rays * sizeof(RayId) + 128);
-  const std::uint64_t packets =
-      resources * Topology(config.topology).directions() * packets_in_flight(config.topology) + resources;
+  const std::uint64_t packets = resources * topology.directions() * topology.packets_in_flight() + resources;
   e.packets = packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));
   return e;
 }

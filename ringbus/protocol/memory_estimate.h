@@ -7,7 +7,8 @@
 
 namespace carousel::ringbus {
 
-/// Bytes a run will take, from above: what is set aside at the start plus the most that collections may grow to.
+/// An upper bound on the bytes that a run takes: those set aside at the start, and the most that collections may grow
+/// to.
 struct MemoryEstimate {
   std::uint64_t ray_store = 0;   ///< records and free lists
   std::uint64_t ray_stacks = 0;  ///< ordered traversal and independent resources; mostly untouched

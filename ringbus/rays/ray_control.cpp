@@ -6,7 +6,7 @@
 namespace carousel::ringbus {
 
 RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size) {
-  const bool local = config.collections.home == Home::kLocal || config.topology.shape == TopologyShape::kIndependent;
+  const bool local = config.collections.home == Home::kLocal;
   return {config.rays.placement, local,          static_cast<std::size_t>(config.packets.rays),
           initial_tests,         config.bundles, scene_size};
 }

@@ -1,74 +1,131 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/config/config.h"
 #include "core/types/ids.h"
 #include "ringbus/packets/packet.h"
+#include "ringbus/topology/plan.h"
+
+// A new topology says what it is in these places and no others:
+//   1. its value in TopologyShape (core/config/config.h) with its name (core/config/enum_names.h), and the engines that
+//      may run it (core/config/validate.cpp: built_shape, and built_workload if there is no traffic on it);
+//   2. its own file here, with one function that fills in a TopologyPlan (plan.h): the wires, who comes next in each
+//      direction, hubs, packets under way, the verdict on deadlock, whether traffic runs on it. Shapes whose packets
+//      go round rings only name the rounds (rounds.h);
+//   3. that function's declaration in shapes.h and its row in the table of shapes.cpp.
+// A hub of a new kind also needs an agent of the cycle engine (cycle/fabric).
 
 namespace carousel::ringbus {
 
-/// Who is wired to whom and which way packets go. `directions` counts the independent cycles a packet can be
-/// sent round: 1 for a ring, 2 for a bidirectional one, one a ring of several; point to point and bus have one
-/// cycle too, with short cuts.
-///
-/// Hierarchical: the resources of a group form a line from their group's bridge back to it, and the bridges a ring.
-/// A packet goes through the rest of its own group, then round the bridges, into those groups that want it, and at
-/// last into its own again.
-///
-/// Nodes beyond the resources: the bus, or the bridges by group.
+/// Says who is wired to whom and which way packets go: the tables of one shape's plan, without a virtual call or a
+/// case distinction by shape.
 class Topology {
  public:
+  using Wire = TopologyPlan::Wire;
+  using Hub = TopologyPlan::Hub;
+  using Group = TopologyPlan::Group;
+
   explicit Topology(const TopologyConfig& config);
 
-  /// `direction`: of a ring; hierarchical: 0 within a group, 1 between bridges.
-  struct Wire {
-    ResourceId from, to;
-    std::uint16_t direction;
-  };
   /// Every link to make. None when there is only one resource, or all work independently.
-  const std::vector<Wire>& wires() const { return wires_; }
+  const std::vector<Wire>& wires() const { return plan_.wires; }
+  /// Indices into wires() of the links that enter and leave a node, by port.
+  struct Ports {
+    std::vector<std::uint32_t> in, out;
+  };
+  const Ports& ports(ResourceId node) const { return ports_[node.value]; }
   std::size_t resources() const { return resources_; }
-  std::size_t directions() const { return directions_; }
-  /// Whether a packet is sent from one stop to the next without passing others.
-  bool direct() const { return shape_ == TopologyShape::kPointToPoint || shape_ == TopologyShape::kBus; }
-  bool bus() const { return shape_ == TopologyShape::kBus; }
-  /// Groups of a hierarchical topology, 0 of another.
-  std::uint32_t groups() const { return groups_; }
-  std::uint32_t group_of(ResourceId r) const { return r.value * groups_ / resources_; }
-  ResourceId first_of(std::uint32_t group) const { return ResourceId((group * resources_ + groups_ - 1) / groups_); }
-  ResourceId last_of(std::uint32_t group) const { return ResourceId(first_of(group + 1).value - 1); }
+  std::size_t directions() const { return plan_.successors.size(); }
+  /// Nodes `resources()` and up.
+  const std::vector<Hub>& hubs() const { return plan_.hubs; }
+  const std::vector<Group>& groups() const { return plan_.groups; }
+  std::uint32_t group_of(ResourceId r) const { return group_of_[r.value]; }
 
-  /// Links a packet crosses on its way round; 0 when it need not travel.
+  bool direct() const { return plan_.direct; }
+  bool visits_all() const { return visit_all_; }
+  bool has_packets() const { return plan_.has_packets; }
+  bool carries_traffic() const { return plan_.carries_traffic; }
+  std::uint32_t packets_in_flight() const { return plan_.packets_in_flight; }
+  std::uint16_t ack_direction(std::size_t direction) const { return plan_.ack_directions[direction]; }
+  const DeadlockVerdict& verdict() const { return plan_.verdict; }
+
+  /// Links that a packet crosses on its way round a ring; 0 when it need not travel.
   std::uint32_t hops(const Packet& packet) const;
-  /// Where the packet at `here` goes next, its owner at last. Point to point with `visit: owners` skips
-  /// resources that own none of the members.
-  ResourceId next(const Packet& packet, ResourceId here) const;
-  /// Resources that a packet sent from `here` passes before one that has work with it (none when `direct`); the
-  /// second form counts from the entrance of a group.
-  std::uint16_t skip(const Packet& packet, ResourceId here) const;
-  std::uint16_t skip_from_entrance(const Packet& packet, std::uint32_t group) const;
-  /// Whether a packet that has reached the group's bridge has anything to do in the group, its owner included.
+  /// The next stop of the packet at `here`, its owner at last. Where packets are sent directly and only owners are
+  /// visited, resources that own none of the members are left out.
+  ResourceId next(const Packet& packet, ResourceId here) const {
+    const ResourceId* round = round_of(packet.direction);
+    ResourceId at = round[here.value];
+    if (!plan_.direct || visit_all_) return at;
+    while (at != packet.owner && !wanted(packet, at)) at = round[at.value];
+    return at;
+  }
+  /// The port by which the packet leaves the resource `here`.
+  std::size_t out_port(const Packet& packet, ResourceId here) const {
+    if (!plan_.direct) return packet.direction;
+    return ports_to_.empty() ? 0 : out_port_to(here, next(packet, here));
+  }
+  /// The port that leads straight to `to`, where every resource has one.
+  std::size_t out_port_to(ResourceId here, ResourceId to) const {
+    return ports_to_[here.value * std::size_t{resources_} + to.value];
+  }
+  /// Resources that a packet sent from `here` passes before one that has work with it, or before it reaches a hub;
+  /// none where packets are sent directly.
+  std::uint16_t skip(const Packet& packet, ResourceId here) const {
+    return plan_.direct ? std::uint16_t{0} : skip_from(packet, round_of(packet.direction)[here.value]);
+  }
+  /// The same for a packet that enters a group from its bridge.
+  std::uint16_t skip_from_entrance(const Packet& packet, std::uint32_t group) const {
+    return skip_from(packet, plan_.groups[group].first);
+  }
+  /// Tells whether a packet that has reached the group's bridge has anything to do in the group, its owner included.
   bool group_wants(const Packet& packet, std::uint32_t group) const;
-  /// Whether the packet has to be handled at `here`, or just cuts through.
-  bool handles(const Packet& packet, ResourceId here) const;
-  /// Whether the packet has anything to do at `r`, its owner apart.
-  bool wanted(const Packet& packet, ResourceId r) const;
+  /// Tells whether the packet has to be looked into at `here`; otherwise it passes.
+  bool handles(const Packet& packet, ResourceId here) const {
+    return visit_all_ ? packet.kind != PacketKind::kMemberships || here == packet.home : wanted(packet, here);
+  }
+  /// Tells whether the packet has anything to do at `r`, leaving aside that `r` may be its owner.
+  bool wanted(const Packet& packet, ResourceId r) const {
+    if (packet.kind == PacketKind::kTest) [[likely]]
+      return (packet.owners[r.value / 64] >> (r.value % 64) & 1) != 0;
+    return packet.kind == PacketKind::kRays || r == packet.home;
+  }
+
+  /// The way of a packet that has one destination (synthetic traffic).
+  struct Route {
+    std::uint16_t direction = 0;
+    std::uint16_t hops = 0;  ///< links to cross; 0: it is there already
+  };
+  /// The shortest way. Equally short ways are spread by `random` (as BookSim2's dim_order routing on a torus). Only
+  /// where traffic runs.
+  Route route(ResourceId from, ResourceId to, std::uint32_t random) const;
 
  private:
-  ResourceId follower(std::uint16_t direction, ResourceId here) const;
-  std::uint16_t skip_to(const Packet& packet, std::uint32_t at, std::uint32_t end) const;
-  void wire_groups();
+  const ResourceId* round_of(std::uint16_t direction) const {
+    return successors_.data() + direction * std::size_t{resources_};
+  }
+  std::uint16_t skip_from(const Packet& packet, ResourceId at) const {
+    const ResourceId* round = round_of(packet.direction);
+    std::uint16_t skip = 0;
+    for (; at.value < resources_ && at != packet.owner && !wanted(packet, at); at = round[at.value]) ++skip;
+    return skip;
+  }
+  std::uint16_t links_between(std::size_t direction, ResourceId from, ResourceId to) const;
+  void number_ports();
+  void number_positions();
 
-  TopologyShape shape_;
-  std::uint32_t resources_, groups_;
-  std::uint16_t directions_;
+  TopologyPlan plan_;
+  std::uint32_t resources_;
   bool visit_all_;
-  std::vector<Wire> wires_;
+  std::vector<ResourceId> successors_;   // the plan's, direction after direction
+  std::vector<std::uint32_t> position_;  // likewise: links from resource 0; empty without traffic
+  std::vector<std::uint32_t> group_of_;  // by resource; empty without groups
+  std::vector<Ports> ports_;             // by node
+  std::vector<std::uint32_t> ports_to_;  // by resource, then destination; empty unless all pairs have links
 };
-
-/// How many packets each resource may have on the way at once, per direction (DESIGN.md section 4).
-std::uint32_t packets_in_flight(const TopologyConfig& config);
 
 }  // namespace carousel::ringbus

@@ -6,8 +6,9 @@
 
 namespace carousel::ringbus::cycle {
 
-Bridge::Bridge(std::uint32_t group, CycleMachine& machine, std::vector<InPort> in, std::vector<OutPort> out)
-    : group_(group), machine_(machine), in_(std::move(in)), out_(std::move(out)) {}
+Bridge::Bridge(std::uint32_t group, const Topology& topology, std::span<const Packet> packets, std::vector<InPort> in,
+               std::vector<OutPort> out)
+    : Hub(std::move(in), std::move(out)), group_(group), topology_(topology), packets_(packets) {}
 
 Cycle Bridge::next() const {
   Cycle first = kNever;
@@ -29,26 +30,28 @@ void Bridge::step(Cycle now) {
   for (OutPort& out : out_) out.send(now);
 }
 
+bool Bridge::enters(const Packet& packet, bool from_group) const {
+  if (!from_group) return topology_.group_wants(packet, group_);
+  // It has been through this group, and goes back into it only when it is the last: its owner is here, and no other
+  // group wants it.
+  if (topology_.group_of(packet.owner) != group_) return false;
+  for (std::uint32_t g = 0; g < topology_.groups().size(); ++g)
+    if (g != group_ && topology_.group_wants(packet, g)) return false;
+  return true;
+}
+
 void Bridge::pass_on(Token token, bool from_group, Cycle now) {
-  const Packet& packet = machine_.packet(token.packet);
-  const Topology& topology = machine_.topology;
-  bool enters = topology.group_wants(packet, group_);
-  if (from_group) {
-    // It has done with this group, unless it is at home and nobody else wants it.
-    enters = topology.group_of(packet.owner) == group_;
-    for (std::uint32_t g = 0; enters && g < topology.groups(); ++g)
-      enters = g == group_ || !topology.group_wants(packet, g);
-  }
-  token.skip = enters ? topology.skip_from_entrance(packet, group_) : 0;
-  const bool cut_through = enters && token.skip > 0 && machine_.config.topology.visit == Visit::kOwners;
-  out_[enters ? 0 : 1].push(token, now, cut_through);
+  const Packet& packet = packets_[token.packet.value];
+  const bool inwards = enters(packet, from_group);
+  token.skip = inwards ? topology_.skip_from_entrance(packet, group_) : 0;
+  out_[inwards ? 0 : 1].push(token, now, inwards && token.skip > 0 && !topology_.visits_all());
 }
 
 std::string Bridge::describe() const {
   std::size_t egress = 0;
   for (const OutPort& out : out_) egress += out.egress();
   if (egress == 0) return "";
-  return fmt::format("bridge {}: {} packets in hand", group_, egress);
+  return fmt::format("bridge {}: {} packets wait to leave", group_, egress);
 }
 
 }  // namespace carousel::ringbus::cycle

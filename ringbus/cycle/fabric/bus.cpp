@@ -4,16 +4,8 @@
 
 namespace carousel::ringbus::cycle {
 
-Bus::Bus(CycleMachine& machine, std::vector<InPort> in, std::vector<OutPort> out)
-    : machine_(machine), in_(std::move(in)), out_(std::move(out)) {}
-
-Cycle Bus::latency_to(const LinkConfig& link) {
-  return way_there(link.latency_cycles);
-}
-
-Cycle Bus::latency_from(const LinkConfig& link) {
-  return way_back(link.latency_cycles);
-}
+Bus::Bus(const Topology& topology, std::span<const Packet> packets, std::vector<InPort> in, std::vector<OutPort> out)
+    : Hub(std::move(in), std::move(out)), topology_(topology), packets_(packets) {}
 
 Cycle Bus::next() const {
   Cycle first = kNever;
@@ -22,12 +14,12 @@ Cycle Bus::next() const {
     waiting |= in.next() <= now_;
     if (in.next() > now_) first = std::min(first, in.next());
   }
-  // In hand there is something only on links with faults, which are busy for longer than the bus.
+  // An egress queue holds something only on links with faults, which are busy for longer than the bus.
   for (const OutPort& out : out_)
     if (!out.empty()) first = std::min(first, out.next(false));
   if (!waiting) return first;
   if (free_at_ > now_) return std::min(first, free_at_);
-  // Free, and yet some wait: for places at their next stops.
+  // The bus is free, and yet packets wait: for places at their next stops.
   for (const OutPort& out : out_)
     if (out.empty()) first = std::min(first, out.next(true));
   return first;
@@ -48,8 +40,8 @@ void Bus::move_one(Cycle now) {
   for (std::size_t i = 0; i < in_.size(); ++i) {
     const std::size_t from = (turn_ + i) % in_.size();
     if (in_[from].next() > now) continue;
-    const Packet& packet = machine_.packet(in_[from].front().packet);
-    OutPort& out = out_[machine_.topology.next(packet, ResourceId(static_cast<std::uint32_t>(from))).value];
+    const Packet& packet = packets_[in_[from].front().packet.value];
+    OutPort& out = out_[topology_.next(packet, ResourceId(static_cast<std::uint32_t>(from))).value];
     if (out.spare_places() <= 0) continue;
     const Token token = in_[from].take(now);
     out.push(token, now, false);

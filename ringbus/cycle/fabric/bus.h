@@ -1,35 +1,29 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
-#include "ringbus/cycle/fabric/ports.h"
-#include "ringbus/cycle/machine/cycle_machine.h"
-#include "ringbus/cycle/time/agent.h"
+#include "ringbus/cycle/fabric/hub.h"
 
 namespace carousel::ringbus::cycle {
 
-/// One medium for all: moves one packet at a time from any resource to any other. Resources take turns; one whose
-/// packet would find no place at its next stop is passed over. The way to the bus and the way from it have half of
-/// the link's latency each.
-class Bus final : public Agent {
+/// One medium for all: moves one packet at a time from any resource to any other. Resources take turns; a resource
+/// whose packet would find no place at its next stop is passed over.
+class Bus final : public Hub {
  public:
   /// Ports by resource.
-  Bus(CycleMachine& machine, std::vector<InPort> in, std::vector<OutPort> out);
-  static Cycle latency_to(const LinkConfig& link);
-  static Cycle latency_from(const LinkConfig& link);
+  Bus(const Topology& topology, std::span<const Packet> packets, std::vector<InPort> in, std::vector<OutPort> out);
 
   Cycle next() const override;
   void run(Cycle end) override;
   std::string describe() const override { return ""; }
 
-  const std::vector<OutPort>& out() const { return out_; }
-
  private:
   void move_one(Cycle now);
 
-  CycleMachine& machine_;
-  std::vector<InPort> in_;
-  std::vector<OutPort> out_;
+  const Topology& topology_;
+  std::span<const Packet> packets_;
   std::size_t turn_ = 0;
   Cycle now_ = 0, free_at_ = 0;
 };

@@ -16,10 +16,10 @@ namespace carousel::ringbus::cycle {
 ///   with `carry: data` the shapes themselves, and below an instance what is stored of its transform
 class PacketSize {
  public:
-  explicit PacketSize(const Config& config)
-      : ordered_(config.collections.traversal == Traversal::kOrdered),
-        entries_(config.collections.policy == Policy::kNearest),
-        data_(config.packets.carry == PacketCarry::kData) {}
+  PacketSize(const CollectionsConfig& collections, PacketCarry carry)
+      : ordered_(collections.traversal == Traversal::kOrdered),
+        entries_(collections.policy == Policy::kNearest),
+        data_(carry == PacketCarry::kData) {}
 
   std::uint32_t bytes(const Packet& packet, const ShapeMemory& memory, bool treelet) const {
     const std::uint32_t rays = static_cast<std::uint32_t>(packet.members.size());

@@ -15,7 +15,7 @@ namespace carousel::ringbus::cycle {
 /// A place in the receiver's input queue has become free.
 struct Credit {};
 
-/// A link between two nodes: packets one way, credits the other. What travels is a T that knows how many cycles it
+/// A link between two nodes: packets go one way, credits the other. A packet is a T that knows how many cycles it
 /// occupies a link, T::link_cycles: a Token, or synthetic traffic.
 template <class T>
 struct WireOf {
@@ -24,8 +24,8 @@ struct WireOf {
   alignas(64) Occupancy queue;  ///< the receiver's
 };
 
-/// Where packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A place is
-/// held until the packet is taken; the credit needs the link's latency to get back.
+/// The port by which packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A
+/// place is held until the packet is taken; the credit needs the link's latency to get back.
 template <class T>
 struct InPortOf {
   WireOf<T>* wire = nullptr;
@@ -43,14 +43,14 @@ struct InPortOf {
   void note_wait(Cycle arrival, Cycle now) {
     Occupancy& queue = wire->queue;
     queue.packet_cycles += now - arrival;
-    // What leaves now was there until now. The queue is never longer than at the moment before something leaves it.
+    // The packet that leaves now was there until now. The queue is never longer than just before a packet leaves it.
     if (wire->packets.size() > queue.most)
       queue.most = std::max<std::uint64_t>(queue.most, wire->packets.arrived(now - 1));
   }
 };
 
-/// Where packets leave: those in hand, and the near end of a link. A packet occupies the link for as many cycles
-/// as it has widths; its head arrives `latency` cycles after it started, its tail accordingly later.
+/// The port by which packets leave: an egress queue, and the near end of a link. A packet occupies the link for as many
+/// cycles as it has widths; its head arrives `latency` cycles after it started, its tail accordingly later.
 template <class T>
 class OutPortOf {
  public:
@@ -62,7 +62,8 @@ class OutPortOf {
   bool has_place() const { return queue_.size() + reserved_ < places_; }
   void reserve() { ++reserved_; }
   void release() { --reserved_; }
-  /// `ready`: not before then. `cut_through`: the receiver passes it on without waiting for the tail.
+  /// Puts a packet into the egress queue. It is not sent before `ready`. `cut_through`: the receiver passes it on
+  /// without waiting for the tail.
   void push(const T& token, Cycle ready, bool cut_through) { queue_.push_back({token, ready, cut_through}); }
 
   void take_credits(Cycle now) {
@@ -73,13 +74,13 @@ class OutPortOf {
         ++credits_;
         continue;
       }
-      make_good(at);
+      recover_credits(at);
       credits_ += faults_->acknowledge(at);
     }
     if (faults_) [[unlikely]]
-      make_good(now);
+      recover_credits(now);
   }
-  /// Sends one packet if it may; whether it did.
+  /// Sends one packet if it may. Returns whether it did.
   bool send(Cycle now) {
     if (queue_.empty() || free_at_ > now || queue_.front().ready > now) return false;
     if (credits_ == 0) {
@@ -94,24 +95,25 @@ class OutPortOf {
     queue_.pop_front();
     return true;
   }
-  /// Free places of the receiver's queue that nothing in hand will take.
+  /// Free places of the receiver's queue that no packet in the egress queue will take.
   std::int64_t spare_places() const {
     return static_cast<std::int64_t>(credits_) - static_cast<std::int64_t>(queue_.size() + reserved_);
   }
-  /// Whether, with nothing in hand, launch() may send something that leaves the receiver `places` - 1 free places.
-  /// Takes credits when it needs them.
+  /// Tells whether launch() may send a packet that leaves the receiver `places` - 1 free places; not while packets wait
+  /// in the egress queue. Takes credits when it needs them.
   bool open(Cycle now, std::uint32_t places) {
     if (credits_ < places) take_credits(now);
     return queue_.empty() && free_at_ <= now && credits_ >= places;
   }
-  /// Sends what has not been in hand.
+  /// Sends a packet past the egress queue.
   void launch(const T& token, Cycle now, bool cut_through) { start({token, now, cut_through}, now); }
-  /// When it will be open(), as far as is known and if nothing else is sent before.
+  /// The time at which it will be open(), as far as is known and if nothing else is sent before.
   Cycle opens(std::uint32_t places) const {
     if (!queue_.empty()) return kNever;
     return credits_ >= places ? free_at_ : std::max(free_at_, next_credit());
   }
-  /// When something can be sent, as far as is known; `want_credit`: wake for a credit even with nothing in hand.
+  /// The time at which something can be sent, as far as is known; `want_credit`: the next credit counts even with an
+  /// empty egress queue.
   Cycle next(bool want_credit) const {
     if (queue_.empty()) return want_credit ? next_credit() : kNever;
     if (credits_ == 0) return next_credit();
@@ -122,6 +124,7 @@ class OutPortOf {
   std::size_t egress() const { return queue_.size(); }
   PacketId front() const { return queue_.front().token.packet; }  ///< of Tokens
   const T& first() const { return queue_.front().token; }
+  /// A packet waits for a credit.
   bool blocked() const { return blocked_since_ != kNever; }
   Cycle busy() const { return busy_; }        ///< cycles in which the link moved something
   Cycle stalled() const { return stalled_; }  ///< cycles in which a packet waited for a credit
@@ -138,8 +141,9 @@ class OutPortOf {
   Cycle next_credit() const {
     return faults_ ? std::min(wire_->credits.next(), faults_->next()) : wire_->credits.next();
   }
-  /// Credits that were lost on their way. Asking for them occupies the link like a packet, and is not waiting.
-  void make_good(Cycle now) {
+  /// Recovers credits that were lost on their way. Asking for them occupies the link like a packet, and does not count
+  /// as waiting.
+  void recover_credits(Cycle now) {
     const LinkFaultTimer::Recovered made = faults_->made_good(now);
     credits_ += made.places;
     if (made.busy == 0) return;

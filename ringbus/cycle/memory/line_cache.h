@@ -9,7 +9,7 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Set-associative cache of lines, least recently used out first. Holds no data: only what would be there.
+/// Set-associative cache of lines, least recently used out first. Holds tags, but no data.
 class LineCache {
  public:
   /// At least one set; the number of sets is rounded down to a power of two.
@@ -18,7 +18,7 @@ class LineCache {
         sets_(std::bit_floor(std::max<std::uint64_t>(1, bytes / line_bytes / ways))),
         lines_(sets_ * ways_, kEmpty) {}
 
-  /// Whether `line` is there; it is then the last to go.
+  /// Returns whether `line` is there, and makes it the last to be replaced.
   bool touch(std::uint64_t line) {
     std::uint64_t* set = &lines_[(line & (sets_ - 1)) * ways_];
     for (std::uint64_t i = 0; i < ways_; ++i) {

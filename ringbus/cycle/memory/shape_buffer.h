@@ -8,13 +8,13 @@
 
 namespace carousel::ringbus::cycle {
 
-/// The strips a resource has at hand: room for memory.shape_buffer_kib in places of a node's size.
+/// The strips that a resource has at hand: memory.shape_buffer_kib of them, in places of a node's size.
 class ShapeBuffer {
  public:
   explicit ShapeBuffer(const MemoryConfig& config)
       : cache_(static_cast<std::uint64_t>(config.shape_buffer_kib) * 1024, sizeof(accel::Node), 16) {}
 
-  /// All of it.
+  /// Tells whether all of a strip is here.
   bool has(const ShapeSpan& strip) {
     bool all = true;
     for (std::uint32_t at = 0; at < strip.bytes; at += kPlace) all &= cache_.touch(tag(strip.address + at));

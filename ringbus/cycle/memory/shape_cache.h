@@ -14,15 +14,15 @@
 namespace carousel::ringbus::cycle {
 
 /// The L2 that some resources share: looks up a line a cycle, in the order in which requests arrive (at one time:
-/// of the resources). A line that is on its way from memory is asked for once. Read only, so nothing is written
-/// back.
+/// of the resources). A line that is on its way from memory is requested once. The cache is read only, so nothing is
+/// written back.
 class ShapeCache final : public Agent {
  public:
   struct Client {
     Channel<FetchRequest>* requests = nullptr;
     Channel<FetchAnswer>* answers = nullptr;
   };
-  /// What the parts of the latency are: half on the way in, half on the way out, at least a cycle each.
+  /// Half of the latency is spent on the way in, half on the way out, at least a cycle each.
   static Cycle request_latency(const MemoryConfig& config);
   static Cycle answer_latency(const MemoryConfig& config);
 

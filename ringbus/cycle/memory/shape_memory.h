@@ -8,15 +8,15 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Bytes of shape data and where they stand in the simulated memory.
+/// A piece of shape data in the simulated memory.
 struct ShapeSpan {
   std::uint64_t address = 0;
   std::uint32_t bytes = 0;
 };
 
-/// Where the acceleration structure lies: nodes first, each with its children's cull planes and the primitives it holds
-/// itself behind it, then leaves as they are laid out in the host's, then what is stored of each instance's transform,
-/// from a 64-byte border on.
+/// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
+/// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
+/// each instance's transform, from a 64-byte border on.
 class ShapeMemory {
  public:
   ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
@@ -40,7 +40,7 @@ class ShapeMemory {
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
   }
 
-  /// What testing in `instance` needs of its transform; no bytes above the instances and where rays are not moved.
+  /// The transform data that testing in `instance` needs; no bytes above the instances and where rays are not moved.
   ShapeSpan transform(std::uint32_t instance) const {
     if (instance == kNoInstance || accel_.instances[instance].transform.identity) return {};
     return {instances_at_ + std::uint64_t{instance} * ((instance_bytes_ + 63) / 64 * 64), instance_bytes_};

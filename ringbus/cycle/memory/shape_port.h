@@ -6,7 +6,7 @@
 
 namespace carousel::ringbus::cycle {
 
-/// A resource's way to shape data: the strips it has at hand, and its cache for the others.
+/// A resource's access to shape data: the strips it has at hand, and its cache for the others.
 class ShapePort {
  public:
   /// Keeps the ports' channels.
@@ -24,7 +24,7 @@ class ShapePort {
     const std::uint64_t first = strip.address / line_bytes_, last = (strip.address + strip.bytes - 1) / line_bytes_;
     requests_.send(now + latency_, {first, static_cast<std::uint32_t>(last - first + 1), tag});
   }
-  /// When the next answer comes.
+  /// The time at which the next answer comes.
   Cycle next() const { return answers_.next(); }
   std::uint32_t take() { return answers_.take().tag; }
 

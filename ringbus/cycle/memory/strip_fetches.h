@@ -9,13 +9,13 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Strips that rays of one resource wait for: each is asked for once, however many want it (D. Kroft, Lockup-free
+/// Strips that rays of one resource wait for. Each is fetched once, however many rays want it (D. Kroft, Lockup-free
 /// instruction fetch/prefetch cache organization, ISCA 1981, for single rays).
 class StripFetches {
  public:
   StripFetches(const MemoryConfig& config, const SidePorts& ports) : port_(config, ports) {}
 
-  /// Whether the strip is at hand; otherwise `slot` waits for it from now on.
+  /// Returns whether the strip is at hand; otherwise `slot` waits for it from now on.
   bool want(const ShapeSpan& strip, std::uint32_t slot, Cycle now) {
     if (port_.has(strip)) return true;
     const auto [found, first] = under_way_.try_emplace(strip.address, 0);
@@ -28,9 +28,10 @@ class StripFetches {
     return false;
   }
 
-  /// When the next strip comes.
+  /// The time at which the next strip comes.
   Cycle next() const { return port_.next(); }
-  /// Takes it in. Returns the slots that waited for it, in the order in which they began to; until the next call.
+  /// Takes the next strip in. Returns the slots that waited for it, in the order in which they began to wait; valid
+  /// until the next call.
   std::span<const std::uint32_t> take() {
     const std::uint32_t tag = port_.take();
     Fetch& fetch = fetches_[tag];

@@ -5,14 +5,13 @@
 
 namespace carousel::ringbus::cycle {
 
-/// From a resource to shading, with `testers.any_hit: shader`: whether primitives that these rays meet let them
-/// through.
+/// A resource asks shading, with `testers.any_hit: shader`, to run the any-hit calls of some rays.
 struct AnyHitQuestion {
-  std::vector<std::uint32_t> slots;  ///< of the rays, which are held until the answer
-  std::uint64_t times = 0;           ///< primitives, all rays together
+  std::vector<std::uint32_t> slots;  ///< of the rays, which are held until the answer comes
+  std::uint64_t times = 0;           ///< calls, all rays together
 };
 
-/// The answer, for the same rays. What it says has long been known to the resource: only the time is simulated.
+/// The calls of these rays have been answered. The resource has long known the answers: only the time is simulated.
 struct AnyHitAnswer {
   std::vector<std::uint32_t> slots;
 };

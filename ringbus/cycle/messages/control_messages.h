@@ -7,25 +7,25 @@
 
 namespace carousel::ringbus::cycle {
 
-/// From ray control to a resource: new rays whose records have been loaded, for its root collection. Or, when one has
-/// stopped, what is to be done about it.
+/// Ray control sends a resource new rays whose records have been loaded, for its root collection; or an order, when a
+/// resource has stopped.
 struct NewRays {
   std::vector<RayId> ids;
   enum class Order : std::uint8_t {
-    kTake,     ///< the rays
-    kDiscard,  ///< all work, and whatever packets come; and say when that is done
-    kGoOn,     ///< as before, without the one that stopped
+    kTake,     ///< take the rays
+    kDiscard,  ///< discard all work and every packet that comes back, and note when that is done
+    kGoOn,     ///< go on without the resource that has stopped
   } order = Order::kTake;
 };
 
-/// From a resource to shading: completed rays, and the slots they leave. Or how it is with it.
+/// A resource sends shading completed rays and the slots they leave; or a note on its own state.
 struct CompletedRays {
   HitBatch rays;
   std::vector<std::uint32_t> slots;
   enum class Note : std::uint8_t {
-    kDone,      ///< the rays
-    kLastBeat,  ///< of a resource that has stopped: nothing will come from it any more
-    kDrained,   ///< none of its packets is under way, and nothing it asked for either
+    kDone,      ///< the rays are complete
+    kLastBeat,  ///< it has stopped: nothing will come from it any more
+    kDrained,   ///< none of its packets, fetches and any-hit calls is under way
   } note = Note::kDone;
 };
 

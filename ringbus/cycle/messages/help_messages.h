@@ -9,10 +9,10 @@ struct ShadeJob {
   Cycle cycles = 0;
 };
 
-/// From a resource whose testers fell idle or are needed again, or which has done its job.
+/// A resource's testers have fallen idle or are needed again, or it has done its job.
 struct HelpNote {
   bool shaded = false;  ///< the job is done
-  bool idle = false;    ///< and this is how things stand
+  bool idle = false;    ///< its testers have nothing to do now
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+
+#include "core/config/config.h"
 #include "ringbus/cycle/messages/any_hit_messages.h"
 #include "ringbus/cycle/messages/control_messages.h"
 #include "ringbus/cycle/messages/help_messages.h"
@@ -8,17 +11,22 @@
 
 namespace carousel::ringbus::cycle {
 
-/// A resource's channels beside the links: from ray control, to shading, to its cache and back; and with
-/// `idle_resources_shade` for jobs from shading, and what it has to say of them; with `any_hit: shader` for what lets
-/// rays through.
+/// Latency of the wires between a resource and ray control or shading, which are as long as a hop.
+inline Cycle control_latency(const LinkConfig& link) {
+  return std::max<Cycle>(1, static_cast<Cycle>(link.latency_cycles));
+}
+
+/// A resource's channels beside the links: from ray control, to shading, to its cache and back; with
+/// `shading.idle_resources_shade` also for jobs from shading and notes about them, and with `testers.any_hit: shader`
+/// for any-hit calls and their answers.
 struct SidePorts {
   Channel<NewRays>* new_rays = nullptr;
   Channel<CompletedRays>* completed = nullptr;
   Channel<FetchRequest>* fetch = nullptr;
   Channel<FetchAnswer>* fetched = nullptr;
-  Channel<ShadeJob>* jobs = nullptr;  ///< null, like `help`, when it does not help
+  Channel<ShadeJob>* jobs = nullptr;  ///< null, like `help`, when the resource does not help
   Channel<HelpNote>* help = nullptr;
-  Channel<AnyHitQuestion>* questions = nullptr;  ///< null, like `answers`, where resources know themselves
+  Channel<AnyHitQuestion>* questions = nullptr;  ///< null, like `answers`, with `any_hit: inline`
   Channel<AnyHitAnswer>* answers = nullptr;
 };
 

@@ -12,11 +12,11 @@
 
 namespace carousel::ringbus::cycle {
 
-/// The shading agent's side of ShadeHelp: which resources have nothing to test, as far as it knows, and the rays it
-/// has sent them, one each. The one that fell idle first gets the next ray.
+/// The shading agent's side of ShadeHelp: the resources that have nothing to test, as far as it knows, and the rays it
+/// has sent them, one each. The resource that fell idle first gets the next ray.
 class ShadeHelpers {
  public:
-  /// By resource; those without a channel for jobs do not help.
+  /// By resource; a resource without a channel for jobs does not help.
   ShadeHelpers(const std::vector<SidePorts>& resources, Cycle latency) : latency_(latency) {
     for (const SidePorts& ports : resources) {
       if (ports.jobs == nullptr) continue;
@@ -35,7 +35,7 @@ class ShadeHelpers {
     for (std::size_t i = 0; i < helpers_.size(); ++i)
       while (helpers_[i].notes->next() <= now) take(i, helpers_[i].notes->take(), shaded);
   }
-  /// Whether somebody can take a ray.
+  /// Tells whether a resource can take a ray.
   bool any() const { return !idle_.empty(); }
   void give(const RayResult& ray, Cycle cycles, Cycle now) {
     Helper& helper = helpers_[idle_.front()];
@@ -45,7 +45,7 @@ class ShadeHelpers {
     ++out_;
     helper.jobs->send(now + latency_, {cycles});
   }
-  /// The helper whose jobs go by `jobs` has stopped. The ray it had, if any, is to be shaded by somebody else.
+  /// The helper whose jobs go by `jobs` has stopped. Returns the ray it had, if any, to be shaded elsewhere.
   std::optional<RayResult> exclude(const Channel<ShadeJob>* jobs) {
     for (std::size_t i = 0; i < helpers_.size(); ++i) {
       Helper& helper = helpers_[i];
@@ -70,7 +70,7 @@ class ShadeHelpers {
 
   void take(std::size_t i, const HelpNote& note, HitBatch& shaded) {
     Helper& helper = helpers_[i];
-    // It will say how things stand when it has done its job, which was already on its way.
+    // A note that crossed the job. The helper sends another one when it has done the job.
     if (helper.has_job && !note.shaded) return;
     if (note.shaded) {
       shaded.push_back(helper.ray);

@@ -12,7 +12,7 @@ ShadeQueues::ShadeQueues(const ShadingConfig& config, std::uint64_t seed)
     : distribute_(config.distribute),
       seed_(seed),
       queues_(distribute_ == Distribute::kFifoFill ? 1 : static_cast<std::size_t>(config.workers)),
-      egress_(static_cast<std::size_t>(config.workers)) {}
+      in_work_(static_cast<std::size_t>(config.workers)) {}
 
 std::size_t ShadeQueues::queue_for(const RayResult& ray) {
   switch (distribute_) {
@@ -32,7 +32,7 @@ std::size_t ShadeQueues::queue_for(const RayResult& ray) {
   }
   std::size_t best = 0;
   for (std::size_t w = 1; w < queues_.size(); ++w)
-    if (queues_[w].size() + egress_[w] < queues_[best].size() + egress_[best]) best = w;
+    if (queues_[w].size() + in_work_[w] < queues_[best].size() + in_work_[best]) best = w;
   return best;
 }
 

@@ -10,9 +10,9 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Completed rays that wait for shader workers. `distribute: fifo_fill`: one queue, whoever is idle takes the first.
-/// Otherwise a queue a worker, chosen when a ray comes: by load the worker with the fewest rays waiting and in hand,
-/// each in turn, or at random, which depends on the ray and not on when it comes.
+/// Completed rays that wait for shader workers. With `distribute: fifo_fill` there is one queue, and any idle worker
+/// takes its first ray. Otherwise each worker has a queue, which is chosen when a ray comes: the worker with the fewest
+/// rays waiting and in work, each in turn, or at random, which depends on the ray and not on when it comes.
 class ShadeQueues {
  public:
   ShadeQueues(const ShadingConfig& config, std::uint64_t seed);
@@ -22,10 +22,10 @@ class ShadeQueues {
   bool empty() const { return size_ == 0; }
   /// The ray that has waited longest for `worker`.
   std::optional<RayResult> take(std::uint32_t worker);
-  /// The first of the longest queue, for somebody who is no worker.
+  /// The first ray of the longest queue, for a resource that helps.
   std::optional<RayResult> take_any();
-  /// How many rays `worker` is at.
-  void hold(std::uint32_t worker, std::size_t rays) { egress_[worker] = rays; }
+  /// Sets how many rays `worker` has in work.
+  void set_in_work(std::uint32_t worker, std::size_t rays) { in_work_[worker] = rays; }
 
  private:
   std::size_t queue_for(const RayResult& ray);
@@ -34,7 +34,7 @@ class ShadeQueues {
   ShadingConfig::Distribute distribute_;
   std::uint64_t seed_;
   std::vector<std::deque<RayResult>> queues_;
-  std::vector<std::size_t> egress_;  // by worker
+  std::vector<std::size_t> in_work_;  // by worker
   std::size_t turn_ = 0, size_ = 0;
 };
 

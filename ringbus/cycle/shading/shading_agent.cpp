@@ -9,38 +9,37 @@
 
 namespace carousel::ringbus::cycle {
 
-ShadingAgent::ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window,
+ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload, TraceWindow window,
                            std::vector<SidePorts> clients)
     : machine_(machine),
+      fault_(settings.fault),
       workload_(workload),
       clients_(std::move(clients)),
       trace_(static_cast<std::uint32_t>(machine.topology.resources()), window),
-      shade_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_shade)),
-      effect_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_effect)),
-      any_hit_cycles_(static_cast<Cycle>(machine.config.shading.cycles_per_any_hit)),
-      load_cycles_(
-          ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(machine.config.topology.link.bytes_per_cycle))),
-      latency_(control_latency(machine.config)),
-      slots_(static_cast<std::size_t>(machine.config.topology.resources * machine.config.rays.slots_per_resource)),
-      group_(static_cast<std::size_t>(machine.config.packets.rays)),
+      shade_cycles_(static_cast<Cycle>(settings.shading.cycles_per_shade)),
+      effect_cycles_(static_cast<Cycle>(settings.shading.cycles_per_effect)),
+      any_hit_cycles_(static_cast<Cycle>(settings.shading.cycles_per_any_hit)),
+      load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(settings.link.bytes_per_cycle))),
+      latency_(control_latency(settings.link)),
+      slots_(settings.slots),
+      group_(settings.packet_rays),
       gather_(group_),
-      builder_rate_(static_cast<Cycle>(machine.config.bundles.builder.rays_per_cycle)),
-      queues_(machine.config.shading, static_cast<std::uint64_t>(machine.config.image.seed)),
+      bundled_(settings.bundles.size > 0),
+      builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
+      queues_(settings.shading, settings.seed),
       helpers_(clients_, latency_),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
-  if (machine.config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
-    ledger_ = std::make_unique<OutstandingRays>();
-  for (std::uint32_t w = static_cast<std::uint32_t>(machine.config.shading.workers); w-- > 0;) idle_.push_back(w);
-  const BundlesConfig& bundles = machine.config.bundles;
-  if (bundles.size > 0)
-    gather_ = std::max(group_, std::min(slots_ / 4, static_cast<std::size_t>(bundles.size * bundles.builder.open)));
+  if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
+  for (std::uint32_t w = static_cast<std::uint32_t>(settings.shading.workers); w-- > 0;) idle_.push_back(w);
+  const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
+  if (bundled_) gather_ = std::max(group_, std::min(slots_ / 4, open));
 }
 
 Cycle ShadingAgent::next() const {
   if (!started_) return 0;
   Cycle first = jobs_.empty() ? kNever : jobs_.top().done;
-  // Nothing of importance comes when all is done, and one that stops then is not waited for.
+  // When all is done nothing of importance comes, and a resource that stops then is not waited for.
   if (!done()) first = std::min(first, give_up_at_);
   for (const SidePorts& client : clients_) {
     if (!done()) first = std::min(first, client.completed->next());
@@ -92,7 +91,7 @@ bool ShadingAgent::finish_jobs(Cycle now) {
     const Job& job = jobs_.top();
     any = true;
     idle_.push_back(job.worker);
-    queues_.hold(job.worker, 0);
+    queues_.set_in_work(job.worker, 0);
     if (job.question) {
       clients_[job.question->from].answers->send(now + latency_, {job.question->rays.slots});
       continue;
@@ -129,7 +128,7 @@ std::size_t ShadingAgent::room() const {
 
 bool ShadingAgent::start_jobs(Cycle now) {
   bool any = false;
-  // The last to fall idle first.
+  // The worker that fell idle last comes first.
   for (std::size_t i = idle_.size(); i-- > 0;) {
     if (!start_job(idle_[i], now)) continue;
     idle_.erase(idle_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -166,7 +165,7 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
   } else {
     return false;
   }
-  queues_.hold(worker, std::max<std::size_t>(1, job.made));
+  queues_.set_in_work(worker, std::max<std::size_t>(1, job.made));
   busy_ += job.done - now;
   jobs_.push(job);
   return true;
@@ -177,8 +176,7 @@ void ShadingAgent::place(Cycle now) {
   const bool full = gathered_.size() >= gather_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
   bool placed = machine_.control.place_waiting();
   if (full || (last && !gathered_.empty())) {
-    if (machine_.config.bundles.size > 0)
-      builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
+    if (bundled_) builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
     machine_.control.submit(gathered_);
     if (ledger_) ledger_->add(gathered_);
     gathered_.clear();
@@ -214,7 +212,7 @@ void ShadingAgent::send_groups(Cycle now) {
 void ShadingAgent::on_note(std::uint32_t resource, CompletedRays::Note note, Cycle now) {
   if (note == CompletedRays::Note::kLastBeat) {
     stop_ = {resource, now - latency_, 0, 0};
-    give_up_at_ = now + static_cast<Cycle>(machine_.config.faults.resource.silence_cycles);
+    give_up_at_ = now + static_cast<Cycle>(fault_.silence_cycles);
   } else if (--draining_ == 0) {
     restart(now);
   }
@@ -224,14 +222,13 @@ void ShadingAgent::give_up(Cycle now) {
   give_up_at_ = kNever;
   stop_->noticed = now;
   const ResourceId stopped(stop_->resource);
-  if (!machine_.config.faults.resource.recover)
-    throw SimulationError(unfinished_rays(stopped, ledger_->open(), completed_));
+  if (!fault_.recover) throw SimulationError(unfinished_rays(stopped, ledger_->open(), completed_));
   if (const std::optional<RayResult> ray = helpers_.exclude(clients_[stopped.value].jobs)) queues_.push(*ray);
   draining_ = clients_.size();
   order_all(NewRays::Order::kDiscard, now);
 }
 
-/// No packet is under way, and no resource holds an ID.
+/// Begins again, when no packet is under way and no resource holds an ID.
 void ShadingAgent::restart(Cycle now) {
   stop_->restarted = now;
   machine_.control.discard();
@@ -242,13 +239,12 @@ void ShadingAgent::restart(Cycle now) {
   rays_restarted_ = rays.size();
   paths_restarted_ = OutstandingRays::paths_of(rays);
   if (rays.empty()) return;
-  if (machine_.config.bundles.size > 0)
-    builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
+  if (bundled_) builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
   machine_.control.submit(rays);
   send_groups(now);
 }
 
-/// An order comes behind the rays that were sent before it.
+/// Sends an order to all resources, behind the rays that were sent before it.
 void ShadingAgent::order_all(NewRays::Order order, Cycle now) {
   for (std::uint32_t r = 0; r < clients_.size(); ++r) {
     last_sent_[r] = std::max(last_sent_[r], now + latency_);

@@ -9,33 +9,38 @@
 #include <vector>
 
 #include "core/types/workload.h"
-#include "ringbus/cycle/machine/cycle_machine.h"
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "ringbus/cycle/shading/shade_queues.h"
+#include "ringbus/cycle/shading/shading_settings.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/faults/outstanding_rays.h"
+#include "ringbus/protocol/machine.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
 
-/// Ray control and the pool of shader workers. A worker takes the ray that has waited longest in its queue, and needs
-/// shading.cycles_per_shade for it, as for making a camera ray, and cycles_per_effect for each effect besides; what
-/// resources ask about opacity comes first, and takes shading.cycles_per_any_hit each. What the workers have no hand
-/// free for goes to resources that have nothing to test, with `idle_resources_shade`. New rays gather until they fill a
-/// packet, or until no worker has anything to do, and are then given slots; with bundles they gather until they would
-/// fill those that the builder holds open, and go through it `builder.rays_per_cycle` a cycle. A record of 64 bytes
-/// needs its owner's load port for as many link widths as it has.
+/// Ray control and the pool of shader workers.
 ///
-/// Of a resource that has stopped it hears the last sign of life (which stands for regular ones, whose wires carry
-/// nothing else). So many cycles later it orders all resources to discard their work. Meanwhile what has come back is
-/// shaded and what that gives is gathered; when all resources are drained, the rays that have not come back are placed
-/// again.
+/// A worker takes the ray that has waited longest in its queue. It needs shading.cycles_per_shade for a ray, or to make
+/// a camera ray, and cycles_per_effect for each effect besides. Any-hit calls of resources come first and take
+/// shading.cycles_per_any_hit each. With `idle_resources_shade`, rays for which no worker is free go to resources that
+/// have nothing to test.
+///
+/// New rays gather until they fill a packet, or until no worker has anything to do, and are then given slots. With
+/// bundles they gather until they would fill the bundles that the builder holds open, and pass the builder
+/// `builder.rays_per_cycle` a cycle. A record of 64 bytes needs its owner's load port for as many link widths as it
+/// has.
+///
+/// A resource that stops sends a last beat, which stands for the regular ones of its wires. `silence_cycles` later the
+/// agent orders all resources to discard their work. Rays that come back meanwhile are shaded, and the rays they cause
+/// are gathered. When all resources are drained, the rays that have not come back are placed again.
 class ShadingAgent final : public Agent {
  public:
-  /// `clients` by resource.
-  ShadingAgent(CycleMachine& machine, Workload& workload, TraceWindow window, std::vector<SidePorts> clients);
+  /// Keeps references to the machine and the workload. `clients` by resource.
+  ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload, TraceWindow window,
+               std::vector<SidePorts> clients);
 
   Cycle next() const override;
   bool polled() const override { return false; }
@@ -48,29 +53,29 @@ class ShadingAgent final : public Agent {
   std::uint64_t completed() const { return completed_; }
   /// Worker-cycles spent on shading and on making camera rays.
   Cycle busy() const { return busy_; }
-  /// When each ray was shaded, in steps of so many rays; for the rate between fill and drain.
+  /// How many rays had been shaded at a time, in steps of a number of rays; for the rate between fill and drain.
   struct Milestone {
     Cycle at = 0;
     std::uint64_t completed = 0;
   };
   const std::vector<Milestone>& milestones() const { return milestones_; }
   const Trace& trace() const { return trace_; }
-  /// What became of a resource that stopped; absent if none was heard to.
+  /// The times at which a resource stopped and work began anew; absent if no stop was noted.
   const std::optional<StopTimes>& stop() const { return stop_; }
   std::uint64_t rays_restarted() const { return rays_restarted_; }
   std::uint64_t paths_restarted() const { return paths_restarted_; }
 
  private:
-  /// Of a resource.
+  /// Any-hit calls of a resource.
   struct Question {
     std::uint32_t from;
     AnyHitQuestion rays;
   };
-  /// What a worker is at.
+  /// The present work of a shader worker.
   struct Job {
     Cycle done = 0;
     std::uint32_t worker = 0;
-    std::size_t made = 0;  // camera rays; 0: it shades `ray`, or finds out what lets rays through
+    std::size_t made = 0;  // camera rays; 0: it shades `ray`, or answers `question`
     RayResult ray;
     std::optional<Question> question{};
     bool operator>(const Job& o) const { return done != o.done ? done > o.done : worker > o.worker; }
@@ -92,15 +97,17 @@ class ShadingAgent final : public Agent {
   std::size_t room() const;
   void milestone(Cycle now);
 
-  CycleMachine& machine_;
+  Machine& machine_;
+  FaultsConfig::Resource fault_;
   Workload& workload_;
   std::vector<SidePorts> clients_;
   Trace trace_;
   Cycle shade_cycles_, effect_cycles_, any_hit_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
-  std::size_t gather_;  // new rays that are worth giving slots
+  std::size_t gather_;  // new rays that are given slots together
+  bool bundled_;
   Cycle builder_rate_, builder_free_ = 0;
-  std::deque<Question> questions_;  // before any ray: they keep slots that could be free
+  std::deque<Question> questions_;  // go before any ray: their rays keep slots that could be free
   ShadeQueues queues_;
   ShadeHelpers helpers_;
   std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;
@@ -114,7 +121,7 @@ class ShadingAgent final : public Agent {
   std::unique_ptr<OutstandingRays> ledger_;  // where a resource may stop
   std::optional<StopTimes> stop_;
   Cycle give_up_at_ = kNever;
-  std::size_t draining_ = 0;  // resources that have not said that they are drained
+  std::size_t draining_ = 0;  // resources that have not noted that they are drained
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;

@@ -4,18 +4,18 @@
 #include <utility>
 #include <vector>
 
-#include "ringbus/cycle/machine/cycle_machine.h"
+#include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
 
 namespace carousel::ringbus::cycle {
 
-/// Where a resource's completed rays leave for shading: record after record, a link's width a cycle.
+/// Sends a resource's completed rays to shading, record after record, a link's width a cycle.
 class CompletedPort {
  public:
-  CompletedPort(const Config& config, const SidePorts& ports)
+  CompletedPort(const LinkConfig& link, const SidePorts& ports)
       : completed_(*ports.completed),
-        record_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle))),
-        latency_(control_latency(config)) {}
+        record_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(link.bytes_per_cycle))),
+        latency_(control_latency(link)) {}
 
   /// Takes the rays and the slots they leave; both are empty afterwards.
   void send(HitBatch& done, std::vector<std::uint32_t>& slots, Cycle now) {
@@ -25,7 +25,7 @@ class CompletedPort {
     slots.clear();
   }
 
-  /// Behind the rays it has sent.
+  /// Sends a note behind the rays that have been sent.
   void notify(CompletedRays::Note note, Cycle now) {
     completed_.send(std::max(free_at_, now) + latency_, {{}, {}, note});
   }

@@ -9,19 +9,21 @@
 
 namespace carousel::ringbus::cycle {
 
-IndependentTile::IndependentTile(ResourceId id, CycleMachine& machine, bool statistics, TraceWindow window,
-                                 const SidePorts& ports)
-    : machine_(machine),
+IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMemory& memory,
+                                 const TileSettings& settings, const SidePorts& ports)
+    : accel_(machine.accel),
+      memory_(memory),
       id_(id),
       store_(*machine.stores[id.value]),
-      statistics_(statistics),
-      trace_(id.value, window),
+      statistics_(settings.statistics),
+      control_latency_(control_latency(settings.link)),
+      trace_(id.value, settings.trace),
       ports_(ports),
-      tester_(testers_of(machine.config, id), machine.config.cull_planes.order, machine.config.rays.reads_per_cycle),
-      fetches_(machine.config.memory, ports),
-      completed_port_(machine.config, ports),
-      help_(machine.config, ports),
-      transforms_(machine.config.accuracy, machine.accel, store_.slots()),
+      tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
+      fetches_(settings.memory, ports),
+      completed_port_(settings.link, ports),
+      help_(settings.link, ports),
+      transforms_(settings.accuracy, machine.accel, store_.slots()),
       threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false, 0}) {}
 
 Cycle IndependentTile::next() const {
@@ -46,7 +48,7 @@ void IndependentTile::step(Cycle now) {
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
       if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0)
-        ports_.questions->send(now + control_latency(machine_.config), {{slot}, times});
+        ports_.questions->send(now + control_latency_, {{slot}, times});
       else
         keep_running(slot, now);
     }
@@ -73,7 +75,7 @@ void IndependentTile::take_new_rays(Cycle now) {
       const std::uint32_t slot = store_.slot(id);
       ++active_;
       threads_[slot].ray = id;
-      threads_[slot].walk.start(machine_.accel.root_key());
+      threads_[slot].walk.start(accel_.root_key());
       keep_running(slot, now);
     }
   }
@@ -91,7 +93,7 @@ void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
     return;
   }
   thread.strip = *next;
-  const ShapeSpan transform = machine_.memory.transform(next->instance);
+  const ShapeSpan transform = memory_.transform(next->instance);
   thread.fetches_transform =
       thread.walk.enters(next->instance) && transform.bytes > 0 && !fetches_.want(transform, slot, now);
   if (!thread.fetches_transform) want_strip(slot, now);
@@ -105,7 +107,7 @@ void IndependentTile::fetched(std::uint32_t slot, Cycle now) {
 }
 
 void IndependentTile::want_strip(std::uint32_t slot, Cycle now) {
-  if (fetches_.want(machine_.memory.strip(threads_[slot].strip), slot, now)) test(slot, now);
+  if (fetches_.want(memory_.strip(threads_[slot].strip), slot, now)) test(slot, now);
 }
 
 void IndependentTile::test_held_back(Cycle now) {
@@ -120,8 +122,8 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   }
   Thread& thread = threads_[slot];
   stack_held_ -= thread.walk.stack_bytes().held;
-  const IntersectionCounts counts = thread.walk.test(
-      machine_.accel, thread.strip, {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
+  const IntersectionCounts counts =
+      thread.walk.test(accel_, thread.strip, {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
   if (ports_.questions != nullptr) thread.calls_any_hit = counts.any_hit_calls;
   const std::uint64_t held = thread.walk.stack_bytes().held;
   stack_held_ += held;

@@ -5,27 +5,30 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/machine/cycle_machine.h"
 #include "ringbus/cycle/memory/strip_fetches.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/tile/tile_settings.h"
 #include "ringbus/cycle/time/state_clock.h"
+#include "ringbus/protocol/machine.h"
 
 namespace carousel::ringbus::cycle {
 
-/// A resource of the conventional machine: traces its own rays depth-first, each with a stack of its own, and has no
+/// A resource of the conventional machine: it traces its own rays depth-first, each with a stack of its own, and has no
 /// links, packets or collections.
 ///
-/// Every ray in a slot is a thread that turns by turn waits for the strip it needs next and is tested against it. A
-/// ray that is ready takes the units at once or behind those that were ready before it, so other rays' tests hide
-/// its wait for memory; picking rays and moving stack entries costs no cycles (the baseline is given its best, and
-/// the bytes its stacks move are told apart).
+/// Every ray in a slot is a thread that in turn waits for the strip it needs next and is tested against it. A ray that
+/// is ready takes the units at once, or behind the rays that were ready before it, so that the tests of other rays hide
+/// its wait for memory. Picking rays and moving stack entries costs no cycles: the baseline is given its best, and the
+/// bytes that its stacks move are reported apart.
 class IndependentTile final : public ResourceAgent {
  public:
-  IndependentTile(ResourceId id, CycleMachine& machine, bool statistics, TraceWindow window, const SidePorts& ports);
+  /// Keeps references to the machine and its memory.
+  IndependentTile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings,
+                  const SidePorts& ports);
 
   Cycle next() const override;
   bool polled() const override { return false; }
@@ -45,10 +48,10 @@ class IndependentTile final : public ResourceAgent {
     RayId ray;
     RayWalk walk;
     accel::NodeKey strip;         // fetched or in test
-    bool fetches_transform;       // first
-    std::uint64_t calls_any_hit;  // of a shader worker, when it has been tested
+    bool fetches_transform;       // the transform comes first
+    std::uint64_t calls_any_hit;  // calls to ask shading for when it has been tested
   };
-  /// A ray in test. Of those that end at one time the one that began first goes on first.
+  /// A ray in test. Of rays whose tests end at one time, the one that began first goes on first.
   struct Test {
     Cycle done = 0;
     std::uint64_t turn = 0;
@@ -70,10 +73,12 @@ class IndependentTile final : public ResourceAgent {
     if (statistics_) sink_.record(event);
   }
 
-  CycleMachine& machine_;
+  const accel::Accel& accel_;
+  const ShapeMemory& memory_;
   ResourceId id_;
   RayStore& store_;
   bool statistics_;
+  Cycle control_latency_;
   StatisticsSink sink_;
   Trace trace_;
   SidePorts ports_;

@@ -24,7 +24,7 @@ void RayWalk::start(accel::NodeKey from) {
 
 std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record) {
   if ((record.tag.flags & kRayDone) != 0) {
-    // What waits is forgotten where it stands.
+    // Waiting nodes are forgotten without being read.
     stack_.clear();
     bytes_.held = 0;
   }

@@ -12,22 +12,22 @@
 
 namespace carousel::ringbus::cycle {
 
-/// One ray's way through a tree, depth-first and nearest first, a strip at a time.
+/// Walks one ray through a tree, depth-first and nearest first, a strip at a time.
 ///
-/// The nodes that wait stand on a stack, an entry of 32 bits for an inner node and of 96 for a leaf; the nearest
-/// child goes on at once without having been there. The ray's transformed copy stays in hand while it is within an
-/// instance; whether it is made anew when the ray comes there again, the account says.
+/// Nodes wait on a stack, an entry of 32 bits for an inner node and of 96 for a leaf; the walk goes on with the nearest
+/// child at once, which is never put there. The transformed copy of the ray is kept while the ray is within an
+/// instance. The transform account decides whether it is made anew when the ray comes there again.
 class RayWalk {
  public:
   /// Keeps a reference.
   explicit RayWalk(TransformAccount& transforms) : transforms_(&transforms) {}
   void start(accel::NodeKey from);
-  /// The strip the ray has to be tested against next; nothing when it is through, or needs to know no more.
+  /// The strip that the ray has to be tested against next; nothing when it is through or needs no more tests.
   std::optional<accel::NodeKey> next(const RayRecord& record);
-  /// Tests the ray, the one member of `ray`, against that strip. Returns what the hardware has to do for it.
+  /// Tests the ray, the one member of `ray`, against that strip. Returns the tests that the hardware has to make.
   IntersectionCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
 
-  /// Whether a strip of `instance` would be one of another instance than the last.
+  /// Tells whether `instance` is another one than that of the last strip.
   bool enters(std::uint32_t instance) const { return instance != instance_; }
 
   /// Bytes on the stack now, and moved onto it and from it since start().

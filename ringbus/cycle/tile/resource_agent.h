@@ -12,22 +12,22 @@
 
 namespace carousel::ringbus::cycle {
 
-/// A resource, whatever machine it is part of, as the engine sees it.
+/// The engine's view of a resource, with or without packets.
 class ResourceAgent : public Agent {
  public:
-  /// Ends the clocks of the ledger.
+  /// Ends the time that is accounted to states.
   virtual void close(Cycle end) = 0;
   /// After close().
   virtual TileResult result() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
-  /// Packets it had issued that were not waited for, because a resource had stopped.
+  /// Packets of its own that were discarded because a resource had stopped.
   virtual std::uint64_t packets_discarded() const { return 0; }
 
-  /// The near ends of its links, as the topology's wires.
+  /// The near ends of its links, by port.
   virtual const std::vector<OutPort>& out() const = 0;
-  /// The packet that cannot leave by an exit, with the first of its rays, or empty.
-  virtual std::string blocked(std::size_t exit) const = 0;
+  /// The packet that cannot leave by a port, with its first ray; or empty.
+  virtual std::string blocked(std::size_t port) const = 0;
   virtual const Trace& trace() const = 0;
 };
 

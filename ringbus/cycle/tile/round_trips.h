@@ -7,11 +7,11 @@
 
 namespace carousel::ringbus::cycle {
 
-/// A resource's packets on their way: how long each was out, and, counted apart from that, for how many
-/// packet-cycles any were. By Little's law (J. D. C. Little, Operations Research 9 (1961)) the two must agree.
+/// Measures how long each packet of a resource was under way, and, counted apart from that, the packet-cycles of all.
+/// By Little's law (J. D. C. Little, Operations Research 9 (1961)) the two must agree.
 class RoundTrips {
  public:
-  /// For packets `first` to `first + packets - 1`.
+  /// Measures packets `first` to `first + packets - 1`.
   RoundTrips(std::uint32_t first, std::size_t packets) : first_(first), left_at_(packets) {}
 
   void inject(std::uint32_t packet, Cycle now) {
@@ -25,7 +25,7 @@ class RoundTrips {
     --out_;
   }
 
-  /// It is not home, but will not be waited for.
+  /// A packet has not come back, and will not be waited for.
   void forget(Cycle now) {
     count(now);
     --out_;

@@ -2,22 +2,21 @@
 
 #include <algorithm>
 
-#include "ringbus/cycle/machine/cycle_machine.h"
 #include "ringbus/cycle/messages/side_ports.h"
 
 namespace carousel::ringbus::cycle {
 
-/// A resource's part in shading (`shading.idle_resources_shade`): it says when its testers fall idle and when they
-/// are needed again, and does a job when it gets one. A job that comes too late, when there are tests again, waits
-/// for those that have begun, and the others for it: nothing is broken off, so both always end.
+/// A resource's part in shading (`shading.idle_resources_shade`): it notes when its testers fall idle and when they are
+/// needed again, and does a job when it gets one. A job that comes when there are tests again waits for the tests that
+/// have begun, and later tests wait for the job: nothing is broken off, so both always end.
 ///
-/// The job takes its cycles here; what comes of it is known to the shading agent, where everything is shaded.
+/// Only the cycles of the job are spent here. The ray itself is shaded by the shading agent, like all others.
 class ShadeHelp {
  public:
-  ShadeHelp(const Config& config, const SidePorts& ports)
-      : jobs_(ports.jobs), notes_(ports.help), latency_(control_latency(config)) {}
+  ShadeHelp(const LinkConfig& link, const SidePorts& ports)
+      : jobs_(ports.jobs), notes_(ports.help), latency_(control_latency(link)) {}
 
-  /// Takes a job in, starts it if no test is under way, ends it. Whether any of these happened.
+  /// Takes a job in, starts it if no test is under way, ends it. Returns whether any of these happened.
   bool step(Cycle now, bool testers_free) {
     if (jobs_ == nullptr) return false;
     if (stopped_) {
@@ -38,7 +37,7 @@ class ShadeHelp {
     done_ = kNever;
     return shaded_ = true;
   }
-  /// At the end of a step: what there is to say, if anything.
+  /// Sends a note at the end of a step, if there is anything to note.
   void notify(Cycle now, bool idle) {
     if (jobs_ == nullptr || stopped_ || holds() || (!shaded_ && idle == told_idle_)) return;
     notes_->send(now + latency_, {shaded_, idle});
@@ -46,7 +45,7 @@ class ShadeHelp {
     shaded_ = false;
   }
 
-  /// From now on jobs come to nothing.
+  /// From now on jobs are thrown away.
   void stop() {
     stopped_ = true;
     waiting_ = shaded_ = false;
@@ -59,12 +58,12 @@ class ShadeHelp {
   Cycle next() const { return jobs_ == nullptr ? kNever : std::min(done_, jobs_->next()); }
 
  private:
-  Channel<ShadeJob>* jobs_;  // null: it does not help
+  Channel<ShadeJob>* jobs_;  // null: the resource does not help
   Channel<HelpNote>* notes_;
-  Cycle latency_, cycles_ = 0;  // cycles: of the job
+  Cycle latency_, cycles_ = 0;  // cycles_: of the job
   Cycle done_ = kNever;
   bool waiting_ = false, shaded_ = false, stopped_ = false;
-  bool told_idle_ = true;  // as everybody is at first
+  bool told_idle_ = true;  // all resources are idle at first
 };
 
 }  // namespace carousel::ringbus::cycle

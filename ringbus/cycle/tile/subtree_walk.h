@@ -12,16 +12,16 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Takes rays through a subtree, depth-first and nearest first, a strip at a time, and notes what the hardware
-/// that does so has to do: the kernels' own walk is faster on the host but keeps no account.
+/// Takes rays through a subtree, depth-first and nearest first, a strip at a time, and keeps an account of the work of
+/// the hardware that does so. The kernels' own walk is faster on the host but keeps no account.
 class SubtreeWalk final : public SubtreeTracer {
  public:
   /// Cycles that one ray waits for its tests of each kind in a strip, and for each pass through a transform unit.
   using StepCycles = PerUnit<std::uint64_t>;
   struct Account {
     std::uint64_t chain = 0;               ///< cycles of the slowest ray
-    std::vector<accel::NodeKey> strips;    ///< read by any of them, once each, in order of the first reading
-    std::vector<std::uint32_t> instances;  ///< whose transform was read, in the same way
+    std::vector<accel::NodeKey> strips;    ///< read by any ray, once each, in order of the first reading
+    std::vector<std::uint32_t> instances;  ///< whose transform was read, likewise
   };
   /// Keeps references.
   SubtreeWalk(const accel::Accel& accel, const StepCycles& step, TransformAccount& transforms)

@@ -11,45 +11,42 @@ namespace {
 SubtreeWalk::StepCycles step_cycles(const TestersConfig& testers) {
   SubtreeWalk::StepCycles out;
   for (const auto [kind, units] : testers.units) out[kind] = static_cast<std::uint64_t>(units.latency_cycles);
-  // Where a shader worker decides, the ray goes on in the meantime and waits at the end.
+  // With any_hit: shader a ray goes on meanwhile, since the outcome is known, and waits for the answer at the end.
   if (testers.any_hit != TestersConfig::AnyHit::kInline) out[UnitKind::kAnyHit] = 0;
   return out;
 }
 
 }  // namespace
 
-Tile::Tile(ResourceId id, CycleMachine& machine, float scene_size, bool statistics, TraceWindow window, Ports ports)
+Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings, Ports ports)
     : machine_(machine),
+      memory_(memory),
       id_(id),
-      trace_(id.value, window),
-      transforms_(machine.config.accuracy, machine.accel, machine.stores[id.value]->slots()),
-      walk_(machine.accel, step_cycles(testers_of(machine.config, id)), transforms_),
-      resource_(resource_settings(machine.config, scene_size), machine.accel, *machine.stores[id.value],
-                {statistics ? &sink_ : nullptr, &walk_, &transforms_, ports.questions != nullptr}),
+      trace_(id.value, settings.trace),
+      transforms_(settings.accuracy, machine.accel, machine.stores[id.value]->slots()),
+      walk_(machine.accel, step_cycles(settings.testers), transforms_),
+      resource_(settings.resource, machine.accel, *machine.stores[id.value],
+                {settings.statistics ? &sink_ : nullptr, &walk_, &transforms_, ports.questions != nullptr}),
+      logic_(machine, resource_),
       ports_(std::move(ports)),
-      tester_(testers_of(machine.config, id), machine.config.cull_planes.order, machine.config.rays.reads_per_cycle),
-      shapes_(machine.config.memory, ports_),
-      completed_port_(machine.config, ports_),
-      help_(machine.config, ports_),
-      packet_size_(machine.config),
-      link_bytes_(static_cast<Cycle>(machine.config.topology.link.bytes_per_cycle)),
-      ids_per_cycle_(static_cast<Cycle>(machine.config.packets.ids_per_cycle)),
-      issue_places_(static_cast<std::size_t>(machine.config.memory.fetch_ahead) + 1),
-      stays_(machine.stays()),
-      visit_all_(machine.config.topology.visit == Visit::kAll),
-      cuts_through_(!visit_all_ && ports_.out_to.empty()),
-      fetch_by_resource_(machine.config.memory.fetch == MemoryConfig::Fetch::kResource),
-      bubble_(machine.config.topology.flow == Flow::kBubble),
-      free_(machine.topology.directions()),
-      contexts_(static_cast<std::size_t>(testers_of(machine.config, id).contexts)),
-      trips_(static_cast<std::uint32_t>(id.value * machine.topology.directions() * machine.packets_per_direction()),
-             machine.topology.directions() * machine.packets_per_direction()) {
-  const FaultsConfig::Resource& fault = machine.config.faults.resource;
-  pauses_ = fault.kind == FaultsConfig::Resource::Kind::kPause && fault.number == id.value;
-  stops_ = fault.kind == FaultsConfig::Resource::Kind::kStop && fault.number == id.value;
-  pause_after_ = static_cast<std::uint64_t>(fault.after_rays);
-  for (std::uint32_t i = 0; i < machine.packets.size(); ++i)
-    if (machine.packets[i].owner == id) free_[machine.packets[i].direction].push_back(PacketId(i));
+      tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
+      shapes_(settings.memory, ports_),
+      completed_port_(settings.link, ports_),
+      help_(settings.link, ports_),
+      packet_size_(settings.resource.collections, settings.resource.packets.carry),
+      link_bytes_(static_cast<Cycle>(settings.link.bytes_per_cycle)),
+      ids_per_cycle_(static_cast<Cycle>(settings.resource.packets.ids_per_cycle)),
+      control_latency_(control_latency(settings.link)),
+      issue_places_(static_cast<std::size_t>(settings.memory.fetch_ahead) + 1),
+      visit_all_(machine.topology.visits_all()),
+      cuts_through_(!visit_all_ && !machine.topology.direct()),
+      fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
+      contexts_(static_cast<std::size_t>(settings.testers.contexts)),
+      fault_(settings.fault),
+      trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction) {
+  using Kind = FaultsConfig::Resource::Kind;
+  pauses_ = fault_.kind == Kind::kPause && fault_.number == id.value;
+  stops_ = fault_.kind == Kind::kStop && fault_.number == id.value;
 }
 
 // ---- time
@@ -58,7 +55,7 @@ Cycle Tile::next() const {
   return std::min(next_arrival(), next_beside_ring());
 }
 
-// What is not later than the last step was done in it, or waits for one of the others.
+// An arrival that is not later than the last step was dealt with in it, or waits for another event.
 Cycle Tile::next_arrival() const {
   Cycle first = kNever;
   for (const InPort& in : ports_.in)
@@ -81,7 +78,7 @@ Cycle Tile::next_beside_ring() const {
 }
 
 bool Tile::wants_credit() const {
-  return bubble_ && !issue_.empty() && issue_.front().ready();
+  return machine_.flow.bubble() && !issue_.empty() && issue_.front().ready();
 }
 
 Cycle Tile::next_egress() const {
@@ -96,18 +93,18 @@ Cycle Tile::next_egress() const {
 }
 
 bool Tile::dispatch_wanted() const {
-  // Collections that are not full go when the handler has nothing else to do.
+  // Collections that are not full are issued when the dispatch stage has nothing else to do.
   if (issue_.empty() ? !resource_.idle() : issue_.front().ready()) return true;
   return std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now_; });
 }
 
 void Tile::run(Cycle end) {
-  Cycle rest = next_beside_ring();  // what passes by does not change it
+  Cycle rest = next_beside_ring();  // packets that pass by do not change it
   for (;;) {
     const Cycle arrival = next_arrival(), now = std::min(arrival, rest);
     if (now >= end) return;
-    // Not with the bubble rule, under which what waits to get in must see every credit.
-    if (now < rest && !bubble_ && cut_through(now, true)) continue;
+    // Not with the bubble rule, under which a packet that waits to be injected must see every credit.
+    if (now < rest && !machine_.flow.bubble() && cut_through(now, true)) continue;
     step(now);
     rest = next_beside_ring();
   }
@@ -116,7 +113,7 @@ void Tile::run(Cycle end) {
 void Tile::step(Cycle now) {
   now_ = now;
   for (OutPort& out : ports_.out) out.take_credits(now);
-  if (stops_ && sink_.statistics().rays_completed >= pause_after_) stop(now);
+  if (stops_ && fault_is_due()) stop(now);
   take_answers(now);
   take_opacities(now);
   take_new_rays(now);
@@ -131,13 +128,13 @@ void Tile::step(Cycle now) {
     again |= send(now);
   }
   hand_over(now);
-  if (drains_ && !told_drained_ && drained()) {
+  if (logic_.draining() && !told_drained_ && drained()) {
     told_drained_ = true;
     completed_port_.notify(CompletedRays::Note::kDrained, now);
   }
-  if (pauses_ && sink_.statistics().rays_completed >= pause_after_) {
-    // The handler takes nothing up; what is in test is finished.
-    dispatch_free_ = std::max(dispatch_free_, now) + static_cast<Cycle>(machine_.config.faults.resource.cycles);
+  if (pauses_ && fault_is_due()) {
+    // Dispatch takes nothing up; packets in test are finished.
+    dispatch_free_ = std::max(dispatch_free_, now) + static_cast<Cycle>(fault_.cycles);
     pauses_ = false;
   }
   const TileState state = classify(now);
@@ -162,41 +159,31 @@ TileState Tile::classify(Cycle now) const {
     if (out.blocked()) return TileState::kLink;
   if (!issue_.empty()) return issue_.front().ready() ? TileState::kLink : TileState::kMemory;
   if (storage_full_) return TileState::kStorage;
-  if (!resource_.idle() && resource_.packets_in_flight() > 0 &&
-      std::all_of(free_.begin(), free_.end(), [](const std::vector<PacketId>& f) { return f.empty(); }))
-    return TileState::kCredits;
+  if (!resource_.idle() && resource_.packets_in_flight() > 0 && logic_.free.none()) return TileState::kCredits;
   return TileState::kIdle;
 }
 
-// ---- what comes in beside the ring
+// ---- arrivals beside the ring
 
 void Tile::take_new_rays(Cycle now) {
   while (ports_.new_rays->next() <= now) {
     NewRays rays = ports_.new_rays->take();
     if (rays.order != NewRays::Order::kTake)
       on_order(rays.order, now);
-    else if (!only_forwards())
-      waiting_.push_back(std::move(rays));
+    else if (!logic_.only_forwards())
+      logic_.admission.add(std::move(rays.ids));
   }
 }
 
 bool Tile::admit() {
-  bool moved = false;
-  while (!waiting_.empty()) {
-    std::vector<RayId>& ids = waiting_.front().ids;
-    const std::size_t count = std::min(ids.size(), resource_.admissible());
-    storage_full_ = count < ids.size();
-    if (count == 0) return moved;
-    resource_.admit(std::span(ids).first(count));
-    trace_.note(now_, StepKind::kNewRays, 0, count);
-    ids.erase(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
-    if (ids.empty()) waiting_.pop_front();
-    moved = true;
-  }
+  if (logic_.admission.empty()) return false;
+  const bool moved =
+      logic_.admission.admit(resource_, [this](std::size_t count) { trace_.note(now_, StepKind::kNewRays, 0, count); });
+  storage_full_ = logic_.admission.short_of_room();
   return moved;
 }
 
-// ---- what leaves
+// ---- departures
 
 bool Tile::send(Cycle now) {
   bool moved = false;
@@ -240,32 +227,21 @@ TileResult Tile::result() const {
 }
 
 bool Tile::at_rest() const {
-  return resource_.idle() && resource_.packets_in_flight() == 0 && waiting_.empty() && issue_.empty() &&
+  return logic_.at_rest() && issue_.empty() &&
          std::all_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return out.empty(); });
 }
 
 std::string Tile::describe() const {
   if (at_rest()) return "";
-  std::string text = fmt::format("resource {}: {} collections with {} memberships, {} packets out, {} to be issued",
-                                 id_.value, resource_.collections().collections(),
-                                 resource_.collections().memberships(), resource_.packets_in_flight(), issue_.size());
-  for (std::size_t exit = 0; exit < ports_.out.size(); ++exit)
-    if (const std::string packet = blocked(exit); !packet.empty())
-      text += fmt::format("; {} cannot leave, {} more behind it", packet, ports_.out[exit].egress() - 1);
+  std::string text = logic_.describe() + fmt::format(", {} to be issued", issue_.size());
+  for (std::size_t port = 0; port < ports_.out.size(); ++port)
+    if (const std::string packet = blocked(port); !packet.empty())
+      text += fmt::format("; {} cannot leave, {} more behind it", packet, ports_.out[port].egress() - 1);
   return text;
 }
 
-std::string Tile::blocked(std::size_t exit) const {
-  const OutPort& out = ports_.out[exit];
-  if (!out.blocked()) return "";
-  const Packet& packet = machine_.packet(out.front());
-  std::string text = fmt::format("packet {} of resource {}", out.front().value, packet.owner.value);
-  if (!packet.members.empty()) {
-    const RayIdLayout& layout = resource_.rays().layout();
-    text += fmt::format(" (first ray {}:{})", layout.owner(packet.members[0].ray).value,
-                        layout.slot(packet.members[0].ray));
-  }
-  return text;
+std::string Tile::blocked(std::size_t port) const {
+  return ports_.out[port].blocked() ? logic_.describe(ports_.out[port].front()) : "";
 }
 
 }  // namespace carousel::ringbus::cycle

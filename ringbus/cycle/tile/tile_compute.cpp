@@ -1,4 +1,4 @@
-// A packet's tests at a resource: from its context's first cycle to its last, with the fetches in between.
+// The tests of a packet at a resource: from the first cycle of its context to the last, with the fetches in between.
 #include <algorithm>
 
 #include "ringbus/cycle/tile/tile.h"
@@ -18,7 +18,7 @@ Tile::Context* Tile::free_context() {
 }
 
 std::array<ShapeSpan, 2> Tile::shape_data(accel::NodeKey key, bool transform) const {
-  return {machine_.memory.strip(key), transform ? machine_.memory.transform(key.instance) : ShapeSpan{}};
+  return {memory_.strip(key), transform ? memory_.transform(key.instance) : ShapeSpan{}};
 }
 
 bool Tile::lacks(const ShapeSpan& span) {
@@ -46,14 +46,13 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   context.subtree = resource_.is_treelet(packet.key);
   context.phase = Context::Phase::kComputing;
   if (context.subtree) {
-    // Each ray fetches the strip it needs next, so as many fetches are under way as there are rays.
+    // Each ray fetches the strip that it needs next, so as many fetches are under way as there are rays.
     context.done = tester_.walk(at, context.counts, walk_.account().chain, context.reads);
     context.strips.clear();
     for (const std::uint32_t instance : walk_.account().instances)
-      if (const ShapeSpan span = machine_.memory.transform(instance); !shapes_.has(span))
-        context.strips.push_back(span);
+      if (const ShapeSpan span = memory_.transform(instance); !shapes_.has(span)) context.strips.push_back(span);
     for (const accel::NodeKey key : walk_.account().strips)
-      if (const ShapeSpan strip = machine_.memory.strip(key); !shapes_.has(strip)) context.strips.push_back(strip);
+      if (const ShapeSpan strip = memory_.strip(key); !shapes_.has(strip)) context.strips.push_back(strip);
     std::reverse(context.strips.begin(), context.strips.end());
     const std::size_t together = std::min({outcome.rays, kSubtreeFetches, context.strips.size()});
     for (std::size_t i = 0; i < together; ++i) {
@@ -88,7 +87,7 @@ void Tile::end_test(Context& context, Cycle now) {
   context.subtree = false;
   ask(context, now);
   take_completed(context.completed, context.freed_slots);
-  if (packet.owner == id_ && (stays_ || machine_.topology.hops(packet) == 0)) {
+  if (packet.owner == id_ && !logic_.travels(packet)) {
     occupy_dispatch(now, packet.members.size());
     retire_at_owner(id);
   } else {
@@ -98,7 +97,7 @@ void Tile::end_test(Context& context, Cycle now) {
 
 void Tile::ask(Context& context, Cycle now) {
   if (context.question.slots.empty()) return;
-  ports_.questions->send(now + control_latency(machine_.config), std::move(context.question));
+  ports_.questions->send(now + control_latency_, std::move(context.question));
   ++questions_out_;
   context.question = {};
 }
@@ -108,7 +107,7 @@ void Tile::take_opacities(Cycle now) {
   while (ports_.answers->next() <= now) {
     --questions_out_;
     const AnyHitAnswer answer = ports_.answers->take();
-    if (only_forwards()) continue;
+    if (logic_.only_forwards()) continue;
     for (const std::uint32_t slot : answer.slots) resource_.release(slot);
   }
   take_completed(resource_.completed(), resource_.freed_slots());
@@ -125,7 +124,7 @@ void Tile::take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots) {
 void Tile::fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now) {
   shapes_.request(strip, tag, now);
   ++fetches_out_;
-  // Its place in the buffer is taken now; whoever wants it meanwhile waits behind this one.
+  // Its place in the buffer is taken now; another packet that wants it meanwhile waits behind this fetch.
   shapes_.keep(strip);
 }
 
@@ -133,7 +132,7 @@ void Tile::take_answers(Cycle now) {
   while (shapes_.next() <= now) {
     const std::uint32_t tag = shapes_.take();
     --fetches_out_;
-    if (only_forwards()) continue;
+    if (logic_.only_forwards()) continue;
     if ((tag & kContextTag) == 0) {
       for (Issue& issue : issue_)
         if (issue.tag == tag && !issue.ready()) --issue.outstanding;

@@ -1,4 +1,4 @@
-// A packet's start: from a ready collection by the issue queue, where it waits for its shapes, to the handler.
+// The start of a packet: from a ready collection to the issue queue, where it waits for its shapes, and to dispatch.
 #include <algorithm>
 
 #include "ringbus/cycle/tile/tile.h"
@@ -6,18 +6,17 @@
 namespace carousel::ringbus::cycle {
 
 bool Tile::may_inject(const Packet& packet) const {
-  const OutPort& out = ports_.out[out_port_of(packet)];
-  // The bubble rule also leaves a place for the ring's own traffic.
-  return out.has_place() && (!bubble_ || !ports_.out_to.empty() || out.spare_places() >= 2);
+  const OutPort& out = ports_.out[logic_.out_port(packet)];
+  return machine_.flow.may_inject(out.has_place(), [&] { return out.spare_places(); });
 }
 
 bool Tile::handle_issue(Cycle now) {
   if (issue_.empty() || !issue_.front().ready()) return false;
   const PacketId id = issue_.front().packet;
   Packet& packet = machine_.packet(id);
-  const bool travels = !stays_ && machine_.topology.hops(packet) > 0;
+  const bool travels = logic_.travels(packet);
   if (travels && !may_inject(packet)) return false;
-  const bool tested = packet.kind == PacketKind::kTest && machine_.topology.wanted(packet, id_);
+  const bool tested = logic_.has_rays_of(packet);
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   issue_.pop_front();
@@ -25,7 +24,7 @@ bool Tile::handle_issue(Cycle now) {
   trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
   occupy_dispatch(now, packet.members.size());
   if (tested) {
-    if (travels) ports_.out[out_port_of(packet)].reserve();
+    if (travels) out_for(packet).reserve();
     begin_test(*context, id, dispatch_free_);
     return true;
   }
@@ -37,34 +36,20 @@ bool Tile::handle_issue(Cycle now) {
   return true;
 }
 
-std::optional<PacketId> Tile::free_packet() {
-  const std::size_t directions = free_.size();
-  for (std::size_t i = 0; i < directions; ++i) {
-    // Asked at every step: no division.
-    const std::size_t d = next_direction_ + i < directions ? next_direction_ + i : next_direction_ + i - directions;
-    if (free_[d].empty()) continue;
-    const PacketId id = free_[d].back();
-    free_[d].pop_back();
-    next_direction_ = d + 1 < directions ? d + 1 : 0;
-    return id;
-  }
-  return std::nullopt;
-}
-
 bool Tile::fill_issue(Cycle now) {
   bool moved = false;
   while (issue_.size() < issue_places_ && !resource_.idle()) {
-    // Collections that are not full go only when there is nothing better to do: waiting fills them.
+    // Collections that are not full are issued only when there is nothing better to do: waiting fills them.
     const bool nothing_else =
         issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
         std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
-    const std::optional<PacketId> id = free_packet();
+    const std::optional<PacketId> id = logic_.free.take();
     if (!id) return moved;
     Packet& packet = machine_.packet(*id);
     const Resource::Offer offer = resource_.offer(nothing_else, packet);
     storage_full_ = offer == Resource::Offer::kStorage;
     if (offer != Resource::Offer::kPacket) {
-      free_[packet.direction].push_back(*id);
+      logic_.discard(*id);
       return moved;
     }
     moved = true;

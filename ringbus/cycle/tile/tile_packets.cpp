@@ -1,22 +1,17 @@
-// A packet's way through a resource: in, past or through the handler, out, and home.
+// The way of a packet through a resource: in, past or through dispatch, and out, or back to its owner.
 #include <algorithm>
 
 #include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
 
-std::size_t Tile::out_port_of(const Packet& packet) const {
-  if (ports_.out_to.empty()) return machine_.topology.groups() > 0 ? 0 : packet.direction;
-  return ports_.out_to[machine_.topology.next(packet, id_).value];
-}
-
 void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const Packet& packet = machine_.packet(id);
-  OutPort& out = ports_.out[out_port_of(packet)];
+  OutPort& out = out_for(packet);
   if (reserved) out.release();
   Token token{id, 0, 1, static_cast<std::uint16_t>(packet.members.size())};
   token.link_cycles = static_cast<std::uint16_t>(
-      ceil_div(packet_size_.bytes(packet, machine_.memory, resource_.is_treelet(packet.key)), link_bytes_));
+      ceil_div(packet_size_.bytes(packet, memory_, resource_.is_treelet(packet.key)), link_bytes_));
   token.skip = machine_.topology.skip(packet, id_);
   out.push(token, ready, !visit_all_ && token.skip > 0);
 }
@@ -25,8 +20,7 @@ void Tile::retire_at_owner(PacketId id) {
   Packet& packet = machine_.packet(id);
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
   trips_.return_home(id.value, now_);
-  resource_.retire(packet);
-  free_[packet.direction].push_back(id);
+  logic_.retire(id, packet);
 }
 
 void Tile::occupy_dispatch(Cycle now, std::size_t ids) {
@@ -65,52 +59,55 @@ bool Tile::handle(Cycle now) {
   return handle_issue(now);
 }
 
+bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
+  if (!visit_all_ || !ports_.out[d].has_place()) return false;
+  Token token = ports_.in[d].take(now);
+  --token.skip;
+  ++passed_;
+  passed_rays_ += token.rays;
+  occupy_dispatch(now, token.rays);
+  ports_.out[d].push(token, dispatch_free_, false);
+  return true;
+}
+
 bool Tile::handle_arrival(std::size_t d, Cycle now) {
   InPort& in = ports_.in[d];
-  if (in.front().skip > 0) {
-    if (!visit_all_ || !ports_.out[d].has_place()) return false;
-    Token token = in.take(now);
-    --token.skip;
-    ++passed_;
-    passed_rays_ += token.rays;
-    occupy_dispatch(now, token.rays);
-    ports_.out[d].push(token, dispatch_free_, false);
-    return true;
-  }
+  if (in.front().skip > 0) return pass_through_dispatch(d, now);
   const PacketId id = in.front().packet;
   Packet& packet = machine_.packet(id);
-  if (packet.owner == id_) {
+  const PacketFate fate = logic_.fate(packet);
+  if (fate == PacketFate::kRetire || fate == PacketFate::kDiscard) {
+    const bool retires = fate == PacketFate::kRetire;
     in.take(now);
-    occupy_dispatch(now, only_forwards() ? 0 : packet.members.size());
-    only_forwards() ? discard_home(id) : retire_at_owner(id);
+    occupy_dispatch(now, retires ? packet.members.size() : 0);
+    retires ? retire_at_owner(id) : discard_at_owner(id);
     return true;
   }
-  OutPort& out = ports_.out[out_port_of(packet)];
+  OutPort& out = out_for(packet);
   if (!out.has_place()) return false;
-  if (only_forwards()) {
+  if (logic_.only_forwards()) {
     in.take(now);
     occupy_dispatch(now, 0);
     depart(id, dispatch_free_, false);
     return true;
   }
-  const bool tested = packet.kind == PacketKind::kTest && machine_.topology.wanted(packet, id_);
-  Context* context = tested ? free_context() : nullptr;
-  if (tested && context == nullptr) return false;
+  Context* context = fate == PacketFate::kTest ? free_context() : nullptr;
+  if (fate == PacketFate::kTest && context == nullptr) return false;
   in.take(now);
   trace_.note(now, StepKind::kTake, id.value, packet.members.size());
   occupy_dispatch(now, packet.members.size());
-  if (tested) {
+  if (fate == PacketFate::kTest) {
     out.reserve();
     begin_test(*context, id, dispatch_free_);
-  } else {
-    if (packet.kind == PacketKind::kMemberships && packet.home == id_) {
-      resource_.join(packet);
-    } else {
-      ++passed_;
-      passed_rays_ += packet.members.size();
-    }
-    depart(id, dispatch_free_, false);
+    return true;
   }
+  if (fate == PacketFate::kJoin) {
+    resource_.join(packet);
+  } else {
+    ++passed_;
+    passed_rays_ += packet.members.size();
+  }
+  depart(id, dispatch_free_, false);
   return true;
 }
 

@@ -1,14 +1,14 @@
-// What a resource does when one has stopped, itself or another.
+// The behaviour of a resource when one has stopped, itself or another.
 #include <algorithm>
 
 #include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
 
-/// That it is silent from now on is known to ray control only after a time (ShadingAgent).
+/// Stops this resource. Ray control learns only after some time that it is silent (ShadingAgent).
 void Tile::stop(Cycle now) {
   stops_ = false;
-  stopped_ = true;
+  logic_.stop();
   discard_work(now);
   help_.stop();
   completed_port_.notify(CompletedRays::Note::kLastBeat, now);
@@ -16,20 +16,20 @@ void Tile::stop(Cycle now) {
 
 void Tile::on_order(NewRays::Order order, Cycle now) {
   if (order == NewRays::Order::kDiscard) {
-    drains_ = true;
+    logic_.drain();
     discard_work(now);
     return;
   }
-  drains_ = told_drained_ = false;
-  resource_.exclude(ResourceId(static_cast<std::uint32_t>(machine_.config.faults.resource.number)));
+  told_drained_ = false;
+  logic_.resume(ResourceId(static_cast<std::uint32_t>(fault_.number)));
 }
 
-/// Whatever it was at. What is in test here and belongs to others goes on to them as it is.
+/// Discards all work of this resource. Packets of others that are in test here go on as they are.
 void Tile::discard_work(Cycle now) {
   discarded_ += resource_.discard();
-  waiting_.clear();
+  logic_.admission.clear();
   storage_full_ = false;
-  for (const Issue& issue : issue_) free_[machine_.packet(issue.packet).direction].push_back(issue.packet);
+  for (const Issue& issue : issue_) logic_.discard(issue.packet);
   issue_.clear();
   for (Context& context : contexts_) {
     if (context.phase == Context::Phase::kFree) continue;
@@ -38,23 +38,21 @@ void Tile::discard_work(Cycle now) {
     if (packet.owner != id_) {
       depart(id, now, true);
     } else {
-      if (!stays_ && machine_.topology.hops(packet) > 0) ports_.out[out_port_of(packet)].release();
-      discard_home(id);
+      if (logic_.travels(packet)) out_for(packet).release();
+      discard_at_owner(id);
     }
     context = Context{};
   }
 }
 
-void Tile::discard_home(PacketId id) {
+void Tile::discard_at_owner(PacketId id) {
   trips_.forget(now_);
-  free_[machine_.packet(id).direction].push_back(id);
+  logic_.discard(id);
 }
 
-/// Packets of others that are here are waited for by those.
+/// Nothing of its own is under way. Packets of others that are here count for their owners.
 bool Tile::drained() const {
-  std::size_t home = 0;
-  for (const std::vector<PacketId>& free : free_) home += free.size();
-  return home == free_.size() * machine_.packets_per_direction() && fetches_out_ == 0 && questions_out_ == 0;
+  return logic_.all_home() && fetches_out_ == 0 && questions_out_ == 0;
 }
 
 }  // namespace carousel::ringbus::cycle

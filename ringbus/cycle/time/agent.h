@@ -15,12 +15,13 @@ class Agent {
 
   /// The next cycle in which it has something to do; kNever until something arrives.
   virtual Cycle next() const = 0;
-  /// Whether next() may change by what no WakeupTable tells of: false if its last answer holds until something is sent
-  /// on a connected channel.
+  /// Tells whether next() may change without an announcement in the WakeupTable; false if its last answer holds until
+  /// something is sent on a connected channel.
   virtual bool polled() const { return true; }
   /// Does everything there is to do before `end`, in the order of time.
   virtual void run(Cycle end) = 0;
-  /// What it holds and waits for, for the report of a machine that got stuck; empty when it is at rest.
+  /// One line that says what it holds and waits for, for the report of a machine that got stuck; empty when it is at
+  /// rest.
   virtual std::string describe() const = 0;
 };
 

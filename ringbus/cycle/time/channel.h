@@ -10,11 +10,11 @@
 
 namespace carousel::ringbus::cycle {
 
-/// One way from one agent to another: things with the time at which they arrive, in sending order. Arrival times
-/// must not decrease. The two agents may live on different threads: what is sent within a window arrives after
-/// it (see windows.h), so whether the receiver sees it a little earlier changes nothing.
+/// A one-way channel from one agent to another: things with the time at which they arrive, in sending order. Arrival
+/// times must not decrease. The two agents may live on different threads: a thing that is sent within a window arrives
+/// after it (see windows.h), so nothing changes if the receiver sees it a little earlier.
 ///
-/// Things stand in a chain of blocks; the block the receiver has emptied goes back to the sender.
+/// Things stand in a chain of blocks; the block that the receiver has emptied goes back to the sender.
 template <class T>
 class Channel {
  public:
@@ -40,7 +40,7 @@ class Channel {
     tail_.store(tail + 1, std::memory_order_release);  // publishes the item, and the block's link
     if (arrival < *wake_) *wake_ = arrival;
   }
-  /// The earliest arrival that was sent since it was last cleared is kept in `slot`, which is the sender's to write.
+  /// From now on `slot` keeps the earliest arrival that was sent since it was last cleared. The sender writes it.
   void wakes(Cycle& slot) { wake_ = &slot; }
 
   /// Arrival of the first thing; kNever when there is none.
@@ -92,17 +92,17 @@ class Channel {
     return head_block_->items[head_ % kBlock];
   }
 
-  // The receiver's.
+  // Used by the receiver.
   alignas(64) mutable Block* head_block_;
   std::size_t head_ = 0;
   mutable Cycle arrival_ = kNever;  // of the first thing, once it has been looked at
   mutable bool emptied_ = false;    // the head block has been read to its end, and the next one not begun
-  // The sender's.
+  // Used by the sender.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
   Cycle unconnected_ = kNever;
   Cycle* wake_ = &unconnected_;
-  mutable std::atomic<Block*> spare_{nullptr};  // beside them: touched once a block only
+  mutable std::atomic<Block*> spare_{nullptr};  // used by both, but only once a block
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -7,7 +7,7 @@
 
 namespace carousel::ringbus::cycle {
 
-/// How long something has been in each of its states; the times add up to the whole.
+/// Measures how long something has been in each of its states; the times add up to the whole.
 template <class State, std::size_t kStates>
 class StateClock {
  public:

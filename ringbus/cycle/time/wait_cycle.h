@@ -9,11 +9,11 @@ namespace carousel::ringbus::cycle {
 /// One node of a stuck machine waits for a place at another.
 struct Wait {
   std::uint32_t from = 0, to = 0;
-  std::string packet;  ///< what would go there, with a ray of it
+  std::string packet;  ///< the packet that would go there, with its first ray
 };
 
-/// A circle of waits, told in one line, e.g. "resource 0 holds packet 3 ... for resource 1, which ..."; empty when
-/// there is none.
+/// Finds a circle of waits and describes it in one line, e.g. "a circle of waits: resource 0 has packet 3 for resource
+/// 1; ..."; empty when there is none.
 std::string wait_cycle(const std::vector<Wait>& waits);
 
 }  // namespace carousel::ringbus::cycle

@@ -10,9 +10,10 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Word of what arrives, so that nobody looks into every channel before every window: for each pair of threads, the
-/// earliest arrival that the one has sent to each agent of the other. A row is written by its sending thread within
-/// a window, and read and cleared by its receiving thread between windows (windows.h); nothing in it is shared.
+/// Announcements of arrivals, so that no thread has to look into every channel before every window: for each pair of
+/// threads, the earliest arrival that the one has sent to each agent of the other. A row is written by its sending
+/// thread within a window, and read and cleared by its receiving thread between windows (windows.h); no two threads
+/// use it at the same time.
 class WakeupTable {
  public:
   /// Agents by thread, as run_windows() gets them.
@@ -24,7 +25,8 @@ class WakeupTable {
     }
   }
 
-  /// From now on `to` hears of what `from` sends. To be done for every channel to an agent that is not polled().
+  /// From now on the channel announces to agent `to` what agent `from` sends. Needed for every channel to an agent that
+  /// is not polled().
   template <class T>
   void connect(Channel<T>& channel, const Agent& from, const Agent& to) {
     const Place place = places_.at(&to);

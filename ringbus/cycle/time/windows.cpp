@@ -15,10 +15,10 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-/// Where threads wait for each other, twice a window. A thread spins for about as long as waking a sleeper takes, if
-/// there is a core for everyone, and then sleeps: whoever is woken runs soon even on a busy machine, while one that
-/// yields goes behind everybody. Spinning in vain on a busy machine takes the core from the very thread that is waited
-/// for, so whoever had to sleep spins for half as long the next time.
+/// Makes threads wait for each other, twice a window. If there is a core for each, a thread spins for about as long as
+/// waking a sleeper takes, and then sleeps: a thread that is woken runs soon even on a busy machine, while one that
+/// yields goes behind all others. Spinning in vain on a busy machine takes the core from the very thread that is waited
+/// for, so a thread that had to sleep spins for half as long the next time.
 class Barrier {
  public:
   explicit Barrier(std::size_t threads) : threads_(threads), spins_(threads <= std::thread::hardware_concurrency()) {}
@@ -30,7 +30,7 @@ class Barrier {
 
   void wait(Patience& patience) {
     const std::size_t turn = turn_.load(std::memory_order_relaxed);
-    // Acquire and release: whoever leaves sees what everyone did before arriving.
+    // Acquire and release: a thread that leaves sees everything that all did before they arrived.
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
       arrived_.store(0, std::memory_order_relaxed);
       turn_.store(turn + 1, std::memory_order_release);
@@ -49,7 +49,7 @@ class Barrier {
   static constexpr std::chrono::nanoseconds kLongest = std::chrono::microseconds(100),
                                             kShortest = std::chrono::microseconds(1);
 
-  /// Whether the turn ended while the caller looked on.
+  /// Spins, and returns whether the turn ended meanwhile.
   bool spun(std::size_t turn, std::chrono::nanoseconds at_most) const {
     const auto end = std::chrono::steady_clock::now() + at_most;
     do {
@@ -98,14 +98,14 @@ class WindowRun {
     Barrier::Patience patience;
     for (std::uint64_t window = 0;; ++window) {
       Cycle first = look(thread, schedule);
-      // Written within windows only, so here, between two of them, everybody reads the same.
+      // Written within windows only, so all threads read the same here, between two of them.
       const bool stop = stop_.load(std::memory_order_relaxed);
       if (!alone) {
         next_[thread].cycle = first;
         barrier_.wait(patience);
         for (const Next& other : next_) first = std::min(first, other.cycle);
       }
-      if (first == kNever || stop) break;  // everybody comes to the same conclusion
+      if (first == kNever || stop) break;  // all threads come to the same conclusion
       run_window(agents, schedule, first + lookahead_);
       if (thread == 0) {
         reached_ = first;
@@ -115,7 +115,7 @@ class WindowRun {
     }
   }
 
-  /// When each agent of a thread is next to run, and which of them must be asked before every window.
+  /// By agent of a thread: the time at which it is next to run, and whether it must be asked before every window.
   struct Schedule {
     std::vector<Cycle> wake;
     std::vector<std::uint8_t> polled;
@@ -128,7 +128,7 @@ class WindowRun {
     }
   };
 
-  /// Between windows: what has been heard. Returns the earliest time at which an agent of the thread has to run.
+  /// Takes in the announcements, between windows. Returns the earliest time at which an agent of the thread has to run.
   Cycle look(std::size_t thread, Schedule& schedule) {
     std::vector<Cycle>& wake = schedule.wake;
     for (std::size_t from = 0; from < parts_.size(); ++from) {

@@ -17,7 +17,7 @@ namespace carousel::ringbus::cycle {
 /// then with the time reached; when it answers false the run ends early. Exceptions of agents pass through.
 /// Returns the last window's first cycle, the time reached.
 ///
-/// Agents that are not polled() must have all their channels connected to `board`, which was made for `parts`.
+/// Agents that are not polled() must have all their channels connected to `wakeups`, which was made for `parts`.
 Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
                   const std::function<bool(Cycle)>& keep_running);
 

@@ -8,6 +8,7 @@
 #include "ringbus/cycle/time/windows.h"
 #include "ringbus/cycle/traffic/traffic_node.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
+#include "ringbus/protocol/flow_rules.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
@@ -16,19 +17,27 @@ namespace cycle {
 
 namespace {
 
-/// Builds the nodes and the links between them, and runs them.
+/// Builds the nodes of a network and the links between them, and runs them.
 class TrafficRun {
  public:
   TrafficRun(const Config& config, const RunOptions& options)
-      : config_(config), options_(options), topology_(config.topology), plan_(config) {
+      : config_(config),
+        options_(options),
+        topology_(config.topology),
+        flow_(config.topology.flow, topology_.direct()),
+        plan_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources()) {
     for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
       wires_.push_back(std::make_unique<WireOf<TrafficToken>>());
-      if (acknowledges()) acks_.push_back(std::make_unique<Channel<TrafficAck>>());
+      if (flow_.counts_deliveries()) acks_.push_back(std::make_unique<Channel<TrafficAck>>());
     }
-    for (std::uint32_t r = 0; r < topology_.resources(); ++r)
-      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), config,
-                                                     TrafficSource(config, ResourceId(r), plan_.gap), plan_.packets[r],
-                                                     plan_.window, ports_of(ResourceId(r))));
+    const TrafficConfig& traffic = config.workload.traffic;
+    const TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link);
+    for (std::uint32_t r = 0; r < topology_.resources(); ++r) {
+      TrafficSource source(traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ResourceId(r),
+                           plan_.gap);
+      nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), topology_, flow_, settings, std::move(source),
+                                                     plan_.packets[r], plan_.window, ports_of(ResourceId(r))));
+    }
   }
 
   TrafficResult run() {
@@ -36,7 +45,7 @@ class TrafficRun {
     const std::vector<std::vector<Agent*>> parts = share_out();
     auto last_report = start;
     bool stopped = false;
-    WakeupTable wakeups(parts);  // whose agents are polled
+    WakeupTable wakeups(parts);  // stays empty: nodes are polled
     run_windows(parts, wakeups, link_latency(), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
@@ -57,30 +66,18 @@ class TrafficRun {
   }
 
  private:
-  bool point_to_point() const { return config_.topology.shape == TopologyShape::kPointToPoint; }
-  bool acknowledges() const { return config_.topology.flow == Flow::kCredits && !point_to_point(); }
   Cycle link_latency() const { return static_cast<Cycle>(config_.topology.link.latency_cycles); }
 
   TrafficNode::Ports ports_of(ResourceId id) const {
     TrafficNode::Ports ports;
     const std::uint32_t depth = static_cast<std::uint32_t>(config_.topology.link.depth);
-    if (point_to_point()) ports.out_to.resize(topology_.resources());
-    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
-      const Topology::Wire& wire = topology_.wires()[i];
-      const std::size_t direction = wire.direction;
-      if (wire.to == id) {
-        const std::size_t at = point_to_point() ? ports.in.size() : direction;
-        if (ports.in.size() <= at) ports.in.resize(at + 1);
-        ports.in[at] = {wires_[i].get(), link_latency()};
-        if (acknowledges()) {
-          ports.acks_in.resize(ports.in.size());
-          ports.acks_in[at] = acks_[i].get();
-        }
-      }
-      if (wire.from != id) continue;
-      if (point_to_point()) ports.out_to[wire.to.value] = static_cast<std::uint32_t>(ports.out.size());
+    for (const std::uint32_t i : topology_.ports(id).in) {
+      ports.in.push_back({wires_[i].get(), link_latency()});
+      if (flow_.counts_deliveries()) ports.acks_in.push_back(acks_[i].get());
+    }
+    for (const std::uint32_t i : topology_.ports(id).out) {
       ports.out.emplace_back(*wires_[i], link_latency(), depth, 1);
-      if (acknowledges()) ports.acks_out.push_back(acks_[i].get());
+      if (flow_.counts_deliveries()) ports.acks_out.push_back(acks_[i].get());
     }
     return ports;
   }
@@ -128,8 +125,9 @@ class TrafficRun {
   const Config& config_;
   const RunOptions& options_;
   Topology topology_;
+  FlowRules flow_;
   TrafficPlan plan_;
-  std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as the topology's
+  std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires()
   std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;    // beside them
   std::vector<std::unique_ptr<TrafficNode>> nodes_;
 };

@@ -6,23 +6,23 @@
 
 namespace carousel::ringbus::cycle {
 
-TrafficNode::TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets,
+TrafficNode::TrafficNode(ResourceId id, const Topology& topology, const FlowRules& flow,
+                         const TrafficNodeSettings& settings, TrafficSource source, std::uint64_t packets,
                          TrafficWindow window, Ports ports)
-    : topology_(config.topology),
+    : topology_(topology),
       id_(id),
       ports_(std::move(ports)),
       source_(std::move(source)),
       window_(window),
-      inject_cycles_(static_cast<Cycle>(config.workload.traffic.inject_cycles)),
-      eject_cycles_(static_cast<Cycle>(config.workload.traffic.eject_cycles)),
-      ack_latency_(static_cast<Cycle>(config.topology.link.latency_cycles)),
-      flits_(static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(config.workload.traffic.packet_bytes),
-                                                 static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle)))),
-      places_wanted_(config.topology.flow == Flow::kBubble && ports_.out_to.empty() ? 2 : 1),
+      inject_cycles_(settings.inject_cycles),
+      eject_cycles_(settings.eject_cycles),
+      ack_latency_(settings.link_latency),
+      flits_(settings.flits),
+      places_wanted_(flow.places_to_inject()),
       arrivals_(ports_.in.size()),
-      eager_(config.topology.flow == Flow::kNone),
+      injects_first_(flow.injects_first()),
       to_create_(packets),
-      allowances_(ports_.acks_in.size(), {static_cast<std::uint32_t>(config.topology.link.depth), {}}),
+      allowances_(ports_.acks_in.size(), {settings.link_depth, {}}),
       passing_acks_(ports_.acks_in.size()) {
   create();
 }
@@ -33,8 +33,8 @@ void TrafficNode::create() {
   --to_create_;
   source_.advance();
   const ResourceId to = source_.destination();
-  route_ = traffic_route(topology_, id_, to, source_.random());
-  exit_ = ports_.out_to.empty() ? route_.direction : ports_.out_to[to.value];
+  route_ = topology_.route(id_, to, source_.random());
+  exit_ = topology_.direct() ? topology_.out_port_to(id_, to) : route_.direction;
   ready_ = std::max(source_.created() + inject_cycles_, inject_free_);
   if (source_.created() < window_.begin) return;
   ++offered_;
@@ -54,7 +54,7 @@ Cycle TrafficNode::next() const {
 Cycle TrafficNode::next_here() const {
   Cycle first = waiting_ ? next_injection() : kNever;
   for (std::size_t d = 0; d < arrivals_.size(); ++d) {
-    // What is not later than the last step waits: for the sink, or for what is in hand to leave.
+    // An arrival that is not later than the last step waits: for the sink, or for the egress place.
     if (arrivals_[d] > now_)
       first = std::min(first, arrivals_[d]);
     else if (sink_free_ > now_ && ports_.in[d].front().skip == 0)
@@ -78,7 +78,7 @@ Cycle TrafficNode::next_injection() const {
 }
 
 void TrafficNode::run(Cycle end) {
-  // Nothing that is sent to it from now on arrives before `end`: it is enough to look once.
+  // Packets that are sent to it from now on arrive after `end`, so it is enough to look once.
   for (std::size_t d = 0; d < arrivals_.size(); ++d) arrivals_[d] = ports_.in[d].next();
   take_acks(end);
   for (Cycle now; (now = next_here()) < end;) step(now);
@@ -94,7 +94,7 @@ void TrafficNode::step(Cycle now) {
       egress_count_ -= out.send(now);
     }
   }
-  if (eager_ && waiting_ && ready_ <= now) inject(now);
+  if (injects_first_ && waiting_ && ready_ <= now) inject(now);
   const std::size_t ways = arrivals_.size(), first = first_in_;
   for (std::size_t i = 0; i < ways; ++i) {
     const std::size_t d = first + i < ways ? first + i : first + i - ways;
@@ -125,7 +125,7 @@ void TrafficNode::pass(std::size_t d, Cycle now) {
       out.launch(token, now, token.skip > 0);
     } else {
       out.push(token, now, token.skip > 0);
-      out.send(now);  // does not, but counts the wait
+      out.send(now);  // sends nothing, but counts the wait
       ++egress_count_;
     }
   }
@@ -138,7 +138,7 @@ void TrafficNode::inject(Cycle now) {
     const Cycle tail = now + flits_ - 1u;
     if (!sink_open(tail)) return;
     deliver(token, tail);
-  } else if (Out& out = ports_.out[exit_]; eager_) {
+  } else if (Out& out = ports_.out[exit_]; injects_first_) {
     if (!out.has_place()) return;
     out.push(token, now, token.skip > 0);
     out.take_credits(now);
@@ -159,7 +159,7 @@ void TrafficNode::deliver(const TrafficToken& token, Cycle tail) {
   if (token.created >= window_.begin) latency_.add(last_ - token.created);
 }
 
-// ---- word of deliveries
+// ---- acknowledgements
 
 void TrafficNode::take_acks(Cycle end) {
   for (std::size_t a = 0; a < ports_.acks_in.size(); ++a) {
@@ -181,7 +181,7 @@ void TrafficNode::forward_acks(std::size_t a, Cycle end) {
 }
 
 void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle now) {
-  const std::size_t a = topology_.shape == TopologyShape::kBidirectional ? 1 - d : d;
+  const std::size_t a = topology_.ack_direction(d);
   forward_acks(a, now + 1);  // those that came earlier leave earlier
   ports_.acks_out[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
 }

@@ -8,49 +8,60 @@
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/traffic/traffic_route.h"
+#include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
 #include "ringbus/cycle/traffic/traffic_token.h"
+#include "ringbus/protocol/flow_rules.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {
 
-/// What is measured: packets created from `begin` on; sources stop before `end`.
-struct TrafficWindow {
-  Cycle begin = 0, end = 0;
+/// The parts of the configuration that a node follows.
+struct TrafficNodeSettings {
+  Cycle inject_cycles = 0, eject_cycles = 0;
+  Cycle link_latency = 1;
+  std::uint32_t link_depth = 1;
+  std::uint16_t flits = 1;  ///< of a packet
 };
 
-/// A resource in a network without rays: a source of packets, a sink, and a router with one place in hand for each
-/// way out. A packet that arrives for another resource goes on in the same cycle if its link is free (cut-through:
-/// its tail may still be arriving), so a hop takes topology.link.latency_cycles. From its creation to the last of
-/// its L flits' delivery, h hops away and with nobody in its way, a packet takes
+inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, const LinkConfig& link) {
+  return {static_cast<Cycle>(traffic.inject_cycles), static_cast<Cycle>(traffic.eject_cycles),
+          static_cast<Cycle>(link.latency_cycles), static_cast<std::uint32_t>(link.depth),
+          static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(traffic.packet_bytes),
+                                              static_cast<std::uint64_t>(link.bytes_per_cycle)))};
+}
+
+/// A resource in a network without rays: a source of packets, a sink, and a router with one egress place for each way
+/// out. A packet that arrives for another resource goes on in the same cycle if its link is free (cut-through: its tail
+/// may still be arriving), so a hop takes topology.link.latency_cycles. A packet of L flits whose destination is h hops
+/// away takes, from its creation until its last flit is delivered and if no other packet is in its way,
 ///     inject_cycles + h * latency_cycles + L - 1 + eject_cycles.
-/// One flit a cycle gets in from the source, and one out to the sink. What travels goes before what wants in. The
-/// source's queue is endless, and first in, first out.
+/// One flit a cycle gets in from the source, and one out to the sink. Packets on their way go before packets of the
+/// source. The queue of the source has no bound, and is first in, first out.
 ///
-/// Why packets that go part of the way round a ring cannot stop it (DESIGN.md section 4):
-/// - `bubble`: a packet is injected only if it leaves a free place in the next queue, so no round of queues is ever
-///   filled by injecting, and moving on does not change how many are full. Some packet always has a free place ahead
+/// Packets that go only part of the way round a ring cannot stop it (DESIGN.md section 4):
+/// - `bubble`: a packet is injected only if it leaves a free place in the next queue, so injecting never fills a round
+///   of queues, and moving on does not change how many are full. Some packet always has a free place ahead
 ///   (V. Puente et al., The adaptive bubble router, J. Parallel and Distributed Computing 61 (2001)).
-/// - `credits`: a source has at most `depth` packets on each ring until word comes that one was delivered, so R
-///   sources have R * depth packets against R * depth places in queues and R in hands: a place is always free. Word
-///   of a delivery travels on wires of its own that are never full (round a ring that has only one direction, back
-///   the other way of one that has two).
-/// - `none`: nothing prevents it, and what wants in goes first, so that it shows.
-/// - The sink takes every packet after a bounded time, so point to point no packet waits for another to move.
+/// - `credits`: a source has at most `depth` packets on each ring until an acknowledgement comes that one was
+/// delivered,
+///   so R sources have R * depth packets against R * depth places in queues and R egress places: a place is always
+///   free. Acknowledgements travel on wires of their own that are never full, in the direction that the topology names.
+/// - `none`: nothing prevents it, and packets of the source go first, so that it shows.
+/// - The sink takes every packet after a bounded time, so point to point no packet waits for another one to move.
 class TrafficNode final : public Agent {
  public:
   using In = InPortOf<TrafficToken>;
   using Out = OutPortOf<TrafficToken>;
   struct Ports {
-    std::vector<In> in;                                   ///< a ring: by direction
-    std::vector<Out> out;                                 ///< a ring: by direction; point to point: by `out_to`
-    std::vector<std::uint32_t> out_to;                    ///< point to point: by destination
-    std::vector<Channel<TrafficAck>*> acks_in, acks_out;  ///< by direction; empty where nobody waits for them
+    std::vector<In> in;
+    std::vector<Out> out;
+    std::vector<Channel<TrafficAck>*> acks_in, acks_out;  ///< by direction; empty where no source waits for them
   };
 
-  /// `packets`: that it takes from the source.
-  TrafficNode(ResourceId id, const Config& config, TrafficSource source, std::uint64_t packets, TrafficWindow window,
-              Ports ports);
+  /// Keeps a reference to the topology. `packets`: how many it takes from the source.
+  TrafficNode(ResourceId id, const Topology& topology, const FlowRules& flow, const TrafficNodeSettings& settings,
+              TrafficSource source, std::uint64_t packets, TrafficWindow window, Ports ports);
 
   Cycle next() const override;
   void run(Cycle end) override;
@@ -62,9 +73,8 @@ class TrafficNode final : public Agent {
   std::uint64_t delivered() const { return delivered_; }
   std::uint64_t accepted() const { return accepted_; }  ///< delivered within the window
   std::uint64_t offered() const { return offered_; }    ///< created within the window
-  std::uint64_t routers() const {
-    return routers_;
-  }                                     ///< that the packets offered had to visit, first and last included
+  /// Routers that the packets offered had to visit, first and last included.
+  std::uint64_t routers() const { return routers_; }
   Cycle last() const { return last_; }  ///< when something was last delivered
 
  private:
@@ -81,7 +91,7 @@ class TrafficNode final : public Agent {
   void deliver(const TrafficToken& token, Cycle tail);
   void create();
 
-  const TopologyConfig& topology_;
+  const Topology& topology_;
   ResourceId id_;
   Ports ports_;
   TrafficSource source_;
@@ -91,22 +101,22 @@ class TrafficNode final : public Agent {
   std::uint32_t places_wanted_;  // in the next queue, to inject
 
   Cycle now_ = 0;
-  std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted down when a window begins
-  std::size_t egress_count_ = 0;  // ways out with something in hand
-  std::size_t first_in_ = 0;      // has the sink before the others
+  std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted when a window begins
+  std::size_t egress_count_ = 0;  // packets in egress places
+  std::size_t first_in_ = 0;      // the port that has the sink before the others
   Cycle sink_free_ = 0;           // for the next packet's tail
 
-  bool eager_;  // injects before it lets pass
+  bool injects_first_;  // before packets on their way
 
   // The packet to inject next; it need not have been created yet.
   bool waiting_ = false;
-  TrafficRoute route_;
+  Topology::Route route_;
   std::size_t exit_ = 0;
   Cycle ready_ = 0, inject_free_ = 0;  // not injected before
   std::uint64_t to_create_;            // after it
   struct Allowance {
-    std::uint32_t left = 0;  // packets it may have on the way besides those it has
-    Fifo<Cycle> acks;        // when there will be one more
+    std::uint32_t left = 0;  // packets that it may send besides those on the way
+    Fifo<Cycle> acks;        // times at which there will be one more
   };
   std::vector<Allowance> allowances_;  // by direction; empty: any number
   struct PassingAck {

@@ -4,15 +4,14 @@
 
 namespace carousel::ringbus::cycle {
 
-TrafficPlan::TrafficPlan(const Config& config)
-    : gap(traffic_gap(config.workload.traffic)), packets(static_cast<std::size_t>(config.topology.resources)) {
-  const std::uint64_t resources = packets.size();
+TrafficPlan::TrafficPlan(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources)
+    : gap(traffic_gap(traffic)), packets(resources) {
   std::vector<TrafficSource> sources;
   for (std::uint32_t r = 0; r < resources; ++r) {
-    sources.emplace_back(config, ResourceId(r), gap);
+    sources.emplace_back(traffic, seed, resources, ResourceId(r), gap);
     sources.back().advance();
   }
-  std::uint64_t left = static_cast<std::uint64_t>(config.workload.traffic.packets);
+  std::uint64_t left = static_cast<std::uint64_t>(traffic.packets);
   const auto count = [&](std::size_t r) {
     ++packets[r];
     --left;
@@ -31,7 +30,7 @@ TrafficPlan::TrafficPlan(const Config& config)
     window.end = next->created() + 1;
     count(static_cast<std::size_t>(next - sources.begin()));
   }
-  window.begin = static_cast<Cycle>(static_cast<double>(window.end) * config.workload.traffic.warmup_fraction);
+  window.begin = static_cast<Cycle>(static_cast<double>(window.end) * traffic.warmup_fraction);
 }
 
 }  // namespace carousel::ringbus::cycle

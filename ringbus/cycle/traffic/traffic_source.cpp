@@ -57,14 +57,14 @@ GeometricGap traffic_gap(const TrafficConfig& config) {
   return GeometricGap(config.rate / (static_cast<double>(config.burst_packets) * (1 - config.rate)));
 }
 
-TrafficSource::TrafficSource(const Config& config, ResourceId id, const GeometricGap& gap)
-    : pattern_(config.workload.traffic.pattern),
-      seed_(static_cast<std::uint64_t>(config.image.seed)),
+TrafficSource::TrafficSource(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources, ResourceId id,
+                             const GeometricGap& gap)
+    : pattern_(traffic.pattern),
+      seed_(seed),
       id_(id.value),
-      resources_(static_cast<std::uint32_t>(config.topology.resources)),
-      hotspot_(static_cast<std::uint32_t>(config.workload.traffic.hotspot)),
-      chance_(pattern_ == Pattern::kBursty ? 1 / static_cast<double>(config.workload.traffic.burst_packets)
-                                           : config.workload.traffic.hotspot_fraction),
+      resources_(static_cast<std::uint32_t>(resources)),
+      hotspot_(static_cast<std::uint32_t>(traffic.hotspot)),
+      chance_(pattern_ == Pattern::kBursty ? 1 / static_cast<double>(traffic.burst_packets) : traffic.hotspot_fraction),
       gap_(&gap) {}
 
 void TrafficSource::advance() {

@@ -21,7 +21,7 @@ class GeometricGap {
  private:
   static constexpr std::size_t kPowers = 40;
   static constexpr int kStartBits = 8;
-  /// Where to look for the gap of a random number, by its first bits.
+  /// The start of the search for the gap of a random number, by its first bits.
   struct Start {
     double power = 1;  // of (1 - rate), to the `gap`: not less than any such number
     Cycle gap = 0;
@@ -33,11 +33,11 @@ class GeometricGap {
   std::array<Start, std::size_t{1} << kStartBits> starts_;
 };
 
-/// Of the packets of one source; with bursts, of the silences between them.
+/// The gaps between the packets of one source; with bursts, the silences between bursts.
 GeometricGap traffic_gap(const TrafficConfig& config);
 
-/// The packets that one resource creates: when, and for whom. It knows nothing of the network, so the packets are
-/// the same in every one.
+/// The packets that one resource creates: their times and destinations. It knows nothing of the network, so the packets
+/// are the same in every network.
 ///   uniform    to any resource, the source included
 ///   tornado    almost half way round: (k + 1) / 2 - 1 on, of k (as BookSim2's)
 ///   neighbour  to the next one
@@ -47,14 +47,15 @@ GeometricGap traffic_gap(const TrafficConfig& config);
 class TrafficSource {
  public:
   /// `gap` is that of traffic_gap(), which all sources share; it must outlive them.
-  TrafficSource(const Config& config, ResourceId id, const GeometricGap& gap);
+  TrafficSource(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources, ResourceId id,
+                const GeometricGap& gap);
 
   /// Creates the next packet.
   void advance();
   /// When it was created; at least 1, and every packet later than the one before.
   Cycle created() const { return created_; }
   ResourceId destination() const;
-  /// For whoever has to toss a coin over it.
+  /// A random number of the packet's own, for a choice between equally short ways.
   std::uint32_t random() const { return words_[2]; }
 
  private:

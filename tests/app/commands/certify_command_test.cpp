@@ -98,7 +98,7 @@ TEST(Certificate, IsTheSameForAnyNumberOfThreads) {
     for (const app::PropertyResult& result :
          app::certify(seed, {3001, 0}, std::nullopt, executor, [] { return false; }).properties)
       for (const app::LevelResult& level : result.levels)
-        all.insert(all.end(), {double(level.asked), double(level.broken), level.worst_error,
+        all.insert(all.end(), {double(level.cases), double(level.broken), level.worst_error,
                                double(level.first_broken.value_or(0))});
     return all;
   };

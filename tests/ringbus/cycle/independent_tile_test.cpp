@@ -16,7 +16,9 @@ class LoneTile {
       : config_(config),
         machine_(config_, scene.accel(config_.bvh), scene.size()),
         scene_(scene),
-        tile_(ResourceId(0), machine_, true, TraceWindow{}, {&new_rays_, &completed_, &fetch_, &fetched_}) {}
+        memory_(machine_.accel, config_.accuracy),
+        tile_(ResourceId(0), machine_, memory_, tile_settings(config_, ResourceId(0), scene.size(), true, {}),
+              {&new_rays_, &completed_, &fetch_, &fetched_}) {}
 
   /// Loads the scene's rays [first, first + count), at cycle 0; `copies` times each.
   void load(std::size_t first, std::size_t count, int copies = 1) {
@@ -55,8 +57,9 @@ class LoneTile {
 
  private:
   Config config_;
-  CycleMachine machine_;
+  Machine machine_;
   TestScene& scene_;
+  ShapeMemory memory_;
   Channel<NewRays> new_rays_;
   Channel<CompletedRays> completed_;
   Channel<FetchRequest> fetch_;

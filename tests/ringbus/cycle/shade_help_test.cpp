@@ -41,7 +41,7 @@ void expect_note(Wires& wires, Cycle at, bool shaded, bool idle) {
 TEST(ShadeHelp, DoesAJobBetweenTests) {
   const Config config = helping_machine();
   Wires wires;
-  ShadeHelp help(config, wires.ports());
+  ShadeHelp help(config.topology.link, wires.ports());
   help.notify(0, true);
   EXPECT_EQ(wires.notes.next(), kNever);  // everybody is idle at first
   help.notify(3, false);
@@ -70,7 +70,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
 
 TEST(ShadeHelp, DoesNothingUnlessAsked) {
   Config config = helping_machine();
-  ShadeHelp help(config, SidePorts{});
+  ShadeHelp help(config.topology.link, SidePorts{});
   EXPECT_FALSE(help.step(5, true));
   help.notify(5, false);
   EXPECT_FALSE(help.holds());

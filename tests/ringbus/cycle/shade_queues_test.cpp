@@ -50,13 +50,13 @@ TEST(ShadeQueues, RoundRobinTakesTurns) {
 
 TEST(ShadeQueues, LoadCountsWhatIsInHand) {
   ShadeQueues q = queues(Distribute::kLoad, 3);
-  q.hold(0, 1);
-  q.hold(1, 3);
+  q.set_in_work(0, 1);
+  q.set_in_work(1, 3);
   for (std::uint32_t path = 0; path < 5; ++path) q.push(ray_of_path(path));  // 2, then 0 or 2, the first first
   EXPECT_EQ(paths_of(q, 2), (std::vector<std::uint32_t>{0, 2, 4}));
   EXPECT_EQ(paths_of(q, 0), (std::vector<std::uint32_t>{1, 3}));
   EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{}));
-  q.hold(1, 0);
+  q.set_in_work(1, 0);
   q.push(ray_of_path(9));
   EXPECT_EQ(paths_of(q, 1), (std::vector<std::uint32_t>{9}));
 }
@@ -84,9 +84,9 @@ TEST(ShadeQueues, RandomDependsOnTheRayAlone) {
 
 TEST(ShadeQueues, HelpersTakeFromTheLongest) {
   ShadeQueues q = queues(Distribute::kLoad, 2);
-  q.hold(0, 100);
+  q.set_in_work(0, 100);
   for (std::uint32_t path = 0; path < 3; ++path) q.push(ray_of_path(path));
-  q.hold(0, 0);
+  q.set_in_work(0, 0);
   q.push(ray_of_path(3));  // to worker 0, which has none waiting
   EXPECT_EQ(q.take_any()->tag.path, 0u);
   EXPECT_EQ(q.take_any()->tag.path, 1u);

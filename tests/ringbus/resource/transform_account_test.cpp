@@ -88,7 +88,7 @@ TEST(InstanceData, TravelsWithThePacketsThatCarryShapes) {
   c.packets.carry = PacketCarry::kData;
   const accel::Accel accel = build_at(placed_quads(), c.accuracy);
   const cycle::ShapeMemory memory(accel, c.accuracy);
-  const cycle::PacketSize size(c);
+  const cycle::PacketSize size(c.collections, c.packets.carry);
   Packet packet;
   packet.key = {0, accel.instances[0].root};
   const std::uint32_t unmoved = size.bytes(packet, memory, false);

@@ -1,8 +1,12 @@
 #include "ringbus/topology/topology.h"
 
+#include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
+
+#include "core/config/enum_names.h"
+#include "core/config/validate.h"
 
 namespace carousel::ringbus {
 namespace {
@@ -123,11 +127,158 @@ TEST(Topology, CreditsStayBelowWhatTheRingHolds) {
       c.link.depth = depth;
       c.flow = Flow::kCredits;
       const auto n = static_cast<std::uint32_t>(resources), d = static_cast<std::uint32_t>(depth);
-      EXPECT_GE(packets_in_flight(c), 1u);
-      EXPECT_LT(n * packets_in_flight(c), n * d + n);  // links and one place in hand a resource
+      EXPECT_GE(Topology(c).packets_in_flight(), 1u);
+      EXPECT_LT(n * Topology(c).packets_in_flight(), n * d + n);  // links and one egress place a resource
       c.flow = Flow::kNone;
-      EXPECT_GT(n * packets_in_flight(c), n * d + n);
+      EXPECT_GT(n * Topology(c).packets_in_flight(), n * d + n);
     }
+  }
+}
+
+/// Every shape that is built.
+std::vector<TopologyShape> all_shapes() {
+  std::vector<TopologyShape> shapes;
+  for (const auto& one : kEnumNames<TopologyShape>)
+    if (one.value != TopologyShape::kCentral) shapes.push_back(one.value);
+  return shapes;
+}
+
+TEST(Topology, EveryWireIsAPortAtBothOfItsEnds) {
+  for (const TopologyShape shape : all_shapes()) {
+    for (const std::uint32_t n : {1u, 2u, 5u, 16u}) {
+      SCOPED_TRACE(std::string(enum_name(shape)) + " " + std::to_string(n));
+      const Topology t(config(shape, n));
+      std::multiset<std::uint32_t> in, out, wires;
+      for (std::uint32_t node = 0; node < n + t.hubs().size(); ++node) {
+        for (const std::uint32_t wire : t.ports(ResourceId(node)).in) {
+          EXPECT_EQ(t.wires()[wire].to.value, node);
+          in.insert(wire);
+        }
+        for (const std::uint32_t wire : t.ports(ResourceId(node)).out) {
+          EXPECT_EQ(t.wires()[wire].from.value, node);
+          out.insert(wire);
+        }
+      }
+      for (std::uint32_t wire = 0; wire < t.wires().size(); ++wire) wires.insert(wire);
+      EXPECT_EQ(in, wires);
+      EXPECT_EQ(out, wires);
+    }
+  }
+}
+
+TEST(Topology, PacketsLeaveByTheWireToTheirNextStop) {
+  for (const TopologyShape shape : all_shapes()) {
+    for (const Visit visit : {Visit::kAll, Visit::kOwners}) {
+      const Topology t(config(shape, 5, visit));
+      if (t.wires().empty()) continue;
+      for (std::uint16_t d = 0; d < t.directions(); ++d) {
+        const Packet p = packet(1, {0, 3}, d);
+        for (std::uint32_t here = 0; here < 5; ++here) {
+          const std::uint32_t wire = t.ports(ResourceId(here)).out[t.out_port(p, ResourceId(here))];
+          const bool by_bus = !t.hubs().empty() && t.hubs()[0] == Topology::Hub::kBus;
+          const ResourceId next = t.next(p, ResourceId(here));
+          EXPECT_EQ(t.wires()[wire].to, by_bus ? ResourceId(5) : next) << enum_name(shape) << " at " << here;
+        }
+      }
+    }
+  }
+}
+
+TEST(Topology, SkipCountsTheResourcesUntilTheNextThatIsWanted) {
+  for (const TopologyShape shape : {TopologyShape::kRing, TopologyShape::kBidirectional, TopologyShape::kMultiRing}) {
+    const Topology t(config(shape, 70, Visit::kOwners));
+    for (std::uint16_t d = 0; d < t.directions(); ++d) {
+      const Packet p = packet(68, {0, 1, 65}, d);
+      for (std::uint32_t here = 0; here < 70; ++here) {
+        std::uint16_t expected = 0;
+        for (ResourceId at = t.next(p, ResourceId(here)); at != p.owner && !t.wanted(p, at); at = t.next(p, at))
+          ++expected;
+        EXPECT_EQ(t.skip(p, ResourceId(here)), expected);
+      }
+    }
+  }
+}
+
+TEST(Topology, GroupsAreLinesBetweenBridges) {
+  TopologyConfig c = config(TopologyShape::kHierarchical, 7, Visit::kOwners);
+  c.groups = 3;
+  const Topology t(c);
+  // Bridges 7, 8, 9 before resources 0 to 2, 3 to 4 and 5 to 6.
+  ASSERT_EQ(t.groups().size(), 3u);
+  ASSERT_EQ(t.hubs().size(), 3u);
+  Route ends, group_of;
+  for (const Topology::Group& g : t.groups()) ends.insert(ends.end(), {g.first.value, g.last.value});
+  for (std::uint32_t r = 0; r < 7; ++r) group_of.push_back(t.group_of(ResourceId(r)));
+  EXPECT_EQ(ends, (Route{0, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(group_of, (Route{0, 0, 0, 1, 1, 2, 2}));
+  const Packet p = packet(1, {4, 6});
+  EXPECT_EQ(t.skip(p, ResourceId(1)), 1u);  // resource 2, then the bridge
+  EXPECT_EQ(t.skip(p, ResourceId(2)), 0u);
+  EXPECT_EQ(t.skip_from_entrance(p, 1), 1u);
+  EXPECT_EQ(t.skip_from_entrance(p, 0), 1u);  // as far as its owner
+  EXPECT_TRUE(t.group_wants(p, 0) && t.group_wants(p, 1) && t.group_wants(p, 2));
+  EXPECT_FALSE(t.group_wants(packet(1, {6}), 1));
+  EXPECT_EQ(t.wires().size(), 7u + 3u + 3u);
+}
+
+TEST(Topology, ABusTakesTheLatencyOfOneLink) {
+  for (const std::int64_t latency : {2, 3, 8}) {
+    TopologyConfig c = config(TopologyShape::kBus, 3);
+    c.link.latency_cycles = latency;
+    const Topology t(c);
+    for (const Topology::Wire& there : t.wires())
+      for (const Topology::Wire& back : t.wires())
+        if (there.to.value == 3 && back.from.value == 3) {
+          EXPECT_EQ(there.latency_cycles + back.latency_cycles, latency);
+        }
+  }
+}
+
+/// The shortest way by arithmetic, shape by shape.
+Topology::Route shortest(const TopologyConfig& c, std::uint32_t from, std::uint32_t to, std::uint32_t random) {
+  const auto n = static_cast<std::uint32_t>(c.resources);
+  const std::uint32_t ahead = (to + n - from) % n, back = n - ahead;
+  const auto hops = static_cast<std::uint16_t>(ahead);
+  if (c.shape == TopologyShape::kPointToPoint) return {0, static_cast<std::uint16_t>(ahead != 0)};
+  if (c.shape == TopologyShape::kMultiRing) return {static_cast<std::uint16_t>(random % c.rings), hops};
+  if (c.shape == TopologyShape::kBidirectional && (ahead > back || (ahead == back && random % 2 == 1)))
+    return {1, static_cast<std::uint16_t>(back)};
+  return {0, hops};
+}
+
+TEST(Topology, TrafficTakesTheShortestWay) {
+  for (const TopologyShape shape : all_shapes()) {
+    for (const std::int64_t n : {1, 2, 5, 8}) {
+      TopologyConfig c = config(shape, n);
+      c.rings = 3;
+      const Topology t(c);
+      if (!t.carries_traffic()) continue;
+      for (std::uint32_t from = 0; from < n; ++from) {
+        for (std::uint32_t to = 0; to < n; ++to) {
+          for (std::uint32_t random = 0; random < 7; ++random) {
+            const Topology::Route way = t.route(ResourceId(from), ResourceId(to), random);
+            const Topology::Route expected = shortest(c, from, to, random);
+            EXPECT_EQ(way.hops, expected.hops) << enum_name(shape) << " " << from << " to " << to;
+            if (way.hops > 0) {
+              EXPECT_EQ(way.direction, expected.direction);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Topology, TheValidatorAllowsTrafficWhereTheShapeCarriesIt) {
+  for (const TopologyShape shape : all_shapes()) {
+    Config c;
+    c.engine.kind = EngineKind::kCycle;
+    c.workload.kind = WorkloadConfig::Kind::kTraffic;
+    c.topology.shape = shape;
+    const std::vector<ConfigIssue> issues = validate_config(c, KeyPositions{});
+    const bool refused = std::any_of(issues.begin(), issues.end(),
+                                     [](const ConfigIssue& issue) { return issue.key_path == "topology.shape"; });
+    EXPECT_NE(refused, Topology(c.topology).carries_traffic()) << enum_name(shape);
   }
 }
 

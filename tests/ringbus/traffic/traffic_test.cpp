@@ -107,10 +107,22 @@ TEST(Traffic, UnprotectedRingGetsStuckAndSaysWho) {
 
 // ---- sources
 
+std::uint64_t seed_of(const Config& c) {
+  return static_cast<std::uint64_t>(c.image.seed);
+}
+
+cycle::TrafficPlan plan_of(const Config& c) {
+  return {c.workload.traffic, seed_of(c), static_cast<std::size_t>(c.topology.resources)};
+}
+
+cycle::TrafficSource source_of(const Config& c, ResourceId id, const cycle::GeometricGap& gap) {
+  return {c.workload.traffic, seed_of(c), static_cast<std::size_t>(c.topology.resources), id, gap};
+}
+
 TEST(TrafficPlan, SharesOutExactlyThePackets) {
   for (const std::int64_t packets : {1, 7, 1000, 12345}) {
     const Config c = traffic_config(Shape::kRing, 8, Pattern::kUniform, 0.03, packets);
-    const cycle::TrafficPlan plan(c);
+    const cycle::TrafficPlan plan = plan_of(c);
     std::uint64_t sum = 0;
     for (const std::uint64_t one : plan.packets) sum += one;
     EXPECT_EQ(sum, static_cast<std::uint64_t>(packets));
@@ -121,7 +133,7 @@ TEST(TrafficPlan, SourcesHaveTheRateTheyAreAskedFor) {
   for (const Pattern pattern : {Pattern::kUniform, Pattern::kBursty}) {
     for (const double rate : {0.0003, 0.01, 0.1, 0.5, 0.88}) {
       const Config c = traffic_config(Shape::kRing, 8, pattern, rate, 80000);
-      const cycle::TrafficPlan plan(c);
+      const cycle::TrafficPlan plan = plan_of(c);
       const double found = 80000 / (8 * static_cast<double>(plan.window.end));
       // 80,000 Bernoulli successes; a burst counts as one. Five standard errors.
       const double independent = pattern == Pattern::kBursty ? 80000.0 / (2 * 8) : 80000;
@@ -162,7 +174,7 @@ TEST(TrafficSource, HotspotGetsItsShare) {
   c.workload.traffic.hotspot = 5;
   c.workload.traffic.hotspot_fraction = 0.25;
   const cycle::GeometricGap gap = cycle::traffic_gap(c.workload.traffic);
-  cycle::TrafficSource source(c, ResourceId(2), gap);
+  cycle::TrafficSource source = source_of(c, ResourceId(2), gap);
   std::array<int, 8> to{};
   for (int i = 0; i < 80000; ++i) {
     source.advance();
@@ -175,7 +187,7 @@ TEST(TrafficSource, BurstsAreAsLongAsAskedFor) {
   Config c = traffic_config(Shape::kRing, 8, Pattern::kBursty, 0.2, 1);
   c.workload.traffic.burst_packets = 20;
   const cycle::GeometricGap gap = cycle::traffic_gap(c.workload.traffic);
-  cycle::TrafficSource source(c, ResourceId(0), gap);
+  cycle::TrafficSource source = source_of(c, ResourceId(0), gap);
   int bursts = 0;
   for (int i = 0; i < 100000; ++i) {
     const cycle::Cycle before = source.created();

@@ -15,7 +15,7 @@
 
 namespace carousel::scene {
 
-/// Makes small glTF files in memory. `json` may be changed at will before it is written.
+/// Makes small glTF files in memory. `json` may be changed freely before it is written.
 class GltfBuilder {
  public:
   using Json = nlohmann::json;

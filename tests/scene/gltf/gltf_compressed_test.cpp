@@ -1,5 +1,5 @@
-// Compressed geometry: files of other programs' making against what they are known to hold, and streams of the
-// libraries' own encoders against what went in.
+// Compressed geometry: files of other programs are compared with their known contents, and streams of the libraries'
+// own encoders with the encoders' input.
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -45,7 +45,7 @@ void expect_outward(const Scene& scene, std::size_t instance, const Vec3& center
   }
 }
 
-// A cube of 12 triangles with edges of 1 around the origin, whatever hides it.
+// A cube of 12 triangles with edges of 1 around the origin, in any compression.
 TEST(GltfCompressed, SampleBoxes) {
   struct Sample {
     const char* name;
@@ -66,7 +66,7 @@ TEST(GltfCompressed, SampleBoxes) {
   }
 }
 
-// The file's own fallback says what must come out.
+// The file's own fallback holds the expected result.
 TEST(GltfCompressed, MeshoptGivesWhatTheFallbackHolds) {
   const Scene decoded = load_sample("meshopt-fallback.gltf");
   GltfBuilder b;
@@ -191,7 +191,7 @@ TEST(GltfCompressed, MeshoptCountsAreJudgedBeforeAnythingIsAllocated) {
                      "/bufferViews/2/extensions/EXT_meshopt_compression/count", "bytes cannot come out of");
 }
 
-/// The first Draco primitive of a file with one, and a change to it.
+/// The first Draco primitive of a file with one, after a change.
 void expect_draco_refused(const std::function<void(GltfBuilder&, Json& primitive)>& change, const std::string& where,
                           const std::string& message) {
   GltfBuilder b;
@@ -245,7 +245,7 @@ TEST(GltfCompressed, AccessorOfTwoStreamsIsRefused) {
                  "accessor 0 has its data from buffer view 0 already");
 }
 
-// Where a file has both, the plain data is read and the stream is not even looked at.
+// If a file has both, the plain data is read and the stream is not read at all.
 TEST(GltfCompressed, FallbackOfDracoIsUsed) {
   GltfBuilder b = GltfBuilder::square();
   const int view = b.view(std::vector<char>(100, 'x'));
@@ -254,8 +254,8 @@ TEST(GltfCompressed, FallbackOfDracoIsUsed) {
   EXPECT_EQ(b.load().meshes[0].positions.size(), 4u);
 }
 
-// Compressed bytes are the input of two decoders that this project did not write: cut off and changed anywhere, they
-// end in a scene or in a SceneError.
+// Compressed bytes are the input of two external decoders. Truncated or changed anywhere, they lead to a scene or to a
+// SceneError.
 TEST(GltfCompressed, BrokenStreamsLoadOrAreRefused) {
   const GltfBuilder good = every_extension();
   struct Range {

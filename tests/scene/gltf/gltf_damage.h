@@ -12,18 +12,18 @@ namespace carousel::scene {
 
 using Json = nlohmann::json;
 
-/// One way to break a model, and what the importer must say of it.
+/// One way to break a model, and the importer's expected error.
 struct Damage {
-  /// Where the fault lies, and a part of the message.
+  /// Place of the fault, and a part of the message.
   struct Verdict {
     std::string path, message;
   };
   const char* name;
-  /// Damages the model; nothing when it has no such part.
+  /// Damages the model; empty if it has no such part.
   std::function<std::optional<Verdict>(ModelFiles&)> plant;
 };
 
-/// Damage to the document itself, its nodes, and what hangs on nodes.
+/// Damage to the document itself, its nodes, and the objects that nodes refer to.
 std::vector<Damage> structure_damages();
 /// Damage to accessors, buffer views, buffers, images and the files they come from.
 std::vector<Damage> data_damages();

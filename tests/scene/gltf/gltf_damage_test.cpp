@@ -1,5 +1,5 @@
-// Every class of malformed file, made from a file that was right: a model as an exporter leaves it, and one
-// that uses every feature. The importer must name the place, whatever else the file holds.
+// Every class of malformed file, made from two correct files: a model as an exporter writes it, and one that uses every
+// feature. The importer must name the place of the error.
 #include "tests/scene/gltf/gltf_damage.h"
 
 #include <filesystem>
@@ -97,8 +97,7 @@ GltfBuilder damaged(GltfBuilder file, const Json::json_pointer& at, std::size_t 
   return file;
 }
 
-// A value of the wrong type, an index or number far too large, a key that is missing: for every value there
-// is.
+// Every value in turn gets the wrong type, becomes an index or number far too large, or loses its key.
 TEST_F(GltfDamage, EveryValueIsCheckedWhereItStands) {
   struct Packed {
     const char* name;
@@ -119,7 +118,7 @@ TEST_F(GltfDamage, EveryValueIsCheckedWhereItStands) {
       const std::string at = places[i / 3].to_string();
       SCOPED_TRACE(std::string(model.name) + ": " + at + " damaged in way " + std::to_string(i % 3));
       EXPECT_NE(outcomes[i].end, End::kFault) << outcomes[i];
-      if (outcomes[i].end != End::kRefused) continue;  // a key that nobody reads, or need not be there
+      if (outcomes[i].end != End::kRefused) continue;  // a key that is optional or not read
       ++refused;
       if (i % 3 == 0) {
         EXPECT_EQ(outcomes[i].path, at) << outcomes[i];
@@ -129,7 +128,7 @@ TEST_F(GltfDamage, EveryValueIsCheckedWhereItStands) {
   }
 }
 
-// Cut off anywhere, as text and as a container.
+// Files truncated anywhere, as text and as a container.
 TEST_F(GltfDamage, EveryTruncationIsRefused) {
   for (const Model& model : models_) {
     const std::string text = model.files.json.dump();

@@ -91,7 +91,7 @@ TEST(GltfLayers, FactorsAreMovedIntoTheirRanges) {
   EXPECT_EQ(material("KHR_materials_anisotropy", {{"anisotropyStrength", 2}}).anisotropy.strength, 1);
 }
 
-// What cannot be seen is not read: neither the rest of a layer nor its pictures, here broken ones.
+// A layer of weight 0 is not read: neither its other values nor its images, which are broken here.
 TEST(GltfLayers, LayersOfNoWeightAreNotThere) {
   GltfBuilder b = every_extension();
   b.json["textures"][0] = {{"source", b.push("images", {{"bufferView", b.view(std::vector<char>(64, 'x'))}})}};
@@ -156,7 +156,7 @@ TEST(GltfLayers, WebpStandsBeforeItsFallback) {
   EXPECT_EQ(b.load().images.at(0).width, 3u);
 }
 
-// Colour beside alpha 0 is kept, because filters look there.
+// The colour of texels with alpha 0 is kept, because filters read it.
 TEST(GltfLayers, WebpKeepsColourWithoutAlpha) {
   GltfBuilder b = every_extension();
   const std::vector<unsigned char> pixels{200, 100, 50, 0, 10, 20, 30, 128};

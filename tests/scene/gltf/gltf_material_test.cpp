@@ -151,9 +151,9 @@ TEST(GltfTexture, OnlyImagesThatAreWantedAreDecoded) {
               return wanted;
             }),
             "picture ");
-  EXPECT_TRUE(triangles);  // so that a choice can be made of what is on them
+  EXPECT_TRUE(triangles);  // meshes are loaded before the choice of images
   EXPECT_EQ(decoded([](const Scene& scene) { return std::vector<bool>(scene.images.size(), false); }), "");
-  EXPECT_THROW(b.load(), SceneError);  // all are wanted: two cannot be had
+  EXPECT_THROW(b.load(), SceneError);  // all images are wanted, and two cannot be read
 }
 
 TEST(GltfTexture, ImageNeedsExactlyOneSource) {

@@ -1,5 +1,4 @@
-// Whatever bytes a file holds, it either loads or ends in a SceneError: random changes of bytes and of JSON
-// values.
+// A file with any contents either loads or leads to a SceneError: random changes of bytes and of JSON values.
 #include <iostream>
 
 #include "scene/builtin/hash_random.h"
@@ -144,7 +143,7 @@ TEST(GltfMutation, ChangedJsonLoadsOrIsRefused) {
   for (const Model& model : models()) {
     GltfBuilder good = model.file;
     good.json["buffers"] = Json::array({{{"byteLength", good.binary.size()}}});
-    // As text the bytes of a larger one would take all the time.
+    // The bytes of a larger model as text would take too long.
     if (good.binary.size() < 2000) good.json["buffers"] = Json::parse(model.file.text())["buffers"];
     expect_loaded_or_refused(model, [&](std::uint64_t seed) {
       GltfBuilder mutant = good;

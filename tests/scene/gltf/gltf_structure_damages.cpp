@@ -7,7 +7,7 @@ namespace {
 using Verdict = std::optional<Damage::Verdict>;
 using Plant = std::function<Verdict(ModelFiles&)>;
 
-/// Sets what a pointer names; the fault is there, or at `below` in it. The model must have the parent.
+/// Sets the value that a pointer names; the fault is there, or at `below` in it. The model must have the parent.
 Plant set(const std::string& pointer, const Json& value, const std::string& message, const std::string& below = "") {
   return [=](ModelFiles& m) -> Verdict {
     const Json::json_pointer at(pointer);
@@ -17,7 +17,7 @@ Plant set(const std::string& pointer, const Json& value, const std::string& mess
   };
 }
 
-/// Changes the first node that has what `key` points to; the fault is at `where` in it.
+/// Changes the first node that has a value at `key`; the fault is at `where` in it.
 Plant on_node(const std::string& key, const std::string& where, const std::string& message,
               const std::function<void(ModelFiles&, Json& node)>& change) {
   return [=](ModelFiles& m) -> Verdict {

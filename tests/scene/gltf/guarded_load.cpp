@@ -67,11 +67,11 @@ void limit_memory() {
     alarm(seconds);  // also ends a wait that takes no processor time
     const LoadOutcome outcome = load_one(i, load);
     const Json line = {static_cast<int>(outcome.end), outcome.path, outcome.message};
-    // Messages may quote what is not UTF-8.
+    // Messages may quote text that is not UTF-8.
     const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
     if (write(pipe, text.data(), text.size()) != static_cast<ssize_t>(text.size())) _exit(1);
   }
-  _exit(0);  // nothing of the parent's is to be closed or written twice
+  _exit(0);  // the parent's streams must not be closed or flushed twice
 }
 
 std::string death(int status) {
@@ -108,7 +108,7 @@ std::vector<LoadOutcome> load_guarded(std::size_t count, const std::function<Sce
     std::free(text);
     int status = 0;
     waitpid(child, &status, 0);
-    // It died of the next one; the rest gets a new child.
+    // The next model ended the child; the others get a new one.
     if (out.size() < count) out.push_back({End::kFault, "", death(status)});
   }
   return out;

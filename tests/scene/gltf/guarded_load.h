@@ -10,16 +10,16 @@
 
 namespace carousel::scene {
 
-/// How loading one damaged model ended.
+/// The outcome of loading one damaged model.
 struct LoadOutcome {
   enum class End { kLoaded, kRefused, kFault } end = End::kFault;
-  std::string path, message;  ///< of the SceneError; of a fault: what happened
+  std::string path, message;  ///< of the SceneError; for a fault, a description
 
   bool operator==(const LoadOutcome&) const = default;
 };
 std::ostream& operator<<(std::ostream& out, const LoadOutcome& outcome);
 
-/// Whether load_guarded() limits memory: sanitizers need the room themselves.
+/// True if load_guarded() limits memory; sanitizers need more than the limit themselves.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool kMemoryIsGuarded = false;
 #elif defined(__has_feature)

@@ -1,4 +1,4 @@
-// The guard itself: would the other tests notice?
+// Tests of the guard itself: it must notice every kind of fault.
 #include "tests/scene/gltf/guarded_load.h"
 
 #include <csignal>

@@ -12,7 +12,7 @@
 
 namespace carousel::scene {
 
-/// A model as it lies on a disk: the JSON of its .gltf, and the files beside it by their URIs.
+/// A model on disk: the JSON of its .gltf, and the files beside it by their URIs.
 struct ModelFiles {
   using Json = nlohmann::json;
 

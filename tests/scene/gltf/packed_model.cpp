@@ -75,7 +75,7 @@ void add_meshopt_meshes(GltfBuilder& b) {
   add_icosphere(ball, Vec3(0), 1, 1, MaterialId(0));
   const std::size_t vertices = ball.positions.size();
   const std::vector<std::uint16_t> indices(ball.indices.begin(), ball.indices.end());
-  // A unit vector as the octahedral filter wants it: x, y, one and a fourth component, 8 bits each.
+  // A unit vector in the octahedral filter's format: x, y, one and a fourth component, 8 bits each.
   std::vector<float> quads;
   for (const Vec3& n : ball.normals) quads.insert(quads.end(), {n.x, n.y, n.z, 0});
   Packed octahedral(4 * vertices), exponents(12 * vertices);

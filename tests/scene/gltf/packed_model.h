@@ -8,7 +8,7 @@
 
 namespace carousel::scene {
 
-/// The bytes of a buffer view compressed by EXT_meshopt_compression: its index. `data` are the uncompressed bytes (for
+/// Adds a buffer view compressed by EXT_meshopt_compression; returns its index. `data` are the uncompressed bytes (for
 /// a filter: its encoded input), `count` of `stride` bytes. Buffer 0 gets the compressed bytes, then zeros in place of
 /// a fallback.
 int meshopt_view(GltfBuilder& b, const std::vector<unsigned char>& data, std::size_t count, std::size_t stride,
@@ -21,7 +21,7 @@ int draco_mesh(GltfBuilder& b, const Mesh& shape, bool edgebreaker);
 /// A lossless WebP.
 std::vector<unsigned char> webp(int width, int height, const std::vector<unsigned char>& rgba);
 
-/// Every extension that hides data or describes materials in one file: Draco by both methods, meshopt in all modes with
+/// One file with every extension of data or materials: Draco by both methods, meshopt in all modes with
 /// filters, WebP, all layers of materials, spheres.
 GltfBuilder every_extension();
 

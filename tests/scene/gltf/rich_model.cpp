@@ -31,7 +31,7 @@ int vectors(GltfBuilder& b, const std::vector<V>& values, const char* type) {
   return b.floats(floats, type, static_cast<std::size_t>(V::length()));
 }
 
-/// The index of a node that shows the mesh. Its file is read like any exporter's: u16 indices, smooth
+/// Adds a node that shows the mesh; returns its index. The mesh is like an exporter's: u16 indices, smooth
 /// normals.
 int add_shape(GltfBuilder& b, const Mesh& shape, const Json& attributes) {
   Json all = attributes;

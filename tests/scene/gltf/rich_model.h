@@ -8,10 +8,10 @@ namespace carousel::scene {
 GltfBuilder every_feature();
 
 /// The same with some hundred triangles more, in two buffers and an image of their own beside the .gltf, with
-/// instances by the dozen and what is read for its indices only: skins, animations, morph targets.
+/// dozens of instances, and objects that are read for their indices only: skins, animations, morph targets.
 ModelFiles rich_model();
 
-/// The Khronos sample in tests/data: what a modelling program leaves.
+/// The Khronos sample in tests/data, as a modelling program wrote it.
 ModelFiles sample_model();
 
 }  // namespace carousel::scene

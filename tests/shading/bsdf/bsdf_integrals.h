@@ -11,7 +11,7 @@
 
 namespace carousel::shading {
 
-/// Of wo: from grazing to along the normal.
+/// Cosines of wo, from grazing to along the normal.
 inline constexpr float kCosines[] = {0.05f, 0.3f, 0.7f, 1.0f};
 
 inline Vec3 direction(float cosine, float turns = 0) {
@@ -20,7 +20,7 @@ inline Vec3 direction(float cosine, float turns = 0) {
   return {sine * angle.cos, sine * angle.sin, cosine};
 }
 
-/// Share of a white world that the surface sends towards wo, by its own importance sampling.
+/// Share of the light of a white world that the surface sends towards wo, by its own importance sampling.
 template <class SomeBsdf>
 Vec3 white_albedo(const SomeBsdf& bsdf, std::uint32_t samples = 1 << 14) {
   const Sampler sampler(1, samples);
@@ -33,8 +33,8 @@ Vec3 white_albedo(const SomeBsdf& bsdf, std::uint32_t samples = 1 << 14) {
   return Vec3(sum / double(samples));
 }
 
-/// Means of 1, |x|, |y| and |z| over one hemisphere's directions (`side` 1 above, -1 below): by the density that is
-/// reported, and by the samples that are taken.
+/// Means of 1, |x|, |y| and |z| over one hemisphere's directions (`side` 1 above, -1 below): by the reported density,
+/// and by the drawn samples.
 struct Moments {
   glm::dvec4 density{0}, samples{0};
 };

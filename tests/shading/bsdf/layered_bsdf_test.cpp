@@ -112,7 +112,7 @@ TEST(Iridescence, AFilmOfNoThicknessIsNotThere) {
   }
 }
 
-/// Airy's formula for one wavelength and normal incidence, averaged over a band around what each channel sees.
+/// Airy's formula for one wavelength and normal incidence, averaged over a band around each channel's wavelength.
 float airy(float n, float base, float nm, float wavelength) {
   const double r1 = (1.0 - n) / (1.0 + n), r2 = (n - base) / (n + base);
   const double phase = 4 * 3.14159265358979 * n * nm / wavelength;

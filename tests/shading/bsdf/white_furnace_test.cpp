@@ -1,5 +1,5 @@
-// A white surface in a white world must not be seen: whatever lobes are combined, all the light comes back.
-// Combinations are drawn at random, each kind of base and layer with its limits more often than chance would have them.
+// A white surface in a white world is invisible: any combination of lobes returns all the light. Combinations are drawn
+// at random; the limits of each kind of base and layer are drawn more often than others.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ class Draw {
  public:
   explicit Draw(std::uint32_t seed) : random_(seed) {}
   float uniform(float from = 0, float to = 1) { return std::uniform_real_distribution<float>(from, to)(random_); }
-  /// `from`, `to`, or between them.
+  /// A value `from`, `to`, or between them.
   float often_at_the_ends(float from = 0, float to = 1) {
     const int which = std::uniform_int_distribution<int>(0, 3)(random_);
     return which == 0 ? from : which == 1 ? to : uniform(from, to);
@@ -65,7 +65,7 @@ Case draw_case(Draw& draw, Base base, bool stretched, bool layered) {
   }
   p.dielectric_f90 = draw.one_in(2) ? 1.0f : draw.uniform(0.1f);
   const auto colour = [&] { return Vec3{draw.uniform(), draw.uniform(), draw.uniform()}; };
-  // KHR_materials_specular's weight and colour; iridescence may make any of it.
+  // Weight and colour of KHR_materials_specular, with the values that iridescence may produce.
   p.dielectric_f0 = (draw.one_in(2) ? Vec3{f0} : colour()) * p.dielectric_f90;
   c.wo = direction(cosine, draw.often_at_the_ends(0, 0.25f));
   if (layered) {
@@ -92,7 +92,7 @@ void expect_white(Base base, bool stretched, bool layered) {
     const InterfacePoint& p = c.point;
     Vec3 a = furnace(c, base != Base::kOpaque, layered, 1 << 12);
     const auto far_off = [&] { return max_component(glm::abs(a - Vec3{1})) > 0.006f; };
-    // Noise, or the surface? More samples tell.
+    // More samples tell noise from a wrong surface.
     if (far_off()) a = furnace(c, base != Base::kOpaque, layered, 1 << 15);
     if (far_off()) a = furnace(c, base != Base::kOpaque, layered, 1 << 18);
     for (int k = 0; k < 3; ++k) {

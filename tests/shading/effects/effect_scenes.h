@@ -24,7 +24,7 @@ inline void add_box(scene::Scene& scene, const Vec3& c, float half, std::uint32_
   face(-z, y, x);
 }
 
-/// A floor, a lamp and a sky, with a box in the middle that has `material`.
+/// A floor, an emissive quad and a sky, with a box in the middle that has `material`.
 inline scene::Scene box_on_floor(const scene::Material& material) {
   scene::Scene scene = empty_scene();
   scene.images.push_back({"noise", 2, 2, {250, 30, 60, 255, 40, 240, 90, 10, 20, 60, 250, 200, 128, 128, 255, 90}});
@@ -139,7 +139,7 @@ inline scene::Scene scene_that_calls_for(Effect effect) {
   return box_on_floor(m);
 }
 
-/// All layers at once, on one box; a cut-out, a veil and something unlit besides.
+/// All layers at once on one box, with an alpha-blended and an unlit quad.
 inline scene::Scene scene_of_everything() {
   scene::Scene scene = box_on_floor([] {
     scene::Material m = matte({0.8f, 0.9f, 0.7f});

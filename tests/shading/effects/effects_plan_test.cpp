@@ -95,7 +95,7 @@ TEST(EffectsPlan, NothingIsCalledForByAPlainWall) {
     EXPECT_EQ(plan.effects[i].on, expected) << kEffectNames[i];
     EXPECT_FALSE(plan.effects[i].why.empty());
   }
-  // Nothing shines: no ray but the camera's, and no room for any other's light.
+  // Without light there are camera rays only, and path states have no room for other rays.
   const Picture least = picture(scene, small_image()), most = picture(scene, small_image(Choice::kAll));
   EXPECT_EQ(least.counts.emitted[1] + least.counts.emitted[2], 0u);
   EXPECT_GT(most.counts.emitted[1], 0u);
@@ -176,7 +176,7 @@ TEST(EffectsPlan, PicturesOfEverythingDoNotDependOnWorkersOrOrder) {
   }
 }
 
-/// Looking straight down through a box of glass of `thickness` and index 1.5 into a sky of radiance 1.
+/// Radiance seen straight down through a box of glass of `thickness` and index 1.5 under a sky of radiance 1.
 double through_glass(float thickness, const Vec3& color, float distance, int channel) {
   scene::Scene scene = empty_scene();
   scene::Material glass = matte({1, 1, 1});
@@ -199,11 +199,11 @@ double through_glass(float thickness, const Vec3& color, float distance, int cha
 }
 
 TEST(Volume, TakesLightAsBeerAndLambertSay) {
-  EXPECT_NEAR(through_glass(1, Vec3{1}, 1, 0), 1.0, 0.01);  // clear glass in a white world is not seen
+  EXPECT_NEAR(through_glass(1, Vec3{1}, 1, 0), 1.0, 0.01);  // clear glass in a white world is invisible
   const Vec3 color{0.25f, 0.5f, 0.9f};
   for (const float thickness : {0.5f, 1.5f}) {
     for (int c = 0; c < 3; ++c) {
-      // At normal incidence each boundary reflects r; what passes the slab is t, and light goes to and fro in it.
+      // At normal incidence each boundary reflects r and the slab transmits t; light is reflected back and forth in it.
       const double t = std::pow(double{color[c]}, double{thickness} / 0.8), r = 0.04;
       const double expected = r + (1 - r) * (1 - r) * t / (1 - r * t);
       EXPECT_NEAR(through_glass(thickness, color, 0.8f, c), expected, 0.01) << thickness << " " << c;
@@ -212,7 +212,8 @@ TEST(Volume, TakesLightAsBeerAndLambertSay) {
 }
 
 TEST(PathTracer, LightPassesAWindowTwice) {
-  // A matte floor under a thin clear wall, in a white world: only what the wall reflects and passes is at stake.
+  // A matte floor under a thin clear wall in a white world: the picture depends only on the wall's reflection and
+  // transmission.
   scene::Scene scene = empty_scene();
   scene::Material wall = matte({1, 1, 1});
   wall.roughness = 0.1f;
@@ -229,8 +230,8 @@ TEST(PathTracer, LightPassesAWindowTwice) {
   EXPECT_NEAR(mean, 1.0, 0.02);
 }
 
-TEST(PathTracer, BouncesAndShadowRaysFindTheSameLampThroughGlass) {
-  // Multiple importance sampling on both sides of a rough boundary against no shadow rays at all.
+TEST(PathTracer, BouncesAndShadowRaysFindTheSameLightThroughGlass) {
+  // Compares multiple importance sampling on both sides of a rough boundary with a picture without shadow rays.
   scene::Material glass = matte({1, 1, 1});
   glass.roughness = 0.6f;
   glass.transmission.weight = 1;

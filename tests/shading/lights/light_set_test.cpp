@@ -80,7 +80,7 @@ TEST(LightSet, ASphereGivesTheIrradianceOfItsDisk) {
   EXPECT_NEAR(sampled_irradiance(LightSet(scene), {0, 3.2f, 0}, {0, 1, 0}), 3.14159265358979, 0.03);
 }
 
-/// Where a ray of direction `d` from `p` first meets the unit sphere that `m` has stretched.
+/// The first crossing of a ray of direction `d` from `p` with the unit sphere that `m` has stretched.
 std::optional<Hit> meet_ellipsoid(const scene::Affine& m, const Vec3& p, const Vec3& d) {
   const DMat3 back = glm::inverse(DMat3(m.linear));
   const DVec3 o = back * (DVec3(p) - DVec3(m.translation)), v = back * DVec3(d);
@@ -188,8 +188,7 @@ TEST(LightSet, ASceneWithoutLightIsEmpty) {
 }
 
 TEST(LightSet, BounceRaysAndShadowRaysFindTheSameLight) {
-  // A big lamp close above a glossy floor: with two surfaces both techniques count, with one only shadow
-  // rays.
+  // A big emissive quad close above a glossy floor: with two surfaces both techniques count, with one only shadow rays.
   for (const float roughness : {0.3f, 1.0f}) {
     scene::Scene scene = empty_scene();
     scene::Material floor = matte({0.6f, 0.6f, 0.6f});

@@ -13,11 +13,11 @@
 
 namespace carousel::shading {
 
-/// Tests every ray against every triangle, in world space (Möller, Trumbore 1997): slow, simple, and with a
-/// result that depends on nothing but the ray. Ties go to the earlier triangle.
+/// Tests every ray against every triangle, in world space (Möller, Trumbore 1997). It is slow and simple, and its
+/// result depends only on the ray. Ties go to the earlier triangle.
 class BruteForceTracer {
  public:
-  /// `any_hit`, if not null, is asked at every triangle whether it stops the ray.
+  /// `any_hit`, if not null, is called at every triangle and decides if it stops the ray.
   explicit BruteForceTracer(const scene::Scene& scene, const AnyHit* any_hit = nullptr) : any_hit_(any_hit) {
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
       const scene::Affine& m = scene.instances[i].world_from_model;

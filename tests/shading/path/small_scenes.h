@@ -72,7 +72,7 @@ inline scene::Camera looking_down(float height, float half_size) {
   return camera;
 }
 
-/// A floor, a metal pyramid (one placement mirrored), a lamp, a point, a spot and a directional light, a sky:
+/// A floor, a metal pyramid (one placement mirrored), an emissive quad, a point, a spot and a directional light, a sky:
 /// every kind of ray and light.
 inline scene::Scene mixed_scene() {
   scene::Scene scene = empty_scene();

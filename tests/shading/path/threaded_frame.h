@@ -14,8 +14,8 @@
 
 namespace carousel::shading {
 
-/// Runs a frame on `workers` threads that take rays from one bag in random order and cut random batches of at
-/// most `batch`: an engine as unruly as the contract of Workload allows.
+/// Runs a frame on `workers` threads that take rays from one bag in random order and cut random batches of at most
+/// `batch`: an engine that uses all the freedom that the contract of Workload allows.
 inline void run_unruly_frame(Workload& workload, const BruteForceTracer& tracer, std::size_t workers, std::size_t batch,
                              std::uint32_t seed) {
   std::mutex mutex;

@@ -26,7 +26,7 @@ scene::Scene cut_square(scene::AlphaMode mode, float right_alpha) {
   return scene;
 }
 
-/// Towards (x, y) of the square, which triangle 0 covers for y < x.
+/// A ray to (x, y) of the square, which triangle 0 covers for y < x.
 bool accepts(const scene::Scene& scene, float x, float y, const Vec3& from = {0.5f, 0.5f, 3}) {
   Ray ray;
   ray.origin = from;
@@ -79,7 +79,7 @@ TEST(AlphaTest, AVeilStopsItsShareOfRays) {
 }
 
 TEST(AlphaTest, RaysThroughOneTriangleAreIndependentOfAnother) {
-  // Two veils one behind the other let (1 - alpha)^2 pass, not 1 - alpha.
+  // Two alpha-blended surfaces one behind the other transmit (1 - alpha)^2, not 1 - alpha.
   std::mt19937 random(run_seed() * 100 + 12);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   int both = 0;

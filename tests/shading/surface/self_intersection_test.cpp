@@ -15,8 +15,8 @@
 namespace carousel::shading {
 namespace {
 
-/// Does a ray meet a triangle, by the float arithmetic of S. Woop, C. Benthin, I. Wald, "Watertight
-/// ray/triangle intersection", JCGT 2(1), 2013? Written independently of accel, which is not ours to include.
+/// True if a ray meets a triangle by the float arithmetic of S. Woop, C. Benthin, I. Wald, "Watertight ray/triangle
+/// intersection", JCGT 2(1), 2013. Written independently of accel/, which these tests do not include.
 bool meets(const Vec3& o, const Vec3& d, const Vec3& v0, const Vec3& v1, const Vec3& v2) {
   int kz = 0;
   for (int a = 1; a < 3; ++a) kz = std::abs(d[a]) > std::abs(d[kz]) ? a : kz;
@@ -35,7 +35,7 @@ bool meets(const Vec3& o, const Vec3& d, const Vec3& v0, const Vec3& v1, const V
   return t >= 0.0f;
 }
 
-/// Rays that leave both sides of a triangle at random, and how many of them meet it again.
+/// Counts rays that leave both sides of a triangle at random, and those of them that meet it again.
 class SelfIntersection : public testing::Test {
  protected:
   float uniform(float lo, float hi) { return std::uniform_real_distribution<float>(lo, hi)(random_); }
@@ -63,7 +63,7 @@ class SelfIntersection : public testing::Test {
     return met;
   }
 
-  double farthest_ = 0;  // that a point has been moved
+  double farthest_ = 0;  // greatest distance that a point has been moved
 
  private:
   std::mt19937 random_{7};
@@ -77,7 +77,7 @@ TEST_F(SelfIntersection, NeverInRandomTriangles) {
 }
 
 TEST_F(SelfIntersection, NeverInPlanesThatAlmostContainTheOrigin) {
-  // The point's own coordinate along the normal is tiny here; what the kernel makes of the others is not.
+  // The point's own coordinate along the normal is tiny here; the kernel's error from the other two is not.
   for (int i = 0; i < 2000; ++i) {
     auto flat = [&] { return Vec3{uniform(-1, 1), uniform(-1, 1), uniform(-1e-8f, 1e-8f)}; };
     ASSERT_EQ(count(flat(), flat(), flat()), 0);
@@ -99,7 +99,7 @@ TEST_F(SelfIntersection, NeverInInstances) {
   }
 }
 
-// How far is far enough, for surfaces far from the world's origin: the hard cases of issue 5 as a table.
+// The distances needed for surfaces far from the world's origin: the hard cases of issue 5 as a table.
 TEST_F(SelfIntersection, FarAwayOnlyTheBoundIsAlwaysEnough) {
   std::string table =
       "\nRays that meet the triangle they leave, of 100,000 from each: triangles of unit size |T| away, as "

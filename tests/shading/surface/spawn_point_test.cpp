@@ -47,7 +47,7 @@ double plane_side(const scene::Scene& scene, const Vec3& p) {
   return double(dot(n, to_quad(p) - a)) / (determinant < 0 ? -length : length);
 }
 
-/// The model-space side as a tracer sees it that computes R^-1 (o - T) in float: what must not flip.
+/// The model-space side for a tracer that computes R^-1 (o - T) in float. It must not flip.
 double traced_side(const scene::Scene& scene, const Vec3& p) {
   const scene::Affine& m = scene.instances[0].world_from_model;
   const Mat3 inverse(glm::inverse(DMat3(m.linear)));
@@ -156,7 +156,7 @@ TEST(SpawnPoint, OfASingularInstanceLeavesItsWorldSpaceTriangle) {
 TEST(SpawnPoint, SidesFollowTheWindingThroughMirroredInstances) {
   scene::Scene scene = empty_scene();
   add_material(scene, matte(Vec3{1}));
-  // glTF turns the winding of a mirrored instance: its front looks where the mirror image's front looks.
+  // glTF flips the winding of a mirrored instance: its front is the mirror image of the front.
   add_mesh(scene, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, 0, {Mat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), Vec3{0}});
   const TriangleGeometry g = triangle_geometry(scene, 0, 0, 0.25f, 0.25f);
   EXPECT_EQ(g.normal, DVec3(0, 0, 1));

@@ -88,7 +88,7 @@ TEST(Srgb, TableMatchesTheStandardAndIsFarFromTies) {
     const float up = std::nextafter(value, 2.0f), down = std::nextafter(value, -1.0f);
     const long double above = 0.5L * (static_cast<long double>(value) + up);
     const long double below = 0.5L * (static_cast<long double>(value) + down);
-    // An error of a few double ulps could not have led to another float.
+    // An error of a few double ulps cannot lead to another float.
     EXPECT_GT(above - exact, 1e-15L * exact) << i;
     EXPECT_GT(exact - below, 1e-15L * exact) << i;
     EXPECT_NEAR(linear_to_srgb(value) * 255.0f, float(i), 1e-2f);

@@ -1,0 +1,17 @@
+#include "ringbus/cycle/fabric/hub.h"
+
+#include <utility>
+
+#include "ringbus/cycle/fabric/bridge.h"
+#include "ringbus/cycle/fabric/bus.h"
+
+namespace carousel::ringbus::cycle {
+
+std::unique_ptr<Hub> make_hub(std::uint32_t hub, const Topology& topology, std::span<const Packet> packets,
+                              std::vector<InPort> in, std::vector<OutPort> out) {
+  if (topology.hubs()[hub] == Topology::Hub::kBus)
+    return std::make_unique<Bus>(topology, packets, std::move(in), std::move(out));
+  return std::make_unique<Bridge>(hub, topology, packets, std::move(in), std::move(out));
+}
+
+}  // namespace carousel::ringbus::cycle

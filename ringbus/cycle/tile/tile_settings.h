@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/config/config.h"
+#include "ringbus/cycle/testers/tester.h"
+#include "ringbus/resource/settings.h"
+#include "ringbus/results/trace.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The parts of the configuration that one resource of a simulated machine follows.
+struct TileSettings {
+  ResourceSettings resource;
+  TestersConfig testers;  ///< the resource's own, at the levels of accuracy
+  AccuracyConfig accuracy;
+  CullPlanesConfig::Order plane_order = CullPlanesConfig::Order::kBoxFirst;
+  std::int64_t reads_per_cycle = 0;
+  MemoryConfig memory;
+  LinkConfig link;
+  FaultsConfig::Resource fault;
+  bool statistics = true;
+  TraceWindow trace;
+};
+
+inline TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
+                                  TraceWindow trace) {
+  return {resource_settings(config, scene_size),
+          testers_of(config, id),
+          config.accuracy,
+          config.cull_planes.order,
+          config.rays.reads_per_cycle,
+          config.memory,
+          config.topology.link,
+          config.faults.resource,
+          statistics,
+          trace};
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/memory/memory.h"
+#include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/time/wakeup_table.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The caches, each shared by some neighbouring resources, and the memory behind them.
+class MemorySystem {
+ public:
+  /// `clients` by resource.
+  MemorySystem(const MemoryConfig& config, const std::vector<ShapeCache::Client>& clients);
+
+  const std::vector<std::unique_ptr<ShapeCache>>& caches() const { return caches_; }
+  const ShapeCache& cache_of(std::size_t resource) const { return *caches_[resource / shared_by_]; }
+  Memory& memory() { return *memory_; }
+  const Memory& memory() const { return *memory_; }
+  /// Announces arrivals between caches and memory.
+  void connect(WakeupTable& wakeups) const;
+  /// The least latency of any channel to a cache or to memory.
+  static Cycle least_latency(const MemoryConfig& config);
+
+ private:
+  std::size_t shared_by_;
+  std::vector<std::unique_ptr<Channel<std::uint64_t>>> to_memory_, from_memory_;  // by cache
+  std::vector<std::unique_ptr<ShapeCache>> caches_;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,45 @@
+#include "ringbus/cycle/wiring/network.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace carousel::ringbus::cycle {
+
+Network::Network(const Machine& machine, const LinkConfig& link, const FaultsConfig& faults, std::int64_t contexts)
+    : machine_(machine),
+      faults_(faults),
+      depth_(static_cast<std::uint32_t>(link.depth)),
+      egress_places_(static_cast<std::size_t>(contexts) + 1) {
+  const Topology& topology = machine.topology;
+  for (std::size_t i = 0; i < topology.wires().size(); ++i) wires_.push_back(std::make_unique<Wire>());
+  for (std::uint32_t hub = 0; hub < topology.hubs().size(); ++hub) {
+    NodePorts ports = ports_at(ResourceId(static_cast<std::uint32_t>(topology.resources()) + hub));
+    hubs_.push_back(make_hub(hub, topology, machine.packets, std::move(ports.in), std::move(ports.out)));
+  }
+}
+
+Network::NodePorts Network::ports_at(ResourceId node) const {
+  const Topology& topology = machine_.topology;
+  const auto latency = [&](std::uint32_t wire) { return static_cast<Cycle>(topology.wires()[wire].latency_cycles); };
+  // On a ring, a resource has egress places for the packets in test and for one that passes meanwhile. At a hub, and
+  // wherever packets are sent directly, there are places for all packets there are, as nothing else would keep circles
+  // of links from closing.
+  const bool hub = node.value >= topology.resources();
+  const std::size_t places = hub || topology.direct() ? machine_.packets.size() : egress_places_;
+  NodePorts ports;
+  for (const std::uint32_t i : topology.ports(node).in) ports.in.push_back({wires_[i].get(), latency(i)});
+  for (const std::uint32_t i : topology.ports(node).out) {
+    OutPort& out = ports.out.emplace_back(*wires_[i], latency(i), depth_, places);
+    if (faults_.links.any()) out.fail(LinkFaultTimer(faults_.links, faults_.seed, i, latency(i)));
+  }
+  return ports;
+}
+
+Cycle Network::least_latency() const {
+  Cycle least = kNever;
+  for (const Topology::Wire& wire : machine_.topology.wires())
+    least = std::min(least, static_cast<Cycle>(wire.latency_cycles));
+  return least;
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,96 @@
+#include "ringbus/cycle/wiring/simulated_machine.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ringbus/cycle/tile/independent_tile.h"
+#include "ringbus/cycle/tile/tile.h"
+#include "ringbus/cycle/time/wait_cycle.h"
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+/// Packets that are tested where they are issued need no flow control: one for each context, and those whose shapes are
+/// being fetched.
+std::uint32_t local_packets(const Config& config) {
+  return static_cast<std::uint32_t>(config.testers.contexts + 1 + config.memory.fetch_ahead);
+}
+
+bool calls_shader(const Config& config, const accel::Accel& accel) {
+  return accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kShader;
+}
+
+}  // namespace
+
+SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& accel, float scene_size,
+                                   Workload& workload, bool statistics, TraceWindow trace)
+    : config_(config),
+      shared_(config, accel, scene_size, local_packets(config)),
+      shape_memory_(accel, config.accuracy),
+      network_(shared_, config.topology.link, config.faults, config.testers.contexts) {
+  std::vector<SidePorts> sides;
+  std::vector<ShapeCache::Client> cache_clients;
+  for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
+    const ResourceId id(r);
+    channels_.push_back(
+        std::make_unique<SideChannels>(config.shading.idle_resources_shade, calls_shader(config, accel)));
+    const SidePorts& side = sides.emplace_back(channels_.back()->ports());
+    cache_clients.push_back({side.fetch, side.fetched});
+    const TileSettings settings = tile_settings(config, id, scene_size, statistics, trace);
+    if (shared_.topology.has_packets()) {
+      Network::NodePorts links = network_.ports_at(id);
+      resources_.push_back(std::make_unique<Tile>(id, shared_, shape_memory_, settings,
+                                                  Tile::Ports{side, std::move(links.in), std::move(links.out)}));
+    } else {
+      resources_.push_back(std::make_unique<IndependentTile>(id, shared_, shape_memory_, settings, side));
+    }
+  }
+  shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, trace, std::move(sides));
+  memory_ = std::make_unique<MemorySystem>(config.memory, cache_clients);
+}
+
+std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads) const {
+  threads = std::clamp<std::size_t>(threads, 1, resources_.size());
+  std::vector<std::vector<Agent*>> parts(threads);
+  const auto share = [&](const auto& agents) {
+    for (std::size_t i = 0; i < agents.size(); ++i) parts[i * threads / agents.size()].push_back(agents[i].get());
+  };
+  share(resources_);
+  share(memory_->caches());
+  share(network_.hubs());
+  parts.back().push_back(&memory_->memory());
+  parts.back().push_back(shading_.get());
+  return parts;
+}
+
+void SimulatedMachine::connect(WakeupTable& wakeups) const {
+  network_.connect(wakeups, resources_);
+  for (std::size_t r = 0; r < resources_.size(); ++r)
+    channels_[r]->connect(wakeups, *resources_[r], *shading_, memory_->cache_of(r));
+  memory_->connect(wakeups);
+}
+
+Cycle SimulatedMachine::lookahead() const {
+  return std::min(
+      {control_latency(config_.topology.link), network_.least_latency(), MemorySystem::least_latency(config_.memory)});
+}
+
+std::string SimulatedMachine::describe_waits() const {
+  std::string text = shading_->describe();
+  const auto add = [&](const Agent& agent) {
+    if (const std::string line = agent.describe(); !line.empty()) text += "\n  " + line;
+  };
+  for (const auto& resource : resources_) add(*resource);
+  for (const auto& hub : network_.hubs()) add(*hub);
+  std::vector<Wait> waits;
+  for_each_link([&](const Topology::Wire& wire, std::size_t port) {
+    if (wire.from.value >= resources_.size()) return;
+    if (std::string packet = resources_[wire.from.value]->blocked(port); !packet.empty())
+      waits.push_back({wire.from.value, wire.to.value, std::move(packet)});
+  });
+  if (const std::string circle = wait_cycle(waits); !circle.empty()) text += "\n  " + circle;
+  return text;
+}
+
+}  // namespace carousel::ringbus::cycle

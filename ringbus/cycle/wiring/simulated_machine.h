@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "core/types/workload.h"
+#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shading/shading_agent.h"
+#include "ringbus/cycle/tile/resource_agent.h"
+#include "ringbus/cycle/wiring/memory_system.h"
+#include "ringbus/cycle/wiring/network.h"
+#include "ringbus/cycle/wiring/side_channels.h"
+#include "ringbus/protocol/machine.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A whole machine under virtual time: every agent, and the channels between them.
+class SimulatedMachine {
+ public:
+  /// Keeps references to the configuration, the structure and the workload.
+  SimulatedMachine(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
+                   bool statistics, TraceWindow trace);
+
+  const Machine& shared() const { return shared_; }
+  const Network& network() const { return network_; }
+  const MemorySystem& memory() const { return *memory_; }
+  const ShadingAgent& shading() const { return *shading_; }
+  const std::vector<std::unique_ptr<ResourceAgent>>& resources() const { return resources_; }
+
+  /// Shares the agents out over threads. Neighbours go to the same thread, and each cache to the thread of its
+  /// resources; shading and memory go to the last thread.
+  std::vector<std::vector<Agent*>> share_out(std::size_t threads) const;
+  /// Announces all arrivals but those of credits, for which agents look when they need any.
+  void connect(WakeupTable& wakeups) const;
+  /// The least latency of any channel.
+  Cycle lookahead() const;
+  /// Every agent that waits for something, a line each, and the circle of waits if there is one; empty when all are at
+  /// rest.
+  std::string describe_waits() const;
+  /// Calls `body` with each wire and the port by which it leaves its node.
+  template <class Body>
+  void for_each_link(const Body& body) const {
+    std::vector<std::size_t> ports(resources_.size() + network_.hubs().size());
+    for (const Topology::Wire& wire : shared_.topology.wires()) body(wire, ports[wire.from.value]++);
+  }
+  /// The near ends of the links that leave a node.
+  const std::vector<OutPort>& out_of(ResourceId node) const {
+    if (node.value < resources_.size()) return resources_[node.value]->out();
+    return network_.hubs()[node.value - resources_.size()]->out();
+  }
+
+ private:
+  const Config& config_;
+  Machine shared_;
+  ShapeMemory shape_memory_;
+  Network network_;
+  std::vector<std::unique_ptr<SideChannels>> channels_;  // by resource
+  std::vector<std::unique_ptr<ResourceAgent>> resources_;
+  std::unique_ptr<MemorySystem> memory_;
+  std::unique_ptr<ShadingAgent> shading_;
+};
+
+}  // namespace carousel::ringbus::cycle

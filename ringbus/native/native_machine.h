@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "ringbus/native/completed_queue.h"
+#include "ringbus/native/link.h"
+#include "ringbus/protocol/machine.h"
+
+namespace carousel::ringbus {
+
+/// A machine with what the native engine adds to it: real queues between resources, and the queue to shading.
+struct NativeMachine {
+  NativeMachine(const Config& config, const accel::Accel& accel, float scene_size);
+
+  Machine shared;
+  std::vector<std::unique_ptr<Link>> links;  ///< as shared.topology.wires()
+  CompletedQueue completed;
+};
+
+}  // namespace carousel::ringbus

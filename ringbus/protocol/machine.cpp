@@ -1,0 +1,34 @@
+#include "ringbus/protocol/machine.h"
+
+#include "ringbus/protocol/packet_pool.h"
+#include "ringbus/resource/resource.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+RayControlSettings control_settings(const Config& config, const accel::Accel& accel, float scene_size,
+                                    const Topology& topology) {
+  const std::int32_t tests = Resource::initial_tests(resource_settings(config, scene_size), accel);
+  RayControlSettings settings = ray_control_settings(config, tests, scene_size);
+  settings.local |= !topology.has_packets();
+  return settings;
+}
+
+}  // namespace
+
+Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
+                 std::optional<std::uint32_t> local_packets)
+    : accel(a),
+      topology(config.topology),
+      flow(config.topology.flow, topology.direct()),
+      home_local(config.collections.home == Home::kLocal),
+      stays(home_local || topology.resources() == 1),
+      packets_per_direction(stays && topology.has_packets() ? local_packets.value_or(topology.packets_in_flight())
+                                                            : topology.packets_in_flight()),
+      packets(make_packets(topology, packets_per_direction, static_cast<std::size_t>(config.packets.rays),
+                           config.collections.traversal == Traversal::kOrdered)),
+      stores(make_ray_stores(config.topology.resources, config.rays.slots_per_resource, config.bundles)),
+      control(control_settings(config, accel, scene_size, topology), stores) {}
+
+}  // namespace carousel::ringbus

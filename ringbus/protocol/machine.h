@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "ringbus/packets/packet.h"
+#include "ringbus/protocol/flow_rules.h"
+#include "ringbus/rays/ray_control.h"
+#include "ringbus/topology/topology.h"
+
+namespace carousel::ringbus {
+
+/// The parts of a machine that its resources share, whatever engine runs it: the structure, the network, the packets,
+/// which belong to whoever holds their ID, and the ray records, which belong to their owners. What only one engine
+/// needs (links, channels, simulated memory) stands beside it in that engine.
+struct Machine {
+  /// Keeps a reference to `accel`. `local_packets`: how many packets a resource needs in each direction where packets
+  /// never travel; absent: as many as it may have under way elsewhere.
+  Machine(const Config& config, const accel::Accel& accel, float scene_size,
+          std::optional<std::uint32_t> local_packets = std::nullopt);
+
+  Packet& packet(PacketId id) { return packets[id.value]; }
+  const Packet& packet(PacketId id) const { return packets[id.value]; }
+  /// The first of a resource's packets; they stand one after another, by direction.
+  PacketId first_packet(ResourceId owner) const {
+    return PacketId(owner.value * static_cast<std::uint32_t>(topology.directions()) * packets_per_direction);
+  }
+
+  const accel::Accel& accel;
+  Topology topology;
+  FlowRules flow;
+  bool home_local;                                ///< `collections.home: local`
+  bool stays;                                     ///< packets are tested where they are issued and never travel
+  std::uint32_t packets_per_direction;            ///< of one resource
+  std::vector<Packet> packets;                    ///< by owner, then direction
+  std::vector<std::unique_ptr<RayStore>> stores;  ///< by resource
+  RayControl control;
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/types/ids.h"
+
+namespace carousel::ringbus {
+
+/// Whether the queues of a network can all be full at once and stay so, known before a run (DESIGN.md section 4).
+struct DeadlockVerdict {
+  bool can_deadlock = false;
+  std::string rule;  ///< the rule that protects the network, with its numbers; or what is missing
+};
+
+/// Everything a shape of network says about itself, as plain data. Each shape has one function that fills this in
+/// (shapes.h); Topology derives its tables from it.
+///
+/// Nodes are the resources, from 0 on, and behind them the hubs.
+struct TopologyPlan {
+  /// A one-way link. At each of its two ends `direction` is the number of its port, unless packets are sent directly:
+  /// then ports are counted in the order of the wires.
+  struct Wire {
+    ResourceId from, to;
+    std::uint16_t direction = 0;
+    std::int64_t latency_cycles = 1;
+  };
+
+  /// A node that is no resource.
+  enum class Hub : std::uint8_t {
+    kBus,     ///< one medium for all: it moves one packet at a time, straight to its next stop
+    kBridge,  ///< joins the line of resources of its group (port 0) with the ring of bridges (port 1)
+  };
+
+  /// The resources behind a bridge, from the first one on its line to the last.
+  struct Group {
+    ResourceId first, last;
+  };
+
+  /// By direction, then by resource: the node that comes next on the round of that direction. A packet keeps its
+  /// direction all the way round. One direction at least.
+  std::vector<std::vector<ResourceId>> successors;
+  std::vector<Wire> wires;
+  /// Packets are sent straight to their next stop, without passing other resources. The round then only says in which
+  /// order a packet visits them.
+  bool direct = false;
+  std::vector<Hub> hubs;
+  std::vector<Group> groups;  ///< one a bridge
+  /// Packets of its own that a resource may have under way in each direction.
+  std::uint32_t packets_in_flight = 0;
+  DeadlockVerdict verdict;
+  /// Resources exchange packets. Otherwise each traces its own rays, and there are no wires.
+  bool has_packets = true;
+  /// Synthetic traffic (`workload: traffic`) runs on it. Every round then goes through all resources and no hub.
+  bool carries_traffic = false;
+  /// By direction of a packet: the direction in which the acknowledgement of its delivery travels back to its source.
+  /// Only where traffic runs and packets are not sent directly.
+  std::vector<std::uint16_t> ack_directions;
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,47 @@
+#include "ringbus/topology/shapes.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "core/config/enum_names.h"
+#include "core/system/error.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+struct Shape {
+  TopologyShape shape;
+  TopologyPlan (*plan)(const TopologyConfig& config);
+};
+
+constexpr std::array kShapes{
+    Shape{TopologyShape::kRing, plan_ring},
+    Shape{TopologyShape::kBidirectional, plan_bidirectional},
+    Shape{TopologyShape::kMultiRing, plan_multi_ring},
+    Shape{TopologyShape::kHierarchical, plan_hierarchical},
+    Shape{TopologyShape::kPointToPoint, plan_point_to_point},
+    Shape{TopologyShape::kBus, plan_bus},
+    Shape{TopologyShape::kIndependent, plan_independent},
+};
+
+}  // namespace
+
+TopologyPlan plan_topology(const TopologyConfig& config) {
+  const auto found =
+      std::find_if(kShapes.begin(), kShapes.end(), [&](const Shape& shape) { return shape.shape == config.shape; });
+  if (found == kShapes.end())
+    throw SimulationError(fmt::format("topology.shape: there is no plan of {}", enum_name(config.shape)));
+  TopologyPlan plan = found->plan(config);
+  if (config.resources == 1) {
+    plan.wires.clear();
+    plan.hubs.clear();
+    plan.groups.clear();
+    plan.verdict = {false, "one resource: packets are tested where they are issued, there are no links"};
+  }
+  return plan;
+}
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/config/config.h"
+#include "ringbus/topology/plan.h"
+
+namespace carousel::ringbus {
+
+/// The plan of the shape that the configuration names. A machine of one resource has no wires, whatever its shape.
+/// Throws a SimulationError for a shape that has no plan.
+TopologyPlan plan_topology(const TopologyConfig& config);
+
+// One function a shape, each in the file of its name.
+TopologyPlan plan_ring(const TopologyConfig& config);
+TopologyPlan plan_bidirectional(const TopologyConfig& config);
+TopologyPlan plan_multi_ring(const TopologyConfig& config);
+TopologyPlan plan_hierarchical(const TopologyConfig& config);
+TopologyPlan plan_point_to_point(const TopologyConfig& config);
+TopologyPlan plan_bus(const TopologyConfig& config);
+TopologyPlan plan_independent(const TopologyConfig& config);
+
+}  // namespace carousel::ringbus
