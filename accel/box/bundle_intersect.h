@@ -13,19 +13,18 @@ namespace carousel::accel {
 struct BundleAnswer {
   std::uint8_t all = 0;         ///< every ray hits the box, as far as is known: the bundle goes down whole
   std::uint8_t undecided = 0;   ///< some may hit and some may miss: the bundle is split for this lane
-  std::uint8_t edges = 0;       ///< of silhouettes, tested; 0 where the interval form stood in
+  std::uint8_t edges = 0;       ///< tested edges of silhouettes; 0 if the interval form was used
   float entry[kMaxWidth] = {};  ///< a lower bound of the rays' entries, of lanes in `all`
 };
 
 /// Tests a bundle against those child boxes of inner node `node` that `lanes` selects, in the form and order of
 /// `config`, and at the accel's level of accuracy for boxes. A lane is left out only if the box test of every ray that
-/// the record bounds would miss it, rounding included. A lane in `all` is one that each such test hits if the ray's
-/// range ends where the bundle's does (the record does not know which have found something nearer), and, with
-/// `config.strict`, that each such ray meets by exact arithmetic as well; with `any_hit_only` it is only one that some
-/// may hit. A bundle of one gets the answer of the ray's own test, except that strict may leave what is hit by rounding
-/// undecided.
-/// The silhouette form stands back for the interval form where there is no such test: for single rays, directions of
-/// several octants, and extreme exponents. Counts the bundle tests. Any thread may call.
+/// the record bounds would miss it, rounding included. A lane in `all` is hit by each such test if the ray's range ends
+/// where the bundle's does (the record does not know which rays have a closer hit), and, with `config.strict`, also by
+/// each such ray in exact arithmetic; with `any_hit_only` it may be hit by some rays only. A bundle of one gets the
+/// answer of the ray's own test, except that `strict` may leave a lane undecided that is hit by rounding.
+/// The interval form replaces the silhouette form for single rays, directions of several octants, and extreme
+/// exponents. Counts the bundle tests. Any thread may call.
 BundleAnswer test_bundle(const Accel& accel, const Node& node, std::uint32_t lanes, const BundleRecord& bundle,
                          const BundlesConfig& config, IntersectionCounts& counts);
 

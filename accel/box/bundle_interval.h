@@ -2,13 +2,12 @@
 // and of their rounded reciprocals with the very operations of accel/box/slab.h. Rounding is monotone, so what is
 // computed here bounds the values computed for each ray, and no slack has to be proven.
 //
-// Along an axis the rays are taken in two halves by the sign bit of their directions, as the slab test chooses its
-// planes. Where there are both, directions between may be next to zero, or zero, so that a half says only who is beside
-// the box, or behind it, and how early its fastest ray may be there.
+// Along an axis the rays form two halves by the sign bit of their directions, as the slab test chooses its planes. If
+// both halves have rays, a direction may be close to zero, or zero; then a half only tells if its rays are beside the
+// box or behind it, and the earliest distance at which one of them may reach it.
 //
-// That a ray enters through the near plane of an axis no later than it leaves through the far one needs no test: it
-// holds for each ray by itself, rounding included, unless it leaves before it starts. Compared over a bundle the two
-// would overlap wherever a box is flat.
+// Each ray enters through the near plane of an axis no later than it leaves through the far one, rounding included,
+// unless it leaves before it starts. This needs no test: compared over a bundle the two would overlap for any flat box.
 #pragma once
 
 #include <cmath>
@@ -34,8 +33,8 @@ BoxPlanes<Real> planes_of(const Aabb& box) {
   return {{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
 }
 
-/// A bundle as its tests want it. `Real` says which slab test it answers for: SlabRay's (float) or DoubleSlabRay's.
-/// Where `V` is a vector type, answers are masks and entries of its lanes.
+/// A bundle prepared for its tests. `Real` is the type of the slab test that it stands for: SlabRay's (float) or
+/// DoubleSlabRay's. If `V` is a vector type, answers are masks and entries of its lanes.
 template <class Real>
 class BundleInterval {
  public:
@@ -147,12 +146,12 @@ class BundleInterval {
     V to_far(const BoxPlanes<V>& box, Real origin) const {
       return backwards ? origin - box.lo[axis] : box.hi[axis] - origin;
     }
-    // Before the start is as good as at the start.
+    // An entry before the start of a ray counts as an entry at its start.
     template <class V>
     static V entry(V way, Real pace) {
       return way > 0 ? way * pace : V{};
     }
-    // 0 * inf, on a plane and along it, bounds nothing.
+    // 0 * inf, on a plane and along it, is no bound.
     template <class V>
     static V exit(V way, Real ahead, Real behind) {
       const V time = way < 0 ? way * behind : way * ahead;

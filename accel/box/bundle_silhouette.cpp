@@ -1,18 +1,18 @@
 // Silhouette of a box against a bundle of rays (US 11308683, "Intersection testing in a ray tracing system using ray
 // bundle vectors"), for directions of one octant, mirrored here so that none is negative. An edge of the silhouette is
-// where the near plane of one axis i meets the far plane of another j. A ray passes outside of it when it is still on
-// its way to the near plane at the far one: (lo_i - o_i) / d_i > (hi_j - o_j) / d_j, or, without division,
-// (lo_i - o_i) d_j > (hi_j - o_j) d_i. Taken at the ends of the ranges of origins and directions this is of all rays.
-// Rays that start beyond a far plane miss, and so do those whose range ends before a near one: no edge says that.
+// the line where the near plane of one axis i meets the far plane of another j. A ray passes outside of it if it
+// reaches the far plane before the near one: (lo_i - o_i) / d_i > (hi_j - o_j) / d_j, or, without division, (lo_i -
+// o_i) d_j > (hi_j - o_j) d_i. At the ends of the ranges of origins and directions this holds for all rays. Rays that
+// start beyond a far plane miss, and so do those whose range ends before a near one; no edge tells these.
 //
-// A miss must be one of the slab test as it is computed. Each distance (p - o) * (1 / d) is there off by three
-// roundings, four when the reciprocal is widened, so one that is more than 8 u greater than another times the widening
-// (u = 2^-24; 2^-53 for the test in double) is greater in the slab test as well. For AllHit the widening pays for that,
-// where there is any. Here differences are rounded in double, less than 2^-51 of them, and products of two floats are
-// exact or rounded likewise.
+// A claimed miss must also be a miss of the computed slab test. Its distances (p - o) * (1 / d) have three roundings,
+// four if the reciprocal is widened, so one that is more than 8 u greater than another times the widening (u = 2^-24;
+// 2^-53 for the test in double) is greater in the slab test as well. For AllHit the widening, if there is any, covers
+// that. Here differences are rounded in double, by less than 2^-51 of them, and products of two floats are exact or
+// rounded likewise.
 //
-// Relative errors are all there is as long as nothing overflows or underflows: reciprocals of [kSlow, kFast] are normal
-// floats, and so are distances in it. Where a range leaves it, the edge claims nothing.
+// All errors are relative as long as nothing overflows or underflows: reciprocals of [kSlow, kFast] are normal floats,
+// and so are distances in it. If a range leaves it, the edge makes no claim.
 #include "accel/box/bundle_silhouette.h"
 
 #include <algorithm>

@@ -65,7 +65,7 @@ struct PlaneLanes {
   using Tag = hn::CappedTag<float, kMaxWidth>;
   hn::Vec<Tag> x, y, z, distance;
 
-  /// `at(lane)` is the plane of a lane. Whole planes are loaded and turned about: gathering is slower on many machines.
+  /// `at(lane)` is the plane of a lane. Whole planes are loaded and transposed: gathering is slower on many machines.
   template <class At>
   HWY_INLINE explicit PlaneLanes(const At& at) {
     const Tag d;

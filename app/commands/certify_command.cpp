@@ -23,11 +23,11 @@ namespace {
 /// The configured level; empty without a configuration, which stands for all levels.
 std::optional<AccuracyConfig> configured_level(const AccuracyArguments& arguments) {
   if (arguments.config.empty() && arguments.sets.empty()) return std::nullopt;
-  const LocatedConfig located = arguments.config.empty()
-                                    ? parse_located_config(kBuiltInConfig, "built-in", arguments.sets)
-                                    : load_located_config(arguments.config, arguments.sets);
-  accel::select_simd_target(located.config.engine.simd);
-  return located.config.accuracy;
+  const ConfigText source =
+      arguments.config.empty() ? ConfigText{kBuiltInConfig, "built-in"} : read_config_file(arguments.config);
+  const Config config = load_config(source, arguments.sets).config;
+  accel::select_simd_target(config.engine.simd);
+  return config.accuracy;
 }
 
 /// The cases of a file, one a line, among blank lines and comments; or the one case that the text itself holds.

@@ -207,7 +207,6 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   program.require_subcommand(1);
   program.set_help_flag("-h,--help", "Print this help and exit");
   program.set_version_flag("--version", version_text, "Print version, commit and compiler, and exit");
-  program.footer("carousel COMMAND --help describes the options of a command.");
   add_run(program, arguments.run);
   CLI::App* check = program.add_subcommand(
       "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
@@ -222,6 +221,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       ->check(CLI::IsMember({"config", "report"}));
   schema->add_flag("--markdown", arguments.schema.markdown,
                    "With `config`: print every key as Markdown (default: JSON Schema)");
+  program.footer("carousel COMMAND --help describes the options of a command.");
 }
 
 int run_command_line(int argc, const char* const* argv) {

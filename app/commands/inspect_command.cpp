@@ -27,7 +27,7 @@ LocatedConfig config_for(const InspectArguments& arguments) {
   else
     scene["file"] = name;
   const Json config{{"schema_version", 1}, {"scene", scene}};
-  return parse_located_config(config.dump(), "inspect.json", arguments.sets, {.force = true});
+  return load_config({config.dump(), "inspect.json"}, arguments.sets, {.force = true});
 }
 
 struct Holdings {

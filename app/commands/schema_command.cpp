@@ -5,6 +5,7 @@
 
 #include "app/host/exit_status.h"
 #include "app/host/output.h"
+#include "core/config/config_page.h"
 #include "core/config/schema.h"
 #include "report/run/report_json.h"
 

@@ -97,7 +97,7 @@ float Prepared::scene_size() const {
 
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits) {
   Prepared p;
-  p.located = load_located_config(arguments.config, arguments.sets, options);
+  p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   prepare_located(p, keep_hits);
   return p;
@@ -105,7 +105,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets) {
   Prepared p;
-  p.located = parse_located_config(text, name, sets, {.force = true});
+  p.located = load_config({text, name}, sets, {.force = true});
   prepare_located(p, false);
   return p;
 }

@@ -14,7 +14,7 @@ namespace carousel::app {
 
 namespace {
 
-/// One cell: a kind at a depth, and what its runs gave.
+/// One cell: a kind at a depth, with the results of its runs.
 struct Cell {
   QueueKind kind;
   std::int64_t depth;
@@ -67,7 +67,7 @@ std::vector<report::StressRingRow> try_in_ring(const Prepared& p, const std::vec
   double done = 0;
   for (std::size_t repetition = 0; repetition < repetitions; ++repetition)
     for (std::size_t k = 0; k < cells.size() && !stop.stop_requested(); ++k) {
-      // Each repetition begins elsewhere, so that no cell always comes after the same one.
+      // Each repetition begins with another cell, so that no cell always follows the same one.
       Cell& cell = cells[(k + repetition * (cells.size() / repetitions + 1)) % cells.size()];
       const Digests digests = run_cell(p, cell, stop);
       if (stop.stop_requested()) break;
@@ -106,7 +106,7 @@ std::string ring_verdict(const std::vector<report::StressRingRow>& rows) {
     return fmt::format("{} of depth {}", row.queue, row.depth);
   };
   const double gain = report::ratio(best->rate_median, worst->rate_median) - 1;
-  // Apart when not even the worst cell's best repetition reaches the best cell's worst.
+  // The cells differ if the worst cell's best repetition is below the best cell's worst.
   const bool sure = worst->rate_most < best->rate_least;
   std::string text = fmt::format("{} traces {} rays/s, {} {}: {} more", named(*best), report::scaled(best->rate_median),
                                  named(*worst), report::scaled(worst->rate_median), report::percent(gain));

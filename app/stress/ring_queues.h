@@ -15,7 +15,7 @@ std::vector<report::StressRingRow> try_in_ring(const Prepared& prepared, const s
                                                const std::vector<std::int64_t>& depths, std::size_t repetitions,
                                                std::stop_token stop, const std::function<void(double part)>& progress);
 
-/// What the rows say of queue and depth, with how much repetitions differ.
+/// A sentence that compares queues and depths, with the spread of the repetitions.
 std::string ring_verdict(const std::vector<report::StressRingRow>& rows);
 
 }  // namespace carousel::app

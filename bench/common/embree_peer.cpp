@@ -65,7 +65,7 @@ void start16(const RayBatch& batch, std::size_t first, RTCRay16& out, int* valid
   }
 }
 
-// A mesh placed once has its own geometry ID, an instance is told by instID; either is the scene's instance.
+// A mesh placed once has its own geometry ID, an instance its instID; both number the scene's instances.
 Hit finish(float t, float u, float v, unsigned geometry, unsigned instance, unsigned primitive) {
   if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
   return {t, u, v, instance != RTC_INVALID_GEOMETRY_ID ? instance : geometry, primitive};

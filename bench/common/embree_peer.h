@@ -33,7 +33,7 @@ class EmbreePeer {
   /// rtcIntersect1, or rtcOccluded1 for any-hit sets, on `threads` threads. Of an occluded ray only
   /// Hit::instance is set.
   void trace_single(const RaySet& rays, int threads, HitList& hits) const;
-  /// rtcIntersect16 or rtcOccluded16, told whether the rays are coherent.
+  /// rtcIntersect16 or rtcOccluded16, with the flag for coherent rays if they are.
   void trace_sixteen(const RaySet& rays, int threads, HitList& hits) const;
 
  private:

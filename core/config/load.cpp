@@ -13,7 +13,7 @@ namespace carousel {
 
 namespace {
 
-/// Whether one of the two paths encloses the other; the empty path encloses all.
+/// True if one of the two paths encloses the other. The empty path encloses all.
 bool related(std::string_view a, std::string_view b) {
   if (a.empty() || b.empty()) return true;
   const std::size_t shorter = std::min(a.size(), b.size());
@@ -31,7 +31,7 @@ void sort_by_position(std::vector<ConfigIssue>& issues, const std::string& file)
                    [&](const ConfigIssue& a, const ConfigIssue& b) { return rank(a) < rank(b); });
 }
 
-/// What an override of a single resource starts from: the testers all resources have.
+/// The testers of all resources, from which an override of one resource starts.
 TestersConfig read_base_testers(const config::Node& root) {
   TestersConfig testers;
   std::vector<ConfigIssue> ignored;  // reported when the section is read for good
@@ -39,7 +39,31 @@ TestersConfig read_base_testers(const config::Node& root) {
   return testers;
 }
 
-std::string read_text(const std::filesystem::path& path) {
+LocatedConfig read_fields(const ConfigText& source, std::span<const std::string> sets,
+                          std::vector<ConfigIssue>& issues) {
+  config::Node root = config::parse_tree(source.text, source.name, issues);
+  if (root.kind == config::Node::Kind::kNull) root.kind = config::Node::Kind::kMap;  // an empty file
+  if (root.kind == config::Node::Kind::kMap)
+    for (const std::string& set : sets) config::apply_set(root, set, issues);
+  LocatedConfig out{{}, KeyPositions(root, source.name)};
+  config::Reader(issues, read_base_testers(root)).read(root, out.config);
+  return out;
+}
+
+/// Appends the breaches of the rules across fields. A field that could not be read has its default, which is not
+/// judged.
+void check_rules(const LocatedConfig& located, const ValidateOptions& options, std::vector<ConfigIssue>& issues) {
+  const std::size_t unread = issues.size();
+  for (ConfigIssue& issue : validate_config(located.config, located.positions, options)) {
+    const bool about_unread = std::any_of(issues.begin(), issues.begin() + std::ptrdiff_t(unread),
+                                          [&](const auto& r) { return related(r.key_path, issue.key_path); });
+    if (!about_unread) issues.push_back(std::move(issue));
+  }
+}
+
+}  // namespace
+
+ConfigText read_config_file(const std::filesystem::path& path) {
   const auto fail = [&](const std::string& why) {
     throw ConfigError({{{path.string(), 0, 0}, "", "cannot be read: " + why}});
   };
@@ -51,51 +75,16 @@ std::string read_text(const std::filesystem::path& path) {
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) fail(std::strerror(errno));
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
+  return {std::move(text), path.string()};
 }
 
-}  // namespace
-
-LocatedConfig read_config(std::string_view text, const std::string& name, std::span<const std::string> sets,
-                          std::vector<ConfigIssue>& issues) {
-  config::Node root = config::parse_tree(text, name, issues);
-  if (root.kind == config::Node::Kind::kNull) root.kind = config::Node::Kind::kMap;  // an empty file
-  if (root.kind == config::Node::Kind::kMap)
-    for (const std::string& set : sets) config::apply_set(root, set, issues);
-  LocatedConfig out{{}, KeyPositions(root, name)};
-  config::Reader(issues, read_base_testers(root)).read(root, out.config);
-  return out;
-}
-
-LocatedConfig parse_located_config(std::string_view text, const std::string& name, std::span<const std::string> sets,
-                                   const ValidateOptions& options) {
+LocatedConfig load_config(const ConfigText& source, std::span<const std::string> sets, const ValidateOptions& options) {
   std::vector<ConfigIssue> issues;
-  LocatedConfig located = read_config(text, name, sets, issues);
-  const std::size_t read_issues = issues.size();
-  for (ConfigIssue& issue : validate_config(located.config, located.positions, options)) {
-    // A field that could not be read has its default, of which nothing should be said.
-    const bool about_unread = std::any_of(issues.begin(), issues.begin() + std::ptrdiff_t(read_issues),
-                                          [&](const auto& r) { return related(r.key_path, issue.key_path); });
-    if (!about_unread) issues.push_back(std::move(issue));
-  }
+  LocatedConfig located = read_fields(source, sets, issues);
+  if (!options.fields_only) check_rules(located, options, issues);
   if (issues.empty()) return located;
-  sort_by_position(issues, name);
+  sort_by_position(issues, source.name);
   throw ConfigError(std::move(issues));
-}
-
-Config parse_config(std::string_view text, const std::string& name, std::span<const std::string> sets,
-                    const ValidateOptions& options) {
-  return parse_located_config(text, name, sets, options).config;
-}
-
-LocatedConfig load_located_config(const std::filesystem::path& path, std::span<const std::string> sets,
-                                  const ValidateOptions& options) {
-  return parse_located_config(read_text(path), path.string(), sets, options);
-}
-
-Config load_config(const std::filesystem::path& path, std::span<const std::string> sets,
-                   const ValidateOptions& options) {
-  return load_located_config(path, sets, options).config;
 }
 
 }  // namespace carousel

@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/config/config.h"
 #include "core/config/tree/positions.h"
@@ -18,23 +16,18 @@ struct LocatedConfig {
   KeyPositions positions;
 };
 
-/// Reads text (YAML, or JSON when `name` ends in .json or the text is a JSON object) and applies the
-/// assignments `key.path=value` of `sets` in order. `name` is what messages call the file. Throws a
-/// ConfigError with every problem: syntax, unknown keys, types, ranges and the rules across fields.
-LocatedConfig parse_located_config(std::string_view text, const std::string& name,
-                                   std::span<const std::string> sets = {}, const ValidateOptions& options = {});
-Config parse_config(std::string_view text, const std::string& name, std::span<const std::string> sets = {},
-                    const ValidateOptions& options = {});
+/// The text of a configuration: YAML, or JSON when `name` ends in .json or the text is a JSON object.
+struct ConfigText {
+  std::string text;
+  std::string name;  ///< what messages call it
+};
 
-/// The same for a file. A file that cannot be read is a ConfigError.
-LocatedConfig load_located_config(const std::filesystem::path& path, std::span<const std::string> sets = {},
-                                  const ValidateOptions& options = {});
-Config load_config(const std::filesystem::path& path, std::span<const std::string> sets = {},
-                   const ValidateOptions& options = {});
+/// Reads a file. Throws a ConfigError for one that cannot be read.
+ConfigText read_config_file(const std::filesystem::path& path);
 
-/// The first half of parse_config: reads without the rules across fields; problems are appended to `issues`.
-/// Throws a ConfigError only for text that cannot be read at all.
-LocatedConfig read_config(std::string_view text, const std::string& name, std::span<const std::string> sets,
-                          std::vector<ConfigIssue>& issues);
+/// Reads a configuration and applies the assignments `key.path=value` of `sets` in order. Throws a ConfigError with
+/// every problem: syntax, unknown keys, types, ranges, and, unless `options` leaves them out, the rules across fields.
+LocatedConfig load_config(const ConfigText& source, std::span<const std::string> sets = {},
+                          const ValidateOptions& options = {});
 
 }  // namespace carousel

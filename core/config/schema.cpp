@@ -1,11 +1,13 @@
 #include "core/config/schema.h"
 
-#include <charconv>
+#include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/config/config.h"
+#include "core/config/not_built.h"
 #include "core/config/write.h"
 #include "core/types/effect.h"
 
@@ -107,11 +109,13 @@ class SchemaWriter {
                   {"additionalProperties", false}};
     };
     Json from =
-        one_key("rays_from", {{"type", "string"},
-                              {"minLength", 1},
-                              {"description", "ray CSV, relative to the config's folder, then to the working one"}});
+        one_key("rays_from",
+                {{"type", "string"},
+                 {"minLength", 1},
+                 {"description",
+                  "A file of rays in CSV. Its path is relative to the config's folder, then to the working one."}});
     put(key,
-        {{"anyOf", {Json{{"const", "rays"}}, from, one_key("traffic", object(value.traffic, "synthetic packets"))}},
+        {{"anyOf", {Json{{"const", "rays"}}, from, one_key("traffic", object(value.traffic, "Synthetic packets."))}},
          {"default", "rays"}},
         "", meaning);
   }
@@ -144,9 +148,9 @@ class SchemaWriter {
   Json properties_ = Json::object();
 };
 
-/// Calls visit(path, schema) for every key below `schema`, outer keys first.
-template <class Visit>
-void walk(const Json& schema, const std::string& path, const Visit& visit) {
+using VisitKey = std::function<void(const std::string&, const Json&)>;
+
+void walk(const Json& schema, const std::string& path, const VisitKey& visit) {
   if (const auto alternatives = schema.find("anyOf"); alternatives != schema.end())
     for (const Json& alternative : *alternatives) walk(alternative, path, visit);
   if (const auto items = schema.find("items"); items != schema.end()) walk(*items, path + ".0", visit);
@@ -159,27 +163,48 @@ void walk(const Json& schema, const std::string& path, const Visit& visit) {
   }
 }
 
-std::string kind_text(const Json& schema) {
-  if (schema.contains("const")) return schema["const"].get<std::string>();
-  if (schema.contains("enum"))
-    return fmt::format("{}", fmt::join(schema["enum"].get<std::vector<std::string>>(), ", "));
-  if (schema.contains("anyOf")) {
-    std::string out;
-    for (const Json& alternative : schema["anyOf"]) out += (out.empty() ? "" : " or ") + kind_text(alternative);
-    return out;
+/// Writes beside each enumeration, and each other key of the table, which engines take the values that not all take.
+void add_engines(Json& schema) {
+  for (const NotBuilt& row : not_built()) {
+    Json* at = &schema;
+    std::string_view key = row.key;
+    while (!key.empty()) {
+      const std::size_t dot = std::min(key.find('.'), key.size());
+      at = &(*at)["properties"][std::string(key.substr(0, dot))];
+      key.remove_prefix(std::min(dot + 1, key.size()));
+    }
+    Json& engines = (*at)["engines"];
+    const auto add = [&](const std::string& value, const std::vector<EngineKind>& having) {
+      if (having.size() == kEnumNames<EngineKind>.size()) return;
+      engines[value] = Json::array();
+      for (const EngineKind engine : having) engines[value].push_back(enum_name(engine));
+    };
+    if (at->contains("enum"))
+      for (const Json& value : (*at)["enum"]) add(value, engines_with(row.key, value.get<std::string>()));
+    else if (row.value.empty())
+      add("others than the default", engines_with(row.key, ""));
+    else
+      add(std::string(row.value), engines_with(row.key, row.value));
   }
-  if (!schema["type"].is_string()) return "value";
-  const std::string type = schema["type"];
-  if (type == "object") return "map";
-  if (type == "array") return "list";
-  if (type == "string") return "text";
-  if (type == "boolean") return "true, false";
-  const bool above = schema.contains("exclusiveMinimum");
-  return fmt::format("{}{} to {}", above ? "above " : "", schema[above ? "exclusiveMinimum" : "minimum"].dump(),
-                     schema["maximum"].dump());
 }
 
 }  // namespace
+
+void walk_schema(const Json& schema, const VisitKey& visit) {
+  walk(schema, "", visit);
+}
+
+std::vector<std::string> enum_values(std::string_view path) {
+  static const std::map<std::string, std::vector<std::string>, std::less<>> values = [] {
+    std::map<std::string, std::vector<std::string>, std::less<>> out;
+    walk(config_schema(), "", [&](const std::string& key, const Json& schema) {
+      if (schema.contains("enum")) out[key] = schema["enum"].get<std::vector<std::string>>();
+    });
+    return out;
+  }();
+  const auto found = values.find(path);
+  return found == values.end() ? std::vector<std::string>{} : found->second;
+}
 
 const std::vector<std::string>& config_key_paths() {
   // Made once: a file may hold thousands of unknown keys.
@@ -209,20 +234,8 @@ Json config_schema() {
   schema["required"] = {"scene"};
   Json& scene = schema["properties"]["scene"];
   scene["oneOf"] = {Json{{"required", {"file"}}}, Json{{"required", {"builtin"}}}};
+  config::add_engines(schema);
   return schema;
-}
-
-std::string config_markdown() {
-  std::string out = "| key | values | default | unit | meaning |\n|---|---|---|---|---|\n";
-  config::walk(config_schema(), "", [&](const std::string& path, const Json& schema) {
-    if (path.find(".0.testers.") != path.npos) return;  // the same as testers, once is enough
-    const std::string value = schema.contains("default") ? schema["default"].dump() : "";
-    std::string shown =
-        schema.contains("default") && schema["default"].is_string() ? schema["default"].get<std::string>() : value;
-    out += fmt::format("| `{}` | {} | {} | {} | {} |\n", path, config::kind_text(schema), shown,
-                       schema.value("unit", ""), schema.value("description", ""));
-  });
-  return out;
 }
 
 }  // namespace carousel

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/config/edit_distance.h"
-#include "core/config/enum_names.h"
+#include "core/config/not_built.h"
 #include "core/config/schema.h"
 #include "core/types/effect.h"
 
@@ -25,13 +25,12 @@ class Rules {
   std::vector<ConfigIssue> check() {
     one_scene();
     raster_needs_a_pinhole();
-    built_shape();
+    all_is_built();
     stored_transform_fits();
-    built_planes_and_bundles();
-    built_packets();
-    built_shading();
-    built_testers();
-    built_workload();
+    planes_and_bundles_fit();
+    carried_data_comes_from_the_issuer();
+    effects_are_known();
+    traffic_has_a_network();
     flow_that_can_deadlock();
     bubble_needs_two_places();
     ordered_needs_strips();
@@ -45,15 +44,6 @@ class Rules {
  private:
   void issue(const std::string& key, std::string message) {
     issues_.push_back({positions_.find(key), key, std::move(message)});
-  }
-
-  template <class T>
-  void only(const std::string& key, T value, T built, std::string_view found, std::string_view expected) {
-    if (value != built) issue(key, fmt::format("{} is not built yet; expected {}", found, expected));
-  }
-  template <class E>
-  void only(const std::string& key, E value, E built) {
-    only(key, value, built, enum_name(value), enum_name(built));
   }
 
   void one_scene() {
@@ -75,18 +65,15 @@ class Rules {
 
   bool cycle() const { return c.engine.kind == EngineKind::kCycle; }
 
-  void built_shape() {
-    const TopologyShape shape = c.topology.shape;
-    if (shape == TopologyShape::kRing || shape == TopologyShape::kBidirectional ||
-        shape == TopologyShape::kPointToPoint)
-      return;
-    if (cycle() && (shape == TopologyShape::kMultiRing || shape == TopologyShape::kHierarchical ||
-                    shape == TopologyShape::kBus || shape == TopologyShape::kIndependent))
-      return;
-    issue("topology.shape",
-          fmt::format(
-              "the {} engine has no {}; expected ring, bidirectional{}", enum_name(c.engine.kind), enum_name(shape),
-              cycle() ? ", multi_ring, hierarchical, point_to_point, bus or independent" : " or point_to_point"));
+  void all_is_built() {
+    for (config::Refusal& refusal : config::refusals(c)) issue(refusal.key, std::move(refusal.message));
+  }
+
+  void carried_data_comes_from_the_issuer() {
+    if (cycle() && c.packets.carry == PacketCarry::kData && c.memory.fetch == MemoryConfig::Fetch::kResource)
+      issue("memory.fetch",
+            "a packet that carries its shapes' data gets them from its issuer; expected packet, found "
+            "resource");
   }
 
   void stored_transform_fits() {
@@ -106,7 +93,7 @@ class Rules {
                                            forward ? "visit" : "build", enum_name(*a.invert)));
   }
 
-  void built_planes_and_bundles() {
+  void planes_and_bundles_fit() {
     if (c.verify == Verify::kEffects && c.shading.effects.choice != ShadingConfig::Effects::Choice::kAuto)
       issue("verify", "effects compares what the scene calls for with all; expected shading.effects: auto");
     if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
@@ -174,21 +161,7 @@ class Rules {
                         enum_name(c.accuracy.transform)));
   }
 
-  void built_packets() {
-    if (!cycle()) only("packets.carry", c.packets.carry, PacketCarry::kReference);
-    if (cycle() && c.packets.carry == PacketCarry::kData && c.memory.fetch != MemoryConfig::Fetch::kPacket)
-      issue("memory.fetch", fmt::format("a packet that carries its shapes' data gets them from its issuer; expected "
-                                        "packet, found {}",
-                                        enum_name(c.memory.fetch)));
-    if (cycle() && c.memory.fetch == MemoryConfig::Fetch::kMulticast)
-      issue("memory.fetch", "multicast is not built yet; expected packet or resource");
-    if (cycle() && c.rays.placement != Placement::kBalanced && c.rays.placement != Placement::kRoundRobin)
-      issue("rays.placement",
-            fmt::format("the cycle engine has no {}; expected balanced or round_robin", enum_name(c.rays.placement)));
-    only("packets.results", c.packets.results, PacketResults::kMask);
-  }
-
-  void built_shading() {
+  void effects_are_known() {
     const std::vector<std::string> known(kEffectNames.begin(), kEffectNames.end());
     for (std::size_t i = 0; i < c.shading.effects.names.size(); ++i) {
       const std::string& name = c.shading.effects.names[i];
@@ -199,12 +172,9 @@ class Rules {
                         near ? fmt::format("; did you mean '{}'?", *near)
                              : fmt::format("; known are {}", fmt::join(known, ", "))));
     }
-    if (!cycle()) only("shading.idle_resources_shade", c.shading.idle_resources_shade, false, "true", "false");
   }
 
-  void built_testers() { only("testers.any_hit", c.testers.any_hit, TestersConfig::AnyHit::kInline); }
-
-  void built_workload() {
+  void traffic_has_a_network() {
     if (c.workload.kind != WorkloadConfig::Kind::kTraffic) return;
     if (!cycle()) issue("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
     if (c.topology.shape == TopologyShape::kHierarchical || c.topology.shape == TopologyShape::kBus ||
@@ -256,8 +226,10 @@ class Rules {
         issue(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, one.resource));
       else if (!seen.emplace(one.resource, i).second)
         issue(key, fmt::format("resource {} has an override already", one.resource));
-      only(fmt::format("topology.overrides.{}.testers.any_hit", i), one.testers.any_hit,
-           TestersConfig::AnyHit::kInline);
+      if (one.testers.any_hit != c.testers.any_hit)
+        issue(fmt::format("topology.overrides.{}.testers.any_hit", i),
+              fmt::format("all resources have the same any-hit calls; expected {}, found {}",
+                          enum_name(c.testers.any_hit), enum_name(one.testers.any_hit)));
     }
   }
 

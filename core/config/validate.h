@@ -9,12 +9,13 @@
 namespace carousel {
 
 struct ValidateOptions {
-  bool force = false;  ///< permits what is known to be able to deadlock (`flow: none`)
+  bool force = false;        ///< permits `flow: none`, which can deadlock
+  bool fields_only = false;  ///< `load_config` leaves the rules out, for tests of reader and writer
 };
 
-/// The rules that concern more than one field, and what this version has not built. Returns every breach, at
-/// the position of the key that breaks the rule.
-std::vector<ConfigIssue> validate_config(const Config& config, const KeyPositions& positions,
+/// Checks the rules that concern more than one field, and the values that the engine does not have
+/// (core/config/not_built.h). Returns every breach, at the position of the key that breaks the rule.
+std::vector<ConfigIssue> validate_config(const Config& config, const KeyPositions& positions = {},
                                          const ValidateOptions& options = {});
 
 }  // namespace carousel

@@ -55,7 +55,7 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// An invariant of ours broke or the simulation got stuck; the message holds the evidence. Exit status 1.
+/// An invariant of the program broke or the simulation got stuck; the message holds the evidence. Exit status 1.
 class SimulationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,4 @@
-// libFuzzer entry: whatever the bytes, parse_config returns or throws ConfigError, nothing else. The first
+// libFuzzer entry: whatever the bytes, load_config returns or throws ConfigError, nothing else. The first
 // byte chooses the front end and whether the rest of the first line is a --set.
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     text.remove_prefix(std::min(line + 1, text.size()));
   }
   try {
-    carousel::parse_config(text, data[0] & 1 ? "fuzz.json" : "fuzz.yaml", sets);
+    carousel::load_config({std::string(text), data[0] & 1 ? "fuzz.json" : "fuzz.yaml"}, sets);
   } catch (const carousel::ConfigError&) {
   }
   return 0;

@@ -18,7 +18,7 @@ TEST(CheckCommand, PrintsTheResolvedConfigTheMemoryAndTheVerdict) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("# memory: about "));
   EXPECT_THAT(outcome.out, HasSubstr("# deadlock: impossible. credits"));
-  const Config resolved = parse_config(outcome.out, "check's output");
+  const Config resolved = load_config({outcome.out, "check's output"}).config;
   EXPECT_EQ(resolved.image.width, 40);
   EXPECT_EQ(resolved.topology.link.depth, 3);
 }
@@ -42,7 +42,7 @@ TEST(CheckCommand, WhatDoesNotFitTheMachineIsRefusedBeforeItIsLoaded) {
 
 TEST(MemoryNeed, NamesTheKeyThatWeighsMost) {
   const LocatedConfig located =
-      parse_located_config("scene: {builtin: terrain, triangles: 1000000}\nimage: {width: 16}\n", "m.yaml");
+      load_config({"scene: {builtin: terrain, triangles: 1000000}\nimage: {width: 16}\n", "m.yaml"});
   const app::MemoryNeed need = app::estimate_before_scene(located.config, false);
   EXPECT_NO_THROW(app::require_fit(need, 1ull << 40, located.positions));
   try {
@@ -54,7 +54,7 @@ TEST(MemoryNeed, NamesTheKeyThatWeighsMost) {
 }
 
 TEST(MemoryNeed, KeepingHitsCounts) {
-  const Config config = parse_config("scene: {builtin: cornell}\n", "m.yaml");
+  const Config config = load_config({"scene: {builtin: cornell}\n", "m.yaml"}).config;
   EXPECT_GT(app::estimate_before_scene(config, true).total(), app::estimate_before_scene(config, false).total());
 }
 

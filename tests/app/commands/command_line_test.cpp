@@ -1,3 +1,7 @@
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -23,6 +27,29 @@ TEST(CommandLine, HelpNamesTheCommands) {
   EXPECT_EQ(outcome.status, 0);
   for (const char* command : {"run", "check", "schema"}) EXPECT_THAT(outcome.out, HasSubstr(command));
   EXPECT_EQ(Program().run({"run", "--help"}).status, 0);
+}
+
+/// The options in a help text that have no description, or name neither a default nor a range nor a unit.
+std::vector<std::string> undescribed_options(const std::string& help) {
+  std::vector<std::string> found;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  -") || line.find("--help") != line.npos || line.find("--version") != line.npos) continue;
+    std::string next;
+    const std::string text = line.find("  ", 4) == line.npos && std::getline(lines, next) ? line + next : line;
+    const std::size_t begin = text.find("  ", 4);
+    const bool says_more = text.find("(default: ") != text.npos || text.find('=') < begin;
+    if (begin == text.npos || text.size() - begin < 25 || !says_more) found.push_back(text);
+  }
+  return found;
+}
+
+TEST(CommandLine, HelpSaysWhatEachOptionDoesAndItsDefault) {
+  EXPECT_THAT(undescribed_options("  --seed UINT  of pauses\n"), testing::SizeIs(1));
+  EXPECT_THAT(undescribed_options("  --seed UINT=1               Seed of the random pauses\n"), IsEmpty());
+  const Program program;
+  for (const char* command : {"run", "check", "stress", "accuracy", "inspect", "compare", "schema"})
+    EXPECT_THAT(undescribed_options(program.run({command, "--help"}).out), IsEmpty()) << command;
 }
 
 struct BadUsage {

@@ -44,7 +44,7 @@ TEST(RunCommand, LeavesPictureReportAndResolvedConfig) {
   EXPECT_EQ(report["resources"].size(), 3u);
   EXPECT_EQ(report["links"].size(), 3u);
 
-  const Config resolved = load_config(program.folder() / "out/small/config.resolved.yaml", {});
+  const Config resolved = load_config(read_config_file(program.folder() / "out/small/config.resolved.yaml")).config;
   EXPECT_EQ(config_json(resolved), report["config"]);
 }
 

@@ -121,21 +121,23 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
                   "point_to_point"},
         BadConfig{"CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
-                  "test.yaml:3:19: topology.shape: the cycle engine has no central; expected ring, bidirectional, "
+                  "test.yaml:3:19: topology.shape: central is not built yet; expected ring, bidirectional, "
                   "multi_ring, hierarchical, point_to_point, bus or independent"},
         BadConfig{
-            "InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\n",
+            "InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\nengine: {kind: cycle}\n",
             "test.yaml:2:27: accuracy.instance_data: transform: two_step subtracts the translation first; expected "
             "forward or rt, found inverse"},
         BadConfig{
-            "TwoStepsForOneMatrix", SCENE "accuracy: {transform: inverse_matrix, instance_data: rt}\n",
+            "TwoStepsForOneMatrix",
+            SCENE "accuracy: {transform: inverse_matrix, instance_data: rt}\nengine: {kind: cycle}\n",
             "test.yaml:2:54: accuracy.instance_data: transform: inverse_matrix has the translation multiplied in; "
             "expected forward or inverse, found rt"},
         BadConfig{
-            "ForwardInvertedAtBuild", SCENE "accuracy: {instance_data: forward, invert: build}\n",
+            "ForwardInvertedAtBuild",
+            SCENE "accuracy: {instance_data: forward, invert: build}\nengine: {kind: cycle}\n",
             "test.yaml:2:44: accuracy.invert: instance_data: forward stores nothing inverted; expected visit, found "
             "build"},
-        BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\n",
+        BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\nengine: {kind: cycle}\n",
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
                   "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
@@ -177,16 +179,33 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:33: bundles.builder.similarity: expected one of growth, solid_angle, component_range, "
                   "origin_box, found 'originbox'; did you mean 'origin_box'?"},
         BadConfig{"Carry", SCENE "packets: {carry: data}\n",
-                  "test.yaml:2:18: packets.carry: data is not built yet; expected reference"},
+                  "test.yaml:2:18: packets.carry: the native engine has no packets that carry data; expected "
+                  "reference, found data"},
         BadConfig{"Results", SCENE "packets: {results: message}\n",
                   "test.yaml:2:20: packets.results: message is not built yet; expected mask"},
         BadConfig{"AnyHit", SCENE "testers: {any_hit: shader}\n",
-                  "test.yaml:2:20: testers.any_hit: shader is not built yet; expected inline"},
+                  "test.yaml:2:20: testers.any_hit: the native engine has no any-hit calls by shader workers; expected "
+                  "inline, found shader"},
+        BadConfig{"AnyHitOfOneResource",
+                  SCENE "engine: {kind: cycle}\ntopology: {overrides: [{resource: 1, testers: {any_hit: shader}}]}\n",
+                  "test.yaml:3:57: topology.overrides.0.testers.any_hit: all resources have the same any-hit calls; "
+                  "expected inline, found shader"},
+        BadConfig{"Lanes", SCENE "testers: {simd: {lanes: 4}}\n",
+                  "test.yaml:2:25: testers.simd.lanes: a choice of lanes is not built yet; expected 8, found 4"},
+        BadConfig{"LanesOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {simd: {lanes: 4}}}]}\n",
+                  "test.yaml:2:62: topology.overrides.0.testers.simd.lanes: a choice of lanes is not built yet; "
+                  "expected 8, found 4"},
+        BadConfig{"Multicast", SCENE "memory: {fetch: multicast}\n",
+                  "test.yaml:2:17: memory.fetch: multicast is not built yet; expected packet"},
+        BadConfig{"QueueOfTheCycleEngine", SCENE "engine: {kind: cycle}\ntopology: {link: {queue: mutex}}\n",
+                  "test.yaml:3:26: topology.link.queue: the cycle engine has no real queues; expected spsc_ring, found "
+                  "mutex"},
         BadConfig{"EffectsList", SCENE "shading: {effects: [sky, shadow_ray]}\n",
                   "test.yaml:2:26: shading.effects.1: expected the name of an effect, found 'shadow_ray'; did you mean "
                   "'shadow_rays'?"},
         BadConfig{"IdleResourcesShade", SCENE "shading: {idle_resources_shade: true}\n",
-                  "test.yaml:2:33: shading.idle_resources_shade: true is not built yet; expected false"},
+                  "test.yaml:2:33: shading.idle_resources_shade: the native engine has no shading by idle resources; "
+                  "expected false, found true"},
         BadConfig{"TrafficNative", "workload: {traffic: {rate: 0.5}}\nengine: {kind: native}\n",
                   "test.yaml:2:16: engine.kind: workload: traffic runs in virtual time; expected cycle, found native"},
         BadConfig{

@@ -7,7 +7,12 @@
 
 namespace carousel {
 
-/// The problems that parse_config finds; none when it accepts the text.
+inline Config parse_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {},
+                           const ValidateOptions& options = {}) {
+  return load_config({text, name}, sets, options).config;
+}
+
+/// The problems of a configuration; none when it is accepted.
 inline std::vector<ConfigIssue> issues_of(const std::string& text, const std::vector<std::string>& sets = {},
                                           const std::string& name = "test.yaml") {
   try {

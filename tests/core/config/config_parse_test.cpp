@@ -30,7 +30,7 @@ topology:
   shape: point_to_point
   link: {queue: mutex, depth: 2}
   overrides: [{resource: 3, testers: {box: {units: 2}}}]
-testers:   {box: {latency_cycles: 9}, triangle: 7, simd: {map: shapes}}
+testers:   {box: {latency_cycles: 9}, triangle: 7, simd: {lanes: 8, map: rays}}
 collections: {traversal: treelet, select: strict}
 verify: reference
 workload: {rays_from: rays.csv}
@@ -45,7 +45,7 @@ vary: {packets.rays: [8, 16], topology.resources: 1..64*2}
   EXPECT_EQ(config.engine.simd, SimdTarget::kAvx2);
   EXPECT_EQ(config.topology.shape, TopologyShape::kPointToPoint);
   EXPECT_EQ(config.testers.units[UnitKind::kTriangle].units, 7);
-  EXPECT_EQ(config.testers.simd.map, TestersConfig::Simd::Map::kShapes);
+  EXPECT_EQ(config.testers.simd.map, TestersConfig::Simd::Map::kRays);
   ASSERT_EQ(config.topology.overrides.size(), 1u);
   EXPECT_EQ(config.topology.overrides[0].testers.units[UnitKind::kBox].units, 2);
   EXPECT_EQ(config.topology.overrides[0].testers.units[UnitKind::kBox].latency_cycles, 9)
@@ -109,10 +109,10 @@ TEST(ConfigParse, ManyUnknownKeysTakeNoTime) {
 TEST(ConfigParse, LoadsAFileAndNamesItInErrors) {
   const std::string path = testing::TempDir() + "carousel_config_parse_test.yaml";
   std::ofstream(path) << "scene: {builtin: cornell}\n";
-  EXPECT_EQ(load_config(path, {}).scene.builtin, BuiltinScene::kCornell);
+  EXPECT_EQ(load_config(read_config_file(path)).config.scene.builtin, BuiltinScene::kCornell);
   std::ofstream(path) << "scene: {builtin: cornel}\n";
   try {
-    load_config(path, {});
+    load_config(read_config_file(path));
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find(path + ":1:18: scene.builtin:"), std::string::npos) << error.what();
@@ -120,15 +120,14 @@ TEST(ConfigParse, LoadsAFileAndNamesItInErrors) {
 }
 
 TEST(ConfigParse, RefusesFilesThatCannotBeRead) {
-  EXPECT_THROW(load_config("/nonexistent/carousel.yaml", {}), ConfigError);
-  EXPECT_THROW(load_config(testing::TempDir(), {}), ConfigError);
-  EXPECT_THROW(load_config("/dev/zero", {}), ConfigError);
+  EXPECT_THROW(read_config_file("/nonexistent/carousel.yaml"), ConfigError);
+  EXPECT_THROW(read_config_file(testing::TempDir()), ConfigError);
+  EXPECT_THROW(load_config(read_config_file("/dev/zero")), ConfigError);
 }
 
 TEST(ConfigParse, KeepsThePositionsOfValues) {
   const std::vector<std::string> sets{"rays.placement=round_robin"};
-  const LocatedConfig located =
-      parse_located_config("scene: {builtin: cornell}\npackets:\n  rays: 4\n", "p.yaml", sets);
+  const LocatedConfig located = load_config({"scene: {builtin: cornell}\npackets:\n  rays: 4\n", "p.yaml"}, sets);
   EXPECT_EQ(located.positions.find("packets.rays").text(), "p.yaml:3:9");
   EXPECT_EQ(located.positions.find("packets.shapes").text(), "p.yaml:3:3") << "not given: the section";
   EXPECT_EQ(located.positions.find("topology.link.depth").text(), "p.yaml");

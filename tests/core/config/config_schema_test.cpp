@@ -1,9 +1,15 @@
+#include <algorithm>
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/config/config_page.h"
 #include "core/config/load.h"
+#include "core/config/not_built.h"
 #include "core/config/schema.h"
 #include "core/config/write.h"
+#include "tests/core/config/config_issues.h"
 #include "tests/core/config/random_config.h"
 #include "tests/support/json_schema_check.h"
 
@@ -50,9 +56,49 @@ TEST(ConfigSchema, DefaultsAreThoseOfTheStructs) {
 TEST(ConfigSchema, EveryKeyHasAMeaning) {
   const std::string table = config_markdown();
   EXPECT_EQ(table.find("|  |\n"), std::string::npos);
-  EXPECT_NE(table.find("| `packets.rays` | 1 to 1024 | 32 | rays | ray IDs a packet carries at most |"),
-            std::string::npos)
+  EXPECT_NE(
+      table.find("| `packets.rays` | 1 to 1024 | 32 | rays | The largest number of ray IDs that a packet carries. |"),
+      std::string::npos)
       << table;
+}
+
+TEST(ConfigSchema, SaysWhichEngineTakesAValue) {
+  const Json schema = config_schema();
+  const Json& topology = schema["properties"]["topology"]["properties"];
+  EXPECT_EQ(topology["shape"]["engines"]["bus"], Json::array({"cycle"}));
+  EXPECT_EQ(topology["shape"]["engines"]["central"], Json::array());
+  EXPECT_FALSE(topology["shape"]["engines"].contains("ring"));
+  EXPECT_EQ(topology["link"]["properties"]["queue"]["engines"]["mutex"], Json::array({"native"}));
+}
+
+// Every row of the table names a key, and a value that the key takes; its refusal names both.
+TEST(NotBuilt, EveryRowIsRefusedByName) {
+  for (const NotBuilt& row : not_built()) {
+    const std::string key(row.key);
+    std::vector<std::string> values{std::string(row.value)};
+    if (row.value.empty()) values = config::enum_values(key);
+    if (values.empty()) values = {"5"};
+    for (const std::string& value : values) {
+      for (const auto& [engine, name] : kEnumNames<EngineKind>) {
+        const auto found =
+            texts(issues_of("scene: {builtin: cornell}\n", {"engine.kind=" + std::string(name), key + "=" + value}));
+        const auto having = config::engines_with(key, value);
+        const bool has = std::find(having.begin(), having.end(), engine) != having.end();
+        const std::string begin = "--set " + key + "=" + value + ": " + key + ": ";
+        const bool refused = std::any_of(found.begin(), found.end(), [&](const std::string& text) {
+          return text.starts_with(begin) &&
+                 (text.find("is not built yet; expected ") != text.npos || text.find("engine has no ") != text.npos);
+        });
+        EXPECT_EQ(refused, !has) << key << ": " << value << ", " << name << ": " << testing::PrintToString(found);
+      }
+    }
+  }
+}
+
+TEST(ConfigPage, IsWrittenByTheProgram) {
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/config.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_TRUE(page == config_markdown()) << "carousel schema config --markdown >docs/config.md";
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ void limit_memory() {
     alarm(seconds);  // also ends a wait that takes no processor time
     const LoadOutcome outcome = load_one(i, load);
     const Json line = {static_cast<int>(outcome.end), outcome.path, outcome.message};
-    // Messages may quote what is not UTF-8.
+    // Messages may quote text that is not UTF-8.
     const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
     if (write(pipe, text.data(), text.size()) != static_cast<ssize_t>(text.size())) _exit(1);
   }

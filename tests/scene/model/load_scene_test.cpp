@@ -32,7 +32,7 @@ TEST(LoadScene, FileIsFoundBesideTheConfigAndGetsTheDefaultSky) {
   EXPECT_EQ(scene.lights.size(), 1u) << "a file without light gets a sun";
   config.sky = SkyConfig{{1, 1, 1}, 0};
   EXPECT_EQ(load_scene(config, folder).sky.radiance, Vec3(0));
-  EXPECT_TRUE(load_scene(config, folder).lights.empty()) << "a sky that was asked for is left alone";
+  EXPECT_TRUE(load_scene(config, folder).lights.empty()) << "a configured sky is left alone";
   std::filesystem::remove_all(folder);
 }
 

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace carousel {
+
+/// The page docs/config.md: every key with its values, default, unit and meaning, and the engines that take a value.
+std::string config_markdown();
+
+}  // namespace carousel
