@@ -11,8 +11,8 @@
 #include "ringbus/topology/plan.h"
 
 // A new topology says what it is in these places and no others:
-//   1. its value in TopologyShape (core/config/config.h) with its name (core/config/enum_names.h), and the engines that
-//      may run it (core/config/validate.cpp: built_shape, and built_workload if there is no traffic on it);
+//   1. its value in TopologyShape with its name (core/config/fields/topology.h); if an engine cannot run it, a row in
+//      core/config/not_built.cpp, and if no traffic runs on it, traffic_has_a_network() in core/config/validate.cpp;
 //   2. its own file here, with one function that fills in a TopologyPlan (plan.h): the wires, who comes next in each
 //      direction, hubs, packets under way, the verdict on deadlock, whether traffic runs on it. Shapes whose packets
 //      go round rings only name the rounds (rounds.h);
