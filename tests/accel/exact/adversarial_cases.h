@@ -1,15 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
+
+#include "tests/support/random_runs.h"
 
 namespace carousel::accel {
 
-/// Cases that a randomised test against exact arithmetic tries, all its kinds together; CAROUSEL_ORACLE_RAYS asks for
-/// more, as script/soak does.
+/// Cases that a randomised test against exact arithmetic tries, all its kinds together.
 inline int adversarial_cases() {
-  const char* cases = std::getenv("CAROUSEL_ORACLE_RAYS");
-  return static_cast<int>(cases != nullptr ? std::atof(cases) : 1e6);
+  return scaled(200'000);
 }
 
 /// Rays in all that are compared with another tracer's.

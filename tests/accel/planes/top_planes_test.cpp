@@ -176,7 +176,7 @@ TEST(TopPlanes, LoseNoHitOfExactTriangles) {
   }
   EXPECT_EQ(losses.lost, 0u) << "CAROUSEL_SEED=" << run_seed() << ": " << losses.example;
   EXPECT_GT(losses.hits, oracle_rays() / 100);
-  EXPECT_GT(losses.culled, 1000u);
+  EXPECT_GT(losses.culled, oracle_rays() / 1000);
 }
 
 /// The margins of all nodes above the instances, times `factor`.
@@ -197,14 +197,20 @@ TEST(TopPlanes, NeedTheirMargin) {
   table += "\n|---|";
   for (std::size_t i = 0; i < scenes.size(); ++i) table += "---:|";
   table += "\n";
+  struct Structures {
+    Accel plain, planes;
+  };
+  std::vector<Structures> structures;
+  const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = Levels::kTlas};
+  for (const Placed& placed : scenes) structures.push_back({built(placed.scene, {}), built(placed.scene, config)});
   for (const float factor : {0.0f, 0x1p-7f, 0x1p-6f, 0x1p-5f, 0x1p-4f, 0x1p-3f, 0x1p-2f, 0x1p-1f, 1.0f}) {
     table += fmt::format("| {} |", factor);
     std::size_t lost = 0;
-    for (const Placed& placed : scenes) {
-      const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = Levels::kTlas};
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
       Losses losses;
-      count_losses(built(placed.scene, {}), with_margins(built(placed.scene, config), factor),
-                   plane_grazing_rays(placed.scene, oracle_rays() / 50, std::uint64_t{run_seed()} << 32 | 77), losses);
+      count_losses(structures[s].plain, with_margins(structures[s].planes, factor),
+                   plane_grazing_rays(scenes[s].scene, oracle_rays() / 50, std::uint64_t{run_seed()} << 32 | 77),
+                   losses);
       table += fmt::format(" {} |", losses.lost);
       lost += losses.lost;
     }
@@ -284,7 +290,7 @@ TEST(TopPlanes, GiveTheAnswersOfBruteForceAndSpareTransforms) {
     AccuracyConfig accuracy;
     accuracy.transform = level;
     const scene::Scene scene = small_builtin(BuiltinScene::kInstances, 0, 40);
-    const RayBatch rays = mixed_rays(scene, 2000, run_seed());
+    const RayBatch rays = mixed_rays(scene, 500, run_seed());
     const BruteForceAnswers answers(scene, rays, accuracy);
     for (const std::int64_t count : {1, 3, 8}) {
       const Accel planes = built(scene, {.count = count, .nodes = Nodes::kLeaves, .levels = Levels::kTlas}, level, 2);

@@ -41,7 +41,7 @@ TEST(AnyHit, GivesOneAnswerForEveryTree) {
 
 TEST(AnyHit, GivesOneAnswerAtEveryLevelAndOnEveryTarget) {
   const scene::Scene scene = passing_scene(BuiltinScene::kInstances, 20, run_seed() + 2);
-  const RayBatch rays = wishing_rays(scene, 500, run_seed() + 3);
+  const RayBatch rays = wishing_rays(scene, 200, run_seed() + 3);
   const HashedStop stop(0.4);
   for (const AccuracyConfig& accuracy : triangle_and_box_levels()) {
     const BruteForceAnswers brute(scene, rays, accuracy, &stop);

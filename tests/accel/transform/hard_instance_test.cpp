@@ -68,7 +68,7 @@ Compared compare(const scene::Scene& scene, TransformLevel level, const RayBatch
 }
 
 TEST(HardInstance, UnitTriangleAMillionAwayIsNotLost) {
-  const int rays = scaled(100000, "CAROUSEL_CASES");
+  const int rays = scaled(20000);
   const scene::Scene scene =
       scene_of(soup({{-0.5f, -0.3f, 0}, {0.5f, -0.3f, 0.1f}, {0, 0.6f, 0}}),
                rotate_scale_translate({1, 2, 3}, 40, {1, 1, 1}, 1e6 * glm::normalize(DVec3{0.6, -0.55, 0.58})));
@@ -153,7 +153,7 @@ TEST(HardInstance, CoincidentInstancesGiveTheFirst) {
 // A floor of tiles, each an instance of one square: a ray at a seam that hits exactly must find one tile or the other.
 // Turned tiles have rounded translations, so some exact gaps and overlaps; those do not count.
 TEST(HardInstance, AbuttingInstancesLeaveNoGap) {
-  const int rays = scaled(30000, "CAROUSEL_CASES");
+  const int rays = scaled(6000);
   std::string table = fmt::format(
       "\nA floor of 8 by 8 square instances, {} rays aimed at seams, seed {}; leaks where the exact ray "
       "hits:\n\n| level | upright | turned | upright, 1e5 away | turned, 1e5 away |\n|---|---:|---:|"

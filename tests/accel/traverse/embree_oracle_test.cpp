@@ -14,7 +14,6 @@
 namespace carousel::accel {
 namespace {
 
-/// Rays in all five scenes together; CAROUSEL_ORACLE_RAYS asks for more.
 bool agree(const Hit& a, const Hit& b) {
   if (!a.valid() || !b.valid()) return a.valid() == b.valid();
   return a.instance == b.instance && a.primitive == b.primitive && std::fabs(a.t - b.t) <= 1e-6f * std::fabs(a.t);

@@ -1,4 +1,4 @@
-// What bundles take of a resource's clock: bundle units, the port of the ray store, and what waits for them.
+// The cycles that bundles take: bundle units, the port of the ray store, and the tests that wait for them.
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/testers/tester.h"

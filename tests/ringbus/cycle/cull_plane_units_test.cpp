@@ -1,4 +1,4 @@
-// What planes cost a simulated machine: units, bytes, and what more units would gain.
+// The cost of planes in a simulated machine: units, bytes, and the gain by more units.
 #include <algorithm>
 
 #include <gtest/gtest.h>

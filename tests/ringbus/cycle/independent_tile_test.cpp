@@ -118,7 +118,7 @@ TEST(IndependentTile, AsksForAStripOnceHoweverManyWantIt) {
   EXPECT_EQ(ten.completed, 10u);
   EXPECT_EQ(ten.fetches, one.fetches);
   EXPECT_EQ(ten.statistics().tests.box, 10 * one.statistics().tests.box);
-  EXPECT_GE(ten.last_completed, one.last_completed);  // nobody has a strip before it is there
+  EXPECT_GE(ten.last_completed, one.last_completed);  // no ray has a strip before it is there
   // The ten take turns in the units: at each strip the last begins nine cycles after the first at most.
   const Cycle strips = one.result().box.busy + one.result().triangle.busy;
   EXPECT_LE(ten.last_completed, one.last_completed + 9 * strips + 9 * sizeof(RayRecord) / 16);

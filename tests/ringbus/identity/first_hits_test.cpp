@@ -17,7 +17,7 @@
 #include "scene/builtin/mesh_shapes.h"
 #include "shading/surface/alpha_test.h"
 #include "shading/tracer/path_tracer.h"
-#include "tests/ringbus/identity/factors.h"
+#include "tests/ringbus/support/test_machine.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::ringbus {

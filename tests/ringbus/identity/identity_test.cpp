@@ -1,52 +1,159 @@
-// No arrangement of threads, queues and policies may change a bit: every cell of the covering array and every
-// random one has the reference tracer's digest.
+// No arrangement of threads, links, queues, policies and faults may change a hit: every machine of the covering array
+// and every machine drawn at random has the digest of the reference tracer at its level of accuracy.
+#include <iostream>
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "tests/ringbus/identity/identity_cells.h"
+#include "tests/accel/traverse/levels.h"
+#include "tests/ringbus/identity/covering_array.h"
+#include "tests/ringbus/identity/scenes.h"
+#include "tests/ringbus/support/watchdog.h"
 
 namespace carousel::ringbus {
 namespace {
 
-TEST(CoveringArray, HoldsEveryPossiblePair) {
-  const std::vector<Factor> factors = machine_factors();
-  const std::vector<int> levels = level_counts(factors);
-  const auto rows = pairwise(factors, 1);
-  EXPECT_LT(rows.size(), 80u);
-  std::set<std::array<int, 4>> covered;
-  for (const auto& row : rows) {
-    EXPECT_TRUE(possible(cell_of(factors, row).config));
-    for (int f = 0; f < static_cast<int>(row.size()); ++f)
-      for (int g = f + 1; g < static_cast<int>(row.size()); ++g)
-        covered.insert({f, g, row[static_cast<std::size_t>(f)], row[static_cast<std::size_t>(g)]});
+const CoveringArray& the_array() {
+  static const CoveringArray array = covering_array(all_machines(), run_seed());
+  return array;
+}
+
+TEST(CoveringArray, HoldsEveryPairThatAMachineCanHave) {
+  MachineSpace& space = all_machines();
+  const CoveringArray& array = the_array();
+  std::set<std::array<std::size_t, 4>> held;
+  for (const Row& row : array.rows) {
+    EXPECT_NO_THROW((void)space.cell(row));
+    for (std::size_t f = 0; f < row.size(); ++f) {
+      EXPECT_EQ(row[f] != kAbsent, space.is_read(row, f)) << space.factors()[f].key;
+      for (std::size_t g = f + 1; g < row.size(); ++g)
+        if (row[f] != kAbsent && row[g] != kAbsent)
+          held.insert({f, g, static_cast<std::size_t>(row[f]), static_cast<std::size_t>(row[g])});
+    }
   }
-  std::size_t pairs = 0;
-  for (std::size_t f = 0; f < levels.size(); ++f)
-    for (std::size_t g = f + 1; g < levels.size(); ++g) pairs += static_cast<std::size_t>(levels[f] * levels[g]);
-  // Three pairs cannot be: ordered and single, hash and reserve, bubble and depth 1.
-  EXPECT_EQ(covered.size(), pairs - 3);
+  EXPECT_EQ(held.size(), array.covered);
+  EXPECT_EQ(array.covered + array.infeasible.size(), array.pairs);
+  std::mt19937 random(run_seed());
+  for (const LevelPair& pair : array.infeasible) {  // drawn without what the space has learned from the validator
+    const Row row = space.draw_any(random, space.domains_of_pair(pair.f, pair.a, pair.g, pair.b));
+    EXPECT_THROW((void)space.cell(row), ConfigError) << fmt::format("{}", fmt::join(space.assignments(row), " "));
+  }
+  std::cout << space.factors().size() << " factors, " << array.pairs << " pairs of levels: " << array.covered
+            << " covered by " << array.rows.size() << " machines, " << array.infeasible.size()
+            << " refused by the validator; no machine has "
+            << fmt::format("{}", fmt::join(space.levels_never_accepted(), ", ")) << "\n";
 }
 
-TEST(Identity, Cornell) {
-  TestScene scene(builtin_scene(BuiltinScene::kCornell, 0, 0), 400, 3);
-  expect_one_digest(scene, machine_factors(), 1, 50);
+/// Sums over machines that show that rare paths were taken.
+struct Seen {
+  BundleCounts bundles;
+  IntersectionCounts tests;
+  std::uint64_t transforms_spared = 0, restarted = 0, resent = 0, discarded = 0, packets_discarded = 0, spilled = 0;
+
+  void add(const Outcome& outcome) {
+    for (const BundleCounts& at_depth : outcome.sum.bundles) bundles += at_depth;
+    tests += outcome.sum.tests;
+    for (const CullLevel& level : outcome.sum.culls.above) transforms_spared += level.transforms;
+    restarted += outcome.result.rays_restarted;
+    packets_discarded += outcome.result.packets_discarded;
+    spilled += outcome.spilled;
+    for (const LinkResult& link : outcome.result.links) {
+      resent += link.faults.resent;
+      discarded += link.faults.discarded;
+    }
+  }
+  void expect_all() const {
+    for (const auto& [name, count] : std::map<std::string, std::uint64_t>{{"bundles formed", bundles.formed},
+                                                                          {"all rays hit", bundles.all},
+                                                                          {"no ray hits", bundles.none},
+                                                                          {"bundles split", bundles.split},
+                                                                          {"bundles taken apart", bundles.taken_apart},
+                                                                          {"boxes culled", tests.culled},
+                                                                          {"any-hit calls", tests.any_hit_calls},
+                                                                          {"procedural tests", tests.procedural},
+                                                                          {"transforms spared", transforms_spared},
+                                                                          {"rays restarted", restarted},
+                                                                          {"frames resent", resent},
+                                                                          {"frames discarded", discarded},
+                                                                          {"packets discarded", packets_discarded},
+                                                                          {"rays spilled", spilled}})
+      EXPECT_GT(count, 0u) << name;
+  }
+};
+
+/// The engine's machines of the array, and `random_machines` more.
+void expect_one_digest(const std::string& engine, int random_machines) {
+  SCOPED_TRACE(fmt::format("CAROUSEL_SEED={}", run_seed()));
+  MachineSpace& space = all_machines();
+  Scenes scenes;
+  Seen seen;
+  std::set<std::string> levels;
+  int machines = 0;
+  const auto run = [&](Cell cell) {
+    Watchdog watchdog(std::chrono::seconds(60), cell.text());
+    cell.stop = watchdog.token();
+    const Outcome outcome = run_cell(scenes.of(cell), cell);
+    EXPECT_EQ(outcome.fault, "") << cell.text();
+    seen.add(outcome);
+    levels.insert(accel::text(cell.config.accuracy) + " " + std::string(enum_name(cell.config.accuracy.transform)));
+    ++machines;
+  };
+  const std::vector<std::string> with{"engine.kind=" + engine};
+  const Domains domains = space.domains(with);
+  std::size_t step = 1;
+#ifdef __SANITIZE_THREAD__
+  step = engine == "native" ? 8 : 32;  // the checked build runs all of them
+#endif
+  std::size_t number = 0;
+  for (const Row& row : the_array().rows) {
+    const Cell cell = space.cell(row);
+    if (enum_name(cell.config.engine.kind) == engine && number++ % step == 0) run(cell);
+  }
+  std::mt19937 random(7919 * run_seed());
+  for (int i = cell_count(random_machines); i > 0; --i) run(space.draw_cell(random, with));
+  if (step == 1) seen.expect_all();
+  std::cout << machines << " machines, at " << levels.size() << " levels of accuracy\n";
 }
 
-TEST(Identity, Terrain) {
-  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 400, 3);
-  expect_one_digest(scene, machine_factors(), 2, 50);
+TEST(Identity, NativeMachinesGiveTheReferenceTracersDigest) {
+  expect_one_digest("native", 60);
+}
+TEST(Identity, MachinesUnderVirtualTimeGiveTheReferenceTracersDigest) {
+  expect_one_digest("cycle", 60);
 }
 
-TEST(Identity, Sliver) {
-  TestScene scene(builtin_scene(BuiltinScene::kSliver, 1000, 0), 1200, 3);
-  expect_one_digest(scene, machine_factors(), 3, 50);
+// Threads take turns on a core in the middle of a step.
+TEST(Identity, MoreThreadsThanCores) {
+  Scenes scenes;
+  std::mt19937 random(6151 * run_seed());
+  const std::vector<std::string> with{"engine.kind=native", "topology.resources=16", "test.link_faults=false"};
+  for (int i = cell_count(8); i > 0; --i) {
+    Cell cell = all_machines().draw_cell(random, with);
+    cell.threads = 8;
+    EXPECT_EQ(run_cell(scenes.of(cell), cell).fault, "") << cell.text();
+  }
 }
 
-// Rotated, mirrored and unequally scaled instances, seen from a hundred radii away.
-TEST(Identity, ThousandsOfInstancesFromFarAway) {
-  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 3000), 800, 3, 100.0f);
-  expect_one_digest(scene, machine_factors(), 4, 50);
+// Otherwise one digest a level would show nothing.
+TEST(Identity, LevelsOfAccuracyShowInTheHits) {
+  Scenes scenes;
+  Cell cell;
+  cell.config.scene.builtin = BuiltinScene::kInstances;
+  TestScene& near = scenes.of(cell);
+  std::set<std::string> digests;
+  for (const AccuracyConfig& accuracy : accel::triangle_and_box_levels())
+    digests.insert(near.reference(accuracy).digest.hex());
+  EXPECT_GE(digests.size(), 4u);
+  cell.away = 100;
+  TestScene& far = scenes.of(cell);
+  digests.clear();
+  for (const auto& level : kEnumNames<TransformLevel>) {
+    AccuracyConfig accuracy;
+    accuracy.transform = level.value;
+    digests.insert(far.reference(accuracy).digest.hex());
+  }
+  EXPECT_EQ(digests.size(), kEnumNames<TransformLevel>.size());
 }
 
 }  // namespace

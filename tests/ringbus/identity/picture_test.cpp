@@ -1,9 +1,9 @@
-// The same with real shading: one hits digest and one image digest a scene, whatever the machine.
+// With real shading every native machine gives one digest of the hits and one of the image a scene.
 #include <gtest/gtest.h>
 
 #include "accel/build/build.h"
 #include "shading/tracer/path_tracer.h"
-#include "tests/ringbus/identity/factors.h"
+#include "tests/ringbus/identity/machine_space.h"
 
 namespace carousel::ringbus {
 namespace {
@@ -18,16 +18,16 @@ void expect_one_picture(BuiltinScene builtin, std::uint32_t salt) {
   shading::PathTracer reference(scene, picture, 1000, 1);
   accel::run_reference(accel::build(scene, BvhConfig{}, *make_sequential_executor()), reference);
 
-  const std::vector<Factor> factors = machine_factors();
+  const std::vector<std::string> with{"engine.kind=native",        "test.non_opaque=false",
+                                      "test.storage=ample",        "test.link_faults=false",
+                                      "faults.resource.kind=none", "accuracy.triangle=watertight",
+                                      "accuracy.box=conservative", "accuracy.transform=two_step"};
   for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(cell_count(12)); ++seed) {
     std::mt19937 random(seed * 31 + salt);
-    Cell cell;
-    do {
-      cell = Cell{picture};
-      for (const Factor& f : factors) f.levels[random() % f.levels.size()](cell);
-    } while (!possible(cell.config));
+    Cell cell = all_machines().draw_cell(random, with);
     Config& c = cell.config;
-    const accel::Accel accel = accel::build(scene, c.bvh, *make_sequential_executor());
+    c.image = picture.image;
+    const accel::Accel accel = accel::build(scene, c.bvh, *make_sequential_executor(), c.accuracy, c.cull_planes);
     c.collections.capacity =
         std::max<std::int64_t>(minimum_capacity(c, accel.width, accel.max_depth), 4 * c.packets.rays);
     // Few paths at a time, many at a time.

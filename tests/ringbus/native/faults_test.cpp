@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/accel/structure/passing_scenes.h"
-#include "tests/ringbus/identity/factors.h"
+#include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {
 namespace {
@@ -134,7 +134,7 @@ TEST(StoppedResource, MayHaveBeenShadingOrWaitingForOpacity) {
 // Where few workers answer slowly, many rays wait for an answer at any time, those of the one that stops among them.
 TEST(StoppedResource, MayHaveQuestionsOpen) {
   const accel::HashedStop stop(0.4);
-  TestScene scene(accel::passing_scene(BuiltinScene::kSpheres, 20, run_seed()), 200, 3, 0.5f, {}, &stop);
+  TestScene scene(accel::passing_scene(BuiltinScene::kSpheres, 20, run_seed()), 200, 3, 0.5f, &stop);
   for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle})
     for (const std::int64_t after : {5, 20, 60}) {
       SCOPED_TRACE(testing::Message() << "CAROUSEL_SEED=" << run_seed() << " engine " << static_cast<int>(engine)

@@ -1,4 +1,4 @@
-// How a run ends: to its end, early, stuck, or with somebody's exception.
+// The ways in which a run ends: complete, early, stuck, or with an exception of the workload.
 #include "ringbus/native/native_engine.h"
 
 #include <stdexcept>
@@ -50,7 +50,7 @@ TEST(NativeEngine, RunsTheSmallestScenes) {
         cell.config.packets.shapes = shapes;
         cell.config.bvh.leaf_triangles = count == 5 ? 2 : 8;
         cell.tight_storage = true;
-        if (possible(cell.config)) {
+        if (is_accepted(cell.config)) {
           EXPECT_EQ(run_cell(scene, cell).fault, "") << cell.text();
         }
       }

@@ -1,46 +1,38 @@
-// Random machines with everything scarce: rays and packets are conserved, runs end, and the paths that hardly
-// ever run have really run.
+// Random machines with little of everything: rays and packets are conserved, runs end, and the code that runs only
+// rarely has run.
 #include <gtest/gtest.h>
 
-#include "tests/ringbus/identity/factors.h"
+#include "tests/ringbus/identity/machine_space.h"
 
 namespace carousel::ringbus {
 namespace {
 
-/// As machine_factors(), but with little of everything.
-std::vector<Factor> scarce_factors() {
-  using I = std::int64_t;
-  std::vector<Factor> factors = machine_factors();
-  const auto replace = [&](Factor with) {
-    for (Factor& f : factors)
-      if (f.name == with.name) f = with;
-  };
-  replace(factor<I>("resources", {2, 3, 7}, [](Cell& c, I v) { c.config.topology.resources = v; }));
-  replace(factor<I>("depth", {1, 2}, [](Cell& c, I v) { c.config.topology.link.depth = v; }));
-  replace(factor<I>("slots", {1, 3, 40}, [](Cell& c, I v) { c.config.rays.slots_per_resource = v; }));
-  replace(factor<I>("packet rays", {1, 3, 8}, [](Cell& c, I v) { c.config.packets.rays = v; }));
-  replace(factor<I>("ready", {1, 4, 50}, [](Cell& c, I v) { c.config.collections.ready = v; }));
-  replace(factor<bool>("storage", {true}, [](Cell& c, bool v) { c.tight_storage = v; }));
-  return factors;
+/// Machines with little of everything.
+MachineSpace scarce_machines() {
+  return MachineSpace(machine_factors_with({{"topology.resources", {"2", "3", "7"}},
+                                            {"topology.link.depth", {"1", "2"}},
+                                            {"rays.slots_per_resource", {"1", "3", "40"}},
+                                            {"packets.rays", {"1", "3", "8"}},
+                                            {"collections.ready", {"1", "4", "50"}},
+                                            {"bundles.size", {"0", "2"}},
+                                            {"test.storage", {"least"}}}));
 }
 
 TEST(RarePaths, RunAndLoseNothing) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 30), 250, 2);
-  const std::vector<Factor> factors = scarce_factors();
+  MachineSpace machines = scarce_machines();
+  const std::vector<std::string> with{"engine.kind=native",        "test.non_opaque=false", "test.link_faults=false",
+                                      "faults.resource.kind=none", "bundles.size=0",        "cull_planes.count=0"};
   ResourceStatistics sum;
   std::uint64_t spilled = 0, refusals = 0, reused = 0, waits = 0, bubbles = 0;
   const auto stalls = [&](StallReason reason) { return sum.stalls[reason]; };
-  const auto count = static_cast<std::uint32_t>(std::max(80, cell_count(80)));  // fewer might not run everything
+  const auto count = static_cast<std::uint32_t>(std::max(80, cell_count(80)));  // fewer might miss some of the code
   const auto keep_running = [&](std::uint32_t done) {
     return done < count || (stalls(StallReason::kReserve) == 0 && done < 20 * count);
   };
   for (std::uint32_t seed = run_seed(); keep_running(seed - run_seed()); ++seed) {
     std::mt19937 random(seed * 104729);
-    Cell cell;
-    do {
-      cell = Cell{};
-      for (const Factor& f : factors) f.levels[random() % f.levels.size()](cell);
-    } while (!possible(cell.config));
+    const Cell cell = machines.draw_cell(random, with);
     const Outcome out = run_cell(scene, cell);
     EXPECT_EQ(out.fault, "") << "seed " << seed << ": " << cell.text();
     sum += out.sum;

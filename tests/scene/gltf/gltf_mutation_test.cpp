@@ -27,7 +27,7 @@ std::vector<Model> models() {
 
 /// Makes and loads mutants of a model. Seeds count on from CAROUSEL_SEED.
 void expect_loaded_or_refused(const Model& model, const std::function<Scene(std::uint64_t seed)>& load) {
-  const auto count = static_cast<std::size_t>(scaled(model.mutants, "CAROUSEL_MUTANTS"));
+  const auto count = static_cast<std::size_t>(scaled(model.mutants));
   std::size_t loaded = 0;
   const auto outcomes = load_guarded(count, [&](std::size_t i) { return load(run_seed() + i); });
   for (std::size_t i = 0; i < count; ++i) {

@@ -87,7 +87,7 @@ Vec3 furnace(const Case& c, bool transmits, bool layered, std::uint32_t samples)
 
 void expect_white(Base base, bool stretched, bool layered) {
   Draw draw(run_seed() * 31 + static_cast<std::uint32_t>(base) * 4 + (stretched ? 2 : 0) + (layered ? 1 : 0));
-  for (int i = 0; i < scaled(40, "CAROUSEL_FURNACES"); ++i) {
+  for (int i = 0; i < scaled(40); ++i) {
     const Case c = draw_case(draw, base, stretched, layered);
     const InterfacePoint& p = c.point;
     Vec3 a = furnace(c, base != Base::kOpaque, layered, 1 << 12);

@@ -1,0 +1,253 @@
+#include "tests/ringbus/identity/machine_space.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "core/config/load.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+bool contains(const std::vector<int>& levels, int level) {
+  return std::binary_search(levels.begin(), levels.end(), level);
+}
+
+int pick(std::mt19937& random, const std::vector<int>& levels) {
+  return levels[random() % levels.size()];
+}
+
+}  // namespace
+
+MachineSpace::MachineSpace(std::vector<Factor> factors)
+    : factors_(std::move(factors)), conditions_(factors_.size()), is_switch_(factors_.size()) {
+  for (std::size_t f = 0; f < factors_.size(); ++f)
+    for (const std::string& need : factors_[f].needs) {
+      conditions_[f].push_back(condition(need));
+      if (conditions_[f].back().factor >= f) throw std::logic_error(factors_[f].key + " stands before what it needs");
+      is_switch_[conditions_[f].back().factor] = true;
+    }
+  for (const Factor& factor : factors_) {
+    std::string path = "/" + factor.key;
+    std::replace(path.begin(), path.end(), '.', '/');
+    pointers_.emplace_back(path);
+  }
+}
+
+MachineSpace::Condition MachineSpace::condition(const std::string& text) const {
+  const std::size_t equals = text.find('=');
+  const bool unequal = text[equals - 1] == '!';
+  const std::string key = text.substr(0, equals - (unequal ? 1 : 0)), value = text.substr(equals + 1);
+  for (std::size_t f = 0; f < factors_.size(); ++f) {
+    if (factors_[f].key != key) continue;
+    Condition out{f, {}};
+    for (std::size_t v = 0; v < factors_[f].values.size(); ++v)
+      if ((factors_[f].values[v] == value) != unequal) out.levels.push_back(static_cast<int>(v));
+    return out;
+  }
+  throw std::logic_error("no factor for " + text);
+}
+
+bool MachineSpace::restrict(Domains& domains, const Condition& to) const {
+  std::vector<int>& levels = domains[to.factor];
+  std::erase_if(levels, [&](int level) { return !contains(to.levels, level); });
+  if (levels.empty()) return false;
+  return std::all_of(conditions_[to.factor].begin(), conditions_[to.factor].end(),
+                     [&](const Condition& need) { return restrict(domains, need); });
+}
+
+Domains MachineSpace::domains(std::span<const std::string> with) const {
+  Domains out(factors_.size());
+  for (std::size_t f = 0; f < factors_.size(); ++f)
+    for (std::size_t v = 0; v < factors_[f].values.size(); ++v) out[f].push_back(static_cast<int>(v));
+  for (const std::string& setting : with)
+    if (!restrict(out, condition(setting))) return {};
+  return out;
+}
+
+Domains MachineSpace::domains_of_pair(std::size_t f, int a, std::size_t g, int b) const {
+  Domains out = domains();
+  return restrict(out, {f, {a}})&& restrict(out, {g, {b}}) ? out : Domains{};
+}
+
+bool MachineSpace::is_read(const Row& row, std::size_t factor) const {
+  return std::all_of(conditions_[factor].begin(), conditions_[factor].end(),
+                     [&](const Condition& need) { return contains(need.levels, row[need.factor]); });
+}
+
+void MachineSpace::normalise(Row& row, std::mt19937& random, const Domains& domains) const {
+  for (std::size_t f = 0; f < row.size(); ++f) {
+    if (!is_read(row, f))
+      row[f] = kAbsent;
+    else if (row[f] == kAbsent)
+      row[f] = pick(random, domains[f]);
+  }
+}
+
+Row MachineSpace::draw_any(std::mt19937& random, const Domains& domains) const {
+  Row row(factors_.size(), kAbsent);
+  normalise(row, random, domains);
+  return row;
+}
+
+bool MachineSpace::is_surely_read(const Domains& domains, std::size_t factor) const {
+  return std::all_of(conditions_[factor].begin(), conditions_[factor].end(), [&](const Condition& need) {
+    return is_surely_read(domains, need.factor) && std::all_of(domains[need.factor].begin(), domains[need.factor].end(),
+                                                               [&](int level) { return contains(need.levels, level); });
+  });
+}
+
+bool MachineSpace::prune(Domains& domains) const {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const Refusal& refusal : refusals_) {
+      std::vector<Level> open;
+      for (const Level& l : refusal)
+        if (domains[l.factor] != std::vector<int>{l.level} || !is_surely_read(domains, l.factor)) open.push_back(l);
+      if (open.empty()) return false;
+      if (open.size() > 1) continue;
+      const auto removed = std::erase(domains[open[0].factor], open[0].level);
+      if (domains[open[0].factor].empty() && is_surely_read(domains, open[0].factor)) return false;
+      if (domains[open[0].factor].empty())
+        domains[open[0].factor] = {open[0].level};  // it has to stay unread
+      else
+        changed |= removed > 0;
+    }
+  }
+  return true;
+}
+
+std::optional<Row> MachineSpace::draw(std::mt19937& random, Domains domains) {
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    if (!prune(domains)) return std::nullopt;
+    Row row = draw_any(random, domains);
+    for (int repair = 0; repair < 100; ++repair) {
+      const Refusal* refused = find_refusal(row);
+      if (refused == nullptr) {
+        if (accepts(row)) return row;
+        if (!prune(domains)) return std::nullopt;  // it has learned a refusal
+        continue;
+      }
+      const std::size_t f = (*refused)[random() % refused->size()].factor;
+      row[f] = pick(random, domains[f]);
+      normalise(row, random, domains);
+    }
+  }
+  return std::nullopt;
+}
+
+Cell MachineSpace::draw_cell(std::mt19937& random, std::span<const std::string> with) {
+  const Domains allowed = domains(with);
+  if (!allowed.empty())
+    if (const std::optional<Row> row = draw(random, allowed)) return cell(*row);
+  throw std::logic_error("the validator refuses every machine with these settings");
+}
+
+const MachineSpace::Refusal* MachineSpace::find_refusal(const Row& row) const {
+  for (const Refusal& refusal : refusals_)
+    if (std::all_of(refusal.begin(), refusal.end(), [&](const Level& l) { return row[l.factor] == l.level; }))
+      return &refusal;
+  return nullptr;
+}
+
+std::vector<std::string> MachineSpace::complaints(const Row& row) const {
+  std::vector<std::string> keys;
+  try {
+    (void)cell(row);
+  } catch (const ConfigError& error) {
+    for (const ConfigIssue& issue : error.issues()) keys.push_back(issue.key_path);
+  }
+  return keys;
+}
+
+bool MachineSpace::accepts(const Row& row) {
+  const std::vector<std::string> found = complaints(row);
+  if (!found.empty()) learn(row, found);
+  return found.empty();
+}
+
+/// A level belongs to the refusal if the complaint goes away with another level of its factor. A combination that other
+/// rows show to be accepted after all is not believed: then only the row itself is known to be refused.
+void MachineSpace::learn(const Row& refused, const std::vector<std::string>& complaints_of_row) {
+  std::mt19937 random(1);
+  const std::string& key = complaints_of_row.front();
+  const Domains all = domains();
+  const auto how_often = [&](const std::vector<std::string>& keys) {
+    return std::count(keys.begin(), keys.end(), key);
+  };
+  const auto before = how_often(complaints_of_row);
+  Refusal together;
+  Domains with_these = all;
+  for (std::size_t f = 0; f < refused.size(); ++f) {
+    if (refused[f] == kAbsent) continue;
+    const bool matters = std::any_of(all[f].begin(), all[f].end(), [&](int level) {
+      Row other = refused;
+      other[f] = level;
+      if (level != refused[f]) normalise(other, random, all);
+      return level != refused[f] && how_often(complaints(other)) < before;
+    });
+    if (!matters) continue;
+    together.push_back({f, refused[f]});
+    with_these[f] = {refused[f]};
+  }
+  bool believed = !together.empty();
+  for (int trial = 0; believed && trial < 5; ++trial) {
+    const Row other = draw_any(random, with_these);
+    const bool holds =
+        std::all_of(together.begin(), together.end(), [&](const Level& l) { return other[l.factor] == l.level; });
+    believed = !holds || !complaints(other).empty();
+  }
+  if (!believed) {
+    together.clear();
+    for (std::size_t f = 0; f < refused.size(); ++f)
+      if (refused[f] != kAbsent) together.push_back({f, refused[f]});
+  }
+  refusals_.push_back(std::move(together));
+}
+
+bool MachineSpace::is_never_accepted(std::size_t factor, int level) const {
+  return std::any_of(refusals_.begin(), refusals_.end(), [&](const Refusal& refusal) {
+    return refusal.size() == 1 && refusal[0].factor == factor && refusal[0].level == level;
+  });
+}
+
+std::vector<std::string> MachineSpace::levels_never_accepted() const {
+  std::vector<std::string> out;
+  for (const Refusal& refusal : refusals_)
+    if (refusal.size() == 1)
+      out.push_back(factors_[refusal[0].factor].key + "=" +
+                    factors_[refusal[0].factor].values[static_cast<std::size_t>(refusal[0].level)]);
+  return out;
+}
+
+std::vector<std::string> MachineSpace::assignments(const Row& row) const {
+  std::vector<std::string> out;
+  for (std::size_t f = 0; f < row.size(); ++f)
+    if (row[f] != kAbsent) out.push_back(factors_[f].key + "=" + factors_[f].values[static_cast<std::size_t>(row[f])]);
+  return out;
+}
+
+Cell MachineSpace::cell(const Row& row) const {
+  Cell cell;
+  nlohmann::json keys = nlohmann::json::object();
+  for (std::size_t f = 0; f < row.size(); ++f) {
+    if (row[f] == kAbsent) continue;
+    const std::string &key = factors_[f].key, &value = factors_[f].values[static_cast<std::size_t>(row[f])];
+    if (key.starts_with("test."))
+      cell.set(key, value);
+    else
+      keys[pointers_[f]] = nlohmann::json::accept(value) ? nlohmann::json::parse(value) : nlohmann::json(value);
+  }
+  cell.config = load_config({keys.dump(), "machine.json"}).config;
+  cell.threads = static_cast<std::size_t>(cell.config.engine.threads.value_or(1));
+  return cell;
+}
+
+MachineSpace& all_machines() {
+  static MachineSpace space(machine_factors());
+  return space;
+}
+
+}  // namespace carousel::ringbus
