@@ -37,8 +37,8 @@ std::uint32_t nearest(const CollectionFacts& c, const PolicyScale& scale) {
   return here > base ? std::min(kLastBucket, here - base) : 0;
 }
 
-// A new policy has three places: its function above and its row here, its value in `enum class Policy`, and its name in
-// kEnumNames<Policy> (both in core/config). The schema, the error texts and the tests follow from these.
+// A new policy has two places: its function and row here, and its value and name in core/config/fields/collections.h
+// (docs/extending.md). Schema, documentation, error messages and tests follow.
 constexpr std::array kPolicies{
     IssuePolicy{.policy = Policy::kFullest, .bucket = fullest},
     IssuePolicy{.policy = Policy::kOldest, .bucket = one_bucket},

@@ -46,9 +46,8 @@ struct Row {
   Method (*make)(const TraversalSettings& settings, const VisitContext& context);
 };
 
-// A new traversal has three places: its class in a file of this folder with a row here, its value in `enum class
-// Traversal`, and its name in kEnumNames<Traversal> (both in core/config). Values of other keys that it cannot be
-// combined with are refused in core/config's rules.
+// A new traversal has three places: its class in a file of this folder, its row here, and its value and name in
+// core/config/fields/collections.h. Values of other keys that it cannot be combined with are refused in core/config.
 constexpr std::array kTraversals{
     Row{Traversal::kSpread, false, make_spread},
     Row{Traversal::kOrdered, true, make_ordered},

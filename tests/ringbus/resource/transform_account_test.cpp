@@ -112,8 +112,8 @@ TEST(Tester, InvertsBeforeItTransforms) {
   EXPECT_EQ(plain.strip(100, counts), 110u);  // transformed at 104 to 106, their boxes tested at 108 to 110
   counts.inversions = 1;
   EXPECT_EQ(inverting.strip(100, counts), 115u);  // two passes, begun at 100 and 101: at hand at 105
-  EXPECT_EQ(plain.transform.busy(), 3u);
-  EXPECT_EQ(inverting.transform.busy(), 5u);
+  EXPECT_EQ(plain.bank(UnitKind::kTransform).busy(), 3u);
+  EXPECT_EQ(inverting.bank(UnitKind::kTransform).busy(), 5u);
 }
 
 struct Machine {
