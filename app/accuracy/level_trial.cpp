@@ -62,7 +62,8 @@ std::optional<report::ModelledCost> modelled_cost(const Config& config, const ac
   const ringbus::RunResult result = ringbus::run_cycle(machine, accel, scene_size, workload, {});
   std::uint64_t busy = 0;
   for (const ringbus::cycle::TileResult& tile : result.cycle->tiles)
-    busy += tile.box.busy + tile.triangle.busy + tile.transform.busy;
+    for (const UnitKind kind : {UnitKind::kBox, UnitKind::kTriangle, UnitKind::kTransform})
+      busy += tile.units[kind].busy;
   return report::ModelledCost{report::ratio(result.cycle->cycles, rays.size()), report::ratio(busy, rays.size())};
 }
 

@@ -4,6 +4,7 @@
 
 #include "report/text/ratio.h"
 #include "ringbus/results/run_features.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::app {
 
@@ -31,22 +32,19 @@ report::UnitCycles unit_cycles(const ringbus::cycle::Utilisation& use, const rin
 
 report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, const Config& config,
                     const accel::Accel& accel) {
-  const RunFeatures features = ringbus::features_of(config, accel);
-  const auto bank = [&](const ringbus::cycle::Utilisation& use) { return unit_cycles(use, tile); };
-  report::Units out{bank(tile.box), bank(tile.triangle), bank(tile.transform), tile.dispatch.busy,
-                    cycles - tile.dispatch.busy};
-  if (features.cull_planes) out.plane = bank(tile.plane);
-  if (features.bundles) out.bundle = bank(tile.bundle);
-  if (features.procedural) out.procedural = bank(tile.procedural);
-  if (features.any_hit_units) out.any_hit = bank(tile.any_hit);
-  if (config.rays.reads_per_cycle > 0) out.ray_reads = bank(tile.ray_reads);
+  report::Units out;
+  out.features = ringbus::features_of(config, accel);
+  for (const auto [kind, use] : tile.units) out.kinds[kind] = unit_cycles(use, tile);
+  if (config.rays.reads_per_cycle > 0) out.ray_reads = unit_cycles(tile.ray_reads, tile);
+  out.dispatch_busy = tile.dispatch.busy;
+  out.dispatch_idle = cycles - tile.dispatch.busy;
   return out;
 }
 
 void add_to_resource(report::Resource& out, const ringbus::cycle::TileResult& tile, std::uint64_t cycles,
                      const Config& config, const accel::Accel& accel) {
   out.units = units(tile, cycles, config, accel);
-  if (config.topology.shape == TopologyShape::kIndependent) out.stack = tile.stack;
+  if (!ringbus::Topology(config.topology).has_packets()) out.stack = tile.stack;
   if (config.accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore)
     out.transformed_rays = tile.transformed_rays;
 }

@@ -9,10 +9,10 @@
 
 namespace carousel::app {
 
-/// The effects that the scene calls for, with the reasons, the computed ones and their costs.
+/// Every effect of light with the reason why the scene requires it or not, and its cost.
 std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan);
 
-/// Fills in the effects in `out`.
+/// Fills in the parts of `out` that concern effects.
 void add_effects(report::Shading& out, const scene::Scene& scene, const Config& config);
 
 }  // namespace carousel::app

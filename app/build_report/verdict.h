@@ -5,8 +5,8 @@
 
 namespace carousel::app {
 
-/// The exit status of a run that came to an end, after logging what stands in the way of 0. An interrupt wins
-/// over a failed verification: the rays compared so far are not all there are.
+/// The exit status of a run that came to an end. Logs each reason for a status other than 0. An interrupt wins over a
+/// failed verification, since only some of the rays have been compared.
 ExitStatus verdict(const report::Report& report);
 
 }  // namespace carousel::app

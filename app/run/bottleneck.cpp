@@ -14,7 +14,7 @@ namespace {
 // A gain below this is not worth a verdict.
 constexpr double kWorthIt = 0.05;
 
-/// A frame's rays alone; the picture they make is thrown away.
+/// The rays of a render job alone; their picture is thrown away.
 class FrameWorkload final : public Workload {
  public:
   FrameWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits)
@@ -79,35 +79,23 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
     if (busy <= 0 || parts <= 0) return;
     out.classes.push_back({name, 1000 * rays * parts / busy});
   };
-  double box = 0, triangle = 0, plane = 0, bundle = 0, reads = 0, transform = 0, procedural = 0, any_hit = 0,
-         dispatch = 0, link = 0;
+  PerUnit<double> units{};
+  double reads = 0, dispatch = 0, link = 0;
   for (const ringbus::cycle::TileResult& tile : c.tiles) {
-    box += static_cast<double>(tile.box.busy);
-    triangle += static_cast<double>(tile.triangle.busy);
-    plane += static_cast<double>(tile.plane.busy);
-    bundle += static_cast<double>(tile.bundle.busy);
+    for (const auto [kind, use] : tile.units) units[kind] += static_cast<double>(use.busy);
     reads += static_cast<double>(tile.ray_reads.busy);
-    transform += static_cast<double>(tile.transform.busy);
-    procedural += static_cast<double>(tile.procedural.busy);
-    any_hit += static_cast<double>(tile.any_hit.busy);
     dispatch += static_cast<double>(tile.dispatch.busy);
   }
   for (const ringbus::cycle::LinkUse& one : c.links) link += static_cast<double>(one.use.busy);
   const double tiles = static_cast<double>(c.tiles.size());
-  add("box_tests", tiles, box);
-  add("triangle_tests", tiles, triangle);
-  add("plane_tests", tiles, plane);
-  add("bundle_tests", tiles, bundle);
+  for (const auto [kind, busy] : units) add(unit_row(kind).work, tiles, busy);
   add("ray_reads", tiles, reads);
-  add("transforms", tiles, transform);
-  add("procedural_tests", tiles, procedural);
-  add("any_hit_lookups", tiles, any_hit);
   add("handling", tiles, dispatch);
   add("link_bandwidth", static_cast<double>(c.links.size()), link);
   add("memory_bandwidth", 1, static_cast<double>(c.memory_busy));
   add("shading", static_cast<double>(config.shading.workers), static_cast<double>(c.shading_busy));
-  std::sort(out.classes.begin(), out.classes.end(),
-            [](const auto& a, const auto& b) { return a.rays_per_kilocycle < b.rays_per_kilocycle; });
+  std::stable_sort(out.classes.begin(), out.classes.end(),
+                   [](const auto& a, const auto& b) { return a.rays_per_kilocycle < b.rays_per_kilocycle; });
   if (out.classes.empty()) return out;
   out.rays_per_kilocycle = out.classes.front().rays_per_kilocycle;
   out.reached = report::ratio(1000 * rays / static_cast<double>(c.cycles), out.rays_per_kilocycle);

@@ -9,11 +9,11 @@
 
 namespace carousel::app {
 
-/// What limits the simulated machine, found by simulating the first rays of the run again with each class of its
-/// parts lifted in turn. `frame` is the run's; its raster pass, if any, is not done again.
+/// The bottleneck of the simulated machine, found by simulating the first rays of the run again with each class of its
+/// parts relaxed in turn. `job` is the run's; its raster pass, if any, is not done again.
 report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, std::stop_token stop);
 
-/// What each class of parts alone would allow: the run's rays over the cycles the class was busy with them.
+/// The rate that each class of parts alone would allow: the run's rays over the cycles the class was busy with them.
 report::Bound bound_of(const Config& config, const ringbus::RunResult& result);
 
 }  // namespace carousel::app

@@ -65,18 +65,18 @@ std::string row(const std::string& path, const Json& schema) {
 }  // namespace
 
 std::string config_markdown() {
-  std::string top(kTableHead), sections;
+  std::string out(kHead);
   config::walk_schema(config_schema(), [&](const std::string& path, const Json& schema) {
     if (path.find(".0.testers.") != path.npos) return;  // the same as testers
-    const bool top_level = path.find('.') == path.npos;
-    if (top_level && schema.contains("properties"))
-      sections += fmt::format("\n## {}\n\n{}\n{}", path, schema["description"].get<std::string>(), kTableHead);
-    else if (top_level || path.starts_with("workload."))
-      top += row(path, schema);
-    else if (!schema.contains("properties"))
-      sections += row(path, schema);
+    const bool section = schema.contains("properties");
+    if (path.find('.') == path.npos) {
+      out += fmt::format("\n## {}\n", path);
+      if (section) out += fmt::format("\n{}\n", schema["description"].get<std::string>());
+      out += kTableHead;
+    }
+    if (!section) out += row(path, schema);
   });
-  return std::string(kHead) + top + sections;
+  return out;
 }
 
 }  // namespace carousel

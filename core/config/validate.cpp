@@ -95,7 +95,8 @@ class Rules {
 
   void planes_and_bundles_fit() {
     if (c.verify == Verify::kEffects && c.shading.effects.choice != ShadingConfig::Effects::Choice::kAuto)
-      issue("verify", "effects compares what the scene calls for with all; expected shading.effects: auto");
+      issue("verify",
+            "effects compares the effects that the scene calls for with all effects; expected shading.effects: auto");
     if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
       constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
       if (c.cull_planes.count > 0) issue("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
@@ -105,7 +106,7 @@ class Rules {
     if (c.bundles.size > 0) bundles_fit();
   }
 
-  // A bundle has one owner, which answers for all of its rays at one visit.
+  // A bundle has one owner, which tests all of its rays at one visit.
   void bundles_fit() {
     const BundlesConfig& b = c.bundles;
     if (b.size == 1) issue("bundles.size", "expected 2 rays or more, or 0 for none; found 1");
@@ -143,7 +144,7 @@ class Rules {
                         c.rays.slots_per_resource, without));
   }
 
-  // The plane test's slack covers what these kernels may round, and has no bound for others.
+  // The slack of the plane test covers the rounding of these kernels. For the others there is no bound.
   void planes_need_bounded_errors() {
     if (c.accuracy.triangle != TriangleLevel::kWatertight && c.accuracy.triangle != TriangleLevel::kExact)
       issue("accuracy.triangle", fmt::format("cull planes could lose hits of {}; expected watertight or exact, or "
@@ -186,7 +187,7 @@ class Rules {
     if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
       issue("workload.traffic.hotspot",
             fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, traffic.hotspot));
-    // Between bursts at least one cycle is quiet.
+    // There is at least one cycle without a packet between two bursts.
     const double burst = static_cast<double>(traffic.burst_packets), most = burst / (burst + 1);
     if (traffic.pattern == TrafficConfig::Pattern::kBursty && traffic.rate > most)
       issue("workload.traffic.rate", fmt::format("bursts of {} packets make at most {:.4g} packets per cycle, found {}",
@@ -245,9 +246,9 @@ class Rules {
       issue("faults.resource.kind", "independent resources have no faults; expected none");
     if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
       issue("faults.resource.after_rays",
-            fmt::format("under virtual time a slow resource is so from the beginning; expected 0, found {}",
+            fmt::format("under virtual time a slow resource is slow from the beginning; expected 0, found {}",
                         r.after_rays));
-    if (r.kind == FaultsConfig::Resource::Kind::kStop) a_machine_goes_on_without_one();
+    if (r.kind == FaultsConfig::Resource::Kind::kStop) stop_leaves_a_resource();
     if (c.faults.compare && !cycle())
       issue("faults.compare",
             "on the wall clock two runs differ by more than faults cost; expected false, or engine.kind: cycle");
@@ -258,9 +259,9 @@ class Rules {
                         5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
   }
 
-  void a_machine_goes_on_without_one() {
+  void stop_leaves_a_resource() {
     if (c.topology.resources < 2)
-      issue("topology.resources", "where one stops another has to go on; expected at least 2, found 1");
+      issue("topology.resources", "when a resource stops, another has to continue; expected at least 2, found 1");
   }
 
   void vary_names_keys() {

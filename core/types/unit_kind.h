@@ -5,28 +5,62 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/statistics/intersection_counts.h"
+
 namespace carousel {
+
+// A new kind of unit takes three places, here `curve`, which tests rays against curves:
+//   1. a counter `curve` in core/statistics/intersection_counts.h, with its row and its term in tests();
+//   2. in this file, an enumerator and a row of the table:
+//        {UnitKind::kCurve, "curve", "curve", "curve_tests", "Units that test a ray against a curve.", 1, 1, 8,
+//         &IntersectionCounts::curve, Stage::kPrimitive, Shown::kAlways},
+//   3. the test itself, which counts: `counts.curve += ...`.
+// Configuration, cycle engine, faults, what-ifs, bounds and report follow from the table. A kind of another stage than
+// kPrimitive also needs its place in the order of the tests, in ringbus/cycle/testers/tester.h.
 
 /// A kind of test unit that a resource has.
 enum class UnitKind : std::uint8_t { kBox, kTriangle, kPlane, kBundle, kTransform, kProcedural, kAnyHit };
 
+/// The place of a kind in the order of a visit's tests.
+enum class Stage : std::uint8_t {
+  kBundle,     ///< bundles of rays first
+  kTransform,  ///< then the rays that are left go to model space
+  kNode,       ///< at a node, boxes and planes
+  kPrimitive,  ///< at a leaf, primitives of all kinds side by side
+  kAnyHit,     ///< then the opacity of the primitives that are hit
+};
+
 struct UnitKindRow {
   UnitKind kind;
-  std::string_view key;  ///< below `testers`
-  const char* meaning;
+  std::string_view key;  ///< below `testers` of the configuration
+  const char* name;      ///< below `units` of a resource in the report
+  const char* work;      ///< its class of parts in `bottleneck` and `bound` of the report
+  const char* meaning;   ///< a sentence
   std::int64_t units, interval_cycles, latency_cycles;  ///< defaults of the configuration
+  std::uint64_t IntersectionCounts::*tests;             ///< the counter of its tests
+  Stage stage;
+  Shown shown;
 };
 
 /// The one table of the kinds, in the order of the enum and of the configuration.
 inline constexpr auto kUnitKinds = std::to_array<UnitKindRow>({
-    {UnitKind::kBox, "box", "Units that test a ray against a box.", 8, 1, 4},
-    {UnitKind::kTriangle, "triangle", "Units that test a ray against a triangle.", 4, 1, 4},
-    {UnitKind::kPlane, "plane", "Units that test a ray against a cull plane.", 8, 1, 4},
-    {UnitKind::kBundle, "bundle", "Units that test a bundle of rays against a box.", 1, 1, 4},
-    {UnitKind::kTransform, "transform", "Units that bring a ray from world space to model space.", 1, 1, 4},
-    {UnitKind::kProcedural, "procedural", "Units that test a ray against a procedural primitive.", 1, 1, 8},
-    {UnitKind::kAnyHit, "any_hit_unit", "Units that decide if a non-opaque primitive is hit, with any_hit: inline.", 1,
-     1, 8},
+    {UnitKind::kBox, "box", "box", "box_tests", "Units that test a ray against a box.", 8, 1, 4,
+     &IntersectionCounts::box, Stage::kNode, Shown::kAlways},
+    {UnitKind::kTriangle, "triangle", "triangle", "triangle_tests", "Units that test a ray against a triangle.", 4, 1,
+     4, &IntersectionCounts::triangle, Stage::kPrimitive, Shown::kAlways},
+    {UnitKind::kPlane, "plane", "plane", "plane_tests", "Units that test a ray against a cull plane.", 8, 1, 4,
+     &IntersectionCounts::plane, Stage::kNode, Shown::kCullPlanes},
+    {UnitKind::kBundle, "bundle", "bundle", "bundle_tests", "Units that test a bundle of rays against a box.", 1, 1, 4,
+     &IntersectionCounts::bundle, Stage::kBundle, Shown::kBundles},
+    {UnitKind::kTransform, "transform", "transform", "transforms",
+     "Units that bring a ray from world space to model space.", 1, 1, 4, &IntersectionCounts::transforms,
+     Stage::kTransform, Shown::kAlways},
+    {UnitKind::kProcedural, "procedural", "procedural", "procedural_tests",
+     "Units that test a ray against a procedural primitive.", 1, 1, 8, &IntersectionCounts::procedural,
+     Stage::kPrimitive, Shown::kProcedural},
+    {UnitKind::kAnyHit, "any_hit_unit", "any_hit", "any_hit_lookups",
+     "Units that decide if a non-opaque primitive is hit, with any_hit: inline.", 1, 1, 8,
+     &IntersectionCounts::any_hit_calls, Stage::kAnyHit, Shown::kAnyHitUnit},
 });
 
 constexpr std::size_t unit_index(UnitKind kind) {
@@ -74,6 +108,8 @@ class PerUnit {
   constexpr Iterator<T> end() { return {values_.data(), values_.size()}; }
   constexpr Iterator<const T> begin() const { return {values_.data(), 0}; }
   constexpr Iterator<const T> end() const { return {values_.data(), values_.size()}; }
+
+  friend constexpr bool operator==(const PerUnit&, const PerUnit&) = default;
 
  private:
   std::array<T, kUnitKinds.size()> values_{};

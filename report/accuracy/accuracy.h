@@ -7,12 +7,12 @@
 
 namespace carousel::report {
 
-/// Of interleaved repetitions.
+/// A measurement over interleaved repetitions.
 struct Spread {
   double median = 0, least = 0, most = 0;
 };
 
-/// Answers of one level held against the exact ones.
+/// The answers of one level compared with the exact ones.
 struct HitErrors {
   std::uint64_t rays = 0;
   std::uint64_t missed = 0;  ///< a miss where the exact ray hits
@@ -23,20 +23,20 @@ struct HitErrors {
   std::uint64_t wrong() const { return missed + extra; }
 };
 
-/// A picture held against the exact one; linear values.
+/// A picture compared with the exact one, in linear values.
 struct PictureErrors {
   std::uint64_t pixels = 0, differ = 0;
-  double rmse = 0;   ///< over all channels
-  double worst = 0;  ///< of any channel of any pixel
+  double rmse = 0;   ///< root mean square error over all channels
+  double worst = 0;  ///< greatest error of a channel of a pixel
 };
 
-/// Rays made to go wrong.
+/// Rays that are hard to answer correctly.
 struct HardCase {
   std::string name, what;
   bool closed = false;  ///< every ray starts inside a closed surface: a miss is a leak
 };
 
-/// On the configured machine, by the cycle engine.
+/// The cost on the configured machine, by the cycle engine.
 struct ModelledCost {
   double cycles_per_ray = 0;
   double tester_cycles_per_ray = 0;  ///< cycles in which a resource's box, triangle or transform units were busy
@@ -45,13 +45,13 @@ struct ModelledCost {
 /// One combination of levels of the tests.
 struct AccuracyRow {
   std::string triangle, box, transform;
-  Spread ns_per_ray;                     ///< depth-first, CPU time of one thread
-  std::optional<ModelledCost> modelled;  ///< absent if the cycle engine has not the configured machine
+  Spread ns_per_ray;                     ///< CPU time of one thread, depth-first
+  std::optional<ModelledCost> modelled;  ///< absent if the cycle engine cannot run the configured machine
   HitErrors scene;
   std::vector<HitErrors> hard;  ///< by Accuracy::hard
   PictureErrors picture;
-  std::uint64_t leaks = 0;  ///< of all closed cases
-  bool frontier = false;    ///< nothing else is both faster and less often wrong
+  std::uint64_t leaks = 0;  ///< misses in all closed cases
+  bool frontier = false;    ///< no other row is both faster and less often wrong
   bool safe = false;        ///< no leak, and nothing missed or added in the scene
 
   std::uint64_t wrong() const {
@@ -64,8 +64,8 @@ struct AccuracyRow {
 struct SpawnRow {
   std::string spawn;
   std::uint64_t bounces = 0;                           ///< rays that left a triangle
-  std::uint64_t self_hits = 0;                         ///< of these, hit the very triangle again
-  std::uint64_t hard_bounces = 0, hard_self_hits = 0;  ///< likewise from instances far from the origin
+  std::uint64_t self_hits = 0;                         ///< rays of these that hit the same triangle again
+  std::uint64_t hard_bounces = 0, hard_self_hits = 0;  ///< the same from instances far from the origin
   PictureErrors picture;
 };
 
@@ -74,11 +74,11 @@ struct SamplingRow {
   double rmse = 0, seconds = 0;  ///< without the 2 % farthest off, in [0, 1]; the means over several seeds
 };
 
-/// What `carousel accuracy` finds.
+/// The report of `carousel accuracy`.
 struct Accuracy {
   std::string scene;
   std::uint64_t triangles = 0, instances = 0, rays = 0, seed = 0;
-  std::uint64_t width = 0, height = 0, samples = 0;  ///< of the pictures
+  std::uint64_t width = 0, height = 0, samples = 0;  ///< size of the pictures
   int repetitions = 0;
   std::vector<HardCase> hard;
   std::vector<AccuracyRow> rows;

@@ -13,8 +13,8 @@ struct Difference {
   std::string path, a, b;
 };
 
-/// Where two reports differ outside of `host` and of config.engine.threads, in the order of the first. Two runs are
-/// identical when there is none.
+/// The places where two reports differ outside of `host` and of config.engine.threads, in the order of the first. Two
+/// runs are identical when there is none.
 std::vector<Difference> differences(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b);
 
 /// The first epoch whose digests differ, and its length; the shorter list's end counts as a difference.

@@ -13,7 +13,7 @@ nlohmann::ordered_json report_json(const Report& report);
 /// stress.json of `carousel stress`.
 nlohmann::ordered_json stress_json(const Stress& stress);
 
-/// JSON Schema (draft 2020-12) of the report, and under $defs.stress of the other: types, units, meanings.
+/// JSON Schema (draft 2020-12) of the report, and of stress.json under $defs.stress: types, units, meanings.
 nlohmann::ordered_json report_schema();
 
 }  // namespace carousel::report

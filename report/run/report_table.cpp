@@ -142,14 +142,7 @@ void packet_lines(Table& table, const Report& report) {
   }
 }
 
-double busy_fraction(const std::vector<Resource>& resources, std::uint64_t cycles, UnitCycles Units::*bank) {
-  std::uint64_t busy = 0;
-  for (const Resource& r : resources)
-    if (r.units) busy += ((*r.units).*bank).busy;
-  return ratio(busy, cycles * resources.size());
-}
-
-/// Where the simulated machine's time went.
+/// The use of the simulated machine's time.
 void cycle_lines(Table& table, const Report& report) {
   const std::uint64_t cycles = *report.engine.cycles;
   const Throughput& t = *report.throughput;
@@ -160,21 +153,23 @@ void cycle_lines(Table& table, const Report& report) {
   if (t.steady) text += fmt::format("   steady {:.2f}", t.steady->rays_per_kilocycle);
   table.line("simulated", "{}", text);
   if (!report.resources || report.resources->empty()) return;
-  UnitCycles sum;
+  PerUnit<UnitCycles> sums;
   std::uint64_t dispatch = 0;
   for (const Resource& r : *report.resources) {
     if (!r.units) return;
-    sum += r.units->box;
+    for (const auto [kind, sum] : sums) sum += r.units->kinds[kind];
     dispatch += r.units->dispatch_busy;
   }
   const std::uint64_t all = cycles * report.resources->size();
   const auto part = [&](std::uint64_t x) { return percent(ratio(x, all)); };
-  table.line("busy", "box {}   triangle {}   transform {}   handling {}   shading {}   memory {}",
-             percent(busy_fraction(*report.resources, cycles, &Units::box)),
-             percent(busy_fraction(*report.resources, cycles, &Units::triangle)),
-             percent(busy_fraction(*report.resources, cycles, &Units::transform)), part(dispatch),
-             percent(report.shading.utilisation.value_or(0)),
-             percent(report.memory ? report.memory->dram_utilisation : 0));
+  Items busy;
+  for (const UnitKindRow& row : kUnitKinds)
+    if (report.resources->front().units->features.show(row.shown)) busy.add(row.name, part(sums[row.kind].busy));
+  busy.add("handling", part(dispatch));
+  busy.add("shading", percent(report.shading.utilisation.value_or(0)));
+  busy.add("memory", percent(report.memory ? report.memory->dram_utilisation : 0));
+  table.line("busy", "{}", busy.text());
+  const UnitCycles& sum = sums[UnitKind::kBox];  // all kinds wait together
   table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),
              part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle),
              sum.shading > 0 ? "   shading " + part(sum.shading) : "");

@@ -6,7 +6,7 @@
 
 namespace carousel::report {
 
-/// The report as a person reads it on a terminal, with a newline at the end.
+/// The report as text for a terminal, with a newline at the end.
 std::string report_table(const Report& report);
 
 }  // namespace carousel::report

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/types/unit_kind.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -24,21 +25,27 @@ struct UnitCycles {
 };
 
 struct Units {
-  UnitCycles box, triangle, transform;
+  PerUnit<UnitCycles> kinds{};
+  RunFeatures features{};
+  std::optional<UnitCycles> ray_reads{};
   std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
-  std::optional<UnitCycles> plane{}, bundle{}, ray_reads{}, procedural{}, any_hit{};
 };
 
 template <class V>
 void describe(V& v, const Units& r) {
-  v.section("box", r.box, "units that test rays against boxes");
-  v.section("triangle", r.triangle, "units that test rays against triangles");
-  v.section("plane", r.plane, "units that test rays against cull planes");
-  v.section("bundle", r.bundle, "units that test bundles of rays against boxes");
-  v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
-  v.section("procedural", r.procedural, "units that test rays against procedural primitives");
-  v.section("any_hit", r.any_hit, "units that look up opacity, with testers.any_hit: inline");
-  v.section("transform", r.transform, "units that transform rays to model space");
+  const auto kind = [&](const UnitKindRow& row) {
+    if (row.shown == Shown::kAlways)
+      v.section(row.name, r.kinds[row.kind], row.meaning);
+    else
+      v.section_if(r.features.show(row.shown), row.name, r.kinds[row.kind], row.meaning);
+  };
+  // The order of these keys is older than the table of the kinds.
+  for (const UnitKindRow& row : kUnitKinds) {
+    if (row.kind != UnitKind::kTransform) kind(row);
+    if (row.kind == UnitKind::kBundle)
+      v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
+  }
+  kind(unit_row(UnitKind::kTransform));
   v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");
 }

@@ -5,13 +5,14 @@
 #include <fmt/format.h>
 
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
 
 namespace {
 
-/// The first so many of a workload's own rays, with all that follow from them.
+/// The first `paths` rays of a workload, with all rays that follow from them.
 class FirstPaths final : public Workload {
  public:
   FirstPaths(std::unique_ptr<Workload> whole, std::uint64_t paths) : whole_(std::move(whole)), left_(paths) {}
@@ -36,52 +37,63 @@ std::int64_t halved(std::int64_t cycles) {
   return std::max<std::int64_t>(1, cycles / 2);
 }
 
-WhatIf units_what_if(std::string name, UnitKind kind) {
-  return {std::move(name), "twice testers." + std::string(unit_row(kind).key) + ".units", [kind](Config& c) {
-            c.testers.units[kind].units *= 2;
-            for (ResourceOverride& one : c.topology.overrides) one.testers.units[kind].units *= 2;
-          }};
+bool passes_packets(const Config& c) {
+  return Topology(c.topology).has_packets();
 }
+bool uses_links(const Config& c) {
+  return passes_packets(c) && c.topology.resources > 1 && c.collections.home != Home::kLocal;
+}
+
+/// A class of parts other than test units.
+struct PartClass {
+  const char *name, *action;
+  bool (*present)(const Config&);
+  void (*relax)(Config&);
+};
+constexpr bool every_machine(const Config&) {
+  return true;
+}
+constexpr PartClass kPartClasses[] = {
+    {"ray_reads", "twice rays.reads_per_cycle", [](const Config& c) { return c.rays.reads_per_cycle > 0; },
+     [](Config& c) { c.rays.reads_per_cycle *= 2; }},
+    {"handling", "twice packets.ids_per_cycle", passes_packets, [](Config& c) { c.packets.ids_per_cycle *= 2; }},
+    {"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", every_machine,
+     [](Config& c) {
+       c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);
+       c.memory.dram_latency_cycles = halved(c.memory.dram_latency_cycles);
+     }},
+    {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", every_machine,
+     [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }},
+    {"ray_slots", "twice rays.slots_per_resource", every_machine, [](Config& c) { c.rays.slots_per_resource *= 2; }},
+    {"shading", "twice shading.workers", every_machine, [](Config& c) { c.shading.workers *= 2; }},
+    {"link_bandwidth", "twice topology.link.bytes_per_cycle", uses_links,
+     [](Config& c) { c.topology.link.bytes_per_cycle *= 2; }},
+    {"link_latency", "half topology.link.latency_cycles",
+     [](const Config& c) { return uses_links(c) && c.topology.link.latency_cycles > 1; },
+     [](Config& c) { c.topology.link.latency_cycles = halved(c.topology.link.latency_cycles); }},
+    {"packets_in_flight", "twice topology.link.depth", uses_links, [](Config& c) { c.topology.link.depth *= 2; }},
+};
 
 }  // namespace
 
 std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   std::vector<WhatIf> all;
-  all.push_back(units_what_if("box_tests", UnitKind::kBox));
-  all.push_back(units_what_if("triangle_tests", UnitKind::kTriangle));
-  if (accel.procedural_primitives) all.push_back(units_what_if("procedural_tests", UnitKind::kProcedural));
-  if (accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kInline)
-    all.push_back(units_what_if("any_hit_lookups", UnitKind::kAnyHit));
-  if (config.cull_planes.count > 0) all.push_back(units_what_if("plane_tests", UnitKind::kPlane));
-  if (config.bundles.size > 0) all.push_back(units_what_if("bundle_tests", UnitKind::kBundle));
-  if (config.rays.reads_per_cycle > 0)
-    all.push_back({"ray_reads", "twice rays.reads_per_cycle", [](Config& c) { c.rays.reads_per_cycle *= 2; }});
-  all.push_back(units_what_if("transforms", UnitKind::kTransform));
-  const bool independent = !Topology(config.topology).has_packets();
-  if (!independent)
-    all.push_back({"handling", "twice packets.ids_per_cycle", [](Config& c) { c.packets.ids_per_cycle *= 2; }});
-  all.push_back({"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", [](Config& c) {
-                   c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);
-                   c.memory.dram_latency_cycles = halved(c.memory.dram_latency_cycles);
-                 }});
-  all.push_back(
-      {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }});
-  all.push_back({"ray_slots", "twice rays.slots_per_resource", [](Config& c) { c.rays.slots_per_resource *= 2; }});
-  all.push_back({"shading", "twice shading.workers", [](Config& c) { c.shading.workers *= 2; }});
-  if (config.topology.resources > 1 && config.collections.home != Home::kLocal && !independent) {
-    all.push_back({"link_bandwidth", "twice topology.link.bytes_per_cycle",
-                   [](Config& c) { c.topology.link.bytes_per_cycle *= 2; }});
-    if (config.topology.link.latency_cycles > 1)
-      all.push_back({"link_latency", "half topology.link.latency_cycles",
-                     [](Config& c) { c.topology.link.latency_cycles = halved(c.topology.link.latency_cycles); }});
-    all.push_back({"packets_in_flight", "twice topology.link.depth", [](Config& c) { c.topology.link.depth *= 2; }});
+  const RunFeatures features = features_of(config, accel);
+  for (const UnitKindRow& row : kUnitKinds) {
+    if (!features.show(row.shown)) continue;
+    all.push_back({row.work, fmt::format("twice testers.{}.units", row.key), [kind = row.kind](Config& c) {
+                     c.testers.units[kind].units *= 2;
+                     for (ResourceOverride& one : c.topology.overrides) one.testers.units[kind].units *= 2;
+                   }});
   }
+  for (const PartClass& part : kPartClasses)
+    if (part.present(config)) all.push_back({part.name, part.action, part.relax});
   return all;
 }
 
 std::uint64_t pilot_paths(const Config& config) {
-  // So many that what caches miss at first counts for little: small machines, whose slots turn over sooner, otherwise
-  // take their memory for slower than it is.
+  // So many that the first misses of the caches count for little: memory would otherwise seem slower than it is to
+  // small machines, whose slots turn over sooner.
   constexpr std::int64_t kWarm = 6000;
   return static_cast<std::uint64_t>(std::max(kWarm, 8 * config.topology.resources * config.rays.slots_per_resource));
 }
@@ -100,7 +112,7 @@ Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, floa
   };
   Bottleneck out;
   out.paths = paths;
-  // What limits the machine, not what became of it.
+  // The bottleneck is that of the whole machine, before a resource stops.
   Config whole = config;
   if (whole.faults.resource.kind == FaultsConfig::Resource::Kind::kStop) whole.faults.resource = {};
   const RunResult base = simulate(whole);

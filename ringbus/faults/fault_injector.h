@@ -7,35 +7,35 @@
 
 namespace carousel::ringbus {
 
-/// What happens to one frame.
+/// The faults that befall one frame.
 struct FaultDraw {
   bool drop = false, duplicate = false, corrupt = false, reorder = false, delay = false;
-  std::uint64_t bits = 0;  ///< random: where a corrupted frame is hurt
+  std::uint64_t bits = 0;  ///< random: says which bit of a corrupted frame is flipped
 };
 
-/// Draws fates: the n-th frame of a stream has the same one in every run.
+/// Draws the faults of frames: the n-th frame of a stream has the same ones in every run.
 class FaultInjector {
  public:
-  /// `stream` tells links and directions apart.
+  /// Links and directions have streams of their own.
   FaultInjector(const FaultsConfig::Links& links, std::int64_t seed, std::uint64_t stream)
       : links_(links), key_(mix(static_cast<std::uint64_t>(seed) * 0x9e3779b97f4a7c15u + stream)) {}
 
-  /// The next frame's; counts what it draws.
+  /// Draws and counts the next frame's faults.
   FaultDraw next(LinkFaultCounts& counts) {
-    FaultDraw fate;
-    fate.drop = happens(links_.drop);
-    fate.duplicate = happens(links_.duplicate);
-    fate.corrupt = happens(links_.corrupt);
-    fate.reorder = happens(links_.reorder);
-    fate.delay = happens(links_.delay);
-    fate.bits = draw();
-    counts.dropped += fate.drop;
-    if (fate.drop) return fate;  // the rest cannot be seen
-    counts.duplicated += fate.duplicate;
-    counts.corrupted += fate.corrupt;
-    counts.reordered += fate.reorder;
-    counts.delayed += fate.delay;
-    return fate;
+    FaultDraw faults;
+    faults.drop = happens(links_.drop);
+    faults.duplicate = happens(links_.duplicate);
+    faults.corrupt = happens(links_.corrupt);
+    faults.reorder = happens(links_.reorder);
+    faults.delay = happens(links_.delay);
+    faults.bits = draw();
+    counts.dropped += faults.drop;
+    if (faults.drop) return faults;  // a lost frame shows no other fault
+    counts.duplicated += faults.duplicate;
+    counts.corrupted += faults.corrupt;
+    counts.reordered += faults.reorder;
+    counts.delayed += faults.delay;
+    return faults;
   }
 
  private:

@@ -8,8 +8,8 @@
 
 namespace carousel::ringbus {
 
-/// The sending end of a queue that loses, doubles, damages, delays and reorders what is put into it. One thread's.
-/// Frame has flip(random) to be damaged by, copy() to be doubled by, and drop() to be lost by.
+/// The sending end of a queue that loses, doubles, damages, delays and reorders the frames put into it. One thread uses
+/// it. A frame has flip(random), which damages it, copy(), and drop(), which releases what it owns.
 template <class Queue, class LinkFrame>
 class FaultyWire {
  public:
@@ -24,19 +24,19 @@ class FaultyWire {
   FaultyWire(const FaultyWire&) = delete;
   FaultyWire& operator=(const FaultyWire&) = delete;
 
-  bool has_room() { return queue_.free_places() > 1; }  // one may come twice
+  bool has_room() { return queue_.free_places() > 1; }  // a frame may be sent twice
 
-  /// Takes the frame, which is the wire's from then on.
+  /// Takes over the frame.
   void put(LinkFrame frame) {
-    const FaultDraw fate = injector_.next(counts_);
-    if (fate.drop) {
+    const FaultDraw faults = injector_.next(counts_);
+    if (faults.drop) {
       frame.drop();
     } else {
-      if (fate.corrupt) frame.flip(fate.bits);
-      if (fate.duplicate) send(frame.copy());
-      if (fate.delay) {
+      if (faults.corrupt) frame.flip(faults.bits);
+      if (faults.duplicate) send(frame.copy());
+      if (faults.delay) {
         late_.push_back({Clock::now() + delay_, frame});
-      } else if (fate.reorder) {
+      } else if (faults.reorder) {
         after_next_.push_back(frame);
         return;  // the next one goes first
       } else {
@@ -46,7 +46,7 @@ class FaultyWire {
     for (const LinkFrame& one : after_next_) send(one);
     after_next_.clear();
   }
-  /// Lets go of what has been late long enough, and of what waits for a next one that may not come.
+  /// Sends the delayed frames that are due, and frames that wait to be overtaken by a next one that does not come.
   void release() {
     if (!after_next_.empty() && ++quiet_ > 8) {
       for (const LinkFrame& one : after_next_) send(one);
@@ -68,7 +68,7 @@ class FaultyWire {
     Clock::time_point due;
     LinkFrame frame;
   };
-  // A full queue loses it, as one more fault of the wire.
+  // A full queue loses the frame, as one more fault of the wire.
   void send(LinkFrame frame) {
     if (queue_.try_push(frame)) return;
     ++counts_.dropped;
@@ -79,7 +79,7 @@ class FaultyWire {
   FaultInjector injector_;
   std::chrono::nanoseconds delay_;
   std::vector<LinkFrame> after_next_;
-  int quiet_ = 0;  // releases since something waits for a next one
+  int quiet_ = 0;  // calls of release() since a frame waits to be overtaken
   std::vector<Late> late_;
   LinkFaultCounts counts_;
 };

@@ -10,13 +10,12 @@
 
 namespace carousel::ringbus::cycle {
 
-/// When a packet gets over a link that fails, and when its sender knows, in virtual time.
+/// Computes, in virtual time, when a packet arrives over a link with faults and when its sender learns of it.
 ///
-/// With go-back-N everything behind a lost frame is sent again after it, so what is behind counts from the moment the
-/// lost one has got through: the link is as good as busy until then. An acknowledgement is what brings the place at the
-/// receiver back, the credit. It fails like a frame. As acknowledgements are cumulative, the next one makes a lost one
-/// good; if there is none, the sender asks after a time by sending the frame again, of which the receiver needs no more
-/// than that it answers.
+/// With go-back-N all frames behind a lost one are sent again after it, so the link counts as busy until the lost one
+/// has got through. An acknowledgement brings the credit back, the place at the receiver, and fails like a frame. As
+/// acknowledgements are cumulative, the next one recovers a lost one. If there is none, the sender sends the last frame
+/// again after a time, to which the receiver only answers.
 class LinkFaultTimer {
  public:
   LinkFaultTimer(const FaultsConfig::Links& links, std::int64_t seed, std::uint64_t link, Cycle latency)
@@ -37,82 +36,82 @@ class LinkFaultTimer {
     Cycle start = now;
     for (bool first = true;; first = false) {
       counts_.resent += !first;
-      const FaultDraw fate = injector_.next(counts_);
-      out.busy += cycles * (fate.duplicate && !fate.drop ? 2 : 1);
-      counts_.discarded += fate.duplicate && !fate.drop;
-      // It comes before the one that was overtaken, and is not taken.
+      const FaultDraw faults = injector_.next(counts_);
+      out.busy += cycles * (faults.duplicate && !faults.drop ? 2 : 1);
+      counts_.discarded += faults.duplicate && !faults.drop;
+      // It arrives before the frame that it overtook, so the receiver discards it.
       const bool early = std::exchange(overtaken_, false) && first;
-      if (fate.drop || fate.corrupt || early) {
-        counts_.discarded += !fate.drop;
-        start += cycles + patience();
+      if (faults.drop || faults.corrupt || early) {
+        counts_.discarded += !faults.drop;
+        start += cycles + round_trip();
         continue;
       }
-      overtaken_ = fate.reorder;
-      out.link_free = start + cycles * (fate.duplicate ? 2 : 1);
-      out.arrival = start + latency_ + (fate.delay ? delay_ : 0) + (fate.reorder ? cycles : 0);
+      overtaken_ = faults.reorder;
+      out.link_free = start + cycles * (faults.duplicate ? 2 : 1);
+      out.arrival = start + latency_ + (faults.delay ? delay_ : 0) + (faults.reorder ? cycles : 0);
       break;
     }
-    // In order, whatever is late.
+    // Frames arrive in order, however late one is.
     last_ = out.arrival = std::max(out.arrival, last_);
     return out;
   }
 
-  /// The acknowledgement that would come at `at`, not before any other: how many places the sender knows to be free
-  /// again by it. Call made_good(at) before.
+  /// Takes the acknowledgement that would come at `at`, no earlier than any before. Returns how many places the sender
+  /// now knows to be free again. Call recovered(at) before.
   std::uint32_t acknowledge(Cycle at) {
-    const FaultDraw fate = ack_injector_.next(counts_);
-    const bool lost = fate.drop || fate.corrupt;
-    if (lost || fate.delay || fate.reorder) {
-      // One that the next one overtakes says nothing new when it comes.
-      silent_.push_back(lost || fate.reorder ? kNever : at + delay_);
-      if (any_hit_at_ == kNever) any_hit_at_ = at + patience();
+    const FaultDraw faults = ack_injector_.next(counts_);
+    const bool lost = faults.drop || faults.corrupt;
+    if (lost || faults.delay || faults.reorder) {
+      // An acknowledgement that was overtaken says nothing new when it comes.
+      overdue_.push_back(lost || faults.reorder ? kNever : at + delay_);
+      if (repeat_at_ == kNever) repeat_at_ = at + round_trip();
       return 0;
     }
-    return hear(silent_.size()) + 1;
+    return hear(overdue_.size()) + 1;
   }
-  /// What late acknowledgements and asking again have brought by `now`.
+  /// The places that late acknowledgements and repeated frames have brought back.
   struct Recovered {
     std::uint32_t places = 0;
-    Cycle busy = 0;  ///< for which the link was asked over
+    Cycle busy = 0;  ///< in which the link carried repeated frames
   };
-  Recovered made_good(Cycle now) {
+  Recovered recovered(Cycle now) {
     Recovered out;
-    while (!silent_.empty()) {
-      const auto first = std::min_element(silent_.begin(), silent_.end());
-      if (std::min(*first, any_hit_at_) > now) break;
-      if (*first <= any_hit_at_)
-        out.places += hear(static_cast<std::size_t>(first - silent_.begin()) + 1);
+    while (!overdue_.empty()) {
+      const auto first = std::min_element(overdue_.begin(), overdue_.end());
+      if (std::min(*first, repeat_at_) > now) break;
+      if (*first <= repeat_at_)
+        out.places += hear(static_cast<std::size_t>(first - overdue_.begin()) + 1);
       else
-        out.busy += ask();
+        out.busy += repeat();
     }
     return out;
   }
-  /// When made_good() will bring something, or may.
+  /// The next time at which recovered() may bring something.
   Cycle next() const {
-    if (silent_.empty()) return kNever;
-    return std::min(*std::min_element(silent_.begin(), silent_.end()), any_hit_at_);
+    if (overdue_.empty()) return kNever;
+    return std::min(*std::min_element(overdue_.begin(), overdue_.end()), repeat_at_);
   }
   const LinkFaultCounts& counts() const { return counts_; }
 
  private:
-  /// Until an answer would be there.
-  Cycle patience() const { return 2 * latency_ + cycles_; }
+  /// The time after which an answer would be there.
+  Cycle round_trip() const { return 2 * latency_ + cycles_; }
   std::uint32_t hear(std::size_t count) {
-    silent_.erase(silent_.begin(), silent_.begin() + static_cast<std::ptrdiff_t>(count));
-    if (silent_.empty()) any_hit_at_ = kNever;
+    overdue_.erase(overdue_.begin(), overdue_.begin() + static_cast<std::ptrdiff_t>(count));
+    if (overdue_.empty()) repeat_at_ = kNever;
     return static_cast<std::uint32_t>(count);
   }
-  /// The last frame once more. What it was asked for comes with the answer, if both get through.
-  Cycle ask() {
+  /// Sends the last frame once more. The acknowledgement comes with the answer, if both get through.
+  Cycle repeat() {
     ++counts_.resent;
     const FaultDraw frame = ack_injector_.next(counts_);
     counts_.discarded += !frame.drop;
     const bool through = !frame.drop && !frame.corrupt;
     const FaultDraw answer = through ? ack_injector_.next(counts_) : FaultDraw{};
     if (through && !answer.drop && !answer.corrupt)
-      silent_.back() =
-          std::min(silent_.back(), any_hit_at_ + patience() + (frame.delay ? delay_ : 0) + (answer.delay ? delay_ : 0));
-    any_hit_at_ += cycles_ + patience();
+      overdue_.back() = std::min(overdue_.back(),
+                                 repeat_at_ + round_trip() + (frame.delay ? delay_ : 0) + (answer.delay ? delay_ : 0));
+    repeat_at_ += cycles_ + round_trip();
     return cycles_;
   }
 
@@ -120,9 +119,9 @@ class LinkFaultTimer {
   Cycle delay_, latency_;
   Cycle cycles_ = 1;  // of the last packet
   Cycle last_ = 0;
-  bool overtaken_ = false;     // the one before comes after the next
-  std::deque<Cycle> silent_;   // acknowledgements that did not come when they should: when they will, or never
-  Cycle any_hit_at_ = kNever;  // while there are any
+  bool overtaken_ = false;     // the frame before comes after the next one
+  std::deque<Cycle> overdue_;  // when the acknowledgements that are overdue come, or never
+  Cycle repeat_at_ = kNever;   // while some are overdue
   LinkFaultCounts counts_;
 };
 

@@ -9,31 +9,31 @@
 
 namespace carousel::ringbus {
 
-/// The rays that have been handed to the ring and have not come back, so that they can be started again when what was
-/// under way is lost. A ray is known by its tag, of which there is one at a time. Any thread may call.
+/// Remembers the rays that are in the ring, so that they can be started again when a resource has stopped and what was
+/// under way is lost. A ray is known by its tag; no two rays have the same one at a time. Any thread may call.
 ///
-/// An unfinished path goes on from its rays that are open: what it has gathered and where it has been stand in its path
-/// state, which is not the ring's and is not lost. To begin it again at the camera would trace these rays and all that
-/// came before them, to the same hits, and add to the path's light what it has already.
+/// An unfinished path goes on from its open rays: its light and its throughput stand in the path state, which is not in
+/// the ring and is not lost. To begin it again at the camera would trace all of its rays to the same hits and add their
+/// light twice.
 class OutstandingRays {
  public:
-  /// Before the rays are submitted.
+  /// To be called before the rays are submitted.
   void add(const RayBatch& rays) {
     const std::lock_guard lock(mutex_);
     for (const RayRequest& ray : rays) open_.emplace(key(ray.tag), ray);
   }
-  /// When they have come back and cannot be lost any more.
+  /// To be called when the rays have come back and cannot be lost any more.
   void remove(const HitBatch& done) {
     const std::lock_guard lock(mutex_);
     for (const RayResult& ray : done) open_.erase(key(ray.tag));
   }
-  /// To how many paths, each a (pixel, sample), such rays belong.
+  /// How many paths, each a (pixel, sample), these rays of open() belong to.
   static std::uint64_t paths_of(const RayBatch& open) {
     std::uint64_t paths = 0;
     for (std::size_t i = 0; i < open.size(); ++i) paths += i == 0 || open[i].tag.path != open[i - 1].tag.path;
     return paths;
   }
-  /// What is open, by path, bounce, kind and index.
+  /// The open rays, sorted by path, bounce, kind and index.
   RayBatch open() const {
     const std::lock_guard lock(mutex_);
     RayBatch rays;

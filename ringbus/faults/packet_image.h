@@ -8,11 +8,11 @@
 
 namespace carousel::ringbus {
 
-/// What a packet holds, as a link carries it: everything that changes on its way, in words.
+/// A copy of a packet's contents as a link carries it, in words: everything that changes on its way.
 using PacketImage = std::vector<std::uint64_t>;
 
 PacketImage image_of(const Packet& packet);
-/// The reverse. `image` must be whole, as a checksum has told.
+/// Writes an image back into a packet. The image must be undamaged, as a checksum has told.
 void restore(std::span<const std::uint64_t> image, Packet& packet);
 
 }  // namespace carousel::ringbus

@@ -9,18 +9,18 @@
 
 namespace carousel::ringbus {
 
-/// A resource of the native engine that pauses, or is slower than the others: it decides which of its steps are taken.
-/// While it rests, its port rests too; packets wait in its links.
+/// Makes a resource of the native engine pause, or slower than the others, by deciding which of its steps are taken.
+/// While the resource rests, its port rests too, and packets wait in its links.
 class ResourceFault {
  public:
-  /// That of a resource, if it has one.
+  /// The fault of resource `id`, if it has one.
   static std::optional<ResourceFault> of(const FaultsConfig::Resource& fault, std::int64_t clock_mhz, ResourceId id) {
     using Kind = FaultsConfig::Resource::Kind;
     if ((fault.kind != Kind::kPause && fault.kind != Kind::kSlow) || fault.number != id.value) return std::nullopt;
     return ResourceFault(fault, clock_mhz);
   }
 
-  /// Takes the step unless the resource rests; returns what the step returns.
+  /// Takes the step unless the resource rests. Returns the step's result, or false.
   template <class Step>
   bool step(std::uint64_t rays_completed, const Step& take) {
     using Kind = FaultsConfig::Resource::Kind;
@@ -50,10 +50,11 @@ class ResourceFault {
   std::chrono::nanoseconds pause_;
   std::int64_t factor_;
   bool paused_ = false;
-  Clock::time_point until_{};  // it rests until then
+  Clock::time_point until_{};  // the resource rests until then
 };
 
-/// Under virtual time a slow resource has slow testers, from the beginning.
+/// Slows the testers of resource `id` down if it has that fault: under virtual time a slow resource has slow testers,
+/// from the beginning.
 inline void slow_down(TestersConfig& testers, const FaultsConfig& faults, ResourceId id) {
   const FaultsConfig::Resource& fault = faults.resource;
   if (fault.kind != FaultsConfig::Resource::Kind::kSlow || fault.number != id.value) return;

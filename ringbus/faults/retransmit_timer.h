@@ -6,11 +6,11 @@
 
 namespace carousel::ringbus {
 
-/// For how many turns a sender waits for an acknowledgement before it sends again: twice what one takes on average
-/// (V. Jacobson, Congestion avoidance and control, SIGCOMM 1988), learnt from frames that were sent once only, and
-/// doubled each time it was in vain (P. Karn, C. Partridge, Improving round-trip time estimates, SIGCOMM 1987). Turns
-/// are short where threads have cores, and then there is no need to wait for so much as a clock's tick. Where threads
-/// wait for cores each turn takes a time slice in which the other end will have had its turn, so few of them are
+/// Decides for how many turns a sender waits for an acknowledgement before it sends again: twice as many as one takes
+/// on average (V. Jacobson, Congestion avoidance and control, SIGCOMM 1988), learnt from frames that were sent only
+/// once, and doubled after each wait in vain (P. Karn, C. Partridge, Improving round-trip time estimates, SIGCOMM
+/// 1987). Turns are short where threads have cores, and then waiting for a clock's tick would be too long. Where
+/// threads wait for cores, each turn takes a time slice in which the other end has had its turn, so few of them are
 /// enough.
 class RetransmitTimer {
  public:
@@ -22,21 +22,22 @@ class RetransmitTimer {
     timed_sequence_ = sequence;
     timed_since_ = turn_;
   }
-  /// Something was acknowledged: all before `expected`.
+  /// All frames before `expected` have been acknowledged.
   void heard(std::uint64_t expected) {
     if (timed_ && expected > timed_sequence_) {
       average_ += (static_cast<double>(turn_ - timed_since_) - average_) / 8;
       timed_ = false;
-      factor_ = 1;  // not for less: an answer to what was sent twice does not say how long one takes
+      factor_ = 1;  // only here: the answer to a frame that was sent twice does not tell how long one takes
     }
     quiet_ = 0;
   }
-  /// Frames are sent again, for whatever reason.
+  /// Frames are sent again.
   void went_back() {
     timed_ = false;
     quiet_ = 0;
   }
-  /// A turn in which something is out has passed. Whether it is time to send again. `now` tells the time when asked.
+  /// Counts a turn in which frames are unacknowledged. Returns true when it is time to send again. Calls `now` for the
+  /// time only if it needs it.
   template <class Now>
   bool ends(const Now& now) {
     ++turn_;
@@ -51,17 +52,18 @@ class RetransmitTimer {
   }
 
  private:
-  // A turn may find the other end in the middle of one. Where answers are lost, too, they seem to take ever longer.
+  // At least so many, as a turn may begin in the middle of one of the other end's. At most so many, as answers that are
+  // lost make them seem ever slower.
   static constexpr std::uint64_t kLeast = 4, kMost = 64;
-  // If, after so many turns, the others take longer than this, cores are short.
+  // If the turns after so many take longer than a slice, cores are short.
   static constexpr std::uint64_t kSlow = 1;
   static constexpr std::chrono::microseconds kSlice{500};
 
-  std::uint64_t turn_ = 0, quiet_ = 0;  // quiet: since something was heard, or sent again
+  std::uint64_t turn_ = 0, quiet_ = 0;  // quiet: turns since an answer, or since frames were sent again
   Clock::time_point slow_at_{};
   double average_ = 2;
   std::uint64_t factor_ = 1;
-  bool timed_ = false;  // the frame that is being timed, and since when
+  bool timed_ = false;  // a frame is being timed
   std::uint64_t timed_sequence_ = 0, timed_since_ = 0;
 };
 

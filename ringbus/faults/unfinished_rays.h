@@ -11,7 +11,7 @@
 
 namespace carousel::ringbus {
 
-/// What is missing when a resource has stopped and nothing is to begin again; `open` as OutstandingRays tells it.
+/// The error text for a resource that has stopped when rays are not to begin again; `open` as OutstandingRays::open().
 inline std::string unfinished_rays(ResourceId stopped, const RayBatch& open, std::uint64_t completed) {
   std::string text =
       fmt::format("resource {} stopped and faults.resource.recover is off: {} rays are missing, of paths",

@@ -184,7 +184,7 @@ void NativePort::wait(RayGroup&& group) {
   rounds_.add(group);
 }
 
-/// Sends waiting rays out to look for slots; those that nobody has room for wait on.
+/// Sends waiting rays out to look for slots. Rays for which no resource has room wait on.
 bool NativePort::send_rays_round() {
   bool moved = false;
   rounds_.take_waiting(arrived_);

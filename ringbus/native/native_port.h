@@ -35,7 +35,7 @@ class NativePort {
 
   const Resource& resource() const { return resource_; }
   /// Own packets under way, as of some recent moment. Any thread may call.
-  // Acquire: pairs with the release in packet_returned; whoever sees a packet at home sees what it brought.
+  // Acquire: pairs with the release in packet_returned; a thread that sees a packet at home sees what it brought.
   std::uint32_t packets_out() const { return out_.load(std::memory_order_acquire); }
   /// Nothing is left here: no packet of its own on the way, no egress, no collection, no new ray.
   bool drained() const;

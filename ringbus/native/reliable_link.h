@@ -31,18 +31,18 @@ inline ReliableLinkSettings reliable_link_settings(const LinkConfig& link, const
           std::chrono::nanoseconds(faults.links.delay_cycles * 1000 / clock_mhz)};
 }
 
-/// A link over wires that fail: frames carry sequence numbers and checksums, the receiver takes them in order and says
-/// how far it is, and after silence, or when it hears that the first one out is still missing, the sender goes back to
-/// it (go-back-N; Tanenbaum, Computer Networks, "a protocol using go-back-n"). Above it nothing is lost, doubled or out
-/// of order; a packet holds its place until it is acknowledged.
+/// A link over wires with faults. Frames carry sequence numbers and checksums, and the receiver takes them in order and
+/// acknowledges them. After silence, or when an acknowledgement tells that the first unacknowledged frame is missing,
+/// the sender goes back to it (go-back-N; Tanenbaum, Computer Networks, "a protocol using go-back-n"). Users of the
+/// link see no packet lost, doubled or out of order; a packet holds its place until it is acknowledged.
 ///
-/// A frame is a copy of all that the packet holds, and what comes out of the link is the copy: it is written over the
-/// packet, which nobody else touches between a send and its reception. Any part of a copy may be damaged on the wire.
-/// Time passes in turns, ticks of the sender (RetransmitTimer).
+/// A frame carries a copy of the packet's contents, and the receiver writes the copy over the packet, which nobody else
+/// touches between a send and its reception. Any part of a copy may be damaged on the wire. Time passes in turns, ticks
+/// of the sender (RetransmitTimer).
 template <template <class> class Queue>
 class ReliableLink final : public Link {
  public:
-  /// Packets that are not among `packets` travel by their ID alone, for tests of links without a machine.
+  /// Packets that are not among `packets` travel by their ID alone, which serves tests of links without a machine.
   ReliableLink(const ReliableLinkSettings& settings, std::uint64_t number, ResourceId from, ResourceId to,
                std::span<Packet> packets)
       : Link(from, to),
@@ -67,7 +67,7 @@ class ReliableLink final : public Link {
   bool tick() override {
     const bool moved = take_acks();
     out_.release();
-    if (base_ < sent_ && patience_.ends(RetransmitTimer::Clock::now)) go_back();
+    if (base_ < sent_ && retransmit_.ends(RetransmitTimer::Clock::now)) go_back();
     transmit();
     return moved;
   }
@@ -89,7 +89,8 @@ class ReliableLink final : public Link {
  private:
   static constexpr std::size_t kAcks = 64;
 
-  /// Owns its image, by hand: queues carry what is trivially copyable. Whoever has taken it last drops it.
+  /// Owns its image, but releases it only in drop(), as queues carry trivially copyable values. The thread that took
+  /// the frame last drops it.
   struct LinkFrame {
     std::uint64_t sequence = 0, packet = 0, check = 0;
     PacketImage* image = nullptr;
@@ -108,13 +109,13 @@ class ReliableLink final : public Link {
     Ack copy() const { return *this; }
     void drop() {}
   };
-  /// What is not acknowledged.
+  /// A packet that is not acknowledged.
   struct Sent {
     PacketId packet;
     PacketImage image;
   };
 
-  /// Differs for any two frames that differ within one word, as each step can be undone.
+  /// A checksum. It differs for any two frames that differ within one word, as each step can be undone.
   std::uint64_t check(std::uint64_t sequence, std::uint64_t packet, std::span<const std::uint64_t> image) const {
     std::uint64_t x = number_ * 0x9e3779b97f4a7c15u;
     const auto step = [&x](std::uint64_t word) {
@@ -143,7 +144,7 @@ class ReliableLink final : public Link {
       out_.put({sent_, sent.packet.value, check(sent_, sent.packet.value, sent.image), new PacketImage(sent.image)});
       if (sent_ >= once_sent_) {
         once_sent_ = sent_ + 1;
-        patience_.sent(sent_);
+        retransmit_.sent(sent_);
       }
     }
   }
@@ -156,17 +157,18 @@ class ReliableLink final : public Link {
     Ack ack;
     while (acks_.try_pop(ack)) {
       if (ack.check != check(ack)) continue;
-      // The receiver still waits for the first that is out, though something came: that one was lost. Once for each.
-      if (ack.expected == base_ && base_ < sent_ && asked_for_ != base_) {
-        asked_for_ = base_;
-        patience_.went_back();
+      // The receiver has got a frame and still waits for the first unacknowledged one, so that one was lost. It is sent
+      // again once for this.
+      if (ack.expected == base_ && base_ < sent_ && sent_again_for_ != base_) {
+        sent_again_for_ = base_;
+        retransmit_.went_back();
         go_back();
       }
-      // One behind is old; one beyond what was sent would be damage that the checksum missed.
+      // An acknowledgement from behind is old; one from beyond would be damage that the checksum missed.
       if (ack.expected <= base_ || ack.expected > next_) continue;
       base_ = ack.expected;
       sent_ = std::max(sent_, base_);
-      patience_.heard(base_);
+      retransmit_.heard(base_);
       moved = true;
     }
     return moved;
@@ -182,9 +184,9 @@ class ReliableLink final : public Link {
     });
     return count;
   }
-  /// Reads the wire dry. What comes in its turn is offered to `take`, which may refuse it; what is not taken will come
-  /// again. Whatever came, how far the receiver is goes back: the acknowledgement of something's first coming may have
-  /// been lost, and its place at the sender is free only when it knows.
+  /// Takes all frames off the wire. A packet that comes in its turn is offered to `take`, which may refuse it; a packet
+  /// that is not taken will come again. After any frame an acknowledgement is sent: an earlier one may have been lost,
+  /// and the sender's place is free only when one has come.
   template <class Take>
   void take_frames(const Take& take) {
     bool heard = false;
@@ -211,18 +213,19 @@ class ReliableLink final : public Link {
   std::size_t depth_;
   std::uint64_t number_;
   std::span<Packet> packets_;
-  // The sender's.
-  std::vector<Sent> window_;                      // by sequence number modulo depth
-  std::uint64_t base_ = 0, sent_ = 0, next_ = 0;  // acknowledged up to; on the wire up to; accepted up to
-  std::uint64_t once_sent_ = 0;                   // the first that has never been on the wire
-  RetransmitTimer patience_;
-  std::uint64_t asked_for_ = ~std::uint64_t{0};  // the frame that an acknowledgement last asked for again
+  // Of the sender.
+  std::vector<Sent> window_;  // by sequence number modulo depth
+  std::uint64_t base_ = 0, sent_ = 0,
+                next_ = 0;       // the first frame not acknowledged; not sent; not accepted from the user
+  std::uint64_t once_sent_ = 0;  // the first frame that has never been on the wire
+  RetransmitTimer retransmit_;
+  std::uint64_t sent_again_for_ = ~std::uint64_t{0};  // the frame that was last sent again for an acknowledgement
   std::uint64_t resent_ = 0;
-  // The receiver's.
+  // Of the receiver.
   alignas(128) std::uint64_t expected_ = 0;
   std::uint64_t discarded_ = 0;
-  std::optional<PacketId> held_;  // taken in while nobody wanted it
-  // Between them.
+  std::optional<PacketId> held_;  // taken off the wire by tick_receiver()
+  // Of both.
   alignas(128) Queue<LinkFrame> frames_;
   SpscRing<Ack> acks_;
   alignas(128) FaultyWire<Queue<LinkFrame>, LinkFrame> out_;  // the sender's end

@@ -35,7 +35,7 @@ bool ShaderWorker::shade() {
   count_.emitted.fetch_add(rays_.size(), std::memory_order_relaxed);
   count_.completed.fetch_add(batch->size(), std::memory_order_relaxed);
   // One addition for both: the count cannot pass through zero while rays are about to be submitted. Release:
-  // pairs with the acquire in done(); the shading is finished for whoever sees zero.
+  // pairs with the acquire in done(); a thread that sees zero sees the shading finished.
   count_.outstanding.fetch_add(made - shaded, std::memory_order_release);
   if (ledger_ != nullptr) {
     ledger_->remove(*batch);
@@ -55,7 +55,7 @@ bool ShaderWorker::generate() {
   bool any = false;
   while (left > 0) {
     const std::int64_t wanted = std::min(left, kGenerateBatch);
-    // Counted before they exist, so that nobody sees the source finished with the last rays not yet counted.
+    // Counted before they exist, so that no thread sees the source finished with the last rays not yet counted.
     count_.outstanding.fetch_add(wanted, std::memory_order_relaxed);
     rays_.clear();
     const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(wanted), rays_);

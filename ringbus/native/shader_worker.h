@@ -18,7 +18,7 @@ struct RayCount {
   std::atomic<bool> source_finished{false};
 
   bool done() const {
-    // Acquire: pairs with the release in ShaderWorker::generate; whoever sees the end of the source also sees
+    // Acquire: pairs with the release in ShaderWorker::generate; a thread that sees the end of the source also sees
     // the count of the last rays that came out of it.
     return source_finished.load(std::memory_order_acquire) && outstanding.load(std::memory_order_acquire) == 0;
   }

@@ -17,14 +17,14 @@ namespace carousel::ringbus {
 enum class EventKind : std::uint8_t {
   kAdmit,     ///< `rays` new rays got slots
   kIssue,     ///< a packet left the collections of its owner with `rays` members
-  kTest,      ///< a packet's `rays` local members were tested; `tests` is what it cost. 0 rays: a bubble
+  kTest,      ///< a packet's `rays` local members were tested; `tests` is their cost. 0 rays: an idle visit
   kHop,       ///< a packet was sent on to a neighbour
   kRetire,    ///< a packet is back at its owner; `rays` memberships joined collections
   kComplete,  ///< `rays` rays were handed over to shading
-  kStall,     ///< something could not proceed, and why
+  kStall,     ///< something could not proceed; `reason` says why
 };
 
-/// One thing that happened at a resource. The times are the engine's affair.
+/// One thing that happened at a resource. Its time is known to the engine.
 struct Event {
   EventKind kind;
   ResourceId resource;
@@ -39,13 +39,13 @@ struct Event {
   std::span<const PacketMember> members{};  ///< valid during the call only
 };
 
-/// Where events go; each resource has its own sink, called from the resource's thread. A resource without one
-/// spends a predicted branch an event.
+/// Receives the events of one resource, on that resource's thread. A resource without a sink spends a predicted branch
+/// on each event.
 class EventSink {
  public:
   virtual ~EventSink() = default;
   virtual void record(const Event& event) = 0;
-  /// Where tests add what cull planes did; null: nowhere.
+  /// Counters that tests add to when cull planes reject something; may be null.
   virtual CullCounts* cull_counts() { return nullptr; }
 };
 

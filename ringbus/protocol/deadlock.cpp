@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "ringbus/resource/resource.h"
+#include "ringbus/resource/storage_rule.h"
+#include "ringbus/resource/traversal/make_traversal.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
@@ -13,7 +14,7 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
 
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
   if (config.collections.when_full == WhenFull::kSpill || !Topology(config.topology).has_packets()) return 0;
-  if (config.collections.traversal == Traversal::kOrdered) return config.packets.rays;
+  if (one_collection_a_ray(config.collections.traversal)) return config.packets.rays;
   const std::int64_t reserve = reserve_blocks(config.collections, config.bundles, width, max_depth);
   const std::int64_t children = width * std::max<std::int64_t>(1, config.bundles.size);
   return 2 * (reserve + children + 1) * config.packets.rays;
@@ -22,7 +23,7 @@ std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
 std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel& accel) {
   const std::int64_t needed = minimum_capacity(config, accel.width, accel.max_depth);
   if (config.collections.capacity >= needed) return {};
-  const bool ordered = config.collections.traversal == Traversal::kOrdered;
+  const bool ordered = one_collection_a_ray(config.collections.traversal);
   ConfigIssue issue;
   issue.key_path = "collections.capacity";
   issue.message = fmt::format(

@@ -29,7 +29,7 @@ class FlowRules {
   /// applies, is kept. `free_places()` counts those of the next queue.
   template <class FreePlaces>
   bool may_inject(bool has_place, const FreePlaces& free_places) const {
-    return has_place && (!bubble() || free_places() >= 2);
+    return has_place && (!bubble() || free_places() >= places_to_inject());
   }
   /// Packets that may stand in an egress queue when another one is injected behind them. On a ring packets on their way
   /// go first; sent directly, all packets there are have room; without flow control it is up to `batch`.

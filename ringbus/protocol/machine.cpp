@@ -2,6 +2,7 @@
 
 #include "ringbus/protocol/packet_pool.h"
 #include "ringbus/resource/resource.h"
+#include "ringbus/resource/traversal/make_traversal.h"
 
 namespace carousel::ringbus {
 
@@ -27,7 +28,7 @@ Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
       packets_per_direction(stays && topology.has_packets() ? local_packets.value_or(topology.packets_in_flight())
                                                             : topology.packets_in_flight()),
       packets(make_packets(topology, packets_per_direction, static_cast<std::size_t>(config.packets.rays),
-                           config.collections.traversal == Traversal::kOrdered)),
+                           one_collection_a_ray(config.collections.traversal))),
       stores(make_ray_stores(config.topology.resources, config.rays.slots_per_resource, config.bundles)),
       control(control_settings(config, accel, scene_size, topology), stores) {}
 

@@ -15,8 +15,8 @@
 namespace carousel::ringbus {
 
 /// The parts of a machine that its resources share, whatever engine runs it: the structure, the network, the packets,
-/// which belong to whoever holds their ID, and the ray records, which belong to their owners. What only one engine
-/// needs (links, channels, simulated memory) stands beside it in that engine.
+/// each of which belongs to the holder of its ID, and the ray records, which belong to their owners. Parts that only
+/// one engine needs (links, channels, simulated memory) stand beside it in that engine.
 struct Machine {
   /// Keeps a reference to `accel`. `local_packets`: how many packets a resource needs in each direction where packets
   /// never travel; absent: as many as it may have under way elsewhere.

@@ -5,6 +5,7 @@
 #include "core/types/workload.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/ray_store.h"
+#include "ringbus/resource/traversal/make_traversal.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
@@ -13,7 +14,7 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   const auto u = [](std::int64_t x) { return static_cast<std::uint64_t>(x); };
   const std::uint64_t resources = u(config.topology.resources), slots = u(config.rays.slots_per_resource);
   const std::uint64_t packet_rays = u(config.packets.rays);
-  const bool ordered = config.collections.traversal == Traversal::kOrdered;
+  const bool ordered = one_collection_a_ray(config.collections.traversal);
   const std::uint64_t next = ordered ? sizeof(NextNode) : 0;
   MemoryEstimate e;
   e.ray_store = resources * slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));

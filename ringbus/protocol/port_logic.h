@@ -12,7 +12,7 @@
 
 namespace carousel::ringbus {
 
-/// What becomes of a packet that has arrived at a resource.
+/// The decision about a packet that has arrived at a resource.
 enum class PacketFate : std::uint8_t {
   kRetire,     ///< it is back at its owner, which takes in what it brings
   kDiscard,    ///< it is back at its owner, which has no use for it any more
@@ -86,9 +86,9 @@ class PortLogic {
   bool all_home() const { return free.count() == machine_.topology.directions() * machine_.packets_per_direction; }
   /// It holds no collection and no new ray, and waits for no packet.
   bool at_rest() const { return resource_.idle() && resource_.packets_in_flight() == 0 && admission.empty(); }
-  /// What it holds and waits for, in one line.
+  /// Describes in one line the work it holds and waits for.
   std::string describe() const;
-  /// The packet, its owner and its first ray.
+  /// Names a packet, its owner and its first ray.
   std::string describe(PacketId id) const;
 
   FreePackets free;

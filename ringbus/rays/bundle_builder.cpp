@@ -56,8 +56,8 @@ bool BundleBuilder::may_join(const RayRequest& request, const Open& open) const 
   return !config_.builder.same_origin || request.ray.origin == open.bounds.origin_min;
 }
 
-// Distances between origins are measured by the scene, directions by the longest of them: the bundle test sees ranges
-// of components, and so directions of other lengths are as unlike as others.
+// The scale of origins is the scene's size, that of directions the longest of them. The bundle test sees ranges of
+// components, so directions of different lengths are dissimilar even if they are parallel.
 double BundleBuilder::size_of(const Bounds& b) const {
   using Similarity = BundlesConfig::Builder::Similarity;
   const double origins = scene_size_ > 0 ? largest(DVec3(b.origin_max) - DVec3(b.origin_min)) / scene_size_ : 0;
@@ -65,7 +65,7 @@ double BundleBuilder::size_of(const Bounds& b) const {
   switch (config_.builder.similarity) {
     case Similarity::kGrowth:
       return std::max(origins, largest(range));
-    case Similarity::kSolidAngle: {  // how large the box of directions looks from where they start
+    case Similarity::kSolidAngle: {  // of the box of directions, seen from the origin
       const DVec3 along = glm::abs(0.5 * (least + most)) / b.longest;
       return along.x * range.y * range.z + along.y * range.z * range.x + along.z * range.x * range.y;
     }
@@ -77,7 +77,7 @@ double BundleBuilder::size_of(const Bounds& b) const {
   return 0;
 }
 
-// What has no size yet has no percentage either: there the size itself counts.
+// A bundle without a size has no percentage to grow by: there the size itself counts.
 double BundleBuilder::dissimilarity(double before, double after) const {
   const bool percent = config_.builder.measure == BundlesConfig::Builder::Measure::kPercent;
   return percent && before > 0 ? (after - before) / before : after;
@@ -97,7 +97,7 @@ void BundleBuilder::send(std::size_t place, Groups& out) {
 
 void BundleBuilder::open(std::uint32_t index, const RayRequest& request, Groups& out) {
   if (oldest_first_.size() == static_cast<std::size_t>(config_.builder.open)) {
-    // The fullest has least to gain from waiting; of those the oldest.
+    // The fullest has least to gain from waiting. Of several the oldest goes.
     const auto fuller = [&](std::uint32_t a, std::uint32_t b) { return open_[a].count < open_[b].count; };
     const auto fullest = std::max_element(oldest_first_.begin(), oldest_first_.end(), fuller);
     send(static_cast<std::size_t>(fullest - oldest_first_.begin()), out);

@@ -15,20 +15,20 @@ namespace carousel::ringbus {
 /// the call. Deterministic.
 class BundleBuilder {
  public:
-  /// `scene_size` is what distances between origins are measured by.
+  /// `scene_size` is the scale of distances between origins.
   BundleBuilder(const BundlesConfig& config, float scene_size);
 
   /// Cuts `rays` into groups: writes the indices of `rays` group by group into `order`, and each group's length into
-  /// `sizes`. Every ray is in exactly one group; groups of one are rays on their own: those of other sources than
-  /// configured, with tmin other than 0 or not valid, and those that found fewer than `min_rays` - 1 others. Nothing
-  /// stays open between calls.
+  /// `sizes`. Every ray is in exactly one group. A ray is alone in its group if it comes from another source than
+  /// configured, is not valid, has a tmin other than 0, or found fewer than `min_rays` - 1 others. Nothing stays open
+  /// between calls.
   void group(std::span<const RayRequest> rays, std::vector<std::uint32_t>& order, std::vector<std::uint8_t>& sizes);
 
  private:
-  /// What similarity is computed from.
+  /// The ranges that similarity is computed from.
   struct Bounds {
     Vec3 origin_min, origin_max, direction_min, direction_max;
-    double longest;  ///< direction; the others are measured by it
+    double longest;  ///< length of a direction; the scale of the others
 
     explicit Bounds(const Ray& ray);
     void extend(const Bounds& other);
@@ -37,9 +37,9 @@ class BundleBuilder {
   struct Open {
     Bounds bounds;
     double size;           ///< of the bounds
-    std::uint64_t opened;  ///< how many rays had been looked at
+    std::uint64_t opened;  ///< looked_at_ when it was opened
     RayKind kind;
-    std::uint32_t signs;  ///< of its directions with same_signs
+    std::uint32_t signs;  ///< of the components of its directions
     std::size_t count;
     std::array<std::uint32_t, kMostRays> rays;
   };
@@ -54,7 +54,7 @@ class BundleBuilder {
   double dissimilarity(double before, double after) const;
   void take(std::uint32_t index, const RayRequest& request, Groups& out);
   void open(std::uint32_t index, const RayRequest& request, Groups& out);
-  /// The bundle at `place` of oldest_first_ goes.
+  /// Sends on the bundle at `place` of oldest_first_.
   void send(std::size_t place, Groups& out);
 
   BundlesConfig config_;

@@ -23,7 +23,7 @@ RayControl::RayControl(const RayControlSettings& settings, std::span<const std::
       inboxes_(std::make_unique<Inbox[]>(stores.size())) {
   free_all();
   const std::size_t total = free_slots();
-  // Groups are placed whole where possible; waiting for more than a quarter of the slots would idle the ring.
+  // Groups are placed whole where possible, but waiting for more than a quarter of the slots would idle the ring.
   if (settings.bundles.size > 0) builder_.emplace(settings.bundles, settings.scene_size);
   enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_ : total) / 4);
 }
@@ -109,7 +109,7 @@ void RayControl::free(ResourceId resource, std::span<const std::uint32_t> slots)
 std::size_t RayControl::place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids) {
   std::size_t placed = 0;
   if (placement_ == Placement::kRoundRobin) {
-    // One ray a resource in turn; those that are full are passed over.
+    // One ray a resource in turn, except for full resources.
     for (std::uint32_t refused = 0; placed < rays.size() && refused < resources_;) {
       const bool took = load_some(next_resource(), rays.subspan(placed, 1), ids) == 1;
       refused = took ? 0 : refused + 1;
@@ -117,7 +117,7 @@ std::size_t RayControl::place_spread(std::span<const RayRequest> rays, std::vect
     }
     return placed;
   }
-  // Balanced: equal shares, each a run of neighbouring rays; what full resources cannot take goes to the others.
+  // Balanced: equal shares, each a run of neighbouring rays. The others take what full resources cannot.
   for (int pass = 0; pass < 2 && placed < rays.size(); ++pass) {
     for (std::uint32_t i = 0; i < resources_ && placed < rays.size(); ++i) {
       const std::size_t left = resources_ - i;
@@ -157,7 +157,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
       const std::size_t room = local_ ? free_slots(issuer) : free_slots();
       if (room < std::min(next.size(), enough_slots_)) {
         slot_waits_.fetch_add(1, std::memory_order_relaxed);
-        // Taking turns, the next resource may have room.
+        // If resources take turns, the next one may have room.
         if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= enough_slots_) continue;
         break;
       }
@@ -181,7 +181,7 @@ void RayControl::submit(const RayBatch& rays) {
 }
 
 bool RayControl::place_waiting() {
-  // Relaxed: a hint; shader workers ask again and again.
+  // Relaxed: only a hint; shader workers call again and again.
   if (!any_waiting_.load(std::memory_order_relaxed)) return false;
   const std::lock_guard lock(waiting_mutex_);
   return place_all_waiting();

@@ -28,43 +28,45 @@ struct RayControlSettings {
 
 RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size);
 
-/// New rays on their way to a resource's root collection: IDs once they have slots, or the rays themselves when
-/// they are to look for slots on their way round the ring.
+/// New rays for a resource's root collection: IDs if they have slots, or the rays themselves if they look for slots on
+/// their way round the ring.
 struct RayGroup {
   std::vector<RayId> ids;
   RayBatch rays;
   std::vector<ResourceId> addresses;  ///< addressed placement: one a ray; otherwise empty
 };
 
-/// Gives new rays a slot and an ID, in slots that completed rays freed. The rays of one group (as many as a
-/// packet carries) are spread over the resources, so that every packet finds work everywhere, and the group's
-/// IDs go to one resource, which issues it from its root collection; with `home: local` and
-/// independent resources a whole group lives where it is issued. With bundles each of them has one owner, and a group
-/// as many bundles and single rays as a packet carries IDs. With first_taker and addressed placement the rays travel
-/// instead, and resources ask for slots as packets pass. Any thread may call.
+/// Gives new rays slots and IDs, in slots that completed rays freed.
+///
+/// A group is as many rays as a packet carries. Its rays are spread over the resources, so that every packet finds work
+/// everywhere, and its IDs go to one resource, which issues them from its root collection. With `home: local` and with
+/// independent resources a whole group lives where it is issued. With bundles a group is as many bundles and single
+/// rays as a packet carries IDs, and each bundle has one owner. With first_taker and addressed placement the rays
+/// travel instead, and resources ask for slots as packets pass. Any thread may call.
 class RayControl {
  public:
   /// `stores` by resource.
   RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores);
 
-  /// From now on `resource` gets no rays. Before the first submit(), or after discard().
+  /// From now on `resource` gets no rays. To be called before the first submit(), or after discard().
   void exclude(ResourceId resource);
-  /// Takes back all slots and forgets all rays. When nobody holds an ID any more, and nobody else calls.
+  /// Takes back all slots and forgets all rays. Needs that no ID is in use and no other thread calls.
   void discard();
-  /// Places a batch, behind those that still wait for slots.
+  /// Places a batch, behind the rays that still wait for slots.
   void submit(const RayBatch& rays);
-  /// Places waiting rays as far as slots allow. Returns whether any was placed.
+  /// Places waiting rays as far as slots allow. Returns true if it placed any.
   bool place_waiting();
-  /// Takes the groups for `resource`, oldest first, into `out` (appended).
+  /// Moves the groups for `resource` to the end of `out`, oldest first.
   void collect(ResourceId resource, std::vector<RayGroup>& out);
 
-  /// A slot of `resource` for a ray that has travelled there; nothing when it has none.
+  /// Puts a ray that has travelled to `resource` into a slot there; empty when none is free.
   std::optional<RayId> load(ResourceId resource, const RayRequest& request);
-  /// Gives back slots that completed rays, and the bundles they were in, no longer need.
+  /// Gives back the slots of completed rays and of dissolved bundles.
   void free(ResourceId resource, std::span<const std::uint32_t> slots);
 
   bool rays_travel() const { return rays_travel_; }
-  /// Relaxed: an estimate unless nothing runs.
+  /// An estimate while other threads run.
+  // Relaxed: the slots themselves are taken under the lock.
   std::size_t free_slots(ResourceId resource) const {
     return slots_[resource.value].count.load(std::memory_order_relaxed);
   }
@@ -112,11 +114,11 @@ class RayControl {
   std::unique_ptr<Inbox[]> inboxes_;
   std::atomic<std::uint64_t> slot_waits_{0}, slots_used_{0};
 
-  std::mutex waiting_mutex_;  // guards what follows
+  std::mutex waiting_mutex_;  // guards the members below
   RayBatch waiting_;          // oldest at waiting_head_
   std::size_t waiting_head_ = 0;
   std::optional<BundleBuilder> builder_;
-  std::vector<std::uint8_t> waiting_bundles_;  // rays of each bundle, single rays among them, oldest at its head
+  std::vector<std::uint8_t> waiting_bundles_;  // the number of rays of each bundle; 1 for a single ray
   std::size_t waiting_bundles_head_ = 0;
   std::vector<std::uint32_t> order_, members_;  // scratch
   std::vector<std::uint8_t> sizes_;             // scratch

@@ -1,4 +1,4 @@
-// The bundle builder's place: between shading and the slots (US 11308683, fig. 8).
+// Ray control with bundles: the builder stands between shading and the slots (US 11308683, fig. 8).
 #include <algorithm>
 #include <stdexcept>
 
@@ -6,7 +6,7 @@
 
 namespace carousel::ringbus {
 
-// Bundles are made once, of the rays of one batch; those that find no slots wait as they are.
+// Bundles are made once, of the rays of one batch. Bundles that find no slots wait as they are.
 void RayControl::submit_bundles(const RayBatch& rays) {
   order_.clear();
   sizes_.clear();
@@ -28,7 +28,7 @@ std::size_t RayControl::load_bundle(ResourceId resource, std::span<const RayRequ
   members_.clear();
   for (std::size_t i = first; i < ids.size(); ++i) {
     members_.push_back(store.layout().slot(ids[i]));
-    store.record(members_.back()).pending = 1;  // held for the bundle, until it dissolves
+    store.record(members_.back()).pending = 1;  // the bundle's, until it dissolves
   }
   ids.resize(first);
   ids.push_back(store.make_bundle(list.free_bundles.back(), members_, static_cast<std::int16_t>(initial_tests_)));
@@ -36,12 +36,12 @@ std::size_t RayControl::load_bundle(ResourceId resource, std::span<const RayRequ
   return rays.size();
 }
 
-/// Places whole bundles from the front of what waits; returns how many rays were placed.
+/// Places whole bundles from the front of the waiting ones; returns how many rays were placed.
 std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
   std::size_t done = 0, bundle = waiting_bundles_head_;
   bool room = true;
   while (room && bundle < waiting_bundles_.size()) {
-    // As with single rays, a group waits until it finds room whole, or as much as is worth starting with.
+    // As with single rays, a group waits for room for all of it, or for as much as is worth starting with.
     std::size_t wanted = 0;
     for (std::size_t i = bundle; i < std::min(bundle + group_rays_, waiting_bundles_.size()); ++i)
       wanted += waiting_bundles_[i];

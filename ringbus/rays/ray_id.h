@@ -30,7 +30,7 @@ class Generation<false> {
   void set(std::uint32_t) {}
 };
 
-/// Names a ray by where it lives. The split of the bits into owner and slot is RayIdLayout's.
+/// Names a ray by its owner and slot. RayIdLayout splits the bits.
 struct RayId {
   std::uint32_t bits = 0;
   [[no_unique_address]] Generation<kChecked> generation;

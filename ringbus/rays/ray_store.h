@@ -17,16 +17,16 @@
 
 namespace carousel::ringbus {
 
-/// Room for bundles beside the rays: records that ray control hands out with new rays, and records of the owner's
-/// own for what it makes of the rays of split bundles.
+/// Room for bundles beside the rays: records that ray control hands out with new rays, and records that the owner keeps
+/// for the bundles that it makes of the rays of split ones.
 struct BundleRoom {
   std::uint32_t loaded = 0, own = 0;
-  std::uint32_t rays = 0;  ///< of a bundle at most
+  std::uint32_t rays = 0;  ///< that a bundle has at most
 };
 
-/// A resource's ray data: records in slots. Ray control hands out the slots and fills in the records of new
-/// rays; from then on until the slot is freed a record is touched by its owner's thread only. Records of bundles have
-/// the slots behind those of the rays, and IDs of the same kind.
+/// A resource's ray data: records in slots. Ray control hands out the slots and fills in the records of new rays. From
+/// then on until the slot is freed only the owner's thread touches the record. Records of bundles have the slots behind
+/// the rays' slots, and IDs of the same kind.
 class RayStore {
  public:
   RayStore(ResourceId owner, std::uint32_t slots, BundleRoom room = {})
@@ -47,8 +47,8 @@ class RayStore {
     if constexpr (kChecked) id.generation.set(++generations_[slot]);
     return id;
   }
-  /// Makes a bundle in a free slot of one, of rays in `ray_slots` (of this store), waiting for `tests` tests. Adds to
-  /// none of their counts.
+  /// Makes a bundle, waiting for `tests` tests, of the rays in `ray_slots`; `slot` is a free one for bundles. Changes
+  /// no ray's count.
   RayId make_bundle(std::uint32_t slot, std::span<const std::uint32_t> ray_slots, std::int16_t tests) {
     accel::BundleRecord& bundle = this->bundle(slot) = accel::BundleRecord();
     bundle.rays = (slot - slots()) * room_.rays;
@@ -90,15 +90,15 @@ class RayStore {
     return std::span(bundle_rays_).subspan(bundle.rays, bundle.count);
   }
   const BundleRoom& room() const { return room_; }
-  /// Brings a record near that is about to be written.
+  /// Fetches a record that is about to be written into the cache.
   void prefetch(std::uint32_t slot) const { __builtin_prefetch(&records_[slot], 1); }
-  /// Marks a slot as free: its IDs are stale from now on. Handing it out again is ray control's affair.
+  /// Marks a slot as free: its IDs are stale from now on. Ray control hands it out again.
   void retire(std::uint32_t slot) {
     if constexpr (kChecked) ++generations_[slot];
   }
   /// Marks every slot as free.
   void discard() {
-    // Two on, so that IDs of slots in use are stale and a count that is odd for a slot in use is even again.
+    // IDs of slots in use become stale, and all counts even, as they are for free slots.
     if constexpr (kChecked)
       for (std::uint32_t& generation : generations_) generation = (generation + 3) & ~1u;
   }
@@ -131,7 +131,8 @@ class RayStore {
   std::vector<std::uint32_t> generations_;  // odd while in use; checked builds only
 };
 
-/// Bundles have two rays or more; where a quarter of the slots is not enough, rays go on their own.
+/// Room for a quarter as many bundles as slots, as a bundle has at least two rays and rarely so few. Where it is not
+/// enough, rays stay single.
 inline BundleRoom bundle_room(const BundlesConfig& bundles, std::int64_t slots) {
   if (bundles.size == 0) return {};
   const std::uint32_t quarter = static_cast<std::uint32_t>(slots / 4 + 1);

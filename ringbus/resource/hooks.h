@@ -1,19 +1,10 @@
 #pragma once
 
-#include "accel/structure/node.h"
-#include "accel/traverse/kernels.h"
-#include "core/statistics/intersection_counts.h"
 #include "ringbus/packets/events.h"
-#include "ringbus/resource/transform_account.h"
+#include "ringbus/resource/visit/subtree_tracer.h"
+#include "ringbus/resource/visit/transform_account.h"
 
 namespace carousel::ringbus {
-
-/// Takes rays through a whole subtree, for an engine that keeps an account of it. Without one the kernels do.
-class SubtreeTracer {
- public:
-  virtual ~SubtreeTracer() = default;
-  virtual void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) = 0;
-};
 
 /// An engine's own parts that a resource calls. Nothing is owned, and each pointer may be null.
 struct ResourceHooks {

@@ -8,12 +8,13 @@
 #include "core/numeric/latency_histogram.h"
 #include "core/statistics/cache_counts.h"
 #include "core/statistics/ray_bytes.h"
+#include "core/types/unit_kind.h"
 #include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
 
-/// What the testers of a resource did, cycle by cycle: the states add up to the run's length.
+/// The state of a resource in one cycle; the times in all states add up to the run.
 enum class TileState : std::uint8_t {
   kIdle,     ///< nothing to test: no rays, or collections that wait to fill
   kTesting,  ///< a packet is in test
@@ -34,17 +35,17 @@ struct Utilisation {
 
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
-  Utilisation box, triangle, plane, bundle, transform, ray_reads, procedural,
-      any_hit;  ///< busy within TileState::kTesting
+  PerUnit<Utilisation> units;               ///< busy within TileState::kTesting
+  Utilisation ray_reads;                    ///< the port of the ray store, likewise
   Utilisation dispatch;
   StackTraffic stack;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
-  LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they are home
-  Cycle packet_cycles = 0;               ///< its packets under way, summed over the cycles
+  LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they retire
+  Cycle packet_cycles = 0;               ///< packets of its own in flight, summed over the cycles
   friend bool operator==(const TileResult&, const TileResult&) = default;
 };
 
-/// What stood in the queue at the far end of a link.
+/// Occupancy of the queue at the far end of a link.
 struct Occupancy {
   Cycle packet_cycles = 0;  ///< packets times the cycles they waited
   std::uint64_t most = 0;   ///< packets at once
@@ -58,8 +59,8 @@ struct LinkUse {
   friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
-/// A resource stopped for good: when it did, when ray control gave it up, and when everything had been drained and rays
-/// began again (0 when all had come back meanwhile).
+/// A resource stopped for good: the cycle in which it stopped, in which ray control excluded it, and in which all
+/// packets had been drained and rays were restarted (0 when none was unfinished).
 struct StopTimes {
   std::uint32_t resource = 0;
   Cycle stopped = 0, noticed = 0, restarted = 0;
@@ -78,7 +79,7 @@ struct CycleResult {
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
-  std::optional<StopTimes> stop;  ///< if one was given up before the last ray was shaded
+  std::optional<StopTimes> stop;  ///< if one was excluded before the last ray was shaded
   EpochDigests epochs;
   std::vector<Step> steps;  ///< of RunOptions::trace
   friend bool operator==(const CycleResult&, const CycleResult&) = default;

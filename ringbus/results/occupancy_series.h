@@ -8,8 +8,9 @@
 
 namespace carousel::ringbus {
 
-/// How full a queue was in the course of a run: means over equal numbers of samples, at most kMost of them. When there
-/// are too many, neighbours are joined, so a long run costs no more than a short one; the clock is read once an entry.
+/// The occupancy of a queue in the course of a run: means over equal numbers of samples, at most kMost of them. When
+/// there are too many, neighbours are joined, so a long run costs no more than a short one. The clock is read once an
+/// entry.
 class OccupancySeries {
  public:
   using Clock = std::chrono::steady_clock;
@@ -23,7 +24,7 @@ class OccupancySeries {
     open_.most = std::max(open_.most, occupancy);
     if (++open_.samples == each_) close();
   }
-  /// What has been closed, oldest first.
+  /// The complete entries, oldest first.
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:

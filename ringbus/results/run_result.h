@@ -19,11 +19,11 @@ namespace carousel::ringbus {
 
 struct RunOptions {
   std::size_t threads = 1;
-  bool statistics = true;                        ///< false: no sinks at all
-  bool link_statistics = true;                   ///< native, besides `statistics`: what passes the links is counted
+  bool statistics = true;                        ///< false: nothing is counted at the resources
+  bool link_statistics = true;                   ///< native: counts at the links too
   std::stop_token stop;                          ///< ends the run early; it is then incomplete
-  std::chrono::milliseconds stuck_after{10000};  ///< native: no progress for so long is a SimulationError
-  cycle::TraceWindow trace{};                    ///< cycle: keep every step of these cycles
+  std::chrono::milliseconds stuck_after{10000};  ///< native: a SimulationError after no progress for so long
+  cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
   std::function<void(std::uint64_t completed)> progress;
 };
@@ -39,14 +39,14 @@ struct LinkResult {
 struct RunResult {
   bool complete = true;  ///< false: stopped early
   std::uint64_t rays_emitted = 0, rays_completed = 0;
-  std::uint64_t rays_restarted = 0;     ///< started again because a resource stopped
-  std::uint64_t paths_restarted = 0;    ///< the unfinished (pixel, sample) they belong to
-  std::uint64_t packets_discarded = 0;  ///< with them: under way when it was found out
-  double recovery_seconds = 0;          ///< native: from its last sign of life until they began again
+  std::uint64_t rays_restarted = 0;     ///< restarted because a resource stopped
+  std::uint64_t paths_restarted = 0;    ///< the (pixel, sample)s of these rays
+  std::uint64_t packets_discarded = 0;  ///< in flight when the resource was excluded
+  double recovery_seconds = 0;          ///< native: from the resource's last sign of life until the restart
   double wall_seconds = 0;
-  std::size_t threads = 1;                        ///< that were used
-  std::chrono::steady_clock::time_point start{};  ///< native: what the links' series count from
-  std::uint64_t slots_used = 0;                   ///< times a slot was handed out; beyond the slots: reuse
+  std::size_t threads = 1;                        ///< threads used
+  std::chrono::steady_clock::time_point start{};  ///< native: the origin of the links' series
+  std::uint64_t slots_used = 0;                   ///< times a slot was assigned
   std::uint64_t slot_waits = 0;                   ///< times new rays had to wait for free slots
   std::vector<ResourceStatistics> resources;      ///< empty without statistics
   std::vector<CollectionStore::Statistics> collections;

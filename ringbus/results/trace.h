@@ -8,14 +8,14 @@
 
 namespace carousel::ringbus::cycle {
 
-/// What two runs are compared by, step by step.
+/// A kind of step, by which two runs are compared.
 enum class StepKind : std::uint8_t {
   kNewRays,    ///< rays joined the root's collection
   kIssue,      ///< a packet left the issue queue
-  kTake,       ///< a packet came in and was looked through
+  kTake,       ///< a packet came in and its IDs were looked through
   kTested,     ///< a packet's tests were done
-  kTestedRay,  ///< those of a single ray were, where there are no packets
-  kRetire,     ///< a packet came home
+  kTestedRay,  ///< the tests of a single ray were done, where there are no packets
+  kRetire,     ///< a packet retired at its owner
   kComplete,   ///< rays were handed over to shading
   kShade,      ///< rays were shaded
   kPlace,      ///< rays were given slots
@@ -25,18 +25,18 @@ struct Step {
   Cycle at = 0;
   std::uint32_t node = 0;  ///< resource; beyond them ray control and shading
   StepKind kind = StepKind::kNewRays;
-  std::uint32_t packet = 0;  ///< its ID, where there is one; or the ray's slot
+  std::uint32_t packet = 0;  ///< the packet's ID, or the slot of a single ray
   std::uint32_t rays = 0;
   friend bool operator==(const Step&, const Step&) = default;
 };
 std::string step_text(const Step& step);
 
-/// Cycles whose steps are to be kept.
+/// The cycles whose steps are kept.
 struct TraceWindow {
   Cycle first = kNever, end = kNever;
 };
 
-/// One agent's steps: a digest an epoch, and those of a window in full.
+/// The steps of one agent: a digest for each epoch, and every step of a window.
 class Trace {
  public:
   static constexpr Cycle kEpoch = 4096;
@@ -64,19 +64,19 @@ class Trace {
   std::vector<Step> steps_;
 };
 
-/// A run's digests, one a stretch of equal length; at most kMaxEpochs of them.
+/// The digests of a run, one for each stretch of equal length; at most kMaxEpochs of them.
 struct EpochDigests {
   static constexpr std::size_t kMaxEpochs = 256;
   Cycle cycles_each = Trace::kEpoch;
   std::vector<std::uint64_t> digests;
   friend bool operator==(const EpochDigests&, const EpochDigests&) = default;
 
-  /// Half as many, twice as long.
+  /// Makes them half as many and twice as long.
   void halve();
 };
 EpochDigests combine(const std::vector<const Trace*>& traces);
 
-/// The steps of all, in order of time, then node, then as they were done.
+/// The steps of all agents in order of time, then node, then as they were done.
 std::vector<Step> merge_steps(const std::vector<const Trace*>& traces);
 
 }  // namespace carousel::ringbus::cycle

@@ -5,16 +5,16 @@
 
 namespace carousel::ringbus::stress {
 
-/// What a refused caller does before it insists. The two sides may share a core: after a moment's hope it yields, and
-/// after many refusals it sleeps.
+/// Makes a refused caller wait before it calls again. As the two sides may share a core, it spins only a few times,
+/// then yields, and sleeps after many refusals.
 class Backoff {
  public:
   void wait() {
-    if (++refusals_ <= kHope) {
+    if (++refusals_ <= kSpins) {
 #if defined(__x86_64__)
       __builtin_ia32_pause();
 #endif
-    } else if (refusals_ < kPatience) {
+    } else if (refusals_ < kYields) {
       std::this_thread::yield();
     } else {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
@@ -25,7 +25,7 @@ class Backoff {
   }
 
  private:
-  static constexpr int kHope = 16, kPatience = 2048;
+  static constexpr int kSpins = 16, kYields = 2048;
   int refusals_ = 0;
 };
 

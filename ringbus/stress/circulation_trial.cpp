@@ -12,10 +12,10 @@ namespace carousel::ringbus::stress {
 namespace {
 
 constexpr std::size_t kNodes = 4;
-constexpr std::size_t kTaken = 8;  // at most, from a link at once
+constexpr std::size_t kTaken = 8;  // messages taken from a link at once, at most
 
-/// A ring as the native engine's: each node takes in what comes, passes on what is not its own, and sends messages of
-/// its own, at most `capacity` of them out at once, which leaves a place free on the ring.
+/// A ring like the native engine's. Each node receives messages, passes on those of other nodes, and sends its own, of
+/// which at most `capacity` are out at once, so that a place on the ring stays free.
 template <std::size_t kBytes>
 class Ring final : public WorkerGroup {
  public:
@@ -74,7 +74,7 @@ class Ring final : public WorkerGroup {
     std::uint64_t sent = 0, home = 0;
     bool finished = false;
     std::deque<Message<kBytes>> egress;
-    std::vector<std::int64_t> sent_at;  // of those out, by number modulo capacity
+    std::vector<std::int64_t> sent_at;  // of the messages that are out, by number modulo capacity
     DeliveryChecker arrivals{0, 0};
     LatencyHistogram round_trips;
     std::uint64_t push_calls = 0, push_refusals = 0, pop_calls = 0, pop_refusals = 0;
@@ -137,7 +137,7 @@ class Ring final : public WorkerGroup {
   std::deque<Node> nodes_;
   std::vector<std::unique_ptr<AnyQueue<Message<kBytes>>>> links_;  // from node n to the next
   std::int64_t begin_ = 0, finish_ = 0;
-  std::atomic<std::size_t> home_{0};  // nodes whose messages are all back
+  std::atomic<std::size_t> home_{0};  // nodes that have all of their messages back
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ DeliveryChecker::DeliveryChecker(std::size_t producers, std::uint64_t most) : mo
   for (From& from : from_) from.seen.resize(most / 64 + 1);
 }
 
-void DeliveryChecker::tear() {
+void DeliveryChecker::corrupted() {
   ++violations_.corrupted;
   if (violations_.detail.empty()) violations_.detail = fmt::format("arrival {} is not what anybody sent", taken_ - 1);
 }
@@ -37,7 +37,7 @@ Violations DeliveryChecker::judge(std::span<const DeliveryChecker> consumers, st
       std::uint64_t seen = 0;
       for (const DeliveryChecker& one : consumers) {
         const std::uint64_t here = one.from_[p].seen[base / 64];
-        out.doubled += static_cast<std::uint64_t>(std::popcount(seen & here));  // by two consumers
+        out.doubled += static_cast<std::uint64_t>(std::popcount(seen & here));  // received by two consumers
         seen |= here;
       }
       const std::uint64_t wanted =
@@ -49,7 +49,7 @@ Violations DeliveryChecker::judge(std::span<const DeliveryChecker> consumers, st
     out.lost += missing;
     if (missing > 0 && out.detail.empty()) out.detail = fmt::format("message {} of producer {} never came", first, p);
   }
-  // A torn message is also missing under its name; it is told once.
+  // A corrupted message is also missing under its own number, but counts once.
   out.lost -= std::min(out.lost, out.corrupted);
   return out;
 }

@@ -10,25 +10,25 @@
 
 namespace carousel::ringbus::stress {
 
-/// What one consumer has received of each producer; one thread's.
+/// Checks the messages that one consumer receives from each producer. One thread uses it.
 class DeliveryChecker {
  public:
-  /// `most`: messages a producer may send.
+  /// `most`: how many messages a producer may send.
   DeliveryChecker(std::size_t producers, std::uint64_t most);
 
-  /// Returns whose it is; empty when it is torn.
+  /// Returns the origin of a message; empty if the message is corrupted.
   template <std::size_t kBytes>
   std::optional<Origin> take(const Message<kBytes>& message) {
     ++taken_;
     std::optional<Origin> origin = message.open();
     if (!origin || origin->producer >= from_.size() || origin->number >= most_) {
-      tear();
+      corrupted();
       return std::nullopt;
     }
     note(*origin);
     return origin;
   }
-  /// A message that is known to be whole.
+  /// Notes a message that is known to be undamaged.
   void note(Origin origin) {
     From& from = from_[origin.producer];
     std::uint64_t& word = from.seen[origin.number / 64];
@@ -40,15 +40,15 @@ class DeliveryChecker {
 
   std::uint64_t taken() const { return taken_; }
 
-  /// The verdict over all consumers; `sent`: how many of each producer's pushes succeeded.
+  /// Sums up all consumers; `sent`: how many of each producer's pushes succeeded.
   static Violations judge(std::span<const DeliveryChecker> consumers, std::span<const std::uint64_t> sent);
 
  private:
   struct From {
-    std::uint64_t next = 0;           // one beyond the latest
-    std::vector<std::uint64_t> seen;  // a bit a message
+    std::uint64_t next = 0;           // the number after the latest one
+    std::vector<std::uint64_t> seen;  // a bit for each message
   };
-  void tear();
+  void corrupted();
   void misplaced(From& from, Origin origin, bool again);
 
   std::uint64_t most_, taken_ = 0;

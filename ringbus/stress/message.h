@@ -7,20 +7,20 @@
 
 namespace carousel::ringbus::stress {
 
-/// Who sent a message, and as which of its own.
+/// The producer of a message, and the message's number among that producer's.
 struct Origin {
   std::uint32_t producer = 0, number = 0;
 };
 
-/// A finaliser (Stafford's variant 13, as in SplitMix64): every bit of the result hangs on every bit of `x`.
+/// A finaliser (Stafford's variant 13, as in SplitMix64): every bit of the result depends on every bit of `x`.
 constexpr std::uint64_t scramble(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
 }
 
-/// A message that can tell whether it arrived whole: the first word is a scrambled 20-bit checksum, 12 bits of producer
-/// and 32 of number; the others follow from the first, each in its own way.
+/// A message that shows any damage: the first word holds a scrambled 20-bit checksum, 12 bits of producer and 32 of
+/// number, and each other word is computed from the first and its own index.
 template <std::size_t kBytes>
 struct Message {
   static_assert(kBytes % 8 == 0 && kBytes >= 8);
@@ -34,7 +34,7 @@ struct Message {
     for (std::size_t i = 1; i < kWords; ++i) m.words[i] = follower(m.words[0], i);
     return m;
   }
-  /// Empty when a word is not what it was.
+  /// The origin; empty if any word has changed.
   std::optional<Origin> open() const {
     const std::uint64_t low = words[0] & ((std::uint64_t{1} << 44) - 1);
     std::uint64_t wrong = words[0] ^ (scramble(low) << 44 | low);
@@ -47,7 +47,7 @@ struct Message {
   static std::uint64_t follower(std::uint64_t first, std::size_t i) { return (first + i) * 0x9e3779b97f4a7c15u; }
 };
 
-/// The sizes that are tried: an index, a cache line, and a packet of 32 ray IDs with its header.
+/// The sizes of messages: an index, a cache line, and a packet of 32 ray IDs with its header.
 inline constexpr std::size_t kSmall = 8, kLine = 64, kPacket = 256;
 
 }  // namespace carousel::ringbus::stress

@@ -11,9 +11,9 @@ namespace carousel::ringbus::stress {
 enum class Pattern {
   kStream,           ///< one producer, one consumer, a message a call
   kBatches,          ///< the same, 32 messages a call
-  kBurst,            ///< 32 at once, then a pause
+  kBurst,            ///< 32 messages at once, then a pause
   kPingPong,         ///< one message to and fro
-  kCirculation,      ///< a ring of four: each message visits everyone and returns
+  kCirculation,      ///< a ring of four: each message visits every node and returns
   kHotspot,          ///< four producers, one consumer
   kManyToMany,       ///< two producers, two consumers, one queue
   kSlowConsumer,     ///< a pause after every message taken

@@ -8,7 +8,7 @@ namespace carousel::ringbus::stress {
 
 namespace {
 
-/// One message at a time, there and back over two queues.
+/// Sends one message at a time, there and back over two queues.
 template <std::size_t kBytes>
 class PingPong final : public WorkerGroup {
  public:
@@ -90,9 +90,9 @@ class PingPong final : public WorkerGroup {
 
   std::uint64_t messages_;
   std::unique_ptr<AnyQueue<Message<kBytes>>> there_, back_;
-  std::vector<DeliveryChecker> arrivals_;  // where it turns, and back where it started
+  std::vector<DeliveryChecker> arrivals_;  // [0]: at the sender; [1]: at the other end
   std::array<Side, 2> sides_;
-  alignas(128) std::uint64_t served_ = 0;  // serve()'s, to the end of its block
+  alignas(128) std::uint64_t served_ = 0;  // written by serve(), with the two members below
   double seconds_ = 0;
   LatencyHistogram round_trips_;
   alignas(128) std::atomic<bool> done_{false};

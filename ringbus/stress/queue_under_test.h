@@ -12,7 +12,7 @@
 
 namespace carousel::ringbus::stress {
 
-/// A queue of any make. The indirect call costs each queue the same nanosecond or two.
+/// A queue of any design. The indirect call costs every design the same nanosecond or two.
 template <class T>
 class AnyQueue {
  public:
@@ -28,7 +28,8 @@ class AnyQueue {
 template <std::size_t kBytes>
 using MakeQueue = std::function<std::unique_ptr<AnyQueue<Message<kBytes>>>(std::size_t capacity)>;
 
-/// A queue design on the bench: its name, whom it serves, and how to make one for each size of message.
+/// A queue design that is tried: its name, how many producers and consumers it serves, and how to make one for each
+/// size of message.
 struct QueueUnderTest {
   std::string name;
   Parties producers = Parties::kOne, consumers = Parties::kOne;
@@ -80,7 +81,7 @@ QueueUnderTest queue_under_test(std::string name) {
   return out;
 }
 
-/// One of those that a configuration can name.
+/// A design that a configuration can name.
 QueueUnderTest built_in_queue(QueueKind kind);
 
 }  // namespace carousel::ringbus::stress

@@ -10,8 +10,8 @@
 
 namespace carousel::ringbus::stress {
 
-/// What one thread can find out about an empty queue, in several rounds of its storage: that it takes exactly what it
-/// says, refuses then, gives all back in order, and never promises places it has not.
+/// Checks an empty queue from one thread, over several rounds of its storage: it must take exactly as many messages as
+/// its capacity, refuse more, give all back in order, and never promise places that it does not have.
 template <std::size_t kBytes>
 Violations check_single_thread(AnyQueue<Message<kBytes>>& queue, std::size_t capacity) {
   constexpr std::size_t kRounds = 4;
@@ -50,7 +50,7 @@ Violations check_single_thread(AnyQueue<Message<kBytes>>& queue, std::size_t cap
     (void)push(3);
     while (pop(1) > 0) {
     }
-    inside = 0;  // what is still missing is lost
+    inside = 0;  // messages that are still missing are lost
     for (std::size_t i = 0; i < capacity + 8; ++i) {
       (void)push(1 + i % 7);
       (void)pop(1 + (i * 3) % 7);

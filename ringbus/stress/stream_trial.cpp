@@ -20,12 +20,11 @@ constexpr std::uint64_t kStampEvery = 16, kStamps = 4096;
 
 struct Plan {
   std::size_t producers = 1, consumers = 1;
-  std::size_t capacity = 64;
-  std::size_t batch = 1;
-  bool random = false;            // lengths of batches, yields and sleeps
+  std::size_t capacity = 64, batch = 1;
+  bool random = false;            // lengths of batches; yields and sleeps
   nanoseconds push_pause{0};      // after each batch
-  nanoseconds pop_pause{0};       // after each call that brought something
-  std::uint64_t stall_every = 0;  // messages of the consumer between two stops
+  nanoseconds pop_pause{0};       // after each call that was not refused
+  std::uint64_t stall_every = 0;  // messages that the consumer takes between two stops
 };
 
 Plan plan_of(const TrialOptions& options) {
@@ -82,7 +81,7 @@ class Stream final : public WorkerGroup {
         senders_(plan.producers),
         receivers_(plan.consumers),
         arrivals_(plan.consumers, DeliveryChecker(plan.producers, each_)) {
-    // One queue for all where it serves so many; else one a producer.
+    // One queue for all if it serves so many, otherwise one for each producer.
     const bool shared = (plan.producers == 1 || queue.producers == Parties::kMany) &&
                         (plan.consumers == 1 || queue.consumers == Parties::kMany);
     for (std::size_t q = 0; q < (shared ? 1 : plan.producers); ++q)
@@ -110,7 +109,7 @@ class Stream final : public WorkerGroup {
     }
     if (next == each_) note_first_done();
     me.finish = now_ns();
-    // Release: pairs with the acquire in consume(); who sees all producers done sees all they sent.
+    // Release: pairs with the acquire in consume(): a consumer that sees all producers done sees all their messages.
     producers_done_.fetch_add(1, std::memory_order_release);
   }
 
@@ -150,7 +149,7 @@ class Stream final : public WorkerGroup {
       // Acquire: pairs with the release in produce().
       if (producers_done_.load(std::memory_order_acquire) == plan_.producers) {
         if (all_taken()) break;
-        // What is missing may be in another consumer's hands; what nobody brings for so long is lost.
+        // Another consumer may still have the missing messages; after so long they are lost.
         const std::int64_t now = now_ns();
         if (quiet_since == 0) quiet_since = now;
         if (now - quiet_since > kQuiet) break;
@@ -215,7 +214,7 @@ class Stream final : public WorkerGroup {
     while (done < batch.size() && !end()) {
       const std::uint64_t from = first + done, until = first + batch.size();
       for (std::uint64_t n = (from + kStampEvery - 1) / kStampEvery * kStampEvery; n < until; n += kStampEvery)
-        // Relaxed: the queue hands it over with the message.
+        // Relaxed: the queue publishes it with the message.
         me.stamps[stamp_of(n)].store(now_ns(), std::memory_order_relaxed);
       const std::size_t pushed = batch.size() == 1 ? queue.try_push(batch[0]) : queue.try_push_n(batch.subspan(done));
       ++me.calls;
@@ -283,7 +282,7 @@ TrialResult run_stream(const QueueUnderTest& queue, const TrialOptions& options)
   const Plan plan = plan_of(options);
   const auto stream = std::make_shared<Stream<kBytes>>(queue, plan, options);
   std::vector<std::function<void()>> bodies;
-  // The threads hold the crew; a plain pointer here keeps it from holding itself.
+  // The threads own the trial. The bodies have a plain pointer, as the trial would otherwise own itself.
   for (std::size_t p = 0; p < plan.producers; ++p) bodies.push_back([s = stream.get(), p] { s->produce(p); });
   for (std::size_t c = 0; c < plan.consumers; ++c) bodies.push_back([s = stream.get(), c] { s->consume(c); });
   const WorkerGroup::Ending ending =

@@ -56,7 +56,7 @@ std::vector<StressRow> run_stress(std::span<const QueueUnderTest> queues, const 
 
   std::vector<StressRow> rows;
   struct Group {
-    std::size_t first, count;  // rows of one pattern and size
+    std::size_t first, count;  // the rows of one pattern and size
   };
   std::vector<Group> groups;
   for (const Pattern pattern : patterns)

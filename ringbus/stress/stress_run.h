@@ -12,7 +12,7 @@ struct StressOptions {
   std::vector<Pattern> patterns;           ///< empty: all
   std::vector<std::size_t> message_bytes;  ///< empty: all sizes for streams, 64 for the others
   std::size_t repetitions = 3;
-  double seconds = 30;                 ///< in all, about: shared out over the trials
+  double seconds = 30;                 ///< about, in all; shared out over the trials
   std::uint64_t messages = 1'000'000;  ///< of a trial, at most
   std::size_t capacity = 64;
   std::uint64_t seed = 1;
@@ -27,15 +27,16 @@ struct StressRow {
   Pattern pattern{};
   std::size_t message_bytes = 0;
   std::vector<double> rates;  ///< messages per second, a repetition each
-  TrialResult sum;            ///< counts and histograms added; fairness: the least; memory: the most
+  TrialResult sum;            ///< counts and histograms are added; fairness is the least, memory the most
 
   double median() const;
   double least() const;
   double most() const;
 };
 
-/// Tries every queue under every pattern that it fits, repetition by repetition and in turn, so that what else the
-/// machine does meets all of them; each repetition begins with another queue. Rows by pattern, size, queue.
+/// Tries every queue under every pattern that it fits. Within a repetition the queues take turns, and each repetition
+/// begins with another one, so that other load on the machine falls on all of them. Rows are sorted by pattern, size
+/// and queue.
 std::vector<StressRow> run_stress(std::span<const QueueUnderTest> queues, const StressOptions& options);
 
 }  // namespace carousel::ringbus::stress

@@ -9,8 +9,8 @@ namespace carousel::ringbus::stress {
 
 namespace {
 
-/// Threads that talk to each other tend to be put on one core, and then they only take turns. Where it cannot be done
-/// the scheduler decides.
+/// Pins the thread to a core, if the system allows: the scheduler tends to put threads that talk to each other on one
+/// core, where they only take turns.
 void stay_on_core(std::size_t thread) {
   cpu_set_t allowed;
   if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
@@ -39,45 +39,45 @@ std::uint64_t WorkerGroup::steps() const {
   return sum;
 }
 
-WorkerGroup::Ending WorkerGroup::run(const std::shared_ptr<WorkerGroup>& crew,
+WorkerGroup::Ending WorkerGroup::run(const std::shared_ptr<WorkerGroup>& group,
                                      const std::vector<std::function<void()>>& bodies, const Limits& limits) {
   std::vector<std::thread> threads;
   for (const std::function<void()>& body : bodies)
-    threads.emplace_back([crew, body, t = threads.size(), all = bodies.size()] {
+    threads.emplace_back([group, body, t = threads.size(), all = bodies.size()] {
       stay_on_core(t);
       {
-        std::unique_lock lock(crew->mutex_);
-        if (++crew->ready_ == all) crew->changed_.notify_all();
-        crew->changed_.wait(lock, [&] { return crew->ready_ == all; });
+        std::unique_lock lock(group->mutex_);
+        if (++group->ready_ == all) group->changed_.notify_all();
+        group->changed_.wait(lock, [&] { return group->ready_ == all; });
       }
       body();
-      const std::lock_guard lock(crew->mutex_);
-      ++crew->ended_;
-      crew->changed_.notify_all();
+      const std::lock_guard lock(group->mutex_);
+      ++group->ended_;
+      group->changed_.notify_all();
     });
 
-  std::unique_lock lock(crew->mutex_);
-  crew->changed_.wait(lock, [&] { return crew->ready_ == bodies.size(); });
+  std::unique_lock lock(group->mutex_);
+  group->changed_.wait(lock, [&] { return group->ready_ == bodies.size(); });
   const Clock::time_point deadline = Clock::now() + limits.time;
   Clock::time_point last_change = Clock::now();
   std::uint64_t last = 0;
   bool stuck = false;
-  const auto all_ended = [&] { return crew->ended_ == bodies.size(); };
+  const auto all_ended = [&] { return group->ended_ == bodies.size(); };
   while (!all_ended()) {
     const Clock::time_point now = Clock::now();
     const auto step = std::min<std::chrono::nanoseconds>(std::chrono::milliseconds(20), limits.stuck_after / 4);
-    const Clock::time_point wake = crew->stop_sending() ? now + step : std::min(deadline, now + step);
-    crew->changed_.wait_until(lock, wake, all_ended);
-    if (Clock::now() >= deadline || limits.stop.stop_requested()) crew->stop_sending_ = true;
-    if (const std::uint64_t steps = crew->steps(); steps != last) {
+    const Clock::time_point wake = group->stop_sending() ? now + step : std::min(deadline, now + step);
+    group->changed_.wait_until(lock, wake, all_ended);
+    if (Clock::now() >= deadline || limits.stop.stop_requested()) group->stop_sending_ = true;
+    if (const std::uint64_t steps = group->steps(); steps != last) {
       last = steps;
       last_change = Clock::now();
       continue;
     }
     if (Clock::now() - last_change < limits.stuck_after) continue;
-    if (stuck) break;  // they were asked to leave, and have not
+    if (stuck) break;  // they were asked to return and have not
     stuck = true;
-    crew->end_ = true;
+    group->end_ = true;
     last_change = Clock::now();
   }
   const bool returned = all_ended();

@@ -17,24 +17,24 @@ inline std::int64_t now_ns() {
   return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
 }
 
-/// Pauses a thread without keeping the core from others.
+/// Pauses the calling thread and leaves the core to others.
 void pause_for(std::chrono::nanoseconds time);
 
-/// What the threads of a trial and the thread that watches them share. Trials derive from it; the threads hold it, so
-/// that it outlives even those that never return.
+/// The state that the threads of a trial share with the thread that watches them. Trials derive from it. The threads
+/// own it together, so that it outlives even threads that never return.
 class WorkerGroup {
  public:
   explicit WorkerGroup(std::size_t threads) : progress_(threads) {}
   virtual ~WorkerGroup() = default;
 
-  /// Time is up: nothing new is to be sent.
-  // Relaxed: only asks; nothing is read by its leave.
+  /// True when time is up: nothing new is to be sent.
+  // Relaxed: a request only; no other data depends on it.
   bool stop_sending() const { return stop_sending_.load(std::memory_order_relaxed); }
-  /// Nothing moves any more: leave.
+  /// True when nothing moves any more: threads return.
   bool end() const { return end_.load(std::memory_order_relaxed); }
-  /// Thread `t` has got something done.
+  /// Reports progress of thread `t`.
   void moved(std::size_t t) {
-    // Relaxed: the watcher only wants to see it change. No read-modify-write: each has its own.
+    // Relaxed: the watcher only looks for a change. No read-modify-write: each thread has its own counter.
     progress_[t].steps.store(progress_[t].steps.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
 
@@ -44,9 +44,9 @@ class WorkerGroup {
     std::chrono::milliseconds stuck_after;
     std::stop_token stop;
   };
-  /// Runs one body a thread, on a core each as far as they go, started together, and watches them. After kNeverReturned
-  /// the crew must not be read.
-  static Ending run(const std::shared_ptr<WorkerGroup>& crew, const std::vector<std::function<void()>>& bodies,
+  /// Runs each body on a thread of its own, on different cores as far as there are any, starts them together and
+  /// watches them. After kNeverReturned the group's members must not be read.
+  static Ending run(const std::shared_ptr<WorkerGroup>& group, const std::vector<std::function<void()>>& bodies,
                     const Limits& limits);
 
  private:
@@ -57,7 +57,7 @@ class WorkerGroup {
 
   std::vector<Progress> progress_;
   std::atomic<bool> stop_sending_{false}, end_{false};
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::size_t ready_ = 0, ended_ = 0;
 };

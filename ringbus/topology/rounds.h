@@ -7,7 +7,7 @@
 
 namespace carousel::ringbus {
 
-// What several shapes have in common.
+// Parts that several shapes have in common.
 
 /// Successors of a round through all resources in steps of `step`, which must have no divisor in common with their
 /// number. A step of `resources - 1` goes backwards.

@@ -10,12 +10,12 @@
 #include "ringbus/packets/packet.h"
 #include "ringbus/topology/plan.h"
 
-// A new topology says what it is in these places and no others:
-//   1. its value in TopologyShape (core/config/config.h) with its name (core/config/enum_names.h), and the engines that
-//      may run it (core/config/validate.cpp: built_shape, and built_workload if there is no traffic on it);
-//   2. its own file here, with one function that fills in a TopologyPlan (plan.h): the wires, who comes next in each
-//      direction, hubs, packets under way, the verdict on deadlock, whether traffic runs on it. Shapes whose packets
-//      go round rings only name the rounds (rounds.h);
+// A new topology takes these places and no others (docs/extending.md has an example):
+//   1. its value in TopologyShape with its name (core/config/fields/topology.h); if an engine cannot run it, also a row
+//      in core/config/not_built.cpp, and if no traffic runs on it, traffic_has_a_network() in core/config/validate.cpp;
+//   2. its own file here, with one function that fills in a TopologyPlan (plan.h): the wires, the next node in each
+//      direction, hubs, packets in flight, the verdict on deadlock, and if traffic runs on it. Shapes whose packets
+//      travel rings only name the rounds (rounds.h);
 //   3. that function's declaration in shapes.h and its row in the table of shapes.cpp.
 // A hub of a new kind also needs an agent of the cycle engine (cycle/fabric).
 

@@ -9,6 +9,7 @@
 #include "core/config/tree/tree.h"
 #include "own_counts.h"
 #include "own_effect.h"
+#include "own_policy.h"
 #include "own_section.h"
 #include "own_topology.h"
 #include "own_unit.h"
@@ -56,6 +57,17 @@ TEST(Extending, CountersAddAndDescribeThemselves) {
   describe(keys, sum);
   const decltype(keys.found) expected{{"tests", 3}, {"segments", 15}, {"work", 18}};
   EXPECT_EQ(keys.found, expected);
+}
+
+TEST(Extending, APolicyOrdersCollections) {
+  using namespace ringbus;
+  const PolicyScale scale{.ready = 32, .max_depth = 9, .scene_size = 1};
+  const auto bucket = [&](std::uint16_t depth, std::uint32_t rays) {
+    return kShallowest.bucket({.key = {}, .rays = rays, .entry = 0, .depth = depth}, scale);
+  };
+  EXPECT_LT(bucket(0, 1), bucket(1, 40));
+  EXPECT_LT(bucket(3, 40), bucket(3, 31));
+  EXPECT_EQ(bucket(60000, 1), PriorityLists::kBuckets - 1);
 }
 
 TEST(Extending, ATopologyIsItsPlan) {

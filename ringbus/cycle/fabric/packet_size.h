@@ -5,6 +5,8 @@
 #include "core/config/config.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/packets/packet.h"
+#include "ringbus/resource/collections/issue_policy.h"
+#include "ringbus/resource/traversal/make_traversal.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -12,13 +14,13 @@ namespace carousel::ringbus::cycle {
 ///   header 16: node key 8, owner 2, home 2, count 2, depth 1, kind and lanes 1
 ///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte), or with ordered traversal the next
 ///   node 12 (key 8, entry 4)
-///   per shape of a strip of boxes: nearest entry 4, for the policy `nearest`
+///   per shape of a strip of boxes: nearest entry 4, for policies that read them
 ///   with `carry: data` the shapes themselves, and below an instance what is stored of its transform
 class PacketSize {
  public:
   PacketSize(const CollectionsConfig& collections, PacketCarry carry)
-      : ordered_(collections.traversal == Traversal::kOrdered),
-        entries_(collections.policy == Policy::kNearest),
+      : ordered_(one_collection_a_ray(collections.traversal)),
+        entries_(issue_policy(collections.policy).reads_entries),
         data_(carry == PacketCarry::kData) {}
 
   std::uint32_t bytes(const Packet& packet, const ShapeMemory& memory, bool treelet) const {

@@ -144,7 +144,7 @@ class OutPortOf {
   /// Recovers credits that were lost on their way. Asking for them occupies the link like a packet, and does not count
   /// as waiting.
   void recover_credits(Cycle now) {
-    const LinkFaultTimer::Recovered made = faults_->made_good(now);
+    const LinkFaultTimer::Recovered made = faults_->recovered(now);
     credits_ += made.places;
     if (made.busy == 0) return;
     free_at_ = std::max(free_at_, now) + made.busy;

@@ -7,9 +7,10 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Equal test units side by side: each starts a test every `interval` cycles and answers `latency` cycles later.
+/// Equal units side by side: each starts a test every `interval` cycles and answers `latency` cycles later.
 class UnitBank {
  public:
+  UnitBank() : UnitBank(TesterUnits{}) {}
   explicit UnitBank(const TesterUnits& config)
       : units_(static_cast<Cycle>(config.units)),
         interval_(static_cast<Cycle>(config.interval_cycles)),
@@ -19,7 +20,7 @@ class UnitBank {
     Cycle first = 0;  ///< the first answer
     Cycle last = 0;   ///< the last one
   };
-  /// Takes the bank for `tests`, as soon as it is free but not before `at`. None take no time.
+  /// Takes the bank for `tests`, as soon as it is free but not before `at`. No tests take no time.
   Reservation reserve(Cycle at, std::uint64_t tests) {
     if (tests == 0) return {at, at};
     const Cycle start = std::max(at, free_at_), length = ceil_div(tests, units_) * interval_;
@@ -29,8 +30,8 @@ class UnitBank {
     spare_ = ceil_div(tests, units_) * units_ - tests;
     return {start + latency_, free_at_ - interval_ + latency_};
   }
-  /// The same, but units that the tests before leave idle in their last cycle are taken first: single rays bring too
-  /// few tests to fill a bank.
+  /// The same, but units that the previous tests leave idle in their last cycle are taken first, since single rays
+  /// bring too few tests to fill a bank.
   Reservation reserve_beside(Cycle at, std::uint64_t tests) {
     const Cycle last_start = free_at_ - interval_;
     if (tests == 0 || spare_ == 0 || at > last_start) return reserve(at, tests);
@@ -48,7 +49,7 @@ class UnitBank {
  private:
   Cycle units_, interval_, latency_;
   Cycle free_at_ = 0, busy_ = 0;
-  std::uint64_t tests_ = 0, spare_ = 0;  // spare: tests that could have been started with the last ones
+  std::uint64_t tests_ = 0, spare_ = 0;  // spare: units left idle when the last tests started
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ringbus/resource/farthest_first.h"
+#include "ringbus/resource/traversal/farthest_first.h"
 
 namespace carousel::ringbus::cycle {
 

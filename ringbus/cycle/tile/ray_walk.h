@@ -8,7 +8,7 @@
 #include "accel/traverse/kernels.h"
 #include "core/statistics/intersection_counts.h"
 #include "ringbus/packets/packet.h"
-#include "ringbus/resource/transform_account.h"
+#include "ringbus/resource/visit/transform_account.h"
 
 namespace carousel::ringbus::cycle {
 

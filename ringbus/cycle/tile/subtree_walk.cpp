@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ringbus/cycle/testers/unit_passes.h"
+
 namespace carousel::ringbus::cycle {
 
 void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) {
@@ -28,14 +30,12 @@ std::uint64_t SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers
       tests.inversions = 0;  // another ray's visit has done it
     else if (tests.transforms > 0)
       account_.instances.push_back(key->instance);
-    if (tests.plane > 0) cycles += step_.plane;
-    if (tests.box > 0) cycles += step_.box;  // none are left where planes, tested first, have culled all children
-    if (tests.triangle > 0) cycles += step_.triangle;
-    if (tests.procedural > 0) cycles += step_.procedural;
-    if (tests.any_hit_calls > 0) cycles += step_.any_hit;
+    for (const UnitKindRow& row : kUnitKinds) {
+      const std::uint64_t passes = passes_of(row.kind, tests);
+      cycles += (row.stage == Stage::kTransform ? passes : std::uint64_t{passes > 0}) * step_[row.kind];
+    }
     if (any_hit_calls != nullptr)
       *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, *any_hit_calls + tests.any_hit_calls));
-    cycles += (tests.transforms + accel::kInversionPasses * tests.inversions) * step_.transform;
     counts += tests;
   }
   return cycles;

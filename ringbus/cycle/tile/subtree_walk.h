@@ -6,6 +6,7 @@
 
 #include "accel/structure/accel.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/types/unit_kind.h"
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/resource/resource.h"
 
@@ -15,11 +16,8 @@ namespace carousel::ringbus::cycle {
 /// the hardware that does so. The kernels' own walk is faster on the host but keeps no account.
 class SubtreeWalk final : public SubtreeTracer {
  public:
-  /// Cycles that one ray needs for a strip of boxes, of triangles, of procedural primitives, for planes, for a
-  /// transform, and for an any-hit call.
-  struct StepCycles {
-    std::uint64_t box = 1, triangle = 1, procedural = 1, plane = 1, transform = 1, any_hit = 0;
-  };
+  /// Cycles that one ray waits for its tests of each kind in a strip, and for each pass through a transform unit.
+  using StepCycles = PerUnit<std::uint64_t>;
   struct Account {
     std::uint64_t chain = 0;               ///< cycles of the slowest ray
     std::vector<accel::NodeKey> strips;    ///< read by any ray, once each, in order of the first reading

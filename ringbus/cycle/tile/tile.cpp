@@ -9,11 +9,11 @@ namespace carousel::ringbus::cycle {
 namespace {
 
 SubtreeWalk::StepCycles step_cycles(const TestersConfig& testers) {
-  const auto latency = [&](UnitKind kind) { return static_cast<std::uint64_t>(testers.units[kind].latency_cycles); };
+  SubtreeWalk::StepCycles out;
+  for (const auto [kind, units] : testers.units) out[kind] = static_cast<std::uint64_t>(units.latency_cycles);
   // With any_hit: shader a ray goes on meanwhile, since the outcome is known, and waits for the answer at the end.
-  const std::uint64_t any_hit = testers.any_hit == TestersConfig::AnyHit::kInline ? latency(UnitKind::kAnyHit) : 0;
-  return {latency(UnitKind::kBox),   latency(UnitKind::kTriangle),  latency(UnitKind::kProcedural),
-          latency(UnitKind::kPlane), latency(UnitKind::kTransform), any_hit};
+  if (testers.any_hit != TestersConfig::AnyHit::kInline) out[UnitKind::kAnyHit] = 0;
+  return out;
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ void Tile::take_answers(Cycle now) {
     }
     if (context.outstanding > 0) continue;
     context.phase = Context::Phase::kComputing;
-    context.done = context.subtree ? std::max(context.done, now + tester_.box.latency())
+    context.done = context.subtree ? std::max(context.done, now + tester_.bank(UnitKind::kBox).latency())
                                    : tester_.strip(now, context.counts, context.reads, context.bundle_passes);
   }
 }

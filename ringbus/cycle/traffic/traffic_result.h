@@ -9,7 +9,7 @@
 
 namespace carousel::ringbus {
 
-/// What a network did with synthetic traffic. Latencies, offered and accepted load are of the window.
+/// The counts of a run of synthetic traffic. Latencies, offered and accepted load are of the window.
 struct TrafficResult {
   bool complete = true;     ///< false: stopped early
   cycle::Cycle cycles = 0;  ///< until the last packet was delivered

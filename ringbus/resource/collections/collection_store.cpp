@@ -1,56 +1,33 @@
 #include "ringbus/resource/collections/collection_store.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace carousel::ringbus {
 
-namespace {
-
-// Eight buckets an octave; 27 octaves below the scene's size and 5 above.
-std::uint32_t octave_eighth(float x) {
-  return std::bit_cast<std::uint32_t>(x > 0 ? x : 0.0f) >> 20;
-}
-
-}  // namespace
-
-CollectionStore::CollectionStore(const Settings& settings) : settings_(settings) {
-  const std::uint32_t top = octave_eighth(settings.scene_size > 0 ? settings.scene_size : 1.0f);
-  nearest_base_ = top > 27 * 8 ? top - 27 * 8 : 0;
-}
+CollectionStore::CollectionStore(const Settings& settings)
+    : settings_(settings),
+      policy_(&issue_policy(settings.policy)),
+      scale_{settings.ready, settings.max_depth, settings.scene_size} {}
 
 std::uint32_t CollectionStore::bucket(const Collection& c) const {
-  constexpr std::uint32_t kLast = PriorityLists::kBuckets - 1;
-  switch (settings_.policy) {
-    case Policy::kFullest:
-      return kLast - std::min(kLast, c.count * 128 / settings_.ready);
-    case Policy::kDeepest:
-      return std::min<std::uint32_t>(kLast, settings_.max_depth > c.depth ? settings_.max_depth - c.depth : 0);
-    case Policy::kNearest: {
-      const std::uint32_t eighth = octave_eighth(c.entry);
-      return eighth > nearest_base_ ? std::min(kLast, eighth - nearest_base_) : 0;
-    }
-    case Policy::kOldest:
-    case Policy::kNewest:
-      return 0;
-  }
-  return 0;
+  return policy_->bucket({c.key, c.count, c.entry, c.depth}, scale_);
 }
 
-void CollectionStore::enlist(std::uint32_t index) {
-  const Collection& c = collections_[index];
-  if (settings_.policy == Policy::kNewest)
-    list(c).push_front(index, bucket(c));
+void CollectionStore::enlist(std::uint32_t index, std::uint32_t bucket) {
+  PriorityLists& list = this->list(collections_[index]);
+  if (policy_->newest_first)
+    list.push_front(index, bucket);
   else
-    list(c).push_back(index, bucket(c));
+    list.push_back(index, bucket);
 }
 
 void CollectionStore::relist(std::uint32_t index, bool was_ready) {
   Collection& c = collections_[index];
   c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready;
-  if (c.ready == was_ready && list(c).bucket_of(index) == bucket(c)) return;
+  const std::uint32_t bucket = this->bucket(c);
+  if (c.ready == was_ready && list(c).bucket_of(index) == bucket) return;
   (was_ready ? ready_ : partial_).remove(index);
-  enlist(index);
+  enlist(index, bucket);
 }
 
 std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t depth, float entry) {
@@ -68,7 +45,7 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
   table_.insert(key, index);
   ++statistics_.created;
   statistics_.peak = std::max<std::uint64_t>(statistics_.peak, table_.size());
-  enlist(index);
+  enlist(index, bucket(collections_[index]));
   return index;
 }
 
@@ -132,8 +109,8 @@ std::uint32_t CollectionStore::front_rays(CollectionId id) const {
 
 void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   Collection& c = collections_[id.value];
-  // The chain is filled from the tail: while there are two blocks or more the first one is full, provided that
-  // takes go by whole blocks, which the remainder of `count` in the tail relies on.
+  // The chain is filled at the tail and takes go by whole blocks, so all blocks but the last are full. The remainder of
+  // `count` in the tail relies on that.
   const std::uint32_t n = front_rays(id);
   const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
   rays.assign(first, first + n);

@@ -10,6 +10,7 @@
 #include "core/statistics/collection_counts.h"
 #include "ringbus/rays/ray_id.h"
 #include "ringbus/resource/collections/collection_table.h"
+#include "ringbus/resource/collections/issue_policy.h"
 #include "ringbus/resource/collections/priority_lists.h"
 
 namespace carousel::ringbus {
@@ -26,28 +27,28 @@ class CollectionStore {
     std::uint32_t capacity_blocks = 2048;
     Policy policy = Policy::kNearest;
     Select select = Select::kFullFirst;
-    float scene_size = 1;  ///< scale of entry distances, for `nearest`
-    int max_depth = 1;     ///< for `deepest`
+    float scene_size = 1;
+    int max_depth = 1;  ///< of the structure, in strips
   };
   using Statistics = CollectionCounts;
 
   explicit CollectionStore(const Settings& settings);
 
   /// Adds rays to the collection of `key`, created if need be. `entry` is the nearest entry of any of them.
-  /// Uses at most one new block when at most block_rays rays are added. Storage beyond the capacity is taken
-  /// without a word and counted as spilled: whether that may happen is the caller's rule.
+  /// Takes at most one new block when at most block_rays rays are added. Blocks beyond the capacity are taken as well
+  /// and counted as spilled; the caller says whether that may happen (StorageRule).
   void add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays);
 
   /// The collection to issue from, by policy: among those that are ready, or with `partial` among all; with
   /// `select: strict` always among all.
   std::optional<CollectionId> best(bool partial) const;
-  /// The deepest collection, whatever the policy. Takes time in proportion to the collections there are.
+  /// The deepest collection, whatever the policy. Takes time in proportion to the number of collections.
   std::optional<CollectionId> deepest() const;
 
   accel::NodeKey key(CollectionId id) const { return collections_[id.value].key; }
   std::uint16_t depth(CollectionId id) const { return collections_[id.value].depth; }
   float entry(CollectionId id) const { return collections_[id.value].entry; }
-  /// Rays the next take() gives.
+  /// How many rays the next take() gives.
   std::uint32_t front_rays(CollectionId id) const;
   /// Moves the first block's rays to `rays`; an empty collection ceases to exist.
   void take(CollectionId id, std::vector<RayId>& rays);
@@ -78,11 +79,12 @@ class CollectionStore {
   std::uint32_t new_block();
   std::uint32_t bucket(const Collection& c) const;
   PriorityLists& list(const Collection& c) { return c.ready ? ready_ : partial_; }
-  void enlist(std::uint32_t index);
+  void enlist(std::uint32_t index, std::uint32_t bucket);
   void relist(std::uint32_t index, bool was_ready);
 
   Settings settings_;
-  std::uint32_t nearest_base_;
+  const IssuePolicy* policy_;
+  PolicyScale scale_;
   CollectionTable table_;
   PriorityLists ready_, partial_;
   std::vector<Collection> collections_;

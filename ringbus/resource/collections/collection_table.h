@@ -9,7 +9,7 @@
 namespace carousel::ringbus {
 
 /// Finds the collection of a node: a hash table with linear probing and backward-shift deletion (Knuth, TAOCP 3,
-/// section 6.4, algorithm R), so that no tombstones pile up. Keys are compared whole.
+/// section 6.4, algorithm R), which leaves no tombstones. Keys are compared whole.
 class CollectionTable {
  public:
   CollectionTable() : cells_(64) {}

@@ -8,8 +8,8 @@
 
 namespace carousel::ringbus {
 
-/// Doubly linked lists in 256 buckets with a bit mask of the non-empty ones: insertion, removal and finding the
-/// first of the lowest bucket take constant time. Elements are indices the caller allocates.
+/// Doubly linked lists in 256 buckets with a bit mask of the non-empty ones: insertion, removal and finding the first
+/// of the lowest bucket take constant time. Elements are indices that the caller allocates.
 class PriorityLists {
  public:
   static constexpr std::uint32_t kBuckets = 256;

@@ -241,9 +241,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:49: topology.overrides.0.resource: expected a resource from 0 to 1, found 2"},
         BadConfig{"FaultOutside", SCENE "topology: {resources: 2}\nfaults: {resource: {kind: pause, number: 2}}\n",
                   "test.yaml:3:42: faults.resource.number: expected a resource from 0 to 1, found 2"},
-        BadConfig{
-            "StopAlone", SCENE "topology: {resources: 1}\nfaults: {resource: {kind: stop}}\n",
-            "test.yaml:2:23: topology.resources: where one stops another has to go on; expected at least 2, found 1"},
+        BadConfig{"StopAlone", SCENE "topology: {resources: 1}\nfaults: {resource: {kind: stop}}\n",
+                  "test.yaml:2:23: topology.resources: when a resource stops, another has to continue; expected at "
+                  "least 2, found 1"},
         BadConfig{"FaultsComparedOnTheWallClock", SCENE "faults: {compare: true, links: {drop: 0.1}}\n",
                   "test.yaml:2:19: faults.compare: on the wall clock two runs differ by more than faults cost; "
                   "expected false, or "

@@ -1,4 +1,4 @@
-// What bundles take of a resource's clock: bundle units, the port of the ray store, and what waits for them.
+// The cycles that bundles take: bundle units, the port of the ray store, and the tests that wait for them.
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/testers/tester.h"
@@ -26,8 +26,8 @@ IntersectionCounts counts(std::uint64_t box, std::uint64_t bundle) {
 TEST(BundleUnits, OnePassAfterTheOther) {
   Tester tester(bundle_testers());
   EXPECT_EQ(tester.strip(0, counts(0, 8), 1, 8), 7u + 3u);
-  EXPECT_EQ(tester.bundle.busy(), 8u);
-  EXPECT_EQ(tester.box.busy(), 0u);
+  EXPECT_EQ(tester.bank(UnitKind::kBundle).busy(), 8u);
+  EXPECT_EQ(tester.bank(UnitKind::kBox).busy(), 0u);
 }
 
 TEST(BundleUnits, EdgesOfASilhouetteArePasses) {
@@ -47,8 +47,8 @@ TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
   EXPECT_EQ(wide.strip(0, counts(8, 0), 10), 4u);
   EXPECT_EQ(narrow.strip(0, counts(8, 0), 10),
             5u + 4u);  // five cycles of reading, the last record a cycle after the fifth
-  EXPECT_EQ(narrow.store.busy(), 5u);
-  EXPECT_EQ(wide.store.busy(), 0u);
+  EXPECT_EQ(narrow.store().busy(), 5u);
+  EXPECT_EQ(wide.store().busy(), 0u);
   EXPECT_EQ(narrow.strip(8, counts(8, 0), 2), 8u + 1u + 4u);
 }
 
@@ -69,9 +69,9 @@ TEST(BundleUnits, AWalkThroughASubtreeReadsItsRaysOnce) {
 TEST(BundleUnits, AVisitLastsAsLongAsItsReading) {
   Tester strip(bundle_testers(), kOrder, 1), walk(bundle_testers(), kOrder, 1);
   const Cycle strip_done = strip.strip(10, counts(0, 0), 6), walk_done = walk.walk(10, counts(0, 0), 0, 6);
-  EXPECT_EQ(strip.store.busy(), 6u);
-  EXPECT_EQ(strip_done, 10u + strip.store.busy());
-  EXPECT_EQ(walk_done, 10u + walk.store.busy());
+  EXPECT_EQ(strip.store().busy(), 6u);
+  EXPECT_EQ(strip_done, 10u + strip.store().busy());
+  EXPECT_EQ(walk_done, 10u + walk.store().busy());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What planes cost a simulated machine: units, bytes, and what more units would gain.
+// The cost of planes in a simulated machine: units, bytes, and the gain by more units.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ TEST(PlaneUnits, StartWhenTheFirstBoxesAreAnswered) {
   Tester tester(plane_testers());
   // 16 boxes: started at 100 and 101, answered at 104 and 105; 10 planes in 5 turns of 3 cycles from 104 on.
   EXPECT_EQ(tester.strip(100, {.box = 16, .plane = 10}), 104 + 4 * 3 + 5);
-  EXPECT_EQ(tester.plane.busy(), 5 * 3);
-  EXPECT_EQ(tester.plane.tests(), 10u);
+  EXPECT_EQ(tester.bank(UnitKind::kPlane).busy(), 5 * 3);
+  EXPECT_EQ(tester.bank(UnitKind::kPlane).tests(), 10u);
 }
 
 TEST(PlaneUnits, AnswerNoSoonerThanTheLastBoxIsFollowed) {
@@ -37,14 +37,14 @@ TEST(PlaneUnits, CostNothingWithoutPlanes) {
   Tester tester(plane_testers());
   EXPECT_EQ(tester.strip(0, {.box = 16}), 5);
   EXPECT_EQ(tester.ray(100, {.box = 8}), 104);
-  EXPECT_EQ(tester.plane.busy(), 0);
+  EXPECT_EQ(tester.bank(UnitKind::kPlane).busy(), 0);
 }
 
 TEST(PlaneUnits, ComeBeforeTheBoxesThatAreLeft) {
   Tester tester(plane_testers(), CullPlanesConfig::Order::kPlanesFirst);
   // 10 planes in 5 turns of 3 cycles, answered from 105 on; the boxes of the last ray when it has been, at 117.
   EXPECT_EQ(tester.strip(100, {.box = 16, .plane = 10}), 100 + 4 * 3 + 5 + 4);
-  EXPECT_EQ(tester.box.busy(), 2);
+  EXPECT_EQ(tester.bank(UnitKind::kBox).busy(), 2);
   // Many boxes begin at the first answer, at 205.
   EXPECT_EQ(tester.strip(200, {.box = 160, .plane = 2}), 205 + 19 + 4);
   // Planes have culled all children.

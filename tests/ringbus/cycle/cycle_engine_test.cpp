@@ -58,7 +58,7 @@ TEST(CycleEngine, LedgersAddUp) {
       for (const cycle::Cycle state : tile.states) sum += state;
       EXPECT_EQ(sum, c.cycles);
       const cycle::Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
-      for (const cycle::Utilisation& bank : {tile.box, tile.triangle, tile.transform}) EXPECT_LE(bank.busy, testing);
+      for (const auto [kind, bank] : tile.units) EXPECT_LE(bank.busy, testing);
       EXPECT_LE(tile.dispatch.busy, c.cycles);
       // Little's law: packets under way = rate times time, over a whole run without an error.
       EXPECT_EQ(tile.round_trips.count(), out.result.resources[r].packets_issued);
@@ -68,10 +68,11 @@ TEST(CycleEngine, LedgersAddUp) {
       const cycle::Cycle job = static_cast<cycle::Cycle>(cell.config.shading.cycles_per_shade);
       EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
       jobs += job == 0 ? 0 : shaded / job;
-      // What the banks did is what the resource counted, rounded up a packet at a time.
+      // The banks are busy for the tests that the resource counted, rounded up a packet at a time.
       const TesterUnits& box = cell.config.testers.units[UnitKind::kBox];
-      EXPECT_GE(tile.box.busy * static_cast<std::uint64_t>(box.units), out.result.resources[r].tests.box);
-      transforms += tile.transform.busy;
+      EXPECT_GE(tile.units[UnitKind::kBox].busy * static_cast<std::uint64_t>(box.units),
+                out.result.resources[r].tests.box);
+      transforms += tile.units[UnitKind::kTransform].busy;
     }
     std::uint64_t hops = 0;
     for (std::size_t l = 0; l < c.links.size(); ++l) {

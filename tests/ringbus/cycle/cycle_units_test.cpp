@@ -82,7 +82,7 @@ TEST(Memory, TakesItsLatencyAndTheTimeToMoveALine) {
   const MemoryConfig config = memory_config();
   Channel<std::uint64_t> requests, answers;
   Memory memory(config, {{&requests, &answers}});
-  // What a cache sends at time 0 arrives half of the latency later.
+  // A request that a cache sends at time 0 arrives half of the latency later.
   const Cycle there = Memory::request_latency(config);
   for (const std::uint64_t line : {7, 8}) requests.send(there, line);
   memory.run(1000);

@@ -95,15 +95,16 @@ TEST(IndependentTile, OneRayTakesTheSumOfItsLatencies) {
     const TileResult tile = lone.result();
     // Units enough for a strip at once, so a bank is busy for a cycle a strip.
     const Cycle memory = lone.fetches * (34 / 2 + 100);
-    const Cycle tests = 7 * tile.box.busy + 11 * tile.triangle.busy + 13 * tile.transform.busy;
+    const Cycle tests = 7 * tile.units[UnitKind::kBox].busy + 11 * tile.units[UnitKind::kTriangle].busy +
+                        13 * tile.units[UnitKind::kTransform].busy;
     const Cycle record = sizeof(RayRecord) / 16, wire = 5;
     EXPECT_EQ(lone.completed, 1u);
     EXPECT_EQ(lone.last_completed, memory + tests + record + wire);
     EXPECT_EQ(in_state(tile, TileState::kMemory), memory);
     EXPECT_EQ(in_state(tile, TileState::kTesting), tests);
     EXPECT_EQ(in_state(tile, TileState::kIdle), record + wire);
-    EXPECT_EQ(lone.statistics().tests.transforms, tile.transform.busy);
-    transforms += tile.transform.busy;
+    EXPECT_EQ(lone.statistics().tests.transforms, tile.units[UnitKind::kTransform].busy);
+    transforms += tile.units[UnitKind::kTransform].busy;
   }
   EXPECT_GT(transforms, 0u);
 }
@@ -118,9 +119,9 @@ TEST(IndependentTile, AsksForAStripOnceHoweverManyWantIt) {
   EXPECT_EQ(ten.completed, 10u);
   EXPECT_EQ(ten.fetches, one.fetches);
   EXPECT_EQ(ten.statistics().tests.box, 10 * one.statistics().tests.box);
-  EXPECT_GE(ten.last_completed, one.last_completed);  // nobody has a strip before it is there
+  EXPECT_GE(ten.last_completed, one.last_completed);  // no ray has a strip before it is there
   // The ten take turns in the units: at each strip the last begins nine cycles after the first at most.
-  const Cycle strips = one.result().box.busy + one.result().triangle.busy;
+  const Cycle strips = one.result().units[UnitKind::kBox].busy + one.result().units[UnitKind::kTriangle].busy;
   EXPECT_LE(ten.last_completed, one.last_completed + 9 * strips + 9 * sizeof(RayRecord) / 16);
 }
 
@@ -134,7 +135,7 @@ TEST(IndependentTile, FewTestsOfSeveralRaysShareACycle) {
   ten.load(0, 1, 10);  // all at the same strips at the same time, eight boxes each
   ten.run(100);
   EXPECT_EQ(ten.statistics().tests.box, 10 * one.statistics().tests.box);
-  EXPECT_EQ(ten.result().box.busy, one.result().box.busy);
+  EXPECT_EQ(ten.result().units[UnitKind::kBox].busy, one.result().units[UnitKind::kBox].busy);
 }
 
 TEST(IndependentTile, OtherRaysHideTheWaitForMemory) {

@@ -43,7 +43,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   Wires wires;
   ShadeHelp help(config.topology.link, wires.ports());
   help.notify(0, true);
-  EXPECT_EQ(wires.notes.next(), kNever);  // everybody is idle at first
+  EXPECT_EQ(wires.notes.next(), kNever);  // all resources are idle at first
   help.notify(3, false);
   expect_note(wires, 3 + kLatency, false, false);
   help.notify(4, false);
@@ -56,7 +56,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   EXPECT_FALSE(help.shading());
   EXPECT_FALSE(help.step(12, false));
   help.notify(12, true);
-  EXPECT_EQ(wires.notes.next(), kNever);  // not with a job in hand
+  EXPECT_EQ(wires.notes.next(), kNever);  // no note while it has a job
   EXPECT_TRUE(help.step(15, true));
   EXPECT_TRUE(help.shading());
   EXPECT_EQ(help.next(), 15 + kShade);

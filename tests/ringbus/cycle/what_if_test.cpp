@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ringbus/results/run_features.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {
@@ -93,6 +94,29 @@ TEST(WhatIf, LiftsWhatTheMachineHas) {
   for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"})
     EXPECT_FALSE(has(c, name)) << name;
   EXPECT_TRUE(has(c, "memory_latency"));
+}
+
+TEST(WhatIf, DoublesTheUnitsOfEachKind) {
+  Config c = generous_machine();
+  c.cull_planes.count = 4;
+  c.bundles.size = 4;
+  accel::Accel accel;
+  accel.procedural_primitives = true;
+  c.topology.overrides.push_back({1, c.testers});
+  const RunFeatures features = features_of(c, accel);
+  const std::vector<WhatIf> all = what_ifs(c, accel);
+  for (const UnitKindRow& row : kUnitKinds) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == row.work; });
+    ASSERT_EQ(found != all.end(), features.show(row.shown)) << row.work;
+    if (found == all.end()) continue;
+    Config relaxed = c;
+    found->apply(relaxed);
+    for (const auto [kind, units] : relaxed.testers.units) {
+      const std::int64_t factor = kind == row.kind ? 2 : 1;
+      EXPECT_EQ(units.units, factor * c.testers.units[kind].units) << row.work;
+      EXPECT_EQ(relaxed.topology.overrides[0].testers.units[kind].units, units.units) << row.work;
+    }
+  }
 }
 
 std::int64_t pick(std::mt19937& random, std::initializer_list<std::int64_t> values) {

@@ -1,4 +1,4 @@
-// How a run ends: to its end, early, stuck, or with somebody's exception.
+// The ways in which a run ends: complete, early, stuck, or with an exception of the workload.
 #include "ringbus/native/native_engine.h"
 
 #include <stdexcept>

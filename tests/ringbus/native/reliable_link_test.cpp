@@ -208,18 +208,18 @@ TEST(RetransmitTimer, LearnsHowLongAnAnswerTakesAndDoublesInVain) {
   EXPECT_EQ(slow, 2);
 }
 
-TEST(FaultInjector, TheSameSeedGivesTheSameFates) {
+TEST(FaultInjector, TheSameSeedGivesTheSameFaults) {
   Config config = faulty(0.25, 0, 0.5, 0, 0);
   LinkFaultCounts a, b, other;
   const FaultsConfig& f = config.faults;
   FaultInjector first(f.links, f.seed, 5), again(f.links, f.seed, 5), stream(f.links, f.seed, 6);
   std::uint64_t drops = 0, same = 0;
   for (int i = 0; i < 4000; ++i) {
-    const FaultDraw fate = first.next(a), twin = again.next(b), else_where = stream.next(other);
-    EXPECT_EQ(fate.drop, twin.drop);
-    EXPECT_EQ(fate.bits, twin.bits);
-    drops += fate.drop;
-    same += fate.bits == else_where.bits;
+    const FaultDraw faults = first.next(a), twin = again.next(b), else_where = stream.next(other);
+    EXPECT_EQ(faults.drop, twin.drop);
+    EXPECT_EQ(faults.bits, twin.bits);
+    drops += faults.drop;
+    same += faults.bits == else_where.bits;
   }
   EXPECT_EQ(a, b);
   EXPECT_EQ(same, 0u);
@@ -260,7 +260,7 @@ TEST(LinkFaultTimer, PlacesComeBackThoughAcknowledgementsFail) {
     const auto delivery = timer.send(now, 3);
     const cycle::Cycle at = std::max(delivery.arrival + 10, now);
     ++sent;
-    back += timer.made_good(at).places;
+    back += timer.recovered(at).places;
     const std::uint32_t heard = timer.acknowledge(at);
     back += heard;
     late += heard == 0;
@@ -273,7 +273,7 @@ TEST(LinkFaultTimer, PlacesComeBackThoughAcknowledgementsFail) {
       ASSERT_NE(timer.next(), cycle::kNever);
       ASSERT_GE(timer.next(), at);
       now = timer.next();
-      back += timer.made_good(now).places;
+      back += timer.recovered(now).places;
     }
   }
   EXPECT_GT(late, 100u);

@@ -15,8 +15,8 @@
 
 namespace carousel::ringbus {
 
-// Three queues that a stress must catch. All is done under a mutex, so that what is wrong is what the comment says
-// and no data race.
+// Queues with errors that a stress run must find. Everything is done under a mutex, so that the error is the one that
+// the comment names and no data race.
 
 template <class T>
 class BrokenBase {
@@ -36,7 +36,7 @@ class BrokenBase {
   std::deque<T> values_;
 };
 
-/// When its index has gone round a few times, the newest value goes over the oldest.
+/// When its index has gone round a few times, the newest value overwrites the oldest.
 template <class T>
 class LosesAtWrap : public BrokenBase<T> {
  public:
@@ -102,7 +102,7 @@ class Tears : public BrokenBase<T> {
       std::swap(this->values_.back().words.back(), late_);
       const std::size_t popped = popped_, place = this->values_.size() - 1;
       lock.unlock();
-      std::this_thread::sleep_for(std::chrono::microseconds(300));  // somebody looks meanwhile
+      std::this_thread::sleep_for(std::chrono::microseconds(300));  // so that a consumer pops meanwhile
       lock.lock();
       if (popped_ - popped <= place) this->values_[place - (popped_ - popped)].words.back() = value.words.back();
     }
@@ -143,7 +143,7 @@ class Sticks : public Reorders<T> {
   std::size_t pops_ = 0;
 };
 
-/// A call that never comes back once it has been called often enough.
+/// Has a call that never returns once it has been called often enough.
 template <class T>
 class NeverReturns : public Sticks<T> {
  public:

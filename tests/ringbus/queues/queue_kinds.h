@@ -6,8 +6,8 @@
 
 namespace carousel::ringbus {
 
-/// The queues a test may use. ThreadSanitizer reports Debian's TBB, whose inside it cannot see, and moodycamel's
-/// queue, whose atomic fences it does not model.
+/// The queues that a test may use. ThreadSanitizer reports Debian's TBB, whose code is not instrumented, and
+/// moodycamel's queue, whose atomic fences it does not model.
 inline std::vector<QueueKind> queue_kinds() {
 #ifdef __SANITIZE_THREAD__
   return {QueueKind::kSpscRing, QueueKind::kMpmcRing, QueueKind::kAtomicQueue, QueueKind::kBoostSpsc,

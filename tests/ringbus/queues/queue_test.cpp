@@ -1,4 +1,4 @@
-// One test for every queue a link can be made of, whatever it is made of.
+// The same tests for every queue that a link can be made of.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -21,7 +21,8 @@ namespace {
 template <class Q>
 class Queue : public testing::Test {};
 
-// ThreadSanitizer sees nothing of what Debian's TBB does inside, and does not model moodycamel's atomic fences.
+// ThreadSanitizer sees nothing of Debian's TBB, which is not instrumented, and does not model moodycamel's atomic
+// fences.
 #ifdef __SANITIZE_THREAD__
 using Kinds = testing::Types<SpscRing<std::uint64_t>, MutexQueue<std::uint64_t>, MpmcRing<std::uint64_t>,
                              AtomicQueue<std::uint64_t>, BoostSpscQueue<std::uint64_t>>;
@@ -108,7 +109,7 @@ TYPED_TEST(Queue, BehavesAsADequeUnderRandomCalls) {
   }
 }
 
-// Two threads: nothing lost, nothing doubled, order kept, and what the producer wrote before is seen.
+// Two threads: nothing is lost or doubled, the order is kept, and the consumer sees what the producer wrote before.
 TYPED_TEST(Queue, ConservesBetweenTwoThreads) {
   constexpr std::uint64_t kValues = kThreaded;
   for (const std::size_t capacity : {1u, 2u, 3u, 64u}) {
@@ -167,8 +168,8 @@ TYPED_TEST(Queue, FreePlacesIsALowerBoundForTheProducer) {
   }
 }
 
-// Two producers and two consumers, where the kind allows it: each value once, each producer's in order, and what a
-// producer wrote before is seen.
+// Two producers and two consumers, where the kind allows it: each value comes once, each producer's values come in
+// order, and consumers see what a producer wrote before.
 TYPED_TEST(Queue, ConservesAmongFourThreads) {
   if constexpr (TypeParam::kProducers == Parties::kMany && TypeParam::kConsumers == Parties::kMany) {
     constexpr std::uint64_t kEach = kThreaded / 4;

@@ -1,4 +1,4 @@
-// The stress of queues: sound ones come through every pattern, broken ones are caught and named.
+// The stress run of queues: sound queues pass every pattern, and the errors of broken ones are found and named.
 #include <gtest/gtest.h>
 
 #include "own_queue.h"  // the example of docs/queues.md
@@ -25,7 +25,7 @@ TrialOptions short_trial(Pattern pattern) {
   return options;
 }
 
-/// Until all messages are sent, however slow the machine: what is broken shows only after some.
+/// Runs until all messages are sent, however slow the machine is, as errors show only after some of them.
 TrialOptions full_trial(Pattern pattern) {
   TrialOptions options = short_trial(pattern);
   options.messages = 2000;
@@ -148,7 +148,7 @@ TEST(Stress, CatchesWhatIsStuckAndCallsThatNeverReturn) {
   const TrialResult sticks = run_trial(queue_under_test<Sticks>("sticks"), options);
   EXPECT_TRUE(sticks.violations.stuck);
   EXPECT_NE(sticks.violations.detail.find("nothing moved for 150 ms"), std::string::npos) << sticks.violations.detail;
-#ifndef __SANITIZE_THREAD__  // it leaves a thread behind, and that is what ThreadSanitizer would tell
+#ifndef __SANITIZE_THREAD__  // ThreadSanitizer would report the thread that is left behind
   const TrialResult hangs = run_trial(queue_under_test<NeverReturns>("hangs"), options);
   EXPECT_TRUE(hangs.violations.stuck);
   EXPECT_NE(hangs.violations.detail.find("had not returned"), std::string::npos) << hangs.violations.detail;

@@ -33,7 +33,7 @@ BundlesConfig of_size(std::int64_t size, double threshold = 0.1) {
 
 Groups groups_of(BundleBuilder& builder, const RayBatch& rays) {
   std::vector<std::uint32_t> order{77};
-  std::vector<std::uint8_t> sizes{77};  // what was there is gone
+  std::vector<std::uint8_t> sizes{77};  // overwritten
   builder.group(rays, order, sizes);
   Groups groups;
   std::size_t at = 0;
@@ -65,7 +65,7 @@ RayBatch camera_rays(int pixels) {
   return rays;
 }
 
-/// Some that resemble each other, some that do not, and some that no bundle takes.
+/// Some rays that resemble each other, some that do not, and some that no bundle takes.
 RayBatch mixed_batch(Random& random, std::size_t count) {
   RayBatch rays;
   Vec3 origin{0}, direction{0, 0, 1};
@@ -114,7 +114,7 @@ TEST(BundleBuilder, PutsEveryRayInExactlyOneGroupThatObeysTheConfiguration) {
     SCOPED_TRACE("round " + std::to_string(round));
     const BundlesConfig config = any_config(random);
     BundleBuilder builder(config, kSceneSize);
-    for (int call = 0; call < 2; ++call) {  // nothing is left from one to the next
+    for (int call = 0; call < 2; ++call) {  // a call leaves nothing behind
       const RayBatch rays = mixed_batch(random, random.below(300));
       std::vector<int> seen(rays.size());
       for (const auto& group : groups_of(builder, rays)) {
@@ -162,7 +162,7 @@ TEST(BundleBuilder, GroupsTheSameRaysTheSameWay) {
   }
 }
 
-// Unit directions, so that what the thresholds are of is plain.
+// Unit directions, so that it is plain what the thresholds measure.
 TEST(BundleBuilder, KeepsBundlesBelowTheThreshold) {
   Random random(1000 * std::uint64_t{run_seed()} + 83);
   RayBatch rays;
@@ -198,7 +198,7 @@ TEST(BundleBuilder, KeepsBundlesBelowTheThreshold) {
         spread_out |= range > threshold;
       }
       EXPECT_GT(bundled, 100u) << enum_name(similarity);
-      // What the similarity does not look at is free.
+      // The similarity leaves the other ranges free.
       if (similarity == Builder::Similarity::kComponentRange) {
         EXPECT_TRUE(far_apart);
       }
@@ -215,7 +215,7 @@ TEST(BundleBuilder, PercentIsOfWhatTheBundleWasBefore) {
   // Ranges 0.1, 0.1, 0.15 are growth by no more than a half; 0.25 is more.
   RayBatch rays{ray_along(0.1f), ray_along(0.2f), ray_along(0.15f), ray_along(0.249f), ray_along(0.35f)};
   EXPECT_EQ(groups_of(config, rays), (Groups{{0, 1, 2, 3}, {4}}));
-  // What has no size may grow to the threshold.
+  // A bundle without a size may grow to the threshold.
   rays = {ray_along(0.1f), ray_along(0.1f), ray_along(0.55f), ray_along(1.2f)};
   EXPECT_EQ(groups_of(config, rays), (Groups{{0, 1, 2}, {3}}));
 }
@@ -233,7 +233,7 @@ TEST(BundleBuilder, FillsBundlesFromCameraRays) {
 TEST(BundleBuilder, ARayJoinsTheBundleThatItFitsBest) {
   BundlesConfig config = of_size(4, 0.3);
   config.builder.open = 2;
-  // Two bundles, 0.4 apart; then one between, closer to the second.
+  // Two bundles, 0.4 apart, then a ray between them, closer to the second.
   EXPECT_EQ(groups_of(config, {ray_along(0.1f), ray_along(0.5f), ray_along(0.35f)}), (Groups{{0}, {1, 2}}));
   EXPECT_EQ(groups_of(config, {ray_along(0.1f), ray_along(0.5f), ray_along(0.25f)}), (Groups{{0, 2}, {1}}));
 }

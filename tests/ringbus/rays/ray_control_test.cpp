@@ -129,7 +129,7 @@ TEST(RayControl, GivesEverySlotOnceUntilItIsFreed) {
 TEST(RayControl, RaysWaitForSlotsInTheirOrder) {
   Bench bench(Placement::kBalanced, Home::kIssuer, 2, 2, 4);
   bench.control->submit(rays(10));
-  bench.control->submit(rays(3, 10));  // behind those that wait
+  bench.control->submit(rays(3, 10));  // behind the waiting rays
   std::vector<std::uint32_t> order;
   for (int round = 0; round < 20; ++round) {
     for (const auto& [issuer, group] : bench.collect_all()) {
@@ -149,7 +149,7 @@ TEST(RayControl, RaysWaitForSlotsInTheirOrder) {
   EXPECT_FALSE(bench.control->place_waiting());
 }
 
-// Every ray that is submitted comes out once, in a slot nobody else has, whatever is freed when.
+// Every ray that is submitted comes out once, in a slot that no other ray has, in whatever order slots are freed.
 TEST(RayControl, LosesAndDoublesNothingUnderRandomCalls) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ringbus/resource/ray_stacks.h"
+#include "ringbus/resource/traversal/ray_stacks.h"
 
 namespace carousel::ringbus {
 namespace {
@@ -35,7 +35,7 @@ RayRequest request(float tmax = kInfinity) {
 
 TEST(RayStore, LoadsAFreshRecord) {
   RayStore store(ResourceId(3), 5);
-  store.record(2).hit = {1, 0.5f, 0.5f, 4, 4};  // what an earlier ray left
+  store.record(2).hit = {1, 0.5f, 0.5f, 4, 4};  // left by an earlier ray
   store.record(2).tag.flags = 0xff;
   const RayId id = store.load(2, request(8), 3);
   EXPECT_TRUE(store.owns(id));

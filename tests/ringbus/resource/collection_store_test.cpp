@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/config/enum_names.h"
+
 namespace carousel::ringbus {
 namespace {
 
@@ -51,6 +53,19 @@ std::vector<std::uint32_t> drain(CollectionStore& store) {
 }
 
 using Keys = std::vector<std::uint32_t>;
+
+TEST(IssuePolicy, EveryNameHasItsRow) {
+  for (const auto& entry : kEnumNames<Policy>) EXPECT_EQ(issue_policy(entry.value).policy, entry.value) << entry.name;
+}
+
+// The facts of a policy's table row, whose order the tests below see only through the store.
+TEST(IssuePolicy, BucketsStayInTheirRange) {
+  const PolicyScale scale{8, 12, 10};
+  for (const auto& entry : kEnumNames<Policy>)
+    for (const float entered : {-1.0f, 0.0f, 1e-30f, 3.0f, 1e30f, kInfinity})
+      for (const std::uint32_t count : {1u, 8u, 1000000u})
+        EXPECT_LT(issue_policy(entry.value).bucket({key(1), count, entered, 65535}, scale), PriorityLists::kBuckets);
+}
 
 TEST(CollectionStore, FullestFirst) {
   CollectionStore store(settings(Policy::kFullest, Select::kStrict));
@@ -136,7 +151,8 @@ TEST(CollectionStore, CountsBlocksBeyondItsCapacityAsSpilled) {
   EXPECT_EQ(store.free_blocks(), 2);
 }
 
-// Against a map of lists: what is offered is allowed by the policy, what is taken is what was put in.
+// Against a map of lists: the policy allows every collection that is offered, and the rays that are taken are those
+// that were added.
 TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -190,13 +206,13 @@ TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
             case Policy::kNearest:
               ASSERT_LE(c.entry, other.entry * 1.126f);
               break;                // buckets of an eighth octave
-            case Policy::kFullest:  // full is as full as it gets: two ready sizes fill the scale
+            case Policy::kFullest:  // two ready sizes fill the scale
               if (other.rays.size() < 2 * s.ready) {
                 ASSERT_GE((c.rays.size() + 1) * 128 / s.ready + 1, other.rays.size() * 128 / s.ready);
               }
               break;
             default:
-              break;  // age: below, without `full first`, where readiness moves nothing
+              break;  // age is tested below, without `full first`, where readiness changes no order
           }
           if (s.select != Select::kStrict) continue;
           ASSERT_TRUE(s.policy != Policy::kOldest || c.born <= other.born);

@@ -17,7 +17,7 @@
 
 namespace carousel::ringbus {
 
-/// Resources without an engine: a test carries the packets about, in any order it likes.
+/// Resources without an engine: the test moves the packets, in any order.
 struct MockRing {
   Config config;
   accel::Accel accel;

@@ -1,5 +1,5 @@
-// Random machines with everything scarce: rays and packets are conserved, runs end, and the paths that hardly
-// ever run have really run.
+// Random machines with little of everything: rays and packets are conserved, runs end, and the code that runs only
+// rarely has run.
 #include <gtest/gtest.h>
 
 #include "tests/ringbus/identity/machine_space.h"
@@ -26,7 +26,7 @@ TEST(RarePaths, RunAndLoseNothing) {
   ResourceStatistics sum;
   std::uint64_t spilled = 0, refusals = 0, reused = 0, waits = 0, bubbles = 0;
   const auto stalls = [&](StallReason reason) { return sum.stalls[reason]; };
-  const auto count = static_cast<std::uint32_t>(std::max(80, cell_count(80)));  // fewer might not run everything
+  const auto count = static_cast<std::uint32_t>(std::max(80, cell_count(80)));  // fewer might miss some of the code
   const auto keep_running = [&](std::uint32_t done) {
     return done < count || (stalls(StallReason::kReserve) == 0 && done < 20 * count);
   };

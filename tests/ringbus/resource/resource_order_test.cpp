@@ -1,5 +1,5 @@
-// Packets in any order: a mock engine that shuffles every step, with slots reused at once, so that a ray that
-// completes too early is found by a packet that still carries its ID, and one too late is missing at the end.
+// Packets in any order: a mock engine that shuffles every step and reuses slots at once. A packet that still carries
+// the ID of a ray that completed too early finds out, and a ray that completes too late is missing at the end.
 #include <gtest/gtest.h>
 
 #include "accel/traverse/reference_tracer.h"
@@ -84,7 +84,7 @@ class Shuffler {
     if (offer == Resource::Offer::kPacket) under_way_.push_back({std::move(packet)});
   }
 
-  // Around the ring from its owner; the owner retires it.
+  // A packet goes round the ring from its owner, which retires it.
   void move() {
     if (under_way_.empty()) return issue();
     std::swap(under_way_[random_() % under_way_.size()], under_way_.back());

@@ -1,4 +1,4 @@
-// One packet, step by step: exactly what it costs and changes.
+// One packet, step by step: its exact cost and effects.
 #include "ringbus/resource/resource.h"
 
 #include <bit>
@@ -29,7 +29,7 @@ Config config(Traversal traversal = Traversal::kSpread, PacketShapes shapes = Pa
   return c;
 }
 
-/// A sphere, and rays of which most hit it, four at each of two resources.
+/// A sphere, and eight rays, four at each of two resources, most of which hit it.
 class ResourceTest : public testing::Test {
  protected:
   void start(const Config& c, const Vec3& direction = {0, 0, 1}) {
@@ -62,7 +62,12 @@ TEST_F(ResourceTest, OneStripTestsLocalRaysAndNoOthers) {
   EXPECT_EQ(resource(0).packets_in_flight(), 1u);
   const auto boxes = static_cast<std::uint64_t>(ring_->accel.nodes[packet_.key.ref.node()].count);
 
-  resource(0).test(packet_);
+  const TestOutcome outcome = resource(0).test(packet_);
+  EXPECT_EQ(outcome.rays, 4u);
+  EXPECT_EQ(outcome.reads, 4u);
+  EXPECT_EQ(outcome.counts.box, 4 * boxes);
+  EXPECT_EQ(outcome.bundles, nullptr);
+  EXPECT_TRUE(outcome.any_hit_calls.empty());
   EXPECT_EQ(statistics(0).visits, 1u);
   EXPECT_EQ(statistics(0).local_rays, 4u);
   EXPECT_EQ(statistics(0).seen_rays, 8u);
@@ -83,7 +88,7 @@ TEST_F(ResourceTest, OneStripTestsLocalRaysAndNoOthers) {
   }
   EXPECT_GT(memberships, 4u);
   EXPECT_EQ(resource(0).completed().size() + resource(1).completed().size(), done);
-  EXPECT_EQ(resource(0).collections().memberships(), 0u);  // not before it is home
+  EXPECT_EQ(resource(0).collections().memberships(), 0u);  // not before it is back
   resource(0).retire(packet_);
   EXPECT_EQ(resource(0).collections().memberships(), memberships);
   EXPECT_EQ(statistics(0).memberships, memberships);

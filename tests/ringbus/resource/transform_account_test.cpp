@@ -1,5 +1,5 @@
-// What the transform unit is charged with: never a bit of a hit, but tests, cycles and bytes.
-#include "ringbus/resource/transform_account.h"
+// The transform unit's charges: tests, cycles and bytes change with the policies, and no bit of a hit does.
+#include "ringbus/resource/visit/transform_account.h"
 
 #include <gtest/gtest.h>
 
@@ -112,8 +112,8 @@ TEST(Tester, InvertsBeforeItTransforms) {
   EXPECT_EQ(plain.strip(100, counts), 110u);  // transformed at 104 to 106, their boxes tested at 108 to 110
   counts.inversions = 1;
   EXPECT_EQ(inverting.strip(100, counts), 115u);  // two passes, begun at 100 and 101: at hand at 105
-  EXPECT_EQ(plain.transform.busy(), 3u);
-  EXPECT_EQ(inverting.transform.busy(), 5u);
+  EXPECT_EQ(plain.bank(UnitKind::kTransform).busy(), 3u);
+  EXPECT_EQ(inverting.bank(UnitKind::kTransform).busy(), 5u);
 }
 
 struct Machine {
@@ -146,7 +146,8 @@ TEST(TransformPolicies, ChangeTestsBytesAndCyclesButNoHit) {
         c.bvh.treelet_triangles = 200;
         c.rays.slots_per_resource = 64;
         c.memory.fetch = fetch;
-        c.testers.units[UnitKind::kTransform] = {1, 200, 200};  // what a run waits for; else order and caches decide
+        c.testers.units[UnitKind::kTransform] = {1, 200,
+                                                 200};  // the limit of the run; otherwise order and caches decide
         const Machine today = run(scene, c);
         c.accuracy.instance_data = Data::kForward;
         const Machine forward = run(scene, c);

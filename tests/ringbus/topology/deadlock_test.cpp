@@ -1,4 +1,4 @@
-// What is said before a run: whether it can deadlock, what storage it needs, what memory it takes.
+// The checks before a run: whether it can deadlock, the storage it needs, the memory it takes.
 #include "ringbus/protocol/deadlock.h"
 
 #include <gtest/gtest.h>

@@ -23,7 +23,7 @@ struct BookSimRow {
 };
 
 std::vector<BookSimRow> booksim_rows() {
-  std::ifstream file(std::string(CAROUSEL_SOURCE_DIR) + "/tests/data/booksim2.csv");
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/tests/data/booksim2.csv");
   std::vector<BookSimRow> rows;
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with('#') || line.starts_with("pipeline")) continue;

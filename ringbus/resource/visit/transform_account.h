@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
 #include "core/config/config.h"
+#include "core/statistics/intersection_counts.h"
 #include "core/statistics/ray_bytes.h"
+#include "core/types/ray.h"
 
 namespace carousel::ringbus {
 
-/// What bringing a resource's rays to model space costs hardware that follows the configuration: the kernels do it
-/// anew for every strip. One resource's, one thread at a time.
+/// Counts what it costs hardware that follows the configuration to bring a resource's rays to model space; the kernels
+/// do it anew for every strip. It belongs to one resource and is used by one thread at a time.
 class TransformAccount {
  public:
   /// Keeps a reference to `accel`.
@@ -22,12 +25,12 @@ class TransformAccount {
         forward_(accel::stored_instance_data(accuracy) == AccuracyConfig::InstanceData::kForward),
         kept_(store_ ? slots : 0) {}
 
-  /// Whether rays are moved for `instance` at all.
+  /// True if rays are transformed for `instance` at all.
   bool moves(std::uint32_t instance) const {
     return instance != kNoInstance && !accel_.instances[instance].transform.identity;
   }
-  /// Whether the ray in `slot`, about to be tested in `instance`, has to be transformed; its copy may be kept from then
-  /// on. `instance` moves rays.
+  /// True if the ray in `slot`, about to be tested in `instance`, has to be transformed; its copy may be kept from then
+  /// on. Needs moves(instance).
   bool needs(std::uint32_t slot, std::uint32_t instance) {
     if (!store_) return true;
     std::vector<std::uint32_t>& kept = kept_[slot];
@@ -41,13 +44,23 @@ class TransformAccount {
     bytes_.peak = std::max(bytes_.peak, held_);
     return true;
   }
+  /// Charges a visit: of the rays in `slots`, those that are not done and have to be transformed for `instance`, and
+  /// one inversion for all of them.
+  IntersectionCounts charge(const RayRecord* records, std::span<const std::uint32_t> slots, std::uint32_t instance) {
+    IntersectionCounts counts;
+    if (!moves(instance)) return counts;
+    for (const std::uint32_t slot : slots)
+      if ((records[slot].tag.flags & kRayDone) == 0) counts.transforms += needs(slot, instance);
+    counts.inversions = counts.transforms > 0 && inverts(instance);
+    return counts;
+  }
   /// The ray in `slot` is done.
   void forget(std::uint32_t slot) {
     if (!store_) return;
     held_ -= accel::kTransformedRayBytes * kept_[slot].size();
     kept_[slot].clear();
   }
-  /// Whether the inverse has to be computed before rays are moved. A transpose needs no computing.
+  /// True if the inverse has to be computed before rays are transformed. A transpose needs no computing.
   bool inverts(std::uint32_t instance) const { return forward_ && !accel_.instances[instance].transform.transposed; }
 
   const TransformedRayBytes& bytes() const { return bytes_; }

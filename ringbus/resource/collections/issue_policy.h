@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+#include "accel/structure/node.h"
+#include "core/config/config.h"
+
+namespace carousel::ringbus {
+
+/// What a policy may know of a collection.
+struct CollectionFacts {
+  accel::NodeKey key;
+  std::uint32_t rays = 0;
+  float entry = 0;          ///< the nearest entry into the node of any of the rays
+  std::uint16_t depth = 0;  ///< of the node, in strips below the root
+};
+
+/// What a policy measures collections by.
+struct PolicyScale {
+  std::uint32_t ready = 32;  ///< rays that make a collection ready
+  int max_depth = 1;         ///< of the structure, in strips
+  float scene_size = 1;
+};
+
+/// Decides which packet goes next: `collections.policy`, a row of the table in issue_policy.cpp.
+///
+/// Collections stand in 256 buckets (PriorityLists) and the first of the lowest bucket goes first. Those that are ready
+/// go before the others, unless `collections.select` is strict (CollectionStore::best).
+struct IssuePolicy {
+  Policy policy;
+  /// The bucket of a collection, below PriorityLists::kBuckets. Called whenever rays have joined or left it.
+  std::uint32_t (*bucket)(const CollectionFacts& collection, const PolicyScale& scale);
+  bool newest_first = false;   ///< within a bucket; otherwise the oldest goes first
+  bool reads_entries = false;  ///< packets must bring back the entries of their rays into the children
+};
+
+const IssuePolicy& issue_policy(Policy policy);
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,95 @@
+#include "ringbus/resource/offering.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace carousel::ringbus {
+
+Offer Offering::offer(bool partial, Packet& packet) {
+  if (!busy()) {
+    bool storage = false;
+    const std::optional<CollectionId> chosen = choose(partial, storage);
+    if (!chosen) return storage ? Offer::kStorage : Offer::kNothing;
+    take(*chosen);
+  } else if (in_flight_ > 0 && !storage_.fits(traversal_.blocks_needed(block_.key, 0), 0)) {
+    return Offer::kStorage;
+  }
+  fill(packet);
+  if (++block_.next_packet == block_.packets) block_.rays.clear();
+  return Offer::kPacket;
+}
+
+std::optional<CollectionId> Offering::choose(bool partial, bool& storage) {
+  const std::optional<CollectionId> best = collections_.best(partial);
+  if (!best) return best;
+  const std::uint32_t needed = traversal_.blocks_needed(collections_.key(*best), collections_.front_rays(*best));
+  if (storage_.fits(needed, 1)) return best;
+  // One packet at a time, deepest first: each level down needs at most width - 1 blocks more, which the reserve holds,
+  // and gives them all back when its subtree is done.
+  if (in_flight_ > 0) {
+    storage = true;
+    return std::nullopt;
+  }
+  record({.kind = EventKind::kStall, .resource = rays_.owner(), .reason = StallReason::kReserve});
+  return collections_.deepest();
+}
+
+void Offering::take(CollectionId chosen) {
+  block_.key = collections_.key(chosen);
+  block_.depth = collections_.depth(chosen);
+  block_.entry = collections_.entry(chosen);
+  collections_.take(chosen, block_.rays);
+  block_.next_packet = 0;
+  // Memberships that move to another home are not tested on their way: one packet carries them.
+  const bool tested = homes_.of(block_.key) == rays_.owner();
+  block_.packets = tested ? static_cast<std::uint32_t>(traversal_.tests_at(block_.key)) : 1;
+}
+
+void Offering::fill(Packet& packet) {
+  const std::vector<RayId>& rays = block_.rays;
+  packet.owner = rays_.owner();
+  packet.home = homes_.of(block_.key);
+  packet.kind = packet.home == packet.owner ? PacketKind::kTest : PacketKind::kMemberships;
+  packet.key = block_.key;
+  packet.depth = block_.depth;
+  packet.lanes = traversal_.lanes(block_.next_packet);
+  packet.reserved_blocks = packet.kind == PacketKind::kTest
+                               ? traversal_.blocks_needed(block_.key, static_cast<std::uint32_t>(rays.size()))
+                               : 0;
+  std::fill(std::begin(packet.nearest), std::end(packet.nearest), kInfinity);
+  if (packet.kind == PacketKind::kMemberships) packet.nearest[0] = block_.entry;
+  packet.members.resize(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0};
+  traversal_.prepare(packet);
+  mark_owners(packet);
+  storage_.issue(packet.reserved_blocks);
+  ++in_flight_;
+  record({.kind = EventKind::kIssue,
+          .resource = rays_.owner(),
+          .key = block_.key,
+          .rays = static_cast<std::uint32_t>(rays.size()),
+          .members = packet.members});
+}
+
+void Offering::mark_owners(Packet& packet) const {
+  std::fill(packet.owners.begin(), packet.owners.end(), 0);
+  const auto mark = [&](ResourceId owner) {
+    packet.owners[owner.value / 64] |= std::uint64_t{1} << (owner.value % 64);
+  };
+  if (local_) return mark(rays_.owner());
+  for (const RayId ray : block_.rays) mark(rays_.layout().owner(ray));
+}
+
+void Offering::retire(const Packet& packet, std::size_t joined) {
+  storage_.retire(packet.reserved_blocks, packet.members.size(), joined);
+  --in_flight_;
+}
+
+std::uint32_t Offering::discard() {
+  block_ = {};
+  storage_.discard();
+  return std::exchange(in_flight_, 0);
+}
+
+}  // namespace carousel::ringbus

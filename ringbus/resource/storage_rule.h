@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/config/config.h"
+#include "ringbus/resource/collections/collection_store.h"
+
+namespace carousel::ringbus {
+
+/// Collection blocks that must stay free so that draining deepest first cannot run out (DESIGN.md section 4): a packet
+/// retired at each level leaves at most width - 1 more blocks than it took, and one more strip's worth is in flight.
+/// With bundles an ID may become as many at one level as a bundle has rays. None are needed where a ray is in one
+/// collection at a time, as a new ray enters only if a block is left for it.
+std::uint32_t reserve_blocks(const CollectionsConfig& collections, const BundlesConfig& bundles, int width,
+                             int max_depth);
+
+/// Keeps bounded collection storage (`when_full: reserve`) from blocking: says how many new rays may enter and when a
+/// packet may be issued. With `when_full: spill` everything may.
+class StorageRule {
+ public:
+  /// `reserve` as reserve_blocks() says. `block_rays` is `packets.rays`. Keeps a reference to `store`.
+  StorageRule(const CollectionsConfig& config, std::int64_t block_rays, std::uint32_t reserve,
+              const CollectionStore& store);
+
+  /// How many rays may join the root's collection now.
+  std::size_t admissible() const;
+  void admit(std::size_t rays) { rays_held_ += static_cast<std::uint32_t>(rays); }
+
+  /// True if a packet may be issued whose retirement may take `needed` blocks, when its issue frees `freed`.
+  bool fits(std::uint32_t needed, std::uint32_t freed) const;
+  void issue(std::uint32_t needed) { blocks_promised_ += needed; }
+  /// A packet that was issued with `needed` is back; of its `rays`, `joined` are in collections again.
+  void retire(std::uint32_t needed, std::size_t rays, std::size_t joined);
+
+  void discard() { blocks_promised_ = rays_held_ = 0; }
+
+ private:
+  bool bounded_, ray_a_block_;
+  std::int64_t block_rays_, blocks_;
+  std::uint32_t reserve_;
+  const CollectionStore& store_;
+  std::uint32_t blocks_promised_ = 0;  // to packets in flight
+  std::uint32_t rays_held_ = 0;        // in collections or in packets; counted where a ray may need a block of its own
+};
+
+}  // namespace carousel::ringbus

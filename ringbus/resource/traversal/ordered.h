@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "ringbus/resource/traversal/ray_stacks.h"
+#include "ringbus/resource/traversal/traversal_method.h"
+#include "ringbus/resource/visit/visit_context.h"
+
+namespace carousel::ringbus {
+
+/// `traversal: ordered`: a ray is in one collection at a time, that of its nearest pending node. The other nodes wait
+/// on a short stack beside its record, and its owner writes the next node into the packet.
+///
+/// A ray waits for one test until it has no node left. A packet's retirement may take a block for each of its rays.
+class OrderedTraversal final : public TraversalMethod {
+ public:
+  explicit OrderedTraversal(const VisitContext& context)
+      : context_(context), stacks_(context.store.slots(), context.accel.width, context.accel.max_depth) {}
+
+  std::int32_t tests_at(accel::NodeKey) const override { return 1; }
+  std::uint32_t lanes(std::uint32_t) const override { return ~0u; }
+  std::uint32_t blocks_needed(accel::NodeKey, std::uint32_t rays) const override { return rays; }
+  void prepare(Packet& packet) const override { packet.next.assign(packet.members.size(), NextNode{}); }
+  void test(Packet& packet, LocalRays& local, TestOutcome& outcome) override;
+  void retire(const Packet& packet, CollectionStore& collections) override;
+  void discard() override;
+
+ private:
+  const VisitContext context_;
+  RayStacks stacks_;
+  std::vector<std::uint8_t> masks_;  // scratch: one a local ray
+  std::vector<float> entries_;       // scratch: kMaxWidth a local ray
+};
+
+}  // namespace carousel::ringbus

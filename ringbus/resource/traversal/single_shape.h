@@ -1,0 +1,31 @@
+#pragma once
+
+#include "ringbus/resource/traversal/spread.h"
+#include "ringbus/resource/traversal/treelets.h"
+
+namespace carousel::ringbus {
+
+/// `packets.shapes: single`: as SpreadTraversal, but a packet tests one shape of a strip.
+///
+/// A ray waits for as many tests at a node as its strip has shapes. Its owner sees one shape a visit, so it must count
+/// shapes: counting nodes would complete nearly every ray early (DESIGN.md section 4). A packet's retirement takes at
+/// most one block.
+class SingleShapeTraversal final : public SpreadTraversal {
+ public:
+  SingleShapeTraversal(const VisitContext& context, const Treelets& treelets)
+      : SpreadTraversal(context), treelets_(treelets) {}
+
+  /// A treelet is one test. The root of an empty scene has no shapes, but its packet must come round all the same.
+  static std::int32_t tests_at(const accel::Accel& accel, const Treelets& treelets, accel::NodeKey key);
+
+  std::int32_t tests_at(accel::NodeKey key) const override { return tests_at(context_.accel, treelets_, key); }
+  std::uint32_t lanes(std::uint32_t n) const override { return 1u << n; }
+  std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t) const override { return key.ref.is_inner() ? 1 : 0; }
+
+ private:
+  void answer(Packet& packet, const LocalRays& local, const std::vector<std::uint8_t>& masks) override;
+
+  Treelets treelets_;
+};
+
+}  // namespace carousel::ringbus

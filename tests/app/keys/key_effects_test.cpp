@@ -1,0 +1,183 @@
+// Every value of every key does something on a machine that the table of rows names, or is refused by name. The
+// machines are read from files by the program's own loader and run as `carousel run` runs them. A key without a row
+// fails.
+#include <algorithm>
+#include <exception>
+#include <set>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/run_command.h"
+#include "core/config/not_built.h"
+#include "core/config/schema.h"
+#include "core/system/error.h"
+#include "tests/app/keys/key_rows.h"
+
+namespace carousel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct KeyOutcome {
+  std::string refusal;  ///< of the configuration; empty if it was run
+  std::string result;   ///< the report apart from the configuration, or the error that ended the run
+  Json config;          ///< as it was run
+};
+
+/// The report without the configuration, without values that repeat it, and without times of the host.
+std::string result_of(Json report) {
+  const Json host = report["host"];
+  report.erase("config");
+  report.erase("host");
+  if (report.contains("shading")) report["shading"].erase("workers");
+  if (report.contains("links") && report["links"].is_array())
+    for (Json& link : report["links"]) {
+      link.erase("depth");
+      link.erase("occupancy");  // of native links, by wall time
+    }
+  return report.dump() + host.value("simd", "") + host.value("threads", Json()).dump();
+}
+
+class KeyEffects : public testing::Test {
+ protected:
+  KeyEffects() { write_scenes_and_rays(program_); }
+
+  KeyOutcome run(BaseMachine machine, const std::vector<std::string>& sets) {
+    program_.write("machine.yaml", text(machine));
+    app::RunArguments arguments;
+    arguments.config = (program_.folder() / "machine.yaml").string();
+    arguments.sets = sets;
+    arguments.out = (program_.folder() / "out").string();
+    arguments.quiet = arguments.force = true;
+    try {
+      app::run_command(arguments);
+    } catch (const ConfigError& error) {
+      return {error.what(), "", {}};
+    } catch (const std::exception& error) {
+      return {"", error.what(), {}};
+    }
+    Json report = Json::parse(program_.read("out/report.json"));
+    Json config = report["config"];
+    return {"", result_of(std::move(report)), std::move(config)};
+  }
+
+  void check(const KeyRow& row) {
+    SCOPED_TRACE(row.key + " of " + text(row.machine) + testing::PrintToString(row.sets));
+    const KeyOutcome base = run(row.machine, row.sets);
+    ASSERT_EQ(base.refusal, "");
+    if (checked_.insert({row.machine, row.sets}).second) {
+      ASSERT_EQ(run(row.machine, row.sets).result, base.result) << "two runs differ";
+    }
+    const std::string own = value_at(base.config, row.key);
+    for (const std::string& value : values(row)) {
+      if (value == own) {
+        EXPECT_TRUE(row.values.empty()) << value << " is the machine's own value";
+        continue;
+      }
+      std::vector<std::string> sets = row.sets;
+      sets.push_back(row.key + "=" + value);
+      const KeyOutcome other = run(row.machine, sets);
+      if (other.refusal.empty())
+        EXPECT_NE(other.result, base.result) << value << " does nothing";
+      else
+        EXPECT_TRUE(may_be_refused(row, value, base.config, other.refusal)) << other.refusal;
+    }
+  }
+
+ private:
+  static std::string value_at(const Json& config, const std::string& key) {
+    const Json::json_pointer at("/" + [&] {
+      std::string path = key;
+      std::replace(path.begin(), path.end(), '.', '/');
+      return path;
+    }());
+    if (!config.contains(at)) return "";
+    return config[at].is_string() ? config[at].get<std::string>() : config[at].dump();
+  }
+
+  static std::vector<std::string> values(const KeyRow& row) {
+    if (!row.values.empty()) return row.values;
+    const std::vector<std::string> names = config::enum_values(row.key);
+    return names.empty() ? std::vector<std::string>{"true", "false"} : names;
+  }
+
+  /// By the table of what the engine does not have; and an instruction set that this machine does not have.
+  static bool may_be_refused(const KeyRow& row, const std::string& value, const Json& config,
+                             const std::string& refusal) {
+    if (refusal.find("--set " + row.key + "=" + value + ": " + row.key + ": ") == refusal.npos) return false;
+    if (row.key == "engine.simd") return true;
+    const auto having = config::engines_with(row.key, value);
+    const auto engine = enum_value<EngineKind>(config["engine"]["kind"].get<std::string>());
+    return having.empty() && engine && refusal.find("is not built yet") != refusal.npos;
+  }
+
+  Program program_;
+  std::set<std::pair<BaseMachine, std::vector<std::string>>> checked_;
+};
+
+/// The keys that have a value of their own.
+std::vector<std::string> leaves() {
+  std::vector<std::string> paths, out;
+  for (const std::string& path : config::config_key_paths())
+    if (path.find(".0.") == path.npos) paths.push_back(path);
+  for (const std::string& path : paths)
+    if (std::none_of(paths.begin(), paths.end(), [&](const auto& other) { return other.starts_with(path + "."); }))
+      out.push_back(path);
+  return out;
+}
+
+const std::vector<std::string> kScene{"scene.", "camera.", "image.", "engine.", "primary", "verify", "workload."};
+const std::vector<std::string> kMachine{"topology.", "rays.",    "packets.", "collections.",
+                                        "memory.",   "shading.", "faults."};
+const std::vector<std::string> kTests{"bvh.", "accuracy.", "cull_planes.", "bundles.", "testers."};
+
+bool is_of(const std::string& key, const std::vector<std::string>& sections) {
+  return std::any_of(sections.begin(), sections.end(),
+                     [&](const std::string& section) { return key.starts_with(section); });
+}
+
+TEST(KeyRows, AreThereForEveryKeyAndNoOther) {
+  std::set<std::string> with_row;
+  for (const KeyRow& row : key_rows()) {
+    with_row.insert(row.key);
+    EXPECT_EQ(is_of(row.key, kScene) + is_of(row.key, kMachine) + is_of(row.key, kTests), 1) << row.key;
+  }
+  for (const std::string& key : keys_without_a_row()) EXPECT_TRUE(with_row.insert(key).second) << key;
+  const std::vector<std::string> keys = leaves();
+  EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()), with_row);
+}
+
+TEST(KeyRows, AreThereForEveryNameOfAnEnumeration) {
+  for (const std::string& key : leaves()) {
+    const std::vector<std::string> names = config::enum_values(key);
+    std::set<std::string> tried;
+    for (const KeyRow& row : key_rows()) {
+      if (row.key != key) continue;
+      const std::vector<std::string>& values = row.values.empty() ? names : row.values;
+      tried.insert(values.begin(), values.end());
+      for (const std::string& set : row.sets)
+        if (set.starts_with(key + "=")) tried.insert(set.substr(key.size() + 1));
+    }
+    for (const std::string& name : names) EXPECT_TRUE(tried.contains(name)) << key << ": " << name;
+  }
+}
+
+TEST_F(KeyEffects, SceneImageAndEngine) {
+  for (const KeyRow& row : key_rows())
+    if (is_of(row.key, kScene)) check(row);
+}
+
+TEST_F(KeyEffects, TheMachine) {
+  for (const KeyRow& row : key_rows())
+    if (is_of(row.key, kMachine)) check(row);
+}
+
+TEST_F(KeyEffects, TheTests) {
+  for (const KeyRow& row : key_rows())
+    if (is_of(row.key, kTests)) check(row);
+}
+
+}  // namespace
+}  // namespace carousel
