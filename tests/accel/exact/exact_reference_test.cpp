@@ -230,8 +230,7 @@ TEST(ExactReference, OracleExplainsWhereTheTracerDiffers) {
     const ExactReference reference(scene, accel);
     const ExactOracle oracle(scene);
     RayBatch rays;  // the oracle knows whole rays from outside the surface
-    for (const RayRequest& r :
-         whole_rays(scene, static_cast<std::size_t>(scaled(4000)), run_seed() + 730))
+    for (const RayRequest& r : whole_rays(scene, static_cast<std::size_t>(scaled(4000)), run_seed() + 730))
       if (rays.size() % 6 != 4)
         rays.push_back(r);
       else

@@ -4,10 +4,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "accel/planes/cull_planes.h"
 #include "accel/build/bounding_spheres.h"
-#include "accel/structure/node_spheres.h"
+#include "accel/planes/cull_planes.h"
 #include "accel/structure/cull_plane.h"
+#include "accel/structure/node_spheres.h"
 #include "tests/accel/structure/passing_scenes.h"
 #include "tests/accel/traverse/brute_force_answers.h"
 #include "tests/accel/traverse/levels.h"

@@ -61,7 +61,7 @@ TEST(RarePaths, BubbleRingDoesNotFillFromQueuesRefilledMeanwhile) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP() << "Debian's TBB is not instrumented and would be reported";
 #endif
-  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 400, 3);
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 200, 3);
   Cell cell;
   Config& c = cell.config;
   cell.threads = 4;
@@ -79,7 +79,7 @@ TEST(RarePaths, BubbleRingDoesNotFillFromQueuesRefilledMeanwhile) {
   c.collections.home = Home::kHash;
   c.collections.when_full = WhenFull::kSpill;
   c.shading.workers = 2;
-  for (int run = 0; run < cell_count(10); ++run) ASSERT_EQ(run_cell(scene, cell).fault, "") << "run " << run;
+  for (int run = 0; run < cell_count(5); ++run) ASSERT_EQ(run_cell(scene, cell).fault, "") << "run " << run;
 }
 
 }  // namespace
