@@ -1,6 +1,7 @@
 #include "accel/certificate/property.h"
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 
 namespace carousel::accel {
 

@@ -2,7 +2,8 @@
 
 #include <chrono>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "core/types/ray.h"
 #include "report/text/ratio.h"
 #include "ringbus/results/run_features.h"

@@ -5,9 +5,10 @@
 #include "accel/traverse/kernels.h"
 #include "app/host/machine_info.h"
 #include "app/host/program_info.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
 #include "core/config/write.h"
 #include "core/numeric/digest.h"
+#include "core/types/enum_names.h"
 #include "report/text/ratio.h"
 
 namespace carousel::app {

@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 
 #include "app/run/render_job.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 #include "ringbus/native/native_engine.h"

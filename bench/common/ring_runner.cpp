@@ -7,8 +7,9 @@
 #include <string_view>
 
 #include "bench/common/list_workload.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
 #include "core/system/error.h"
+#include "core/types/enum_names.h"
 
 namespace carousel::bench {
 

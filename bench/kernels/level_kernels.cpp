@@ -17,9 +17,9 @@
 #include "bench/common/embree_peer.h"
 #include "bench/common/ray_sets.h"
 #include "core/config/config.h"
-#include "core/config/enum_names.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
+#include "core/types/enum_names.h"
 #include "scene/builtin/builtin.h"
 
 namespace carousel::bench {

@@ -10,8 +10,9 @@
 #include "bench/common/ring_runner.h"
 #include "bench/common/scenes.h"
 #include "bench/queues/queue_benchmarks.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
 #include "core/system/executor.h"
+#include "core/types/enum_names.h"
 
 namespace carousel::bench {
 

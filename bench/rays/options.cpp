@@ -2,7 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 
 namespace carousel::bench {
 

@@ -5,8 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
 #include "core/system/error.h"
+#include "core/types/enum_names.h"
 #include "ringbus/native/reliable_link.h"
 #include "ringbus/queues/queue_types.h"
 

@@ -1,6 +1,7 @@
 #include "ringbus/stress/queue_under_test.h"
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus::stress {

@@ -4,7 +4,8 @@
 #include <array>
 #include <bit>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "ringbus/resource/collections/priority_lists.h"
 
 namespace carousel::ringbus {

@@ -5,7 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "ringbus/resource/traversal/bundled.h"
 #include "ringbus/resource/traversal/ordered.h"
 #include "ringbus/resource/traversal/single_shape.h"

@@ -9,7 +9,8 @@
 #include "accel/box/slab.h"
 #include "accel/certificate/kernel_answers.h"
 #include "accel/traverse/kernels.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/traverse/simd_guard.h"
 
 namespace carousel::accel {

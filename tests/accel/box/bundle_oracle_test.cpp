@@ -8,7 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "accel/box/bundle_intersect.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/box/box_levels.h"
 #include "tests/accel/box/bundle_cases.h"
 #include "tests/accel/box/exact_box_hit.h"

@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "accel/certificate/triangle_oracle.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/primitive/adversarial_triangles.h"
 #include "tests/accel/structure/test_scenes.h"

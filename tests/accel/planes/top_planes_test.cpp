@@ -7,7 +7,8 @@
 
 #include "accel/exact/dyadic.h"
 #include "accel/planes/cull_plane_clip.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/planes/plane_rays.h"
 #include "tests/accel/structure/placements.h"

@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "accel/traverse/exact_reference.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/structure/placements.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/test_rays.h"

@@ -9,7 +9,8 @@
 #include "accel/box/slab.h"
 #include "accel/traverse/brute_force.h"
 #include "accel/traverse/verifying_workload.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/test_rays.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "core/config/enum_names.h"
+#include "core/types/enum_names.h"
 
 namespace carousel {
 

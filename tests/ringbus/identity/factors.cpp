@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/ringbus/identity/factor.h"
 #include "tests/ringbus/queues/queue_kinds.h"

@@ -10,7 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "accel/traverse/ray_check.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
 

@@ -6,7 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 
 namespace carousel::ringbus {
 namespace {

@@ -4,7 +4,8 @@
 
 #include "accel/traverse/reference_tracer.h"
 #include "accel/traverse/verifying_workload.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/test_rays.h"
 #include "tests/ringbus/resource/mock_ring.h"

@@ -6,8 +6,9 @@
 
 #include "accel/build/build.h"
 #include "accel/traverse/reference_tracer.h"
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
 #include "core/system/executor.h"
+#include "core/types/enum_names.h"
 #include "scene/builtin/builtin.h"
 #include "tests/support/random_runs.h"
 

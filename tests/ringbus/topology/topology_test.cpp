@@ -5,8 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
 #include "core/config/validate.h"
+#include "core/types/enum_names.h"
 
 namespace carousel::ringbus {
 namespace {

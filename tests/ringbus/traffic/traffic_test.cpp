@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
 #include "core/system/error.h"
+#include "core/types/enum_names.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
 #include "tests/ringbus/support/test_machine.h"

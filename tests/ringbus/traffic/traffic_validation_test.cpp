@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "tests/ringbus/traffic/traffic_config.h"
 

@@ -7,7 +7,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "core/config/enum_names.h"
+#include "core/config/config.h"
+#include "core/types/enum_names.h"
 #include "shading/surface/spawn_point.h"
 #include "tests/shading/path/small_scenes.h"
 #include "tests/support/publish.h"
