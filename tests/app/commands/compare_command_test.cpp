@@ -54,7 +54,7 @@ TEST(CompareCommand, SaysWhenAReportIsAnotherProgramsWork) {
   program.write("changed.json", report.dump());
   const Outcome outcome = program.run({"compare", a, "changed.json"});
   EXPECT_THAT(outcome.out, HasSubstr("engine.epochs.digests.0"));
-  EXPECT_THAT(outcome.out, HasSubstr("one of the reports comes from another program"));
+  EXPECT_THAT(outcome.out, HasSubstr("one of the reports was written by another program"));
 }
 
 TEST(CompareCommand, RefusesWhatIsNoReport) {
