@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/numeric/latency_histogram.h"
+#include "ringbus/cycle/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 
