@@ -7,8 +7,8 @@
 
 namespace carousel::accel {
 
-/// One a node: around the middle of a child's box, as small as goes with the boxes of all primitives below it (of all
-/// instances, above these).
+/// Fits the spheres of every node. A child's sphere is centred in the middle of its box and is as small as the boxes of
+/// all primitives below it allow; above the instances, the boxes of all instances.
 std::vector<NodeSpheres> bounding_spheres(const Accel& accel, Executor& executor);
 
 }  // namespace carousel::accel

@@ -47,7 +47,7 @@ class TriangleOracle {
   bool t_is_nearest(float t) const { return is_nearest(t, depth_, facing_); }
   bool u_is_nearest(float u) const { return is_nearest(u, second_, whole_); }
   bool v_is_nearest(float v) const { return is_nearest(v, third_, whole_); }
-  /// Of the plane, rounded: infinite where the ray does not cross it.
+  /// The distance of the plane, rounded; infinite if the ray does not cross it.
   double t() const { return facing_ == 0 ? kInfinity : big_quotient(depth_, facing_); }
   double u() const { return whole_ == 0 ? kInfinity : big_quotient(second_, whole_); }
   double v() const { return whole_ == 0 ? kInfinity : big_quotient(third_, whole_); }

@@ -97,7 +97,7 @@ class CutLines {
   using V = hn::Vec<Tag>;
   using M = hn::Mask<Tag>;
 
-  /// Of the lanes from `first` on.
+  /// Reads the lanes from `first` on.
   HWY_INLINE CutLines(const Node& node, std::size_t first, const SlabRay& ray, float margins) : ray_(ray) {
     const Tag d;
     const auto half = hn::Set(d, 0.5f);
@@ -197,7 +197,7 @@ HWY_INLINE CutLines::M mask_of(std::uint32_t bits) {
   return hn::LoadMaskBits(CutLines::Tag(), bytes);
 }
 
-/// Of the child lanes in `mask`, whose boxes were hit, those that no plane shows to be missed. With accel.planes_first
+/// Returns the child lanes of `mask`, whose boxes were hit, that no plane shows to be missed. With accel.planes_first
 /// the planes of all `lanes` are tested, and box tests that are not needed are taken from counts.box.
 HWY_NOINLINE std::uint32_t cull_lanes(const Accel& accel, const Node& node, const SlabRay& ray, const Vec3& direction,
                                       std::uint32_t lanes, std::uint32_t mask, IntersectionCounts& counts,

@@ -25,7 +25,7 @@ struct RayResult {
 using RayBatch = std::vector<RayRequest>;
 using HitBatch = std::vector<RayResult>;
 
-/// What produces rays and consumes their hits; the only thing an engine or the reference tracer knows of
+/// Produces rays and consumes their hits. An engine and the reference tracer know nothing else of
 /// shading. `worker` names the calling shader worker, 0 <= worker < the count the workload was made for; a
 /// worker calls from one thread at a time, different workers may call at the same time. Results must not
 /// depend on which worker is called, in what order, or how rays are cut into batches.

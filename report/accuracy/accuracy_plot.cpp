@@ -32,7 +32,7 @@ class Axes {
     least_power_ -= 1;  // where none stand
     most_power_ = std::ceil(std::log10(most_errors) + 0.1);
   }
-  /// What would be beyond the right edge stands there.
+  /// A point beyond the right edge is drawn at the edge.
   double x(double time) const { return kLeft + (kWidth - kLeft - kRight) * std::min(1.0, time / most_time_); }
   double y_of_power(double power) const {
     return kHeight - kBottom - (kHeight - kTop - kBottom) * (power - least_power_) / (most_power_ - least_power_);

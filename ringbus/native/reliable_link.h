@@ -213,7 +213,7 @@ class ReliableLink final : public Link {
   std::size_t depth_;
   std::uint64_t number_;
   std::span<Packet> packets_;
-  // Of the sender.
+  // The sender's state.
   std::vector<Sent> window_;  // by sequence number modulo depth
   std::uint64_t base_ = 0, sent_ = 0,
                 next_ = 0;       // the first frame not acknowledged; not sent; not accepted from the user
@@ -221,7 +221,7 @@ class ReliableLink final : public Link {
   RetransmitTimer retransmit_;
   std::uint64_t sent_again_for_ = ~std::uint64_t{0};  // the frame that was last sent again for an acknowledgement
   std::uint64_t resent_ = 0;
-  // Of the receiver.
+  // The receiver's state.
   alignas(128) std::uint64_t expected_ = 0;
   std::uint64_t discarded_ = 0;
   std::optional<PacketId> held_;  // taken off the wire by tick_receiver()

@@ -87,9 +87,9 @@ class SpscRing {
   // Acquire: pairs with the release in try_pop_n; cells seen as free have been read.
   void look_for_room() { producer_.other = taken_.index.load(std::memory_order_acquire); }
 
-  /// The end of the run that begins at `head`, where the run before it has ended; `head` while there is none. What the
-  /// cell holds from a lap before ends no further than `head`: that run began a lap or more earlier and was at most as
-  /// long as the capacity.
+  /// The end of the run that begins at `head`, where the run before it has ended; `head` while there is none. The
+  /// index that the cell holds from a lap before is at most `head`: that run began a lap or more earlier and was at
+  /// most as long as the capacity.
   std::size_t published_to(std::size_t head) {
     // Acquire: pairs with the release in try_push_n.
     return std::max(head, cell(head).run_end.load(std::memory_order_acquire));

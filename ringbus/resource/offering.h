@@ -15,7 +15,7 @@
 
 namespace carousel::ringbus {
 
-/// What came of asking for a packet.
+/// The answer to a request for a packet.
 enum class Offer {
   kNothing,  ///< no collection may go
   kPacket,

@@ -31,7 +31,7 @@ float unit(float x) {
   return std::clamp(x, 0.0f, 1.0f);
 }
 
-/// Of the material's texture of direction and strength: B.
+/// The B channel of the material's texture of direction and strength.
 float grain_strength(const SurfaceHit& hit) {
   const auto& a = hit.point.material->anisotropy;
   return a.strength > 0.0f ? unit(a.strength * linear(hit, a.texture).z) : 0.0f;

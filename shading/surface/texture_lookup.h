@@ -18,7 +18,7 @@ Vec2 transform_uv(const scene::TextureUse& use, const Vec2& uv);
 /// coordinates that are not finite read its first texel.
 Vec3 lookup(const scene::Scene& scene, TextureId texture, const Vec2& uv, Encoding encoding);
 
-/// The same of the alpha channel, which is linear in any image.
+/// Looks the alpha channel up in the same way; it is linear in any image.
 float lookup_alpha(const scene::Scene& scene, TextureId texture, const Vec2& uv);
 
 }  // namespace carousel::shading

@@ -14,7 +14,7 @@ class KeyPositions {
   KeyPositions() = default;
   KeyPositions(const config::Node& root, std::string file);
 
-  /// Of the value at `path`; of the nearest enclosing section when it is not given; of the file at last.
+  /// The position of the value at `path`, or else of the nearest enclosing section that is given, or else of the file.
   SourcePosition find(std::string_view path) const;
   const std::string& file() const { return file_; }
 

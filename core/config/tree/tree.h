@@ -21,7 +21,7 @@ struct Node {
   SourcePosition position;
 
   const Node* find(std::string_view key) const;
-  /// What a message says was found: "'text'", "12", "a list" ...
+  /// The text that stands behind "found" in a message: "'text'", "12", "a list" ...
   std::string found() const;
 };
 

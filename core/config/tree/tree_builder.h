@@ -21,7 +21,7 @@ class TreeBuilder {
   /// A finished value: a scalar, or a copy that an alias stands for.
   const Node& value(Node node);
 
-  /// Whether the next event has to be a key.
+  /// True if the next event has to be a key.
   bool wants_key() const;
   Node take_root() { return std::move(root_); }
   [[noreturn]] void fail(const SourcePosition& position, std::string message) const;

@@ -16,8 +16,8 @@ bool all_of(std::string_view text, std::string_view allowed) {
   return !text.empty() && text.find_first_not_of(allowed) == text.npos;
 }
 
-/// Decimal digits of an integer of the core schema (decimal, 0x, 0o), or nothing. What does not fit 64 bits
-/// keeps its digits: the reader of the field refuses it with the field's range.
+/// Decimal digits of an integer of the core schema (decimal, 0x, 0o), or nothing. A number that does not
+/// fit 64 bits keeps its digits: the reader of the field refuses it with the field's range.
 std::string decimal_text(std::string_view text) {
   const bool minus = !text.empty() && text[0] == '-';
   if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);

@@ -28,7 +28,7 @@ class SubtreeWalk final : public SubtreeTracer {
       : accel_(accel), step_(step), walk_(transforms) {}
 
   void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) override;
-  /// Of the last trace().
+  /// The account of the last trace().
   const Account& account() const { return account_; }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace carousel::ringbus {
 
-/// What a policy may know of a collection.
+/// The facts of a collection that a policy may use.
 struct CollectionFacts {
   accel::NodeKey key;
   std::uint32_t rays = 0;
@@ -15,7 +15,7 @@ struct CollectionFacts {
   std::uint16_t depth = 0;  ///< of the node, in strips below the root
 };
 
-/// What a policy measures collections by.
+/// The scale by which a policy measures collections.
 struct PolicyScale {
   std::uint32_t ready = 32;  ///< rays that make a collection ready
   int max_depth = 1;         ///< of the structure, in strips
@@ -24,8 +24,8 @@ struct PolicyScale {
 
 /// Decides which packet goes next: `collections.policy`, a row of the table in issue_policy.cpp.
 ///
-/// Collections stand in 256 buckets (PriorityLists) and the first of the lowest bucket goes first. Those that are ready
-/// go before the others, unless `collections.select` is strict (CollectionStore::best).
+/// Collections stand in 256 buckets (PriorityLists) and the first of the lowest bucket goes first. Ready
+/// collections go before the others, unless `collections.select` is strict (CollectionStore::best).
 struct IssuePolicy {
   Policy policy;
   /// The bucket of a collection, below PriorityLists::kBuckets. Called whenever rays have joined or left it.

@@ -14,7 +14,7 @@ struct AnyHitCall {
   std::uint32_t slot, times;
 };
 
-/// What testing a packet at one resource cost. The pointer and the span are valid until the resource's next test.
+/// The cost of testing a packet at one resource. The pointer and the span are valid until the resource's next test.
 struct TestOutcome {
   IntersectionCounts counts;
   std::size_t rays = 0;                   ///< tested one by one, not as members of a bundle

@@ -104,7 +104,7 @@ BundleCase bundle_case(Random& random, int reach, int pace) {
   set_child(c.node, 0, box);
   for (int lane = 1; lane < BundleCase::kBoxes; ++lane) set_child(c.node, lane, neighbour(box, size, random));
 
-  // What the rays have in common.
+  // The properties that all rays share.
   constexpr std::size_t kSizes[] = {1, 4, 16, 32};
   const std::size_t count = kSizes[random.below(4)];
   Vec3 eye = random.in_box(Vec3{-4 * place}, Vec3{4 * place});

@@ -42,8 +42,8 @@ std::string description(const BundleCase& c, const Aabb& box, BoxLevel level, co
 // Widening is of boxes: where a range ends just after the exact entry, every level may find that it ends before.
 constexpr float kSurelyBefore = 1 - 0x1p-21f;
 
-// Whether exact arithmetic must agree that what the level misses is missed: widening makes it so, where the distances
-// are normal floats.
+// True if exact arithmetic must agree with every miss of the level: widening makes it so if the distances are normal
+// floats.
 bool misses_are_exact(BoxLevel level, int pace) {
   return level == BoxLevel::kDouble || (level == BoxLevel::kConservative && pace <= 10);
 }

@@ -8,8 +8,8 @@
 
 namespace carousel::accel {
 
-/// Whether a ray with tmin = 0 meets a closed box before `tmax`, exactly: by doubles where they leave no doubt, by big
-/// integers elsewhere.
+/// Decides exactly if a ray with tmin = 0 meets a closed box before `tmax`: by doubles if they leave no doubt, by big
+/// integers otherwise.
 inline bool exactly_hits(const Ray& ray, const Aabb& box, float tmax) {
   double near = 0, far = tmax;
   for (int axis = 0; axis < 3; ++axis) {

@@ -27,7 +27,7 @@ float next_down(float x) {
   return std::nextafter(x, -kInfinity);
 }
 
-// What has to come out at every level, exact arithmetic being of the same mind.
+// Expects the same hit at every level and from exact arithmetic.
 void expect_hit(const Ray& r, const Aabb& box, float entry, float tmax = kInfinity) {
   const ExactBox exact(r, box, tmax);
   EXPECT_TRUE(exact.hit());

@@ -130,7 +130,7 @@ TEST(Slab, DenormalDirectionsEnterNoLaterThanExactly) {
   }
 }
 
-// What keeps pruning independent of the tree: every box around a hit box is hit, and entered no later.
+// Pruning is independent of the tree because every box around a hit box is hit, and entered no later.
 TEST(Slab, EnclosingBoxIsHitAndEnteredNoLater) {
   Random random(2);
   int both = 0;

@@ -205,7 +205,7 @@ class ExactOracle {
     }
     return {lo, hi};
   }
-  // What moving the vertices by delta does to t: nothing to speak of for a broad triangle, and for one that looks
+  // Moving the vertices by delta changes t hardly at all for a broad triangle; the t of one that looks
   // thinner than delta t may lie anywhere along it. The kernel's rounding moves them otherwise for each edge, so the
   // mean of the corners that it takes need not lie on the ray: its t is that mean's depth along the direction's
   // largest component (Woop, Benthin, Wald 2013), where the corners may lie farther apart than along the ray.

@@ -85,7 +85,7 @@ TEST(Dyadic, RatiosRoundToTheNearest) {
   EXPECT_EQ(rounded_ratio<float>(Dyadic(1e300), Dyadic(1.0)), kInfinity);
 }
 
-/// What the definition says, in fractions, triangle after triangle.
+/// Computes hits by their definition, in fractions, triangle after triangle.
 class SlowReference {
  public:
   struct Answer {

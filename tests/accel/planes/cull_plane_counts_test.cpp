@@ -1,4 +1,4 @@
-// What is counted of cull planes: by depth, in either order of planes and box, and exactly what is said to be counted.
+// Counts of cull planes are right by depth and in either order of planes and box.
 #include <cstring>
 
 #include <gtest/gtest.h>

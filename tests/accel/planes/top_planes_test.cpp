@@ -190,7 +190,7 @@ Accel with_margins(Accel accel, float factor) {
   return accel;
 }
 
-// What of the derived margin is needed: hits must go missing without one, and none well before the whole.
+// The derived margin is needed and not much too wide: hits must go missing without one, and none well before the whole.
 TEST(TopPlanes, NeedTheirMargin) {
   const std::vector<Placed> scenes = placed_scenes(run_seed() + 701);
   std::string table = fmt::format("\n{} rays at each of:\n\n| margin |", oracle_rays() / 50);

@@ -1,4 +1,4 @@
-// What lets rays through, what rays wish for, and spheres: the tree's answers against every primitive tested in turn.
+// Non-opaque primitives, ray flags and spheres: the tree's answers against every primitive tested in turn.
 #include "core/types/any_hit.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What the finished two-level structure promises to whoever walks it.
+// The promises of the finished two-level structure to the code that traverses it.
 #include <cstring>
 #include <set>
 

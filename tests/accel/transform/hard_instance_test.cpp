@@ -49,7 +49,7 @@ RayBatch rays_at_insides(const scene::Scene& scene, int count, std::uint32_t see
   return rays;
 }
 
-/// What a level makes of rays that hit exactly.
+/// The answers of a level for rays that hit exactly.
 struct Compared {
   std::size_t exact_hits = 0, lost = 0, other_t = 0;
 };

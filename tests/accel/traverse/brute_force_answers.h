@@ -8,7 +8,7 @@
 
 namespace carousel::accel {
 
-/// What every triangle tested in scalar code says of some rays, to compare structures with.
+/// The answers of testing every triangle in scalar code, with which those of structures are compared.
 class BruteForceAnswers {
  public:
   BruteForceAnswers(const scene::Scene& scene, const RayBatch& rays, const AccuracyConfig& accuracy = {},

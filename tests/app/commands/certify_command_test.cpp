@@ -24,7 +24,7 @@ std::string seed() {
   return std::to_string(run_seed());
 }
 
-// What plain boxes, fast triangles, the inverse matrix and a constant offset get wrong, and one level up right.
+// Cases that plain boxes, fast triangles, the inverse matrix and a constant offset get wrong, and the next level right.
 const char* const kPlainBox =
     "box plain origin=-0x1.38dfap+5,-0x1.458098p+6,-0x1.2bb88cp+7 direction=0x1.dac1b2p+2,0x1.79e40ap+2,0x1.9bc592p+3 "
     "tmin=0x0p+0 tmax=inf lo=0x1.43c37ap+4,-0x1.111e1p+5,-0x1.77570cp+5 hi=0x1.43c424p+4,-0x1.111d26p+5,-0x1.775438p+5";

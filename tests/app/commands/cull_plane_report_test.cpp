@@ -1,4 +1,4 @@
-// What a run with cull planes reports of them.
+// The report of a run with cull planes.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

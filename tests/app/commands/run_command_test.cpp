@@ -212,7 +212,7 @@ TEST(RunCommand, AStuckRunEndsWithStatus1AndSaysWhoWaits) {
   EXPECT_FALSE(std::filesystem::exists(program.folder() / "out")) << "there is no result to report";
 }
 
-/// Whether the process catches SIGINT by now: until then an interrupt just ends it.
+/// True if the process catches SIGINT by now: until then an interrupt just ends it.
 bool catches_interrupts(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(in, line);)

@@ -1,4 +1,4 @@
-// What the rasteriser finds against what rays find, and against exact arithmetic where the two differ.
+// The rasteriser's hits against those of rays, and against exact arithmetic where the two differ.
 #include "shading/raster/first_hits.h"
 
 #include <array>

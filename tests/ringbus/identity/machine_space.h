@@ -42,11 +42,11 @@ class MachineSpace {
   /// Draws a machine with the settings of `with`; throws a std::logic_error if there is none.
   Cell draw_cell(std::mt19937& random, std::span<const std::string> with = {});
 
-  /// Whether the factor's conditions hold in the row.
+  /// True if the factor's conditions hold in the row.
   bool is_read(const Row& row, std::size_t factor) const;
-  /// Whether some factor's conditions name this factor.
+  /// True if some factor's conditions name this factor.
   bool is_switch(std::size_t factor) const { return is_switch_[factor]; }
-  /// Whether the row contains levels that are known to be refused together.
+  /// True if the row contains levels that are known to be refused together.
   bool known_refused(const Row& row) const { return find_refusal(row) != nullptr; }
   /// Asks the validator, and learns from a refusal.
   bool accepts(const Row& row);

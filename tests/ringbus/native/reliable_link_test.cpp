@@ -154,7 +154,7 @@ TEST(PacketImage, HoldsAllOfAPacket) {
   EXPECT_EQ(other.owners, packet.owners);
 }
 
-// What comes out is what went over the wire, none of it damaged, though the memory that both ends share has been
+// Packets arrive as they went over the wire, none of them damaged, though the memory that both ends share has been
 // written over.
 TEST(ReliableLink, CarriesCopiesAndNoDamagedOne) {
   const Config config = faulty(0, 0.1, 0.5, 0, 0);

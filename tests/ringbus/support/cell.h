@@ -26,7 +26,7 @@ struct Cell {
   std::string text() const;
 };
 
-/// Whether a user may configure the machine; any built-in scene will do.
+/// True if a user may configure the machine; any built-in scene will do.
 bool is_accepted(const Config& config);
 
 }  // namespace carousel::ringbus
