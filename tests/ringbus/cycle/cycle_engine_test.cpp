@@ -44,7 +44,7 @@ TEST(CycleEngine, LedgersAddUp) {
   std::uint64_t transforms = 0, jobs = 0, waited = 0;
   const auto count = static_cast<std::uint32_t>(cell_count(40));
   const auto keep_running = [&](std::uint32_t done) {
-    return done < count || ((jobs == 0 || transforms == 0) && done < 20 * count);
+    return done < count || ((jobs == 0 || transforms == 0 || waited == 0) && done < 40 * count);
   };
   for (std::uint32_t seed = run_seed(); keep_running(seed - run_seed()); ++seed) {
     const Cell cell = random_cell(seed + 1000);
