@@ -63,6 +63,9 @@ class Search {
   RunResult simulate(const Config& machine) {
     const std::unique_ptr<Workload> pilot = make_pilot_(machine, out_.paths);
     RunOptions options = options_;
+    // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.
+    options.warm = {&run_.result.cycle->cached_lines,
+                    1 - static_cast<double>(out_.paths) / static_cast<double>(run_.paths)};
     options.progress = [&](std::uint64_t completed) {
       state_.completed = completed;
       if (observe_) observe_(state_);

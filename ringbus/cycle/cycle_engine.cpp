@@ -22,7 +22,9 @@ class CycleRun {
       : config_(config),
         options_(options),
         link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
-        machine_(config, accel, scene_size, workload, options.statistics, options.trace) {}
+        machine_(config, accel, scene_size, workload, options.statistics, options.trace) {
+    machine_.warm(options.warm);
+  }
 
   RunResult run() {
     const auto start = std::chrono::steady_clock::now();
@@ -31,7 +33,7 @@ class CycleRun {
     bool stopped = false;
     WakeupTable wakeups(parts);
     machine_.connect(wakeups);
-    const Cycle reached = run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle at) {
+    run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle at) {
       stopped = options_.stop.stop_requested();
       note_progress(at);
       const auto now = std::chrono::steady_clock::now();
@@ -43,7 +45,7 @@ class CycleRun {
     });
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!stopped) check_at_rest();
-    RunResult out = result(reached + 1);
+    RunResult out = result(last_event() + 1);
     out.complete = !stopped;
     out.wall_seconds = wall.count();
     out.threads = parts.size();
@@ -51,10 +53,34 @@ class CycleRun {
   }
 
  private:
+  /// The last cycle in which anything was done. Caches, memory, bus and bridges only pass on things that arrive later.
+  Cycle last_event() const {
+    Cycle last = machine_.shading().last_event();
+    for (const auto& tile : machine_.resources()) last = std::max(last, tile->last_event());
+    return last;
+  }
+
   void check_at_rest() const {
     const std::string waits = machine_.describe_waits();
     if (!machine_.shading().done() || !waits.empty())
       throw SimulationError("nothing moves any more; who waits for whom:\n  " + waits);
+  }
+
+  static void check_ledger(const TileResult& tile, Cycle end) {
+    Cycle sum = 0;
+    for (const Cycle state : tile.states) sum += state;
+    bool fits = sum == end && tile.dispatch.busy <= end;
+    const auto check = [&](const BankUse& use) {
+      Cycle busy = 0;
+      for (std::size_t state = 0; state < kTileStates; ++state) {
+        fits &= use.busy_in[state] <= tile.states[state];
+        busy += use.busy_in[state];
+      }
+      fits &= busy == use.busy;
+    };
+    for (const auto [kind, use] : tile.units) check(use);
+    check(tile.ray_reads);
+    if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
   RunResult result(Cycle end) const {
@@ -84,19 +110,23 @@ class CycleRun {
       if (options_.statistics) out.resources.push_back(tile->statistics());
       out.collections.push_back(tile->collections());
       c.tiles.push_back(tile->result());
+      if (kChecked) check_ledger(c.tiles.back(), end);
     }
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port_number) {
       const OutPort& port = machine_.out_of(wire.from)[port_number];
       c.hops += port.packets();
       c.links.push_back({wire.from.value,
                          wire.to.value,
-                         {port.busy(), port.stalled()},
+                         {port.busy(end), port.stalled()},
                          machine_.network().wire(c.links.size()).queue});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
     });
-    for (const auto& cache : machine_.memory().caches()) c.caches.push_back(cache->statistics());
+    for (const auto& cache : machine_.memory().caches()) {
+      c.caches.push_back(cache->statistics());
+      c.cached_lines.push_back(cache->lines());
+    }
     return out;
   }
 
@@ -126,6 +156,9 @@ class CycleRun {
     out.push_back({"ray_reads", tiles, reads});
     out.push_back({"handling", tiles, dispatch});
     out.push_back(link_use());
+    Cycle port = 0;
+    for (const auto& cache : machine_.memory().caches()) port += cache->statistics().port_busy;
+    out.push_back({"l2_port", static_cast<double>(machine_.memory().caches().size()), port});
     out.push_back({"memory_bandwidth", 1, machine_.memory().memory().busy()});
     out.push_back({"shading", static_cast<double>(config_.shading.workers), machine_.shading().busy()});
     return out;

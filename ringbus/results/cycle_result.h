@@ -27,17 +27,25 @@ enum class TileState : std::uint8_t {
 };
 inline constexpr std::size_t kTileStates = 7;
 
-/// A class of equal units of one resource, or a link, over the whole run.
+/// A link or a dispatch stage over the whole run.
 struct Utilisation {
   Cycle busy = 0;     ///< cycles in which it worked
   Cycle stalled = 0;  ///< it had work and could not do it
   friend bool operator==(const Utilisation&, const Utilisation&) = default;
 };
 
+/// A bank of equal units of one resource: the cycles in which a test was started or the units' interval kept one from
+/// starting, and how many of them passed in each state of the resource. A bank may be busy after its last answer.
+struct BankUse {
+  Cycle busy = 0;
+  std::array<Cycle, kTileStates> busy_in{};  ///< by TileState; they add up to `busy`
+  friend bool operator==(const BankUse&, const BankUse&) = default;
+};
+
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
-  PerUnit<Utilisation> units;               ///< busy within TileState::kTesting
-  Utilisation ray_reads;                    ///< the port of the ray store, likewise
+  PerUnit<BankUse> units;
+  BankUse ray_reads;  ///< the port of the ray store
   Utilisation dispatch;
   StackTraffic stack;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
@@ -69,13 +77,15 @@ struct StopTimes {
 };
 
 struct CycleResult {
-  Cycle cycles = 0;                         ///< when the last ray was shaded and everything had come to rest
+  /// From cycle 0 to the last in which a resource, ray control or shading did anything.
+  Cycle cycles = 0;
   std::vector<ClassUse> uses;               ///< of each class of parts, over the whole run
   std::vector<ProgressSample> progress;     ///< in the order of time, at about equal numbers of rays
   std::optional<ProgressSample> all_begun;  ///< when no ray was left that no other ray causes
   std::vector<TileResult> tiles;            ///< by resource
   std::vector<LinkUse> links;
   std::vector<CacheCounts> caches;
+  std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0;
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help

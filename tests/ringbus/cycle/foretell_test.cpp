@@ -2,6 +2,9 @@
 #include "ringbus/cycle/foretell.h"
 
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
 
 #include <gtest/gtest.h>
 
