@@ -67,7 +67,8 @@ class Search {
     }
     lift(worth, out_.deviation);
     if (!out_.complete) return without_gains();
-    std::stable_sort(out_.gains.begin(), out_.gains.end(), [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
+    std::stable_sort(out_.gains.begin(), out_.gains.end(),
+                     [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
     return out_;
   }
 
@@ -81,7 +82,8 @@ class Search {
   }
 
   void begin(const char* stage, std::size_t lifts) {
-    state_ = {stage, "", 0, lifts + 1, 0, run_.result.rays_completed * out_.paths / std::max<std::uint64_t>(1, run_.paths)};
+    state_ = {stage,     "", 0,
+              lifts + 1, 0,  run_.result.rays_completed * out_.paths / std::max<std::uint64_t>(1, run_.paths)};
   }
 
   RunResult simulate(const Config& machine) {
@@ -127,7 +129,8 @@ class Search {
       if (relaxed.paths != out_.paths) relaxed = {simulate(lifts_[i].relaxed), out_.paths};
       if (!out_.complete) return;
       const Estimate gain = foretelling().gain({&*relaxed.result.cycle, relaxed.result.rays_completed}, deviation);
-      out_.gains[i] = {lifts_[i].name, lifts_[i].action, lifts_[i].sets, rate * (1 + gain.value), gain.value, gain.low, gain.high};
+      out_.gains[i] = {lifts_[i].name, lifts_[i].action, lifts_[i].sets, rate * (1 + gain.value),
+                       gain.value,     gain.low,         gain.high};
     }
   }
 

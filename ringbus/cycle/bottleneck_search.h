@@ -24,8 +24,8 @@ struct Gain {
 
 /// The bottleneck of a machine, found by simulating it with each class relaxed in turn.
 struct Bottleneck {
-  bool complete = true;           ///< false: interrupted; there are no gains
-  std::string unlike;             ///< how the pilot differs from the run; empty if it is like it; else there are no gains
+  bool complete = true;  ///< false: interrupted; there are no gains
+  std::string unlike;    ///< how the pilot differs from the run; empty if it is like it; else there are no gains
   double rays_per_kilocycle = 0;  ///< of the machine as configured, over the whole frame
   std::uint64_t paths = 0;        ///< of the pilot
   std::uint64_t rays = 0;         ///< of the pilot, simulated for each class
@@ -47,7 +47,7 @@ using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std:
 
 /// How far a search has come.
 struct SearchProgress {
-  std::string stage, name;  ///< the pilot; the class that is simulated, empty for the machine as configured
+  std::string stage, name;       ///< the pilot; the class that is simulated, empty for the machine as configured
   std::size_t done = 0, of = 1;  ///< simulations of this stage
   std::uint64_t completed = 0;   ///< rays of this one
   std::uint64_t rays = 0;        ///< that it will have, about

@@ -44,8 +44,10 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
   const std::uint64_t together = getenv("CLUSTER") ? atoi(getenv("CLUSTER")) : 4;
   const std::uint64_t columns = (order.tile_columns() + together - 1) / together, rows = order.tile_rows(),
                       samples = order.samples();
-  const double pixels = PixelOrder::kTile * PixelOrder::kTile, wanted = static_cast<double>(paths) / pixels / static_cast<double>(together);
-  const auto each = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(wanted * static_cast<double>(together) / kEnoughTiles), 1, samples);
+  const double pixels = PixelOrder::kTile * PixelOrder::kTile,
+               wanted = static_cast<double>(paths) / pixels / static_cast<double>(together);
+  const auto each = std::clamp<std::uint64_t>(
+      static_cast<std::uint64_t>(wanted * static_cast<double>(together) / kEnoughTiles), 1, samples);
   const double tiles = std::max(1.0, wanted / static_cast<double>(each));
   // Rectangles of about the shape of a tile.
   const auto parts = [](double count, std::uint64_t most) {
@@ -67,7 +69,8 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
       }
       if (taken[row * columns + column]) continue;
       taken[row * columns + column] = true;
-      for (std::uint64_t i = column * together; i < std::min<std::uint64_t>(order.tile_columns(), (column + 1) * together); ++i)
+      for (std::uint64_t i = column * together;
+           i < std::min<std::uint64_t>(order.tile_columns(), (column + 1) * together); ++i)
         runs.push_back({order.tile_begin(i, row), each * order.tile_pixels(i, row)});
     }
   }

@@ -251,8 +251,8 @@ Config random_machine(std::uint32_t seed) {
   return c;
 }
 
-// Every class that gains something by the pilot is relaxed for the whole run: the class named must be best or within 3 %
-// of it, and the gain foretold within its interval. 30 machines with CAROUSEL_EFFORT=15.
+// Every class that gains something by the pilot is relaxed for the whole run: the class named must be best or within 3
+// % of it, and the gain foretold within its interval. 30 machines with CAROUSEL_EFFORT=15.
 TEST(WhatIf, PredictsRandomMachines) {
   constexpr std::uint32_t kPaths = 24000;  // more than of a pilot
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), kPaths, 2);
@@ -269,7 +269,8 @@ TEST(WhatIf, PredictsRandomMachines) {
     double best = 0, named = 0;
     for (const Gain& gain : found.gains) {
       if (gain.high < 0.05) continue;
-      const auto lift = std::find_if(lifts.begin(), lifts.end(), [&](const auto& one) { return one.name == gain.name; });
+      const auto lift =
+          std::find_if(lifts.begin(), lifts.end(), [&](const auto& one) { return one.name == gain.name; });
       const double cycles = static_cast<double>(run_whole(scene, lift->relaxed).cycle->cycles);
       const double real = static_cast<double>(run.cycle->cycles) / cycles - 1;
       best = std::max(best, real);
