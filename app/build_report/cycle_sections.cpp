@@ -88,7 +88,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     r.packets->latency =
         report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
   r.memory = memory(c, config.memory);
-  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(config.shading.workers));
+  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 
 }  // namespace carousel::app

@@ -93,7 +93,7 @@ report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
   add("handling", tiles, dispatch);
   add("link_bandwidth", static_cast<double>(c.links.size()), link);
   add("memory_bandwidth", 1, static_cast<double>(c.memory_busy));
-  add("shading", static_cast<double>(config.shading.workers), static_cast<double>(c.shading_busy));
+  add("shading", static_cast<double>(shader_workers(config)), static_cast<double>(c.shading_busy));
   std::stable_sort(out.classes.begin(), out.classes.end(),
                    [](const auto& a, const auto& b) { return a.rays_per_kilocycle < b.rays_per_kilocycle; });
   if (out.classes.empty()) return out;

@@ -10,7 +10,7 @@
 namespace carousel::app {
 
 RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
-  const auto workers = static_cast<std::size_t>(config.shading.workers);
+  const auto workers = static_cast<std::size_t>(shader_workers(config));
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
     list_ = std::make_unique<RayListWorkload>(report::read_rays_csv(path), workers);

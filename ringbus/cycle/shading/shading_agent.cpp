@@ -26,12 +26,12 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       gather_(group_),
       bundled_(settings.bundles.size > 0),
       builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
-      queues_(settings.shading, settings.seed),
+      queues_(settings.shading.distribute, settings.workers, settings.seed),
       helpers_(clients_, latency_),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
-  for (std::uint32_t w = static_cast<std::uint32_t>(settings.shading.workers); w-- > 0;) idle_.push_back(w);
+  for (std::uint32_t w = static_cast<std::uint32_t>(settings.workers); w-- > 0;) idle_.push_back(w);
   const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
   if (bundled_) gather_ = std::max(group_, std::min(slots_ / 4, open));
 }
