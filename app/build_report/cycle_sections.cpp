@@ -17,11 +17,14 @@ report::Rate rate(std::uint64_t rays, std::uint64_t cycles, std::int64_t clock_m
   return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
 }
 
-report::UnitCycles unit_cycles(const ringbus::cycle::Utilisation& use, const ringbus::cycle::TileResult& tile) {
+report::UnitCycles unit_cycles(const ringbus::cycle::BankUse& use, const ringbus::cycle::TileResult& tile) {
   using ringbus::cycle::TileState;
-  const auto in = [&](TileState state) { return tile.states[static_cast<std::size_t>(state)]; };
+  const auto in = [&](TileState state) {
+    const auto i = static_cast<std::size_t>(state);
+    return tile.states[i] - use.busy_in[i];
+  };
   return {.busy = use.busy,
-          .other_units = in(TileState::kTesting)-use.busy,
+          .other_units = in(TileState::kTesting),
           .memory = in(TileState::kMemory),
           .link = in(TileState::kLink),
           .credits = in(TileState::kCredits),

@@ -30,7 +30,7 @@ class CycleRun {
     bool stopped = false;
     WakeupTable wakeups(parts);
     machine_.connect(wakeups);
-    const Cycle reached = run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle) {
+    run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
@@ -41,7 +41,7 @@ class CycleRun {
     });
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!stopped) check_at_rest();
-    RunResult out = result(reached + 1);
+    RunResult out = result(last_event() + 1);
     out.complete = !stopped;
     out.wall_seconds = wall.count();
     out.threads = parts.size();
@@ -49,10 +49,34 @@ class CycleRun {
   }
 
  private:
+  /// The last cycle in which anything was done. Caches, memory, bus and bridges only pass on things that arrive later.
+  Cycle last_event() const {
+    Cycle last = machine_.shading().last_event();
+    for (const auto& tile : machine_.resources()) last = std::max(last, tile->last_event());
+    return last;
+  }
+
   void check_at_rest() const {
     const std::string waits = machine_.describe_waits();
     if (!machine_.shading().done() || !waits.empty())
       throw SimulationError("nothing moves any more; who waits for whom:\n  " + waits);
+  }
+
+  static void check_ledger(const TileResult& tile, Cycle end) {
+    Cycle sum = 0;
+    for (const Cycle state : tile.states) sum += state;
+    bool fits = sum == end && tile.dispatch.busy <= end;
+    const auto check = [&](const BankUse& use) {
+      Cycle busy = 0;
+      for (std::size_t state = 0; state < kTileStates; ++state) {
+        fits &= use.busy_in[state] <= tile.states[state];
+        busy += use.busy_in[state];
+      }
+      fits &= busy == use.busy;
+    };
+    for (const auto [kind, use] : tile.units) check(use);
+    check(tile.ray_reads);
+    if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
   RunResult result(Cycle end) const {
@@ -80,13 +104,14 @@ class CycleRun {
       if (options_.statistics) out.resources.push_back(tile->statistics());
       out.collections.push_back(tile->collections());
       c.tiles.push_back(tile->result());
+      if (kChecked) check_ledger(c.tiles.back(), end);
     }
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port_number) {
       const OutPort& port = machine_.out_of(wire.from)[port_number];
       c.hops += port.packets();
       c.links.push_back({wire.from.value,
                          wire.to.value,
-                         {port.busy(), port.stalled()},
+                         {port.busy(end), port.stalled()},
                          machine_.network().wire(c.links.size()).queue});
       LinkStatistics s;
       s.packets = port.packets();

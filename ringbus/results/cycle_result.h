@@ -26,17 +26,25 @@ enum class TileState : std::uint8_t {
 };
 inline constexpr std::size_t kTileStates = 7;
 
-/// A class of equal units of one resource, or a link, over the whole run.
+/// A link or a dispatch stage over the whole run.
 struct Utilisation {
   Cycle busy = 0;     ///< cycles in which it worked
   Cycle stalled = 0;  ///< it had work and could not do it
   friend bool operator==(const Utilisation&, const Utilisation&) = default;
 };
 
+/// A bank of equal units of one resource: the cycles in which a test was started or the units' interval kept one from
+/// starting, and how many of them passed in each state of the resource. A bank may be busy after its last answer.
+struct BankUse {
+  Cycle busy = 0;
+  std::array<Cycle, kTileStates> busy_in{};  ///< by TileState; they add up to `busy`
+  friend bool operator==(const BankUse&, const BankUse&) = default;
+};
+
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
-  PerUnit<Utilisation> units;               ///< busy within TileState::kTesting
-  Utilisation ray_reads;                    ///< the port of the ray store, likewise
+  PerUnit<BankUse> units;
+  BankUse ray_reads;  ///< the port of the ray store
   Utilisation dispatch;
   StackTraffic stack;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
@@ -68,7 +76,7 @@ struct StopTimes {
 };
 
 struct CycleResult {
-  Cycle cycles = 0;               ///< when the last ray was shaded and everything had come to rest
+  Cycle cycles = 0;               ///< from cycle 0 to the last in which a resource, ray control or shading did anything
   Cycle steady_cycles = 0;        ///< between a quarter and three quarters of the rays
   std::uint64_t steady_rays = 0;  ///< completed in these
   double steady_spread = 0;       ///< by how much the rates of their halves differ, as a fraction

@@ -126,7 +126,8 @@ class OutPortOf {
   const T& first() const { return queue_.front().token; }
   /// A packet waits for a credit.
   bool blocked() const { return blocked_since_ != kNever; }
-  Cycle busy() const { return busy_; }        ///< cycles in which the link moved something
+  /// Cycles before `end` in which the link moved something; not before the last packet was sent.
+  Cycle busy(Cycle end = kNever) const { return free_at_ <= end ? busy_ : busy_ - std::min(busy_, free_at_ - end); }
   Cycle stalled() const { return stalled_; }  ///< cycles in which a packet waited for a credit
   std::uint64_t packets() const { return packets_; }
   LinkFaultCounts faults() const { return faults_ ? faults_->counts() : LinkFaultCounts{}; }

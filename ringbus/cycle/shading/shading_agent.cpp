@@ -28,6 +28,7 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
       queues_(settings.shading, settings.seed),
       helpers_(clients_, latency_),
+      made_(static_cast<std::size_t>(settings.shading.workers)),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
@@ -54,6 +55,7 @@ void ShadingAgent::run(Cycle end) {
 
 void ShadingAgent::step(Cycle now) {
   started_ = true;
+  now_ = now;
   take_completed(now);
   if (give_up_at_ <= now) give_up(now);
   take_questions(now);
@@ -90,6 +92,7 @@ bool ShadingAgent::finish_jobs(Cycle now) {
   for (; !jobs_.empty() && jobs_.top().done <= now; jobs_.pop()) {
     const Job& job = jobs_.top();
     any = true;
+    busy_ += job.done - job.began;
     idle_.push_back(job.worker);
     queues_.set_in_work(job.worker, 0);
     if (job.question) {
@@ -101,12 +104,10 @@ bool ShadingAgent::finish_jobs(Cycle now) {
       continue;
     }
     making_ -= job.made;
-    const std::size_t before = gathered_.size();
-    const Workload::Generated made = workload_.generate(WorkerId(0), job.made, gathered_);
-    source_finished_ = made.finished;
-    source_dry_ = made.rays == 0;
-    outstanding_ += gathered_.size() - before;
-    emitted_ += gathered_.size() - before;
+    outstanding_ += job.made;
+    emitted_ += job.made;
+    gathered_.insert(gathered_.end(), made_[job.worker].begin(), made_[job.worker].end());
+    made_[job.worker].clear();
   }
   if (shaded_.empty()) return any;
   const std::size_t before = gathered_.size();
@@ -147,8 +148,18 @@ Cycle ShadingAgent::cycles_for(const RayResult& ray) const {
   return effect_cycles_ == 0 ? shade_cycles_ : shade_cycles_ + effect_cycles_ * workload_.extra_effects(ray);
 }
 
+std::size_t ShadingAgent::take_camera_rays(std::uint32_t worker) {
+  if (source_finished_ || source_dry_ || room() == 0) return 0;
+  const Workload::Generated answer = workload_.generate(WorkerId(0), room(), made_[worker]);
+  source_finished_ = answer.finished;
+  source_dry_ = answer.rays == 0;
+  making_ += answer.rays;
+  return answer.rays;
+}
+
 bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
   Job job;
+  job.began = now;
   job.worker = worker;
   if (!questions_.empty()) {
     job.question = std::move(questions_.front());
@@ -157,16 +168,12 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
   } else if (const std::optional<RayResult> ray = queues_.take(worker)) {
     job.ray = *ray;
     job.done = now + cycles_for(*ray);
-  } else if (!source_finished_ && !source_dry_ && room() > 0) {
-    job.made = room();
-    making_ += job.made;
+  } else if (job.made = take_camera_rays(worker); job.made > 0) {
     job.done = now + shade_cycles_ * job.made;
-    if (shade_cycles_ == 0) source_dry_ = true;  // until it has answered
   } else {
     return false;
   }
   queues_.set_in_work(worker, std::max<std::size_t>(1, job.made));
-  busy_ += job.done - now;
   jobs_.push(job);
   return true;
 }

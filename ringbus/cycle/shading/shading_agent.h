@@ -23,10 +23,11 @@ namespace carousel::ringbus::cycle {
 
 /// Ray control and the pool of shader workers.
 ///
-/// A worker takes the ray that has waited longest in its queue. It needs shading.cycles_per_shade for a ray, or to make
-/// a camera ray, and cycles_per_effect for each effect besides. Any-hit calls of resources come first and take
-/// shading.cycles_per_any_hit each. With `idle_resources_shade`, rays for which no worker is free go to resources that
-/// have nothing to test.
+/// A worker takes the ray that has waited longest in its queue. It needs shading.cycles_per_shade for a ray, and
+/// cycles_per_effect for each effect besides. If no ray waits it makes camera rays, at most as many as fill a packet or
+/// the free slots, in cycles_per_shade for each that the workload still has. Any-hit calls of resources come first and
+/// take shading.cycles_per_any_hit each. With `idle_resources_shade`, rays for which no worker is free go to resources
+/// that have nothing to test.
 ///
 /// New rays gather until they fill a packet, or until no worker has anything to do, and are then given slots. With
 /// bundles they gather until they would fill the bundles that the builder holds open, and pass the builder
@@ -47,11 +48,13 @@ class ShadingAgent final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override;
 
-  bool done() const { return source_finished_ && outstanding_ == 0; }
+  bool done() const { return source_finished_ && outstanding_ == 0 && making_ == 0; }
   /// Since the start, for the progress bar; from the agent's thread.
   std::uint64_t emitted() const { return emitted_; }
   std::uint64_t completed() const { return completed_; }
-  /// Worker-cycles spent on shading and on making camera rays.
+  /// The last cycle in which it did anything.
+  Cycle last_event() const { return now_; }
+  /// Worker-cycles spent on jobs that are done: shading, camera rays and any-hit calls.
   Cycle busy() const { return busy_; }
   /// How many rays had been shaded at a time, in steps of a number of rays; for the rate between fill and drain.
   struct Milestone {
@@ -73,9 +76,9 @@ class ShadingAgent final : public Agent {
   };
   /// The present work of a shader worker.
   struct Job {
-    Cycle done = 0;
+    Cycle began = 0, done = 0;
     std::uint32_t worker = 0;
-    std::size_t made = 0;  // camera rays; 0: it shades `ray`, or answers `question`
+    std::size_t made = 0;  // camera rays, in made_; 0: it shades `ray`, or answers `question`
     RayResult ray;
     std::optional<Question> question{};
     bool operator>(const Job& o) const { return done != o.done ? done > o.done : worker > o.worker; }
@@ -88,6 +91,8 @@ class ShadingAgent final : public Agent {
   bool start_jobs(Cycle now);
   Cycle cycles_for(const RayResult& ray) const;
   bool start_job(std::uint32_t worker, Cycle now);
+  /// Takes the next camera rays from the workload, for a worker to make; returns how many there are.
+  std::size_t take_camera_rays(std::uint32_t worker);
   void place(Cycle now);
   void send_groups(Cycle now);
   void on_note(std::uint32_t resource, CompletedRays::Note note, Cycle now);
@@ -113,6 +118,7 @@ class ShadingAgent final : public Agent {
   std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;
   std::vector<std::uint32_t> idle_;  // workers, the next one last
   RayBatch gathered_;
+  std::vector<RayBatch> made_;  // by worker: the camera rays of its job
   HitBatch shaded_;
   std::vector<RayGroup> groups_;
   std::vector<Cycle> load_free_, last_sent_;  // by resource

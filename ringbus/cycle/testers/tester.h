@@ -68,16 +68,36 @@ class Tester {
     return std::max(boxed, banks_[UnitKind::kAnyHit].reserve_beside(met, lookups(counts)).last);
   }
 
-  /// Fills in how long each bank was busy.
-  void account(TileResult& result) const {
-    for (const auto [kind, bank] : banks_) result.units[kind].busy = bank.busy();
-    result.ray_reads.busy = store_.busy();
+  /// Adds the cycles in which each bank was busy, from the last call until `now`, to those in `state`, the resource's
+  /// state in all of these cycles.
+  void account(TileState state, Cycle now) {
+    for (const auto [kind, bank] : banks_) units_[kind].account(bank, state, now);
+    ray_reads_.account(store_, state, now);
+    accounted_ = now;
+  }
+  /// Time of the last account().
+  Cycle accounted() const { return accounted_; }
+  /// Fills in how long each bank was busy until the last account().
+  void fill_in(TileResult& result) const {
+    for (const auto [kind, ledger] : units_) result.units[kind] = ledger.use;
+    result.ray_reads = ray_reads_.use;
   }
 
   const UnitBank& bank(UnitKind kind) const { return banks_[kind]; }
   const UnitBank& store() const { return store_; }  ///< the port of the ray store
 
  private:
+  struct Ledger {
+    BankUse use;
+
+    void account(UnitBank& bank, TileState state, Cycle now) {
+      if (use.busy == bank.busy()) return;  // it has been idle since
+      const Cycle busy = bank.busy_before(now);
+      use.busy_in[static_cast<std::size_t>(state)] += busy - use.busy;
+      use.busy = busy;
+    }
+  };
+
   /// Tests for rays that come one after another from the bank before: the last of them is tested last.
   static UnitBank::Reservation tested(UnitBank& bank, const UnitBank::Reservation& before, std::uint64_t tests) {
     if (tests == 0) return before;
@@ -107,6 +127,9 @@ class Tester {
 
   PerUnit<UnitBank> banks_;
   UnitBank store_;
+  PerUnit<Ledger> units_;
+  Ledger ray_reads_;
+  Cycle accounted_ = 0;
   Order order_;
   bool reads_cost_, inline_;
 };

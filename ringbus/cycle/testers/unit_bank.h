@@ -4,6 +4,7 @@
 
 #include "core/config/config.h"
 #include "ringbus/cycle/time/clock.h"
+#include "ringbus/cycle/time/fifo.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -24,6 +25,10 @@ class UnitBank {
   Reservation reserve(Cycle at, std::uint64_t tests) {
     if (tests == 0) return {at, at};
     const Cycle start = std::max(at, free_at_), length = ceil_div(tests, units_) * interval_;
+    if (start > free_at_) {
+      if (free_at_ > begun_) spans_.push_back({begun_, free_at_});
+      begun_ = start;
+    }
     free_at_ = start + length;
     busy_ += length;
     tests_ += tests;
@@ -42,14 +47,28 @@ class UnitBank {
     return beside == tests ? Reservation{first, first} : Reservation{first, reserve(at, tests - beside).last};
   }
 
+  /// Cycles before `now` in which a test was started or could not be. Times of calls must not decrease.
+  Cycle busy_before(Cycle now) {
+    for (; !spans_.empty() && spans_.front().end <= now; spans_.pop_front())
+      past_ += spans_.front().end - spans_.front().begin;
+    const Span next = spans_.empty() ? Span{begun_, free_at_} : spans_.front();
+    return past_ + (now > next.begin ? std::min(now, next.end) - next.begin : 0);
+  }
+
   Cycle latency() const { return latency_; }
-  Cycle busy() const { return busy_; }  ///< cycles in which a test was started or could not be
+  Cycle busy() const { return busy_; }  ///< the same over all time, as far as tests have been reserved
   std::uint64_t tests() const { return tests_; }
 
  private:
+  struct Span {
+    Cycle begin = 0, end = 0;
+  };
   Cycle units_, interval_, latency_;
   Cycle free_at_ = 0, busy_ = 0;
   std::uint64_t tests_ = 0, spare_ = 0;  // spare: units left idle when the last tests started
+  // For busy_before(): busy times that may end in the future, of which [begun_, free_at_) is the last.
+  Fifo<Span> spans_;
+  Cycle begun_ = 0, past_ = 0;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -24,7 +24,8 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       completed_port_(settings.link, ports),
       help_(settings.link, ports),
       transforms_(settings.accuracy, machine.accel, store_.slots()),
-      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false, 0}) {}
+      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false, 0}),
+      ledger_(tester_) {}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
@@ -37,6 +38,7 @@ void IndependentTile::run(Cycle end) {
 }
 
 void IndependentTile::step(Cycle now) {
+  now_ = now;
   take_new_rays(now);
   while (ports_.answers != nullptr && ports_.answers->next() <= now)
     for (const std::uint32_t slot : ports_.answers->take().slots) keep_running(slot, now);
@@ -56,7 +58,7 @@ void IndependentTile::step(Cycle now) {
   if (!help_.holds()) test_held_back(now);
   hand_over(now);
   const TileState state = classify();
-  clock_.enter(state, now);
+  ledger_.enter(state, now);
   help_.notify(now, state == TileState::kIdle);
 }
 
@@ -161,8 +163,7 @@ void IndependentTile::hand_over(Cycle now) {
 
 TileResult IndependentTile::result() const {
   TileResult t;
-  t.states = clock_.times();
-  tester_.account(t);
+  ledger_.fill_in(t);
   t.stack = stack_;
   t.transformed_rays = transforms_.bytes();
   return t;

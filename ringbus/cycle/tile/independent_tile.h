@@ -11,8 +11,8 @@
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
-#include "ringbus/cycle/time/state_clock.h"
 #include "ringbus/protocol/machine.h"
 
 namespace carousel::ringbus::cycle {
@@ -35,7 +35,8 @@ class IndependentTile final : public ResourceAgent {
   void run(Cycle end) override;
   std::string describe() const override;
 
-  void close(Cycle end) override { clock_.enter(TileState::kIdle, end); }
+  Cycle last_event() const override { return now_; }
+  void close(Cycle end) override { ledger_.close(end); }
   TileResult result() const override;
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return {}; }
@@ -97,7 +98,8 @@ class IndependentTile final : public ResourceAgent {
   std::vector<std::uint32_t> freed_slots_;
   std::uint64_t stack_held_ = 0;
   StackTraffic stack_;
-  StateClock<TileState, kTileStates> clock_;
+  Cycle now_ = 0;
+  TileLedger ledger_;
   std::vector<OutPort> no_links_;
 };
 

@@ -15,7 +15,9 @@ namespace carousel::ringbus::cycle {
 /// The engine's view of a resource, with or without packets.
 class ResourceAgent : public Agent {
  public:
-  /// Ends the time that is accounted to states.
+  /// The last cycle in which it did anything; passing a packet on at once does not count, as it arrives elsewhere.
+  virtual Cycle last_event() const = 0;
+  /// Ends the time that is accounted to states; once, and not before last_event().
   virtual void close(Cycle end) = 0;
   /// After close().
   virtual TileResult result() const = 0;

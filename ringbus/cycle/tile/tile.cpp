@@ -43,7 +43,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       fault_(settings.fault),
-      trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction) {
+      trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
+      ledger_(tester_) {
   using Kind = FaultsConfig::Resource::Kind;
   pauses_ = fault_.kind == Kind::kPause && fault_.number == id.value;
   stops_ = fault_.kind == Kind::kStop && fault_.number == id.value;
@@ -138,7 +139,7 @@ void Tile::step(Cycle now) {
     pauses_ = false;
   }
   const TileState state = classify(now);
-  clock_.enter(state, now);
+  ledger_.enter(state, now);
   help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
   next_here_ = next_egress();
   may_send_ = wants_credit() ||
@@ -215,10 +216,15 @@ ResourceStatistics Tile::statistics() const {
   return s;
 }
 
+void Tile::close(Cycle end) {
+  ledger_.close(end);
+  // The dispatch stage may still look through the IDs of the last packet.
+  if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
+}
+
 TileResult Tile::result() const {
   TileResult t;
-  t.states = clock_.times();
-  tester_.account(t);
+  ledger_.fill_in(t);
   t.dispatch.busy = dispatch_busy_;
   t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();

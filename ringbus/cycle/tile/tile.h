@@ -15,8 +15,8 @@
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/tile/subtree_walk.h"
+#include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
-#include "ringbus/cycle/time/state_clock.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/protocol/port_logic.h"
 #include "ringbus/resource/resource.h"
@@ -55,7 +55,8 @@ class Tile final : public ResourceAgent {
   void run(Cycle end) override;
   std::string describe() const override;
 
-  void close(Cycle end) override { clock_.enter(TileState::kIdle, end); }
+  Cycle last_event() const override { return now_; }
+  void close(Cycle end) override;
   TileResult result() const override;
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
@@ -160,7 +161,8 @@ class Tile final : public ResourceAgent {
   Cycle now_ = 0;
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
   bool may_send_ = false;     // likewise: a packet waits to leave, or for credits
-  Cycle dispatch_free_ = 0, dispatch_busy_ = 0;
+  Cycle dispatch_free_ = 0;   // later than dispatch_ends_ when it pauses
+  Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::deque<Issue> issue_;
   std::uint32_t next_tag_ = 0;
@@ -176,7 +178,7 @@ class Tile final : public ResourceAgent {
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
-  StateClock<TileState, kTileStates> clock_;
+  TileLedger ledger_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -59,6 +59,14 @@ TEST(CycleEngine, LedgersAddUp) {
       EXPECT_EQ(sum, c.cycles);
       const cycle::Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
       for (const auto [kind, bank] : tile.units) EXPECT_LE(bank.busy, testing);
+      for (const auto [kind, bank] : tile.units) {
+        cycle::Cycle busy = 0;
+        for (std::size_t state = 0; state < cycle::kTileStates; ++state) {
+          EXPECT_LE(bank.busy_in[state], tile.states[state]);
+          busy += bank.busy_in[state];
+        }
+        EXPECT_EQ(bank.busy, busy);
+      }
       EXPECT_LE(tile.dispatch.busy, c.cycles);
       // Little's law: packets under way = rate times time, over a whole run without an error.
       EXPECT_EQ(tile.round_trips.count(), out.result.resources[r].packets_issued);

@@ -1,0 +1,89 @@
+// Every cycle of every bank of units is accounted to one thing, also where a bank's interval is longer than its
+// latency.
+#include <random>
+
+#include <fmt/format.h>
+
+#include "core/types/unit_kind.h"
+#include "tests/app/time/timed_run.h"
+#include "tests/support/random_runs.h"
+
+namespace carousel {
+namespace {
+
+class ResourceLedger : public TimedRun {
+ protected:
+  void expect_sums(const Json& report) {
+    const std::uint64_t cycles = report["engine"]["cycles"];
+    for (const Json& resource : report["resources"]) {
+      for (const auto& [bank, parts] : resource["units"].items()) {
+        if (!parts.is_object()) continue;
+        std::uint64_t sum = 0;
+        for (const auto& [name, part] : parts.items()) {
+          EXPECT_LE(part.get<std::uint64_t>(), cycles) << bank << " " << name;
+          sum += part.get<std::uint64_t>();
+        }
+        EXPECT_EQ(sum, cycles) << bank;
+      }
+      EXPECT_EQ(resource["units"]["handler_busy"].get<std::uint64_t>() +
+                    resource["units"]["handler_idle"].get<std::uint64_t>(),
+                cycles);
+    }
+    for (const Json& link : report["links"]) {
+      std::uint64_t sum = 0;
+      for (const auto& [name, part] : link["cycles"].items()) sum += part.get<std::uint64_t>();
+      EXPECT_EQ(sum, cycles);
+    }
+  }
+};
+
+constexpr const char* kSmall =
+    "scene: {builtin: instances, instances: 60}\n"
+    "image: {width: 6, height: 4, samples: 1, max_depth: 3}\n"
+    "topology: {resources: 2}\n"
+    "packets: {rays: 8}\n"
+    "collections: {ready: 8}\n"
+    "rays: {slots_per_resource: 32}\n";
+
+TEST_F(ResourceLedger, AnIntervalLongerThanTheLatencyIsNoUnderflow) {
+  const Json run = report(kSmall, {"testers.triangle={units: 1, interval_cycles: 40, latency_cycles: 1}",
+                                   "testers.box={units: 1, interval_cycles: 9, latency_cycles: 2}"});
+  expect_sums(run);
+  // A triangle's unit is kept from the next test while there is nothing else to do.
+  std::uint64_t busy = 0, tests = 0;
+  for (const Json& resource : run["resources"]) {
+    busy += resource["units"]["triangle"]["busy"].get<std::uint64_t>();
+    tests += resource["triangle_tests"].get<std::uint64_t>();
+  }
+  EXPECT_LE(busy, 40 * tests);
+  EXPECT_GE(busy + 2 * 40, 40 * tests);  // but for an interval that the run's end cuts off at either resource
+}
+
+TEST_F(ResourceLedger, PartsAddUpOnRandomMachines) {
+  std::mt19937 random(run_seed());
+  const auto pick = [&](auto... values) {
+    const std::vector<std::string> all{fmt::format("{}", values)...};
+    return all[random() % all.size()];
+  };
+  for (int run = 0; run < scaled(24); ++run) {
+    std::vector<std::string> sets{
+        "topology.shape=" + pick("ring", "bidirectional", "bus", "independent"),
+        "topology.visit=" + pick("all", "owners"),
+        "topology.resources=" + pick(1, 2, 3),
+        "topology.link.latency_cycles=" + pick(1, 4, 60),
+        "testers.contexts=" + pick(1, 2, 4),
+        "rays.reads_per_cycle=" + pick(0, 1),
+        "collections.traversal=" + pick("spread", "ordered", "treelet"),
+        "memory.dram_latency_cycles=" + pick(2, 200),
+        "shading.idle_resources_shade=" + pick("false", "true"),
+    };
+    for (const UnitKindRow& row : kUnitKinds)
+      sets.push_back(fmt::format("testers.{}={{units: {}, interval_cycles: {}, latency_cycles: {}}}", row.key,
+                                 pick(1, 3), pick(1, 2, 17), pick(1, 5)));
+    SCOPED_TRACE(fmt::format("seed {}, run {}: {}", run_seed(), run, fmt::join(sets, " ")));
+    expect_sums(report(kSmall, sets));
+  }
+}
+
+}  // namespace
+}  // namespace carousel

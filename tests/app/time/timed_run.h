@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/run_command.h"
+#include "tests/app/support/program.h"
+
+namespace carousel {
+
+/// Runs machines as `carousel run` does, from the text of their configuration.
+class TimedRun : public testing::Test {
+ protected:
+  using Json = nlohmann::ordered_json;
+
+  /// The report of a run on the cycle engine, without the search for the bottleneck.
+  Json report(const std::string& machine, std::vector<std::string> sets = {}) {
+    program_.write("machine.yaml", machine);
+    app::RunArguments arguments;
+    arguments.config = (program_.folder() / "machine.yaml").string();
+    sets.insert(sets.begin(), {"engine.kind=cycle", "engine.what_if=false"});
+    arguments.sets = std::move(sets);
+    arguments.out = (program_.folder() / "out").string();
+    arguments.quiet = true;
+    app::run_command(arguments);
+    return Json::parse(program_.read("out/report.json"));
+  }
+
+  Program program_;
+};
+
+}  // namespace carousel
