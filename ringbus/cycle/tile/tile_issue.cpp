@@ -43,15 +43,13 @@ bool Tile::fill_issue(Cycle now) {
     const bool nothing_else =
         issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
         std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
-    const std::optional<PacketId> id = logic_.free.take();
+    const std::optional<PacketId> id = logic_.free.front();
     if (!id) return moved;
     Packet& packet = machine_.packet(*id);
     const Resource::Offer offer = resource_.offer(nothing_else, packet);
     storage_full_ = offer == Resource::Offer::kStorage;
-    if (offer != Resource::Offer::kPacket) {
-      logic_.discard(*id);
-      return moved;
-    }
+    if (offer != Resource::Offer::kPacket) return moved;
+    logic_.free.take();
     moved = true;
     Issue issue{*id, next_tag_};
     const bool brings_shapes =
