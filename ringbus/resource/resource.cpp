@@ -18,6 +18,8 @@ CollectionStore::Settings collection_settings(const ResourceSettings& settings, 
   s.select = settings.collections.select;
   s.scene_size = settings.scene_size;
   s.max_depth = accel.max_depth;
+  if (settings.collections.partial == Partial::kAfter)
+    s.ripe_after = static_cast<std::uint64_t>(settings.collections.partial_after_cycles);
   return s;
 }
 

@@ -23,7 +23,7 @@ void CollectionStore::enlist(std::uint32_t index, std::uint32_t bucket) {
 
 void CollectionStore::relist(std::uint32_t index, bool was_ready) {
   Collection& c = collections_[index];
-  c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready;
+  c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready || c.ripe;
   const std::uint32_t bucket = this->bucket(c);
   if (c.ready == was_ready && list(c).bucket_of(index) == bucket) return;
   (was_ready ? ready_ : partial_).remove(index);
@@ -41,12 +41,38 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
     index = free_collections_.back();
     free_collections_.pop_back();
   }
-  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict};
+  const std::uint32_t waits = collections_[index].waits;
+  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict, false, waits};
+  begin_to_wait(index);
   table_.insert(key, index);
   ++statistics_.created;
   statistics_.peak = std::max<std::uint64_t>(statistics_.peak, table_.size());
   enlist(index, bucket(collections_[index]));
   return index;
+}
+
+void CollectionStore::begin_to_wait(std::uint32_t index) {
+  if (settings_.ripe_after == 0) return;
+  collections_[index].ripe = false;
+  waiting_.push_back({now_, index, ++collections_[index].waits});
+}
+
+void CollectionStore::ripen(std::uint64_t now) {
+  now_ = now;
+  for (std::optional<std::uint64_t> at; (at = next_ripe()) && *at <= now; waiting_.pop_front()) {
+    Collection& c = collections_[waiting_.front().collection];
+    c.ripe = true;
+    relist(waiting_.front().collection, c.ready);
+  }
+}
+
+std::optional<std::uint64_t> CollectionStore::next_ripe() {
+  for (; !waiting_.empty(); waiting_.pop_front()) {
+    const Waiting& first = waiting_.front();
+    const Collection& c = collections_[first.collection];
+    if (c.waits == first.waits && c.count > 0 && !c.ready) return first.since + settings_.ripe_after;
+  }
+  return std::nullopt;
 }
 
 std::uint32_t CollectionStore::new_block() {
@@ -125,14 +151,17 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
     table_.erase(c.key);
     free_collections_.push_back(id.value);
   } else {
+    begin_to_wait(id.value);
     relist(id.value, c.ready);
   }
 }
 
 void CollectionStore::discard() {
   const Statistics kept = statistics_;
+  const std::uint64_t now = now_;
   *this = CollectionStore(settings_);
   statistics_ = kept;
+  now_ = now;
 }
 
 }  // namespace carousel::ringbus
