@@ -89,7 +89,7 @@ class Resource {
   EventSink* events_;
   RayStore& store_;
   accel::NodeKey root_;
-  std::size_t block_rays_;
+  std::size_t packet_rays_;
   CollectionStore collections_;
   Homes homes_;
   StorageRule storage_;

@@ -80,7 +80,9 @@ void describe(V& v, CollectionsConfig& c) {
   v.field("partial_after_cycles", c.partial_after_cycles, IntRange{1, 1'000'000'000}, "cycles",
           "The time that a collection waits to be filled, with partial: after.");
   v.choice("home", c.home, "The resource that keeps the collections of a packet's hits.");
-  v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource", "The storage for collections.");
+  v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource",
+          "The storage for collections. A ray takes one of them with traversal: ordered; otherwise collections take "
+          "blocks of packets.rays.");
   v.choice("when_full", c.when_full,
            "When the storage is full, a resource keeps a reserve and holds new rays back, or it spills to memory.");
 }

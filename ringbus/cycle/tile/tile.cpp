@@ -116,6 +116,7 @@ void Tile::run(Cycle end) {
 
 void Tile::step(Cycle now) {
   now_ = now;
+  census_.until(now, resource_.collections().memberships());
   for (OutPort& out : ports_.out) out.take_credits(now);
   resource_.ripen(now);
   if (stops_ && fault_is_due()) stop(now);
@@ -224,6 +225,7 @@ ResourceStatistics Tile::statistics() const {
 
 void Tile::close(Cycle end) {
   ledger_.close(end);
+  census_.until(end, resource_.collections().memberships());
   // The dispatch stage may still look through the IDs of the last packet.
   if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
 }

@@ -61,6 +61,7 @@ class Tile final : public ResourceAgent {
   TileResult result() const override;
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
+  const IdCensus* census() const override { return &census_; }
   const std::vector<OutPort>& out() const override { return ports_.out; }
   std::string blocked(std::size_t port) const override;
   std::uint64_t packets_discarded() const override { return discarded_; }
@@ -128,7 +129,6 @@ class Tile final : public ResourceAgent {
   bool drained() const;
 
   Context* free_context();
-  std::size_t free_contexts() const;
   bool testers_free() const;
   void begin_test(Context& context, PacketId id, Cycle at);
   std::array<ShapeSpan, 2> shape_data(accel::NodeKey key, bool transform) const;
@@ -191,6 +191,7 @@ class Tile final : public ResourceAgent {
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
+  IdCensus census_;
 };
 
 }  // namespace carousel::ringbus::cycle

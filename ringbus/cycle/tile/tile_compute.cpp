@@ -17,11 +17,6 @@ Tile::Context* Tile::free_context() {
   return nullptr;
 }
 
-std::size_t Tile::free_contexts() const {
-  return static_cast<std::size_t>(std::count_if(contexts_.begin(), contexts_.end(),
-                                                [](const Context& c) { return c.phase == Context::Phase::kFree; }));
-}
-
 std::array<ShapeSpan, 2> Tile::shape_data(accel::NodeKey key, bool transform) const {
   return {memory_.strip(key), transform ? memory_.transform(key.instance) : ShapeSpan{}};
 }

@@ -55,8 +55,6 @@ Cycle Tile::partial_may_go(Cycle now) const {
       return nothing_else_to_do(now) ? now : kNever;
     case Partial::kAhead: {
       if (help_.holds()) return kNever;
-      // Where packets bring no shapes, those in the issue queue wait for a context before they fetch any.
-      if (fetch_by_resource_ && issue_.size() >= free_contexts()) return kNever;
       const Cycle ends = work_ahead_ends(now);
       return ends <= now + memory_latency_ ? now : ends - memory_latency_;
     }

@@ -1,6 +1,7 @@
 #include "ringbus/resource/collections/collection_store.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace carousel::ringbus {
 
@@ -130,7 +131,11 @@ std::optional<CollectionId> CollectionStore::deepest() const {
 }
 
 std::uint32_t CollectionStore::front_rays(CollectionId id) const {
-  return std::min(collections_[id.value].count, settings_.block_rays);
+  return std::min(collections_[id.value].count, settings_.packet_rays);
+}
+
+std::uint32_t CollectionStore::front_blocks(CollectionId id) const {
+  return (front_rays(id) + settings_.block_rays - 1) / settings_.block_rays;
 }
 
 void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
@@ -138,12 +143,15 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   // The chain is filled at the tail and takes go by whole blocks, so all blocks but the last are full. The remainder of
   // `count` in the tail relies on that.
   const std::uint32_t n = front_rays(id);
-  const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
-  rays.assign(first, first + n);
-  const std::uint32_t freed = c.head;
-  c.head = next_block_[freed];
-  free_blocks_.push_back(freed);
-  --blocks_used_;
+  rays.clear();
+  while (rays.size() < n) {
+    const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
+    rays.insert(rays.end(), first, first + std::min<std::ptrdiff_t>(settings_.block_rays, n - std::ssize(rays)));
+    const std::uint32_t freed = c.head;
+    c.head = next_block_[freed];
+    free_blocks_.push_back(freed);
+    --blocks_used_;
+  }
   c.count -= n;
   memberships_ -= n;
   if (c.count == 0) {

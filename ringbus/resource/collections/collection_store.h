@@ -19,11 +19,13 @@ namespace carousel::ringbus {
 using CollectionId = Id<struct CollectionTag>;
 
 /// A resource's collections: ray IDs in fixed blocks, a chain of blocks a collection, all but the last one full.
-/// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block.
+/// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block; or a single ID, so
+/// that storage is taken only for the IDs there are, and issuing a packet frees a block for each of its rays.
 class CollectionStore {
  public:
   struct Settings {
-    std::uint32_t block_rays = 32;  ///< packets.rays
+    std::uint32_t block_rays = 32;   ///< packets.rays, or 1
+    std::uint32_t packet_rays = 32;  ///< packets.rays
     std::uint32_t ready = 32;
     std::uint32_t capacity_blocks = 2048;
     Policy policy = Policy::kNearest;
@@ -53,7 +55,9 @@ class CollectionStore {
   float entry(CollectionId id) const { return collections_[id.value].entry; }
   /// How many rays the next take() gives.
   std::uint32_t front_rays(CollectionId id) const;
-  /// Moves the first block's rays to `rays`; an empty collection ceases to exist.
+  /// How many blocks it frees.
+  std::uint32_t front_blocks(CollectionId id) const;
+  /// Moves the rays of the first packet to `rays`; an empty collection ceases to exist.
   void take(CollectionId id, std::vector<RayId>& rays);
 
   /// The time is `now`: collections that have waited for Settings::ripe_after become ready. A collection waits from its
