@@ -7,12 +7,15 @@ namespace carousel::report {
 
 struct Cache {
   CacheCounts counts;
+  double port_utilisation = 0;
 };
 
 template <class V>
 void describe(V& v, const Cache& r) {
   describe(v, r.counts);
   v.field("hit_fraction", ratio(r.counts.hits, r.counts.lines), "fraction", "hits over lines");
+  v.field("port_utilisation", r.port_utilisation, "fraction",
+          "fraction of the run's cycles in which the port looked up lines");
 }
 
 struct Memory {

@@ -8,7 +8,7 @@ namespace carousel {
 
 struct MemoryConfig {
   std::int64_t l2_kib = 1024, line_bytes = 64, ways = 8, shared_by = 4;
-  std::int64_t l2_latency_cycles = 30, dram_latency_cycles = 200, dram_bytes_per_cycle = 32;
+  std::int64_t l2_lines_per_cycle = 1, l2_latency_cycles = 30, dram_latency_cycles = 200, dram_bytes_per_cycle = 32;
   enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kPacket;
   std::int64_t fetch_ahead = 2, shape_buffer_kib = 4;
 };
@@ -28,6 +28,8 @@ void describe(V& v, MemoryConfig& c) {
   v.field("ways", c.ways, IntRange{1, 64}, "ways", "The associativity of a shared cache.");
   v.field("shared_by", c.shared_by, IntRange{1, kMaxResources}, "resources",
           "The number of resources that share one cache.");
+  v.field("l2_lines_per_cycle", c.l2_lines_per_cycle, IntRange{1, 64}, "lines/cycle",
+          "The number of lines that a shared cache looks up in a cycle.");
   v.field("l2_latency_cycles", c.l2_latency_cycles, kCycles, "cycles", "The time of a hit in the shared cache.");
   v.field("dram_latency_cycles", c.dram_latency_cycles, kCycles, "cycles", "The time of a miss.");
   v.field("dram_bytes_per_cycle", c.dram_bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle",

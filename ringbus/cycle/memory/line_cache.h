@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -12,15 +11,13 @@ namespace carousel::ringbus::cycle {
 /// Set-associative cache of lines, least recently used out first. Holds tags, but no data.
 class LineCache {
  public:
-  /// At least one set; the number of sets is rounded down to a power of two.
+  /// As many sets as fit into `bytes`, but at least one. A line belongs to the set of its number modulo the sets.
   LineCache(std::uint64_t bytes, std::uint64_t line_bytes, std::uint64_t ways)
-      : ways_(ways),
-        sets_(std::bit_floor(std::max<std::uint64_t>(1, bytes / line_bytes / ways))),
-        lines_(sets_ * ways_, kEmpty) {}
+      : ways_(ways), sets_(std::max<std::uint64_t>(1, bytes / line_bytes / ways)), lines_(sets_ * ways_, kEmpty) {}
 
   /// Returns whether `line` is there, and makes it the last to be replaced.
   bool touch(std::uint64_t line) {
-    std::uint64_t* set = &lines_[(line & (sets_ - 1)) * ways_];
+    std::uint64_t* set = set_of(line);
     for (std::uint64_t i = 0; i < ways_; ++i) {
       if (set[i] != line) continue;
       for (; i > 0; --i) set[i] = set[i - 1];
@@ -31,13 +28,15 @@ class LineCache {
   }
   void insert(std::uint64_t line) {
     if (touch(line)) return;
-    std::uint64_t* set = &lines_[(line & (sets_ - 1)) * ways_];
+    std::uint64_t* set = set_of(line);
     for (std::uint64_t i = ways_ - 1; i > 0; --i) set[i] = set[i - 1];
     set[0] = line;
   }
 
  private:
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+  std::uint64_t* set_of(std::uint64_t line) { return &lines_[line % sets_ * ways_]; }
+
   std::uint64_t ways_, sets_;
   std::vector<std::uint64_t> lines_;  // by set, most recently used first
 };

@@ -14,8 +14,8 @@ Cycle Memory::answer_latency(const MemoryConfig& config) {
 
 Memory::Memory(const MemoryConfig& config, std::vector<Client> clients)
     : answer_latency_(answer_latency(config)),
-      line_cycles_(ceil_div(static_cast<std::uint64_t>(config.line_bytes),
-                            static_cast<std::uint64_t>(config.dram_bytes_per_cycle))),
+      line_bytes_(static_cast<std::uint64_t>(config.line_bytes)),
+      width_(static_cast<std::uint64_t>(config.dram_bytes_per_cycle)),
       clients_(std::move(clients)) {}
 
 Cycle Memory::next() const {
@@ -28,9 +28,9 @@ void Memory::run(Cycle end) {
   for (Cycle now; (now = next()) < end;) {
     for (const Client& client : clients_) {
       while (client.requests->next() <= now) {
-        free_at_ = std::max(free_at_, now) + line_cycles_;
+        moved_ = std::max(moved_, now * width_) + line_bytes_;
         ++lines_;
-        client.answers->send(free_at_ + answer_latency_, client.requests->take());
+        client.answers->send(ceil_div(moved_, width_) + answer_latency_, client.requests->take());
       }
     }
   }

@@ -9,7 +9,8 @@
 namespace carousel::ringbus::cycle {
 
 /// The memory behind the caches: one channel that moves so many bytes a cycle, a fixed latency, no banks. Lines
-/// are served in the order in which requests arrive (at one time: of the caches).
+/// are served in the order in which requests arrive (at one time: of the caches), one behind the other without a gap:
+/// a wide channel moves several in a cycle, and a line may begin where another ends within one.
 class Memory final : public Agent {
  public:
   struct Client {
@@ -27,12 +28,14 @@ class Memory final : public Agent {
   std::string describe() const override { return ""; }
 
   std::uint64_t lines() const { return lines_; }
-  Cycle busy() const { return lines_ * line_cycles_; }
+  /// Cycles that moving the lines took, the last one rounded up.
+  Cycle busy() const { return ceil_div(lines_ * line_bytes_, width_); }
 
  private:
-  Cycle answer_latency_, line_cycles_;
+  Cycle answer_latency_;
+  std::uint64_t line_bytes_, width_;
   std::vector<Client> clients_;
-  Cycle free_at_ = 0;
+  std::uint64_t moved_ = 0;  // the channel is taken up to this byte of time, of which a cycle has width_
   std::uint64_t lines_ = 0;
 };
 

@@ -23,12 +23,13 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, 
       cache_(static_cast<std::uint64_t>(config.l2_kib) * 1024, static_cast<std::uint64_t>(config.line_bytes),
              static_cast<std::uint64_t>(config.ways)),
       clients_(std::move(clients)),
-      last_answer_(clients_.size()),
       to_memory_(to_memory),
-      from_memory_(from_memory) {}
+      from_memory_(from_memory),
+      port_lines_(static_cast<std::uint64_t>(config.l2_lines_per_cycle)) {}
 
 Cycle ShapeCache::next() const {
   Cycle first = from_memory_.next();
+  if (!answers_.empty()) first = std::min(first, answers_.top().ready);
   for (const Client& client : clients_) first = std::min(first, client.requests->next());
   return first;
 }
@@ -36,12 +37,23 @@ Cycle ShapeCache::next() const {
 void ShapeCache::run(Cycle end) {
   for (Cycle now; (now = next()) < end;) {
     while (from_memory_.next() <= now) fill(from_memory_.take(), now);
-    for (std::size_t c = 0; c < clients_.size(); ++c)
+    for (std::uint32_t c = 0; c < clients_.size(); ++c)
       while (clients_[c].requests->next() <= now) look_up(c, clients_[c].requests->take(), now);
+    for (; !answers_.empty() && answers_.top().ready <= now; answers_.pop())
+      clients_[answers_.top().client].answers->send(now + answer_latency_, {answers_.top().tag});
   }
 }
 
-void ShapeCache::look_up(std::size_t client, const FetchRequest& request, Cycle now) {
+/// Takes the port for the next line. Returns the end of the cycle in which it is looked up.
+Cycle ShapeCache::take_port(Cycle now) {
+  looked_up_ = std::max(looked_up_, now * port_lines_) + 1;
+  const Cycle end = ceil_div(looked_up_, port_lines_);
+  statistics_.port_busy += end > port_busy_until_;
+  port_busy_until_ = end;
+  return end;
+}
+
+void ShapeCache::look_up(std::uint32_t client, const FetchRequest& request, Cycle now) {
   std::uint32_t index;
   if (free_pending_.empty()) {
     index = static_cast<std::uint32_t>(pending_.size());
@@ -53,9 +65,8 @@ void ShapeCache::look_up(std::size_t client, const FetchRequest& request, Cycle 
   pending_[index] = {client, request.tag, 0, 0};
   ++statistics_.requests;
   statistics_.lines += request.lines;
-  port_free_ = std::max(port_free_, now);
   for (std::uint64_t line = request.first_line; line < request.first_line + request.lines; ++line) {
-    pending_[index].ready = ++port_free_;
+    const Cycle looked_up = pending_[index].ready = take_port(now);
     if (cache_.touch(line)) {
       ++statistics_.hits;
       continue;
@@ -63,16 +74,14 @@ void ShapeCache::look_up(std::size_t client, const FetchRequest& request, Cycle 
     ++pending_[index].lines_missing;
     std::vector<std::uint32_t>& waiting = missing_[line];
     if (waiting.empty()) {
-      to_memory_.send(port_free_ + memory_latency_, line);
+      to_memory_.send(looked_up + memory_latency_, line);
       ++statistics_.misses;
     } else {
       ++statistics_.merged;
     }
     waiting.push_back(index);
   }
-  if (pending_[index].lines_missing > 0) return;
-  answer(pending_[index]);
-  free_pending_.push_back(index);
+  if (pending_[index].lines_missing == 0) complete(index);
 }
 
 void ShapeCache::fill(std::uint64_t line, Cycle now) {
@@ -81,17 +90,15 @@ void ShapeCache::fill(std::uint64_t line, Cycle now) {
   for (const std::uint32_t index : found->second) {
     Pending& pending = pending_[index];
     pending.ready = std::max(pending.ready, now);
-    if (--pending.lines_missing > 0) continue;
-    answer(pending);
-    free_pending_.push_back(index);
+    if (--pending.lines_missing == 0) complete(index);
   }
   missing_.erase(found);
 }
 
-void ShapeCache::answer(const Pending& pending) {
-  Cycle& last = last_answer_[pending.client];
-  last = std::max(last, pending.ready + answer_latency_);
-  clients_[pending.client].answers->send(last, {pending.tag});
+void ShapeCache::complete(std::uint32_t index) {
+  const Pending& pending = pending_[index];
+  answers_.push({pending.ready, next_turn_++, pending.client, pending.tag});
+  free_pending_.push_back(index);
 }
 
 std::string ShapeCache::describe() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <queue>
 #include <unordered_map>
 #include <vector>
 
@@ -13,9 +14,9 @@
 
 namespace carousel::ringbus::cycle {
 
-/// The L2 that some resources share: looks up a line a cycle, in the order in which requests arrive (at one time:
-/// of the resources). A line that is on its way from memory is requested once. The cache is read only, so nothing is
-/// written back.
+/// The L2 that some resources share: looks up so many lines a cycle, in the order in which requests arrive (at one
+/// time: of the resources). A line that is on its way from memory is requested once. The cache is read only, so nothing
+/// is written back. An answer leaves when the last line of its request is there, also before those of earlier requests.
 class ShapeCache final : public Agent {
  public:
   struct Client {
@@ -39,21 +40,31 @@ class ShapeCache final : public Agent {
 
  private:
   struct Pending {
-    std::size_t client = 0;
-    std::uint32_t tag = 0, lines_missing = 0;
+    std::uint32_t client = 0, tag = 0, lines_missing = 0;
     Cycle ready = 0;
   };
+  /// An answer that leaves at `ready`. Of answers that leave at one time the one that was complete first goes first.
+  struct Answer {
+    Cycle ready = 0;
+    std::uint64_t turn = 0;
+    std::uint32_t client = 0, tag = 0;
+    bool operator>(const Answer& o) const { return ready != o.ready ? ready > o.ready : turn > o.turn; }
+  };
 
-  void look_up(std::size_t client, const FetchRequest& request, Cycle now);
+  void look_up(std::uint32_t client, const FetchRequest& request, Cycle now);
   void fill(std::uint64_t line, Cycle now);
-  void answer(const Pending& pending);
+  Cycle take_port(Cycle now);
+  void complete(std::uint32_t index);
 
   Cycle answer_latency_, memory_latency_;
   LineCache cache_;
   std::vector<Client> clients_;
-  std::vector<Cycle> last_answer_;  // answers of a client go out in order of time
   Channel<std::uint64_t>&to_memory_, &from_memory_;
-  Cycle port_free_ = 0;
+  std::uint64_t port_lines_;     // a cycle
+  std::uint64_t looked_up_ = 0;  // the port is taken up to this line of time, of which a cycle has port_lines_
+  Cycle port_busy_until_ = 0;    // the first cycle after the last in which a line was looked up
+  std::priority_queue<Answer, std::vector<Answer>, std::greater<>> answers_;
+  std::uint64_t next_turn_ = 0;
   std::vector<Pending> pending_;
   std::vector<std::uint32_t> free_pending_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> missing_;  // line to pending requests

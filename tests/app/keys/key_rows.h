@@ -157,6 +157,7 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.line_bytes", kTerrain, {}, {"128"}},
       {"memory.ways", kTerrain, {"memory.l2_kib=4"}, {"1"}},
       {"memory.shared_by", kTerrain, {}, {"1"}},
+      {"memory.l2_lines_per_cycle", kTerrain, {}, {"2"}},
       {"memory.l2_latency_cycles", kTerrain, {}, {"90"}},
       {"memory.dram_latency_cycles", kTerrain, {}, {"500"}},
       {"memory.dram_bytes_per_cycle", kTerrain, {}, {"1"}},
