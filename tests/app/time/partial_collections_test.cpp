@@ -24,9 +24,9 @@ constexpr const char* kFewRays =
 // Few rays fill no collections, so all that can hide memory are other collections that go before they are full.
 TEST_F(PartialCollections, LookAheadHidesMemoryOnlyIfTheyMayGoAhead) {
   const auto with = [&](const char* partial, int fetch_ahead) {
-    return cycles(run(kFewRays, {fmt::format("collections.partial={}", partial),
-                                 fmt::format("memory.fetch_ahead={}", fetch_ahead), "memory.shape_buffer_kib=64",
-                                 "memory.l2_kib=16", "memory.dram_bytes_per_cycle=1024"}));
+    return cycles(run(
+        kFewRays, {fmt::format("collections.partial={}", partial), fmt::format("memory.fetch_ahead={}", fetch_ahead),
+                   "memory.shape_buffer_kib=64", "memory.l2_kib=16", "memory.dram_bytes_per_cycle=1024"}));
   };
   const std::uint64_t idle = with("idle", 2);
   EXPECT_GE(with("idle", 32) * 1.1, idle);
@@ -45,8 +45,8 @@ TEST_F(PartialCollections, ACollectionWaitsAsLongAsAsked) {
   EXPECT_EQ(cycles(run(kOneRay, {ordered[0], "collections.partial=ahead"})), cycles(idle));
   std::uint64_t last = 0;
   for (const std::uint64_t wait : {100, 1000, 1100}) {
-    const std::uint64_t after = cycles(run(kOneRay, {ordered[0], "collections.partial=after",
-                                                     fmt::format("collections.partial_after_cycles={}", wait)}));
+    const std::uint64_t after = cycles(run(
+        kOneRay, {ordered[0], "collections.partial=after", fmt::format("collections.partial_after_cycles={}", wait)}));
     // Without the dispatch stage's time for the ID that comes back, which the wait hides.
     EXPECT_EQ(after, last == 0 ? after : last + packets * (wait == 1100 ? 100 : 900));
     EXPECT_NEAR(static_cast<double>(after), static_cast<double>(cycles(idle) + packets * wait),
@@ -56,9 +56,9 @@ TEST_F(PartialCollections, ACollectionWaitsAsLongAsAsked) {
 }
 
 TEST_F(PartialCollections, TheNativeEngineHasNoClockToWaitBy) {
-  EXPECT_THROW(report(std::string("scene: {builtin: terrain}\n") + kOneRay,
-                      {"engine.kind=native", "collections.partial=after"}),
-               ConfigError);
+  EXPECT_THROW(
+      report(std::string("scene: {builtin: terrain}\n") + kOneRay, {"engine.kind=native", "collections.partial=after"}),
+      ConfigError);
 }
 
 }  // namespace
