@@ -90,6 +90,10 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (r.packets && trips.count() > 0)
     r.packets->latency =
         report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
+  if (r.collections && c.ids) {
+    r.collections->ids_at_once = c.ids->most;
+    r.collections->ids_interval = c.ids->interval;
+  }
   r.memory = memory(c, config.memory);
   r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }

@@ -63,8 +63,9 @@ void resource_lines(Table& table, const std::vector<Resource>& resources) {
   spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.tests.triangle; });
   spread_line(table, "packets issued", resources, [](const Resource& r) { return r.counts.packets_issued; });
   spread_line(table, "packets seen", resources, [](const Resource& r) { return r.counts.visits; });
+  if (!resources.front().stalls) return;
   StallCounts stalls;
-  for (const Resource& r : resources) stalls += r.stalls;
+  for (const Resource& r : resources) stalls += *r.stalls;
   Items items;
   for (const Counter<StallCounts>& row : kCounters<StallCounts>) items.add(row.name, grouped(row.value(stalls)));
   table.line("stalls", "{}", items.text());
@@ -136,9 +137,12 @@ void packet_lines(Table& table, const Report& report) {
                percent(p->local_fraction()), percent(p->bubble_fraction()));
   }
   if (const auto& c = report.collections) {
-    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled",
-               grouped(c->counts.created), grouped(c->counts.peak), percent(c->fullness_mean),
+    table.line("collections", "{} made   {} full   most in one resource: {}, with {} ray IDs   {} spilled",
+               grouped(c->counts.created), percent(c->fullness_mean), grouped(c->counts.peak),
                grouped(c->counts.memberships_peak), grouped(c->counts.spilled));
+    if (c->ids_at_once)
+      table.line("", "{} ray IDs in all resources at once, of every {} cycles", grouped(*c->ids_at_once),
+                 grouped(*c->ids_interval));
   }
 }
 

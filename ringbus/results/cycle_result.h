@@ -75,6 +75,13 @@ struct StopTimes {
   friend bool operator==(const StopTimes&, const StopTimes&) = default;
 };
 
+/// The ray IDs in the collections of all resources together, looked at in one of every `interval` cycles.
+struct IdsAtOnce {
+  std::uint64_t most = 0;
+  Cycle interval = 0;
+  friend bool operator==(const IdsAtOnce&, const IdsAtOnce&) = default;
+};
+
 struct CycleResult {
   Cycle cycles = 0;               ///< from cycle 0 to the last in which a resource, ray control or shading did anything
   Cycle steady_cycles = 0;        ///< between a quarter and three quarters of the rays
@@ -87,6 +94,7 @@ struct CycleResult {
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
+  std::optional<IdsAtOnce> ids;   ///< where there are collections
   std::optional<StopTimes> stop;  ///< if one was excluded before the last ray was shaded
   EpochDigests epochs;
   std::vector<Step> steps;  ///< of RunOptions::trace

@@ -41,6 +41,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
+      partial_(settings.resource.collections.partial),
+      memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       fault_(settings.fault),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
@@ -89,6 +91,7 @@ Cycle Tile::next_egress() const {
   };
   for (const Context& context : contexts_)
     if (context.phase == Context::Phase::kComputing || context.subtree) consider(context.done);
+  consider(next_partial_);
   if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
 }
@@ -113,7 +116,9 @@ void Tile::run(Cycle end) {
 
 void Tile::step(Cycle now) {
   now_ = now;
+  census_.until(now, resource_.collections().memberships());
   for (OutPort& out : ports_.out) out.take_credits(now);
+  resource_.ripen(now);
   if (stops_ && fault_is_due()) stop(now);
   take_answers(now);
   take_opacities(now);
@@ -141,6 +146,8 @@ void Tile::step(Cycle now) {
   const TileState state = classify(now);
   ledger_.enter(state, now);
   help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
+  if (const std::optional<std::uint64_t> ripe = resource_.next_ripe(); ripe && issue_.size() < issue_places_)
+    next_partial_ = std::min<Cycle>(next_partial_, *ripe);
   next_here_ = next_egress();
   may_send_ = wants_credit() ||
               std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
@@ -218,6 +225,7 @@ ResourceStatistics Tile::statistics() const {
 
 void Tile::close(Cycle end) {
   ledger_.close(end);
+  census_.until(end, resource_.collections().memberships());
   // The dispatch stage may still look through the IDs of the last packet.
   if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
 }

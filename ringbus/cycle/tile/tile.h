@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -60,6 +61,7 @@ class Tile final : public ResourceAgent {
   TileResult result() const override;
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
+  const IdCensus* census() const override { return &census_; }
   const std::vector<OutPort>& out() const override { return ports_.out; }
   std::string blocked(std::size_t port) const override;
   std::uint64_t packets_discarded() const override { return discarded_; }
@@ -108,6 +110,12 @@ class Tile final : public ResourceAgent {
   bool pass_through_dispatch(std::size_t d, Cycle now);
   bool handle_issue(Cycle now);
   bool fill_issue(Cycle now);
+  bool nothing_else_to_do(Cycle now) const;
+  /// The end of the tests under way, or of the dispatch of all packets in the issue queue, if that is later.
+  Cycle work_ahead_ends(Cycle now) const;
+  /// The time from which a collection that is not ready may go, by `collections.partial`; kNever while that waits for
+  /// another event.
+  Cycle partial_may_go(Cycle now) const;
   bool send(Cycle now);
 
   // When a resource has stopped (tile_stop.cpp).
@@ -132,6 +140,7 @@ class Tile final : public ResourceAgent {
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
+  Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
   void occupy_dispatch(Cycle now, std::size_t ids);
   void fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
@@ -157,6 +166,8 @@ class Tile final : public ResourceAgent {
   Cycle link_bytes_, ids_per_cycle_, control_latency_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, fetch_by_resource_;
+  Partial partial_;
+  Cycle memory_latency_;  // of a miss
 
   Cycle now_ = 0;
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
@@ -165,6 +176,7 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::deque<Issue> issue_;
+  Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::uint32_t next_tag_ = 0;
   std::vector<Context> contexts_;
   bool storage_full_ = false;
@@ -179,6 +191,7 @@ class Tile final : public ResourceAgent {
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
+  IdCensus census_;
 };
 
 }  // namespace carousel::ringbus::cycle

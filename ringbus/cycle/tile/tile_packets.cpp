@@ -24,7 +24,7 @@ void Tile::retire_at_owner(PacketId id) {
 }
 
 void Tile::occupy_dispatch(Cycle now, std::size_t ids) {
-  const Cycle cycles = std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_));
+  const Cycle cycles = dispatch_cycles(ids);
   const Cycle start = std::max(dispatch_free_, now);
   if (start != dispatch_ends_) dispatch_since_ = start;
   dispatch_ends_ = dispatch_free_ = start + cycles;
