@@ -79,7 +79,7 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
   write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
   print_report(arguments, report, report::traffic_table(report), folder);
-  return verdict(report);
+  return verdict(report, interrupt.status());
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -119,8 +119,11 @@ int run_command(const RunArguments& arguments) {
   const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {
-    report.bound = bound_of(p.config(), result);
-    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, job, interrupt.token());
+    report.bound = bound_of(result);
+    if (p.config().engine.what_if) {
+      report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), arguments.quiet);
+      report.incomplete |= !report.bottleneck->complete;
+    }
   }
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, interrupt, report);
@@ -128,7 +131,7 @@ int run_command(const RunArguments& arguments) {
   write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr);
 
   print_report(arguments, report, report::report_table(report), folder);
-  return verdict(report);
+  return verdict(report, interrupt.status());
 }
 
 }  // namespace carousel::app

@@ -118,7 +118,6 @@ bool ShadingAgent::finish_jobs(Cycle now) {
   outstanding_ -= shaded_.size();
   completed_ += shaded_.size();
   source_dry_ = false;
-  milestone(now);
   return true;
 }
 
@@ -257,15 +256,6 @@ void ShadingAgent::order_all(NewRays::Order order, Cycle now) {
     last_sent_[r] = std::max(last_sent_[r], now + latency_);
     clients_[r].new_rays->send(last_sent_[r], {{}, order});
   }
-}
-
-void ShadingAgent::milestone(Cycle now) {
-  if (completed_ < milestone_rays_ * (milestones_.size() + 1)) return;
-  milestones_.push_back({now, completed_});
-  if (milestones_.size() < 1024) return;
-  for (std::size_t i = 0; i < 512; ++i) milestones_[i] = milestones_[2 * i + 1];
-  milestones_.resize(512);
-  milestone_rays_ *= 2;
 }
 
 std::string ShadingAgent::describe() const {
