@@ -176,7 +176,7 @@ class CycleRun {
     for (const auto& cache : machine_.memory().caches()) port += cache->statistics().port_busy;
     out.push_back({"l2_port", static_cast<double>(machine_.memory().caches().size()), port});
     out.push_back({"memory_bandwidth", 1, machine_.memory().memory().busy()});
-    out.push_back({"shading", static_cast<double>(config_.shading.workers), machine_.shading().busy()});
+    out.push_back({"shading", static_cast<double>(shader_workers(config_)), machine_.shading().busy()});
     return out;
   }
 

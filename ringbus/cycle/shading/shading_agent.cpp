@@ -28,7 +28,7 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
       queues_(settings.shading.distribute, settings.workers, settings.seed),
       helpers_(clients_, latency_),
-      made_(static_cast<std::size_t>(settings.shading.workers)),
+      made_(settings.workers),
       load_free_(clients_.size()),
       last_sent_(clients_.size()) {
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
