@@ -21,7 +21,12 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Config&
     const ringbus::ResourceStatistics& s = result.resources[i];
     sum += s;
     collections.counts += result.collections[i];
-    r.resources->push_back({i, s, s.tests, result.collections[i], s.stalls});
+    report::Resource& one = r.resources->emplace_back(report::Resource{i, s, s.tests, result.collections[i]});
+    // Only worker threads try in vain. Under virtual time the states of the units say what a resource waited for.
+    if (config.engine.kind == EngineKind::kCycle)
+      one.reserve_entered = s.stalls[StallReason::kReserve];
+    else
+      one.stalls = s.stalls;
   }
   collections.fullness_mean =
       ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.packets.rays));
@@ -49,10 +54,12 @@ void add_links(report::Report& r, const ringbus::RunResult& result, const Config
     out.received_at_once = ratio(s.packets, s.receives);
     out.full_stalls = s.full_stalls;
     out.empty_stalls = s.empty_stalls;
-    out.occupancy.emplace();
+    if (!r.host.links) r.host.links.emplace();
+    std::vector<report::LinkOccupancy>& occupancy =
+        r.host.links->emplace_back(report::HostLink{link.from.value, link.to.value, {}}).occupancy;
     for (const ringbus::OccupancySeries::Entry& entry : link.series.entries())
-      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(),
-                                ratio(entry.sum, entry.samples), entry.most});
+      occupancy.push_back({std::chrono::duration<double>(entry.end - result.start).count(),
+                           ratio(entry.sum, entry.samples), entry.most});
   }
 }
 

@@ -63,8 +63,9 @@ void resource_lines(Table& table, const std::vector<Resource>& resources) {
   spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.tests.triangle; });
   spread_line(table, "packets issued", resources, [](const Resource& r) { return r.counts.packets_issued; });
   spread_line(table, "packets seen", resources, [](const Resource& r) { return r.counts.visits; });
+  if (!resources.front().stalls) return;
   StallCounts stalls;
-  for (const Resource& r : resources) stalls += r.stalls;
+  for (const Resource& r : resources) stalls += *r.stalls;
   Items items;
   for (const Counter<StallCounts>& row : kCounters<StallCounts>) items.add(row.name, grouped(row.value(stalls)));
   table.line("stalls", "{}", items.text());
@@ -132,7 +133,7 @@ void packet_lines(Table& table, const Report& report) {
     table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(c.packets_issued),
                grouped(c.packets_retired), ratio(c.packets_issued, report.rays.completed),
                ratio(c.hops, c.packets_issued));
-    table.line("", "{:.1f} rays each   {} of them local where seen   {} of visits without any", p->rays_mean(),
+    table.line("", "{:.1f} rays each   {} of the rays seen are local   {} of visits find none", p->rays_mean(),
                percent(p->local_fraction()), percent(p->bubble_fraction()));
   }
   if (const auto& c = report.collections) {
@@ -165,9 +166,9 @@ void cycle_lines(Table& table, const Report& report) {
   Items busy;
   for (const UnitKindRow& row : kUnitKinds)
     if (report.resources->front().units->features.show(row.shown)) busy.add(row.name, part(sums[row.kind].busy));
-  busy.add("handling", part(dispatch));
+  busy.add("dispatch", part(dispatch));
   busy.add("shading", percent(report.shading.utilisation.value_or(0)));
-  busy.add("memory", percent(report.memory ? report.memory->dram_utilisation : 0));
+  busy.add("DRAM", percent(report.memory ? report.memory->dram_utilisation : 0));
   table.line("busy", "{}", busy.text());
   const UnitCycles& sum = sums[UnitKind::kBox];  // all kinds wait together
   table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),
@@ -195,8 +196,9 @@ std::string report_table(const Report& report) {
   if (report.incomplete) table.line("INCOMPLETE", "the run was interrupted; what follows is what was done");
   table.line("scene", "{}: {} triangles, {} instances{}", report.scene.name, grouped(report.scene.triangles),
              grouped(report.scene.instances), image_text(report.config));
-  table.line("engine", "{}{} on {} threads, {} shader workers", report.engine.kind, ring_text(report.config),
-             report.host.threads, report.shading.workers);
+  const bool simulated = report.engine.cycles.has_value();
+  table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
+             simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);
   table.gap();
   const Rays& rays = report.rays;
   const std::optional<Stop> stop = report.faults ? report.faults->stop : std::nullopt;
@@ -221,9 +223,10 @@ std::string report_table(const Report& report) {
         "faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost,
         grouped(*report.faults->cycles_without),
         report.faults->same_hits.value_or(true) ? ", the same hits and picture" : ", OTHER HITS OR ANOTHER PICTURE");
-  table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
-             scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
-             seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
+  if (!simulated)
+    table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
+               scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
+               seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
   if (report.engine.cycles && report.throughput) cycle_lines(table, report);
   if (report.bottleneck) table.line("bottleneck", "{}", report.bottleneck->verdict);
   if (report.bound && !report.bound->classes.empty())
@@ -236,6 +239,10 @@ std::string report_table(const Report& report) {
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);
   table.gap();
+  if (simulated)
+    table.line("host", "{} to simulate on {} threads   {} to build the tree   {} memory",
+               seconds_text(report.host.wall_seconds), report.host.threads, seconds_text(report.host.build_seconds),
+               bytes_text(report.host.peak_memory_bytes));
   if (report.verify)
     table.line("verify", "{} rays traced again, {} mismatches{}", grouped(report.verify->compared),
                grouped(report.verify->mismatches), report.verify->example.empty() ? "" : "; " + report.verify->example);

@@ -6,6 +6,7 @@
 
 #include "core/system/error.h"
 #include "ringbus/cycle/time/windows.h"
+#include "ringbus/cycle/wiring/byte_ledger.h"
 #include "ringbus/cycle/wiring/simulated_machine.h"
 
 namespace carousel::ringbus {
@@ -19,7 +20,8 @@ class CycleRun {
  public:
   CycleRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
            const RunOptions& options)
-      : options_(options),
+      : config_(config),
+        options_(options),
         link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
         machine_(config, accel, scene_size, workload, options.statistics, options.trace) {}
 
@@ -41,7 +43,7 @@ class CycleRun {
     });
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!stopped) check_at_rest();
-    RunResult out = result(last_event() + 1);
+    RunResult out = result(last_event() + 1, !stopped);
     out.complete = !stopped;
     out.wall_seconds = wall.count();
     out.threads = parts.size();
@@ -79,7 +81,7 @@ class CycleRun {
     if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
-  RunResult result(Cycle end) const {
+  RunResult result(Cycle end, bool complete) const {
     RunResult out;
     out.rays_emitted = machine_.shading().emitted();
     out.rays_completed = machine_.shading().completed();
@@ -112,12 +114,15 @@ class CycleRun {
       c.links.push_back({wire.from.value,
                          wire.to.value,
                          {port.busy(end), port.stalled()},
-                         machine_.network().wire(c.links.size()).queue});
+                         machine_.network().wire(c.links.size()).queue,
+                         machine_.network().wire(c.links.size()).packets.bytes().sent});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
     });
     for (const auto& cache : machine_.memory().caches()) c.caches.push_back(cache->statistics());
+    c.bytes = byte_ledger(machine_, config_);
+    if (kChecked && complete) check_byte_ledger(c.bytes);
     return out;
   }
 
@@ -137,6 +142,7 @@ class CycleRun {
     c.steady_spread = std::abs(rate(middle, last) - rate(first, middle)) / rate(first, last);
   }
 
+  const Config& config_;
   const RunOptions& options_;
   std::size_t link_depth_;
   SimulatedMachine machine_;

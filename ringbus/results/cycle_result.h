@@ -10,6 +10,7 @@
 #include "core/statistics/ray_bytes.h"
 #include "core/types/unit_kind.h"
 #include "ringbus/cycle/time/clock.h"
+#include "ringbus/results/byte_row.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -64,6 +65,7 @@ struct LinkUse {
   std::uint32_t from = 0, to = 0;
   Utilisation use;
   Occupancy queue;
+  std::uint64_t bytes = 0;  ///< of the packets; 0 for synthetic traffic
   friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
@@ -82,6 +84,7 @@ struct CycleResult {
   double steady_spread = 0;       ///< by how much the rates of their halves differ, as a fraction
   std::vector<TileResult> tiles;  ///< by resource
   std::vector<LinkUse> links;
+  std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
   std::uint64_t memory_lines = 0;
   Cycle memory_busy = 0;

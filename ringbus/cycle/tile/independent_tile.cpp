@@ -16,7 +16,7 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       id_(id),
       store_(*machine.stores[id.value]),
       statistics_(settings.statistics),
-      control_latency_(control_latency(settings.link)),
+      question_wire_(settings.link, control_latency(settings.link)),
       trace_(id.value, settings.trace),
       ports_(ports),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
@@ -49,10 +49,12 @@ void IndependentTile::step(Cycle now) {
       const std::uint32_t slot = tests_.top().slot;
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
-      if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0)
-        ports_.questions->send(now + control_latency_, {{slot}, times});
-      else
+      if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0) {
+        AnyHitQuestion question{{slot}, times};
+        ports_.questions->send(question_wire_.send(question.bytes(), now), std::move(question));
+      } else {
         keep_running(slot, now);
+      }
     }
   } while (help_.step(now, tests_.empty()));
   if (!help_.holds()) test_held_back(now);

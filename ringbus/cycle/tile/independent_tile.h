@@ -7,6 +7,7 @@
 
 #include "ringbus/cycle/memory/strip_fetches.h"
 #include "ringbus/cycle/testers/tester.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/cycle/tile/resource_agent.h"
@@ -79,7 +80,7 @@ class IndependentTile final : public ResourceAgent {
   ResourceId id_;
   RayStore& store_;
   bool statistics_;
-  Cycle control_latency_;
+  SideWire question_wire_;
   StatisticsSink sink_;
   Trace trace_;
   SidePorts ports_;

@@ -23,6 +23,8 @@ class ResourceAgent : public Agent {
   virtual TileResult result() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
+  /// Lines of shape data for which it has asked its cache.
+  virtual std::uint64_t lines_asked() const = 0;
   /// Packets of its own that were discarded because a resource had stopped.
   virtual std::uint64_t packets_discarded() const { return 0; }
 

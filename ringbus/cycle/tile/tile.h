@@ -10,6 +10,7 @@
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/memory/shape_port.h"
 #include "ringbus/cycle/testers/tester.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/round_trips.h"
@@ -154,7 +155,8 @@ class Tile final : public ResourceAgent {
   CompletedPort completed_port_;
   ShadeHelp help_;
   PacketSize packet_size_;
-  Cycle link_bytes_, ids_per_cycle_, control_latency_;
+  Cycle link_bytes_, ids_per_cycle_;
+  SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, fetch_by_resource_;
 

@@ -20,6 +20,11 @@ class MemorySystem {
   const ShapeCache& cache_of(std::size_t resource) const { return *caches_[resource / shared_by_]; }
   Memory& memory() { return *memory_; }
   const Memory& memory() const { return *memory_; }
+  /// Calls `body` with the channels to memory and back, cache by cache.
+  template <class Body>
+  void for_each_channel(const Body& body) const {
+    for (std::size_t c = 0; c < caches_.size(); ++c) body(*to_memory_[c], *from_memory_[c]);
+  }
   /// Announces arrivals between caches and memory.
   void connect(WakeupTable& wakeups) const;
   /// The least latency of any channel to a cache or to memory.
