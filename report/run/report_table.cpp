@@ -87,6 +87,18 @@ void link_line(Table& table, const std::vector<Link>& links) {
              cycles ? "cycles stalled" : "refused");
 }
 
+/// Who sends how much to whom, and over what. Kinds of message of which there were none are left out.
+void byte_lines(Table& table, const std::vector<Bytes>& rows, std::uint64_t rays) {
+  std::string_view name = "bytes";
+  for (const Bytes& row : rows) {
+    if (row.bytes == 0) continue;
+    table.line(name, "{:<18} {:>10} {:>10} a ray   from {} to {}, over {} of {} bytes a cycle", row.what,
+               bytes_text(row.bytes), fmt::format("{:.1f}", ratio(row.bytes, rays)), row.from, row.to, row.over,
+               row.width_bytes_per_cycle);
+    name = "";
+  }
+}
+
 /// Tests of boxes and triangles and transforms always, other counts of the tests where there are any.
 void test_line(Table& table, const Tests& t) {
   using C = IntersectionCounts;
@@ -238,6 +250,7 @@ std::string report_table(const Report& report) {
   if (report.shading.proof) proof_line(table, *report.shading.proof);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);
+  if (report.bytes) byte_lines(table, *report.bytes, report.rays.completed);
   table.gap();
   if (simulated)
     table.line("host", "{} to simulate on {} threads   {} to build the tree   {} memory",

@@ -24,6 +24,7 @@ struct Link {
   std::uint64_t occupancy_max = 0, stalled = 0;
   std::optional<double> utilisation{};
   std::optional<LinkCycles> cycles{};
+  std::optional<std::uint64_t> bytes{};
   std::optional<std::string> queue{};
   std::optional<double> sent_at_once{}, received_at_once{};
   std::optional<std::uint64_t> full_stalls{}, empty_stalls{};
@@ -44,6 +45,7 @@ void describe(V& v, const Link& r) {
           "sends refused by the full queue (native), cycles in which a packet waited for a credit (cycle)");
   v.field("utilisation", r.utilisation, "fraction",
           "fraction of the run's cycles in which the link moved a packet (cycle)");
+  v.field("bytes", r.bytes, "bytes", "bytes of the packets carried (cycle)");
   v.section("cycles", r.cycles, "cycles of the link; they add up to engine.cycles (cycle)");
   v.field("queue", r.queue, "", "kind of queue (native)");
   v.field("sent_at_once", r.sent_at_once, "packets", "mean of the packets of a send, where it took any (native)");

@@ -9,8 +9,8 @@
 namespace carousel::ringbus::cycle {
 
 /// The near end of a wire beside the links, as wide as a link. As on a link, a message of n bytes occupies it for
-/// ceil(n / width) cycles; its head arrives after the latency, its tail correspondingly later, and the receiver waits for
-/// the tail. Messages go out in the order in which they are handed over.
+/// ceil(n / width) cycles; its head arrives after the latency, its tail correspondingly later, and the receiver waits
+/// for the tail. Messages go out in the order in which they are handed over.
 class SideWire {
  public:
   SideWire(const LinkConfig& link, Cycle latency)

@@ -122,7 +122,7 @@ class ShadingAgent final : public Agent {
   std::vector<RayBatch> made_;  // by worker: the camera rays of its job
   HitBatch shaded_;
   std::vector<RayGroup> groups_;
-  std::vector<Cycle> load_free_;                 // by resource
+  std::vector<Cycle> load_free_;                   // by resource
   std::vector<SideWire> id_wires_, answer_wires_;  // likewise
   bool source_finished_ = false, source_dry_ = false, started_ = false;
   std::size_t making_ = 0;

@@ -37,7 +37,8 @@ ByteRow packets(const SimulatedMachine& machine, std::uint64_t width) {
 /// The resources count the lines for which they ask, the caches those that they look up.
 ByteRow shape_data(const SimulatedMachine& machine, const MemoryConfig& memory) {
   const auto line = static_cast<std::uint64_t>(memory.line_bytes);
-  ByteRow row{"shape data", "L2", "resources", "L2's port", line * static_cast<std::uint64_t>(memory.l2_lines_per_cycle)};
+  ByteRow row{"shape data", "L2", "resources", "L2's port",
+              line * static_cast<std::uint64_t>(memory.l2_lines_per_cycle)};
   for (const auto& cache : machine.memory().caches()) row.bytes += cache->statistics().lines * line;
   for (const auto& channels : machine.channels()) {
     const SidePorts side = channels->ports();
@@ -62,7 +63,8 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
   ByteRow jobs{"shading jobs", "shading", "resources", "wires of jobs", width};
   ByteRow notes{"notes and results", "resources", "shading", "wires of notes", width};
   ByteRow addresses{"line requests", "L2", "DRAM", "address wires", kAddress * lines_per_cycle};
-  ByteRow lines{"lines", "DRAM", "L2", "DRAM's data wires", static_cast<std::uint64_t>(config.memory.dram_bytes_per_cycle)};
+  ByteRow lines{"lines", "DRAM", "L2", "DRAM's data wires",
+                static_cast<std::uint64_t>(config.memory.dram_bytes_per_cycle)};
   for (const auto& channels : machine.channels()) {
     const SidePorts side = channels->ports();
     add(new_rays, *side.new_rays);
@@ -77,8 +79,17 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
     add(addresses, down, kAddress);
     add(lines, up, line);
   });
-  return {packets(machine, width), new_rays, completed, requests, shape_data(machine, config.memory), addresses, lines,
-          questions,               answers,  jobs,      notes};
+  return {packets(machine, width),
+          new_rays,
+          completed,
+          requests,
+          shape_data(machine, config.memory),
+          addresses,
+          lines,
+          questions,
+          answers,
+          jobs,
+          notes};
 }
 
 void check_byte_ledger(const std::vector<ByteRow>& rows) {

@@ -46,7 +46,7 @@ std::vector<std::pair<std::string, std::string>> items_of(const std::string& tab
     head.erase(head.find_last_not_of(' ') + 1);
     if (!head.empty()) name = head;
     std::string rest = line.substr(13);
-    if (name == "resources") {
+    if (name == "resources" || name == "bytes") {
       out.emplace_back(name, std::regex_replace(rest, std::regex(" +"), " "));
       continue;
     }
