@@ -58,6 +58,7 @@ void add_to_link(report::Link& out, const ringbus::cycle::LinkUse& link, std::ui
   out.occupancy_mean = ratio(link.queue.packet_cycles, cycles);
   out.occupancy_max = link.queue.most;
   out.stalled = link.use.stalled;
+  out.bytes = link.bytes;
   out.cycles = report::LinkCycles{link.use.busy, link.use.stalled, cycles - link.use.busy - link.use.stalled};
 }
 
@@ -69,6 +70,13 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   out.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.line_bytes);
   out.dram_busy_cycles = c.memory_busy;
   out.dram_utilisation = ratio(c.memory_busy, c.cycles);
+  return out;
+}
+
+std::vector<report::Bytes> bytes(const ringbus::cycle::CycleResult& c) {
+  std::vector<report::Bytes> out;
+  for (const ringbus::cycle::ByteRow& row : c.bytes)
+    out.push_back({row.what, row.from, row.to, row.over, row.width, row.bytes, row.messages});
   return out;
 }
 
@@ -100,6 +108,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     r.collections->ids_interval = c.ids->interval;
   }
   r.memory = memory(c, config.memory);
+  r.bytes = bytes(c);
   r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 

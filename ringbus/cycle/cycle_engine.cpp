@@ -6,6 +6,7 @@
 #include "core/system/error.h"
 #include "ringbus/cycle/progress_log.h"
 #include "ringbus/cycle/time/windows.h"
+#include "ringbus/cycle/wiring/byte_ledger.h"
 #include "ringbus/cycle/wiring/simulated_machine.h"
 
 namespace carousel::ringbus {
@@ -45,7 +46,7 @@ class CycleRun {
     });
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!stopped) check_at_rest();
-    RunResult out = result(last_event() + 1);
+    RunResult out = result(last_event() + 1, !stopped);
     out.complete = !stopped;
     out.wall_seconds = wall.count();
     out.threads = parts.size();
@@ -98,7 +99,7 @@ class CycleRun {
     return out;
   }
 
-  RunResult result(Cycle end) const {
+  RunResult result(Cycle end, bool complete) const {
     RunResult out;
     out.rays_emitted = machine_.shading().emitted();
     out.rays_completed = machine_.shading().completed();
@@ -134,7 +135,8 @@ class CycleRun {
       c.links.push_back({wire.from.value,
                          wire.to.value,
                          {port.busy(end), port.stalled()},
-                         machine_.network().wire(c.links.size()).queue});
+                         machine_.network().wire(c.links.size()).queue,
+                         machine_.network().wire(c.links.size()).packets.bytes().sent});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
@@ -143,6 +145,8 @@ class CycleRun {
       c.caches.push_back(cache->statistics());
       c.cached_lines.push_back(cache->lines());
     }
+    c.bytes = byte_ledger(machine_, config_);
+    if (kChecked && complete) check_byte_ledger(c.bytes);
     return out;
   }
 

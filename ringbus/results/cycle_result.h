@@ -11,6 +11,7 @@
 #include "core/statistics/shape_buffer_counts.h"
 #include "core/types/unit_kind.h"
 #include "ringbus/cycle/time/clock.h"
+#include "ringbus/results/byte_row.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/trace.h"
 
@@ -67,6 +68,7 @@ struct LinkUse {
   std::uint32_t from = 0, to = 0;
   Utilisation use;
   Occupancy queue;
+  std::uint64_t bytes = 0;  ///< of the packets; 0 for synthetic traffic
   friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
@@ -93,6 +95,7 @@ struct CycleResult {
   std::optional<ProgressSample> all_begun;  ///< when no ray was left that no other ray causes
   std::vector<TileResult> tiles;            ///< by resource
   std::vector<LinkUse> links;
+  std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0;
