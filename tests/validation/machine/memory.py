@@ -1,13 +1,9 @@
 """Shape data: a resource's buffer, the shared caches, the memory behind them ("Memory")."""
 from .clock import Channel, ceil_div, way_back, way_there
 
-PLACE = 256
-
-
 class LineCache:
     def __init__(self, lines, ways):
         self.ways, self.sets = ways, max(1, lines // ways)
-        self.sets = 1 << (self.sets.bit_length() - 1)
         self.lines = [[] for _ in range(self.sets)]  # most recently used first
 
     def touch(self, line):
@@ -26,30 +22,10 @@ class LineCache:
         del entries[self.ways:]
 
 
-class ShapeBuffer:
-    def __init__(self, config):
-        self.cache = LineCache(config["memory"]["shape_buffer_kib"] * 1024 // PLACE, 16)
-
-    @staticmethod
-    def _places(span):
-        address, size = span
-        for at in range(0, size, PLACE):
-            mixed = (address + at) * 0x9e3779b97f4a7c15 & (1 << 64) - 1
-            yield (mixed >> 40 | mixed << 24) & (1 << 64) - 1
-
-    def has(self, span):
-        return all([self.cache.touch(place) for place in self._places(span)])
-
-    def keep(self, span):
-        for place in self._places(span):
-            self.cache.insert(place)
-
-
 class ShapePort:
-    """A resource's access to shape data."""
+    """A resource's end of the wires to its cache."""
 
     def __init__(self, config, clock):
-        self.buffer = ShapeBuffer(config)
         self.requests, self.answers = Channel(clock), Channel(clock)
         self.latency = way_there(config["memory"]["l2_latency_cycles"])
         self.line = config["memory"]["line_bytes"]
@@ -61,71 +37,74 @@ class ShapePort:
 
 
 class Request:
-    def __init__(self, client, tag, ready):
-        self.client, self.tag, self.ready, self.missing = client, tag, ready, 0
+    def __init__(self, client, tag):
+        self.client, self.tag, self.ready, self.missing = client, tag, 0, 0
 
 
 class Cache:
-    """An L2 that some resources share: a line a cycle."""
+    """An L2 that some resources share. Its port looks up so many lines a cycle."""
 
     def __init__(self, config, clock, ports):
         m = config["memory"]
+        self.clock, self.ports = clock, ports
         self.lines = LineCache(m["l2_kib"] * 1024 // m["line_bytes"], m["ways"])
-        self.ports = ports
         self.back = way_back(m["l2_latency_cycles"])
         self.to_memory, self.from_memory = Channel(clock), Channel(clock)
         self.memory_latency = way_there(m["dram_latency_cycles"])
-        self.port_free = 0
-        self.waiting = {}  # line: requests, in the order in which they asked
-        self.last_answer = [0] * len(ports)
+        self.lines_a_cycle = m["l2_lines_per_cycle"]
+        self.looked_up = 0  # in lines: a cycle has lines_a_cycle of them
+        self.waiting = {}   # line: requests, in the order in which they asked
+        self.complete = []  # requests that wait for their answer to leave
 
     def step(self, now):
         while self.from_memory.ready(now):
             self.fill(self.from_memory.take(), now)
         for client, port in enumerate(self.ports):
             while port.requests.ready(now):
-                self.look_up(client, port.requests.take(), now)
+                self.look_up(Request(client, port.requests.front()[2]), port.requests.take(), now)
+        for request in [request for request in self.complete if request.ready <= now]:
+            self.complete.remove(request)
+            self.ports[request.client].answers.send(now + self.back, request.tag)
 
-    def look_up(self, client, asked, now):
-        first, lines, tag = asked
-        request = Request(client, tag, 0)
-        self.port_free = max(self.port_free, now)
+    def look_up(self, request, asked, now):
+        first, lines, _ = asked
         for line in range(first, first + lines):
-            self.port_free += 1
-            request.ready = self.port_free
+            self.looked_up = max(self.looked_up, now * self.lines_a_cycle) + 1
+            request.ready = ceil_div(self.looked_up, self.lines_a_cycle)
             if self.lines.touch(line):
                 continue
             request.missing += 1
             if line not in self.waiting:
                 self.waiting[line] = []
-                self.to_memory.send(self.port_free + self.memory_latency, line)
+                self.to_memory.send(request.ready + self.memory_latency, line)
             self.waiting[line].append(request)
-        if request.missing == 0:
-            self.answer(request)
+        self.complete_if_all_there(request)
 
     def fill(self, line, now):
         self.lines.insert(line)
         for request in self.waiting.pop(line):
             request.ready = max(request.ready, now)
             request.missing -= 1
-            if request.missing == 0:
-                self.answer(request)
+            self.complete_if_all_there(request)
 
-    def answer(self, request):
-        last = max(self.last_answer[request.client], request.ready + self.back)
-        self.last_answer[request.client] = last
-        self.ports[request.client].answers.send(last, request.tag)
+    def complete_if_all_there(self, request):
+        if request.missing == 0:
+            self.complete.append(request)
+            self.clock.wake(request.ready)
 
 
 class Memory:
+    """One channel of so many bytes a cycle."""
+
     def __init__(self, config, caches):
         m = config["memory"]
-        self.caches, self.free_at = caches, 0
+        self.caches = caches
         self.back = way_back(m["dram_latency_cycles"])
-        self.line_cycles = ceil_div(m["line_bytes"], m["dram_bytes_per_cycle"])
+        self.line, self.width = m["line_bytes"], m["dram_bytes_per_cycle"]
+        self.moved = 0  # in bytes: a cycle has `width` of them
 
     def step(self, now):
         for cache in self.caches:
             while cache.to_memory.ready(now):
-                self.free_at = max(self.free_at, now) + self.line_cycles
-                cache.from_memory.send(self.free_at + self.back, cache.to_memory.take())
+                self.moved = max(self.moved, now * self.width) + self.line
+                cache.from_memory.send(ceil_div(self.moved, self.width) + self.back, cache.to_memory.take())

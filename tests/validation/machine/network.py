@@ -127,7 +127,7 @@ class PacketSize:
             elif node.inner and not treelet:
                 size += n + (32 if self.entries else 0)
             if self.data and not treelet:
-                size += node.strip[1] + node.transform[1]
+                size += node.shapes_of(packet.lane)[1] + node.transform[1]
         return ceil_div(size, self.width)
 
 

@@ -38,10 +38,11 @@ def draw(seed, index):
                  "reads_per_cycle": pick([0, 0, 1, 3])},
         "accuracy": {"transformed_ray": pick(["recompute", "store"])},
         "testers": {"box": units(), "triangle": units(), "contexts": pick([1, 2, 4])},
-        "memory": {"l2_kib": pick([1, 2, 16, 1024]), "ways": pick([1, 2, 8]), "line_bytes": pick([32, 64, 256]),
+        "memory": {"l2_kib": pick([1, 3, 16, 1024]), "ways": pick([1, 2, 8]), "line_bytes": pick([32, 64, 256]),
+                   "l2_lines_per_cycle": pick([1, 1, 2, 4]),
                    "shared_by": pick([1, 2, 4]), "l2_latency_cycles": pick([1, 2, 3, 30]),
                    "dram_latency_cycles": pick([1, 3, 200]), "dram_bytes_per_cycle": pick([1, 16, 64, 512]),
-                   "fetch": fetch, "fetch_ahead": pick([0, 2, 5]), "shape_buffer_kib": pick([1, 4, 256])},
+                   "fetch": fetch, "fetch_ahead": pick([0, 2, 5]), "shape_buffer_kib": pick([1, 3, 4, 256])},
         "shading": {"workers": pick([1, 2, 5]), "cycles_per_shade": pick([0, 1, 7, 20]),
                     "cycles_per_effect": pick([0, 5]), "distribute": pick(["fifo_fill", "load", "round_robin"])},
     }

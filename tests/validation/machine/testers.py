@@ -87,10 +87,18 @@ class Testers:
             end = max(end, self._behind(self.banks[kind], moved, counts.passes(kind))[1])
         return end
 
-    def ray(self, at, counts):
+    def read(self, at, records):
+        return self.store.reserve_beside(at, records) if self.reads_per_cycle > 0 else at
+
+    def invert(self, at):
+        return self.banks[TRANSFORM].reserve(at, INVERSION_PASSES)[1]
+
+    def ray(self, at, counts, inversions):
+        """The last answer to the tests of a single ray."""
         bank = self.banks
-        inverse = bank[TRANSFORM].reserve(at, INVERSION_PASSES * counts.inversions)[1]
-        moved = bank[TRANSFORM].reserve_beside(inverse, counts.transforms)
+        if inversions > 0:
+            at = self.invert(at)
+        moved = bank[TRANSFORM].reserve_beside(at, counts.transforms)
         return max(moved, bank[BOX].reserve_beside(moved, counts.box),
                    bank[TRIANGLE].reserve_beside(moved, counts.triangle),
                    bank[PROCEDURAL].reserve_beside(moved, counts.procedural))

@@ -4,22 +4,27 @@ from collections import deque
 from .clock import Channel, ceil_div
 from .network import Packet, PacketSize, Token
 from .resource import PACKET, Resource
+from .shape_buffer import ShapeBuffer, User
 from .testers import Testers
+from .walk import Visit, Visits
 
-FREE, FETCHING, COMPUTING = "free", "fetching", "computing"
+FREE, STARTING, FETCHING, COMPUTING, WALKING = "free", "starting", "fetching", "computing", "walking"
 
 
 class Context:
+    """A packet in test."""
+
     def __init__(self):
-        self.phase, self.packet, self.done, self.counts, self.reads = FREE, None, 0, None, 0
-        self.completed, self.outstanding = [], 0
+        self.phase, self.packet, self.at, self.tests, self.reads = FREE, None, 0, None, 0
+        self.completed, self.visit = [], None
+        self.user, self.has_data = User(self), False
 
 
 class Issue:
     """A packet of the resource's own that waits for its shapes and for dispatch."""
 
     def __init__(self, packet):
-        self.packet, self.outstanding = packet, 0
+        self.packet, self.user = packet, None
 
 
 class Control:
@@ -43,9 +48,11 @@ class Tile:
         self.number, self.machine, self.clock, self.trace = number, machine, machine.clock, machine.trace
         self.nodes, self.topology = machine.nodes, machine.topology
         self.in_ports, self.out_ports = ports
-        self.shapes, self.control = shapes, control
+        self.control = control
         self.resource = Resource(number, config, machine.facts, machine.nodes)
         self.testers = Testers(config, number)
+        self.shapes = ShapeBuffer(config, shapes)
+        self.visits = Visits(self.clock, self.nodes, self.shapes, self.testers)
         self.size = PacketSize(config, machine.nodes)
         self.ids_per_cycle = config["packets"]["ids_per_cycle"]
         self.issue_places = config["memory"]["fetch_ahead"] + 1
@@ -69,7 +76,11 @@ class Tile:
     def step(self, now):
         for out in self.out_ports:
             out.take_credits(now)
-        self.take_answers(now)
+        self.shapes.take_answers(now)
+        self.serve(now)
+        for context in self.contexts:
+            if context.phase == STARTING and context.at <= now:
+                self.start(context, now)
         while self.control.new_rays.ready(now):
             self.admission.append(self.control.new_rays.take())
         again = True
@@ -164,7 +175,7 @@ class Tile:
         self.dispatch(now, len(packet.rays))
         if tested:
             out.reserved += 1
-            self.begin_test(context, packet, self.dispatch_free)
+            self.begin_test(context, packet, self.dispatch_free, False)
             return True
         if packet.memberships and packet.home == self.number:
             self.resource.join(packet)
@@ -207,17 +218,17 @@ class Tile:
             self.turn = (d + 1) % len(self.free)
             moved = True
             issue = Issue(packet)
-            if (not packet.memberships and not self.fetch_by_resource and
-                    not self.resource.traversal.is_treelet(packet.node)):
-                for span in self.shape_data(packet.node, True):
-                    self.fetch(span, issue, now)
+            brings = not self.fetch_by_resource and not self.resource.traversal.is_treelet(packet.node)
+            if not packet.memberships and (brings or self.number in packet.owners):
+                issue.user = User(issue)
+                self.shapes.take_ahead(issue.user, self.shape_data(packet, True), now)
             self.issue.append(issue)
         return moved
 
     def handle_issue(self, now):
-        if not self.issue or self.issue[0].outstanding > 0:
+        if not self.issue or (self.issue[0].user is not None and not self.issue[0].user.here()):
             return False
-        packet = self.issue[0].packet
+        packet, user = self.issue[0].packet, self.issue[0].user
         travels = self.travels(packet)
         if travels:
             out = self.out_ports[packet.direction]
@@ -228,13 +239,19 @@ class Tile:
         if tested and context is None:
             return False
         self.issue.popleft()
+        if user is not None:
+            self.shapes.leave_queue()
         self.trace.note(now, self.number, "issue", packet.number, len(packet.rays))
         self.dispatch(now, len(packet.rays))
         if tested:
             if travels:
                 self.out_ports[packet.direction].reserved += 1
-            self.begin_test(context, packet, self.dispatch_free)
+            if user is not None:
+                self.shapes.hand_over(user, context.user)
+            self.begin_test(context, packet, self.dispatch_free, user is not None)
         else:
+            if user is not None:
+                self.shapes.release(user, now)
             self.depart(packet, self.dispatch_free)
         return True
 
@@ -243,33 +260,51 @@ class Tile:
     def free_context(self):
         return next((c for c in self.contexts if c.phase == FREE), None)
 
-    def begin_test(self, context, packet, at):
+    def begin_test(self, context, packet, at, has_data):
         members = self.resource.local_members(packet)
-        context.packet, context.reads = packet, len(members)
-        context.counts = self.resource.test(packet, members)
+        context.packet, context.reads, context.has_data = packet, len(members), has_data
+        context.tests = self.resource.test(packet, members)
         context.completed, self.resource.completed[:] = list(self.resource.completed), []
-        context.phase = COMPUTING
-        if self.fetch_by_resource:
-            for span in self.shape_data(packet.node, context.counts.transforms > 0):
-                self.fetch(span, context, at)
-        if context.outstanding > 0:
-            context.phase = FETCHING
-        else:
-            self.compute(context, at)
+        context.phase, context.at = STARTING, at
+        self.clock.wake(at)
 
-    def compute(self, context, at):
-        context.phase = COMPUTING
-        context.done = self.testers.strip(at, context.counts, context.reads)
-        self.clock.wake(context.done)
+    def start(self, context, now):
+        """The dispatch stage has read the packet."""
+        if self.resource.traversal.is_treelet(context.packet.node):
+            context.phase, context.visit = WALKING, Visit(context.tests)
+            self.visits.begin(context.visit, now)
+            if context.has_data:
+                self.shapes.release(context.user, now)
+        elif (context.has_data or not self.fetch_by_resource or
+              self.shapes.take(context.user, self.shape_data(context.packet, context.tests.transforms > 0), now)):
+            self.compute(context, now)
+        else:
+            context.phase = FETCHING
+
+    def compute(self, context, now):
+        context.phase, context.at = COMPUTING, self.testers.strip(now, context.tests, context.reads)
+        self.clock.wake(context.at)
+
+    def serve(self, now):
+        """Rays in treelets go on, then packets whose data has come take units."""
+        ready = []
+        self.visits.run(now, ready)
+        for context in ready:
+            self.compute(context, now)
 
     def finish_tests(self, now):
+        self.serve(now)
         moved = False
         for context in self.contexts:
-            if context.phase != COMPUTING or context.done > now:
+            ended = (context.visit.left == 0 if context.phase == WALKING
+                     else context.phase == COMPUTING and context.at <= now)
+            if not ended:
                 continue
             moved = True
             packet = context.packet
             self.trace.note(now, self.number, "tested", packet.number, len(packet.rays))
+            if context.phase == COMPUTING:
+                self.shapes.release(context.user, now)
             context.phase = FREE
             self.done.extend(context.completed)
             if packet.owner == self.number and not self.travels(packet):
@@ -280,24 +315,7 @@ class Tile:
                 self.depart(packet, now)
         return moved
 
-    # ---- shapes
-
-    def shape_data(self, node, transform):
-        spans = [self.nodes[node].strip]
-        if transform and self.nodes[node].transform[1] > 0:
-            spans.append(self.nodes[node].transform)
-        return spans
-
-    def fetch(self, span, waiting, now):
-        if self.shapes.buffer.has(span):
-            return
-        waiting.outstanding += 1
-        self.shapes.request(span, waiting, now)
-        self.shapes.buffer.keep(span)
-
-    def take_answers(self, now):
-        while self.shapes.answers.ready(now):
-            waiting = self.shapes.answers.take()
-            waiting.outstanding -= 1
-            if isinstance(waiting, Context) and waiting.outstanding == 0:
-                self.compute(waiting, now)
+    def shape_data(self, packet, transform):
+        """What the tests of a packet need: its shapes, and what is stored of their instance's transform."""
+        node = self.nodes[packet.node]
+        return [node.shapes_of(packet.lane)] + ([node.transform] if transform else [])

@@ -1,10 +1,6 @@
 """How rays go down the tree: what a packet's visit tests, and which collections its rays join afterwards ("Visits")."""
 from .testers import Counts
-
-
-def farthest_first(hits):
-    """[(lane, entry)] by falling entry; of equal entries the higher lane first."""
-    return sorted(hits, key=lambda hit: (-hit[1], -hit[0]))
+from .walk import Walk, farthest_first
 
 
 class Transforms:
@@ -66,6 +62,8 @@ class Spread:
 
     def test(self, packet, members, complete):
         """Tests the rays at the places `members` of the packet; `complete` takes those that wait for nothing more."""
+        if self.is_treelet(packet.node):
+            return self.walk(packet, members, complete)
         node, counts = self.nodes[packet.node], Counts()
         rays = [packet.rays[i] for i in members]
         self.transforms.charge(rays, node, counts)
@@ -89,6 +87,21 @@ class Spread:
             if ray.pending == 0:
                 complete(ray)
         return counts
+
+    def walk(self, packet, members, complete):
+        """The ways of the rays through a treelet: for each its steps (node, tests)."""
+        ways = []
+        for i in members:
+            ray, steps = packet.rays[i], []
+            walk = Walk(ray, packet.node, self.nodes, self.transforms)
+            while (node := walk.next()) is not None:
+                steps.append((node, walk.test(node)))
+            ways.append(steps)
+        for i in members:
+            packet.rays[i].pending -= 1
+            if packet.rays[i].pending == 0:
+                complete(packet.rays[i])
+        return ways
 
     def retire(self, packet, collections):
         node = self.nodes[packet.node]

@@ -12,6 +12,13 @@ class Node:
         self.moves, self.transposed = fact["moves"], fact["transposed"]
         self.instance = self.key >> 32  # the highest number above the instances
 
+    def shapes_of(self, lane):
+        """The span of its whole strip, or of one shape of it."""
+        if lane is None or lane >= self.shapes:
+            return self.strip
+        size = 32 if self.inner else 40
+        return self.strip[0] + lane * size, size
+
 
 class Ray:
     """A ray on its way through the machine, and its place there."""
