@@ -58,16 +58,25 @@ void add_to_link(report::Link& out, const ringbus::cycle::LinkUse& link, std::ui
   out.occupancy_mean = ratio(link.queue.packet_cycles, cycles);
   out.occupancy_max = link.queue.most;
   out.stalled = link.use.stalled;
+  out.bytes = link.bytes;
   out.cycles = report::LinkCycles{link.use.busy, link.use.stalled, cycles - link.use.busy - link.use.stalled};
 }
 
 report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& config) {
   report::Memory out;
+  for (const ringbus::cycle::TileResult& tile : c.tiles) out.shape_buffers.counts += tile.shapes;
   for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, c.cycles)});
   out.dram_lines = c.memory_lines;
   out.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.line_bytes);
   out.dram_busy_cycles = c.memory_busy;
   out.dram_utilisation = ratio(c.memory_busy, c.cycles);
+  return out;
+}
+
+std::vector<report::Bytes> bytes(const ringbus::cycle::CycleResult& c) {
+  std::vector<report::Bytes> out;
+  for (const ringbus::cycle::ByteRow& row : c.bytes)
+    out.push_back({row.what, row.from, row.to, row.over, row.width, row.bytes, row.messages});
   return out;
 }
 
@@ -94,8 +103,13 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (r.packets && trips.count() > 0)
     r.packets->latency =
         report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
+  if (r.collections && c.ids) {
+    r.collections->ids_at_once = c.ids->most;
+    r.collections->ids_interval = c.ids->interval;
+  }
   r.memory = memory(c, config.memory);
-  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(config.shading.workers));
+  r.bytes = bytes(c);
+  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 
 }  // namespace carousel::app

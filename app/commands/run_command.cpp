@@ -119,7 +119,7 @@ int run_command(const RunArguments& arguments) {
 
   RenderJob job(p);
   std::optional<HitRecorder> recorder;
-  if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
+  if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(shader_workers(p.config()))));
   std::optional<accel::VerifyingWorkload> verifying;
   std::optional<accel::Accel> plain;  // planes and spheres are verified as well
   if (p.config().verify == Verify::kReference) {

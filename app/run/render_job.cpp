@@ -13,7 +13,7 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
     : seed_(static_cast<std::uint64_t>(config.image.seed)),
       order_(static_cast<std::uint32_t>(config.image.width), static_cast<std::uint32_t>(config.image.height),
              static_cast<std::uint32_t>(config.image.samples)) {
-  const auto workers = static_cast<std::size_t>(config.shading.workers);
+  const auto workers = static_cast<std::size_t>(shader_workers(config));
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
     list_ = std::make_unique<RayListWorkload>(report::read_rays_csv(path), workers);

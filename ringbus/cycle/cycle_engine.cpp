@@ -6,6 +6,7 @@
 #include "core/system/error.h"
 #include "ringbus/cycle/progress_log.h"
 #include "ringbus/cycle/time/windows.h"
+#include "ringbus/cycle/wiring/byte_ledger.h"
 #include "ringbus/cycle/wiring/simulated_machine.h"
 
 namespace carousel::ringbus {
@@ -45,7 +46,7 @@ class CycleRun {
     });
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!stopped) check_at_rest();
-    RunResult out = result(last_event() + 1);
+    RunResult out = result(last_event() + 1, !stopped);
     out.complete = !stopped;
     out.wall_seconds = wall.count();
     out.threads = parts.size();
@@ -83,7 +84,22 @@ class CycleRun {
     if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
-  RunResult result(Cycle end) const {
+  std::optional<IdsAtOnce> ids_at_once() const {
+    if (!machine_.shared().topology.has_packets()) return std::nullopt;
+    IdsAtOnce out;
+    std::vector<std::uint64_t> sums;
+    for (const auto& tile : machine_.resources()) {
+      // All resources were looked at over the same cycles.
+      const IdCensus& census = *tile->census();
+      sums.resize(census.samples().size());
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += census.samples()[i];
+      out.interval = census.interval();
+    }
+    for (const std::uint64_t sum : sums) out.most = std::max(out.most, sum);
+    return out;
+  }
+
+  RunResult result(Cycle end, bool complete) const {
     RunResult out;
     out.rays_emitted = machine_.shading().emitted();
     out.rays_completed = machine_.shading().completed();
@@ -112,13 +128,15 @@ class CycleRun {
       c.tiles.push_back(tile->result());
       if (kChecked) check_ledger(c.tiles.back(), end);
     }
+    c.ids = ids_at_once();
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port_number) {
       const OutPort& port = machine_.out_of(wire.from)[port_number];
       c.hops += port.packets();
       c.links.push_back({wire.from.value,
                          wire.to.value,
                          {port.busy(end), port.stalled()},
-                         machine_.network().wire(c.links.size()).queue});
+                         machine_.network().wire(c.links.size()).queue,
+                         machine_.network().wire(c.links.size()).packets.bytes().sent});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
@@ -127,6 +145,8 @@ class CycleRun {
       c.caches.push_back(cache->statistics());
       c.cached_lines.push_back(cache->lines());
     }
+    c.bytes = byte_ledger(machine_, config_);
+    if (kChecked && complete) check_byte_ledger(c.bytes);
     return out;
   }
 
@@ -160,7 +180,7 @@ class CycleRun {
     for (const auto& cache : machine_.memory().caches()) port += cache->statistics().port_busy;
     out.push_back({"l2_port", static_cast<double>(machine_.memory().caches().size()), port});
     out.push_back({"memory_bandwidth", 1, machine_.memory().memory().busy()});
-    out.push_back({"shading", static_cast<double>(config_.shading.workers), machine_.shading().busy()});
+    out.push_back({"shading", static_cast<double>(shader_workers(config_)), machine_.shading().busy()});
     return out;
   }
 

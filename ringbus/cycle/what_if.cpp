@@ -80,7 +80,7 @@ constexpr PartClass kPartClasses[] = {
     {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", every_machine,
      [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }},
     {"ray_slots", "twice rays.slots_per_resource", every_machine, [](Config& c) { c.rays.slots_per_resource *= 2; }},
-    {"shading", "twice shading.workers", every_machine, [](Config& c) { c.shading.workers *= 2; }},
+    {"shading", "twice shading.workers", every_machine, [](Config& c) { c.shading.workers = 2 * shader_workers(c); }},
     {"link_bandwidth", "twice topology.link.bytes_per_cycle", uses_links,
      [](Config& c) { c.topology.link.bytes_per_cycle *= 2; }},
     {"link_latency", "half topology.link.latency_cycles",

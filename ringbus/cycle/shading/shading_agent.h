@@ -10,6 +10,7 @@
 
 #include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "ringbus/cycle/shading/shade_queues.h"
 #include "ringbus/cycle/shading/shading_settings.h"
@@ -116,7 +117,8 @@ class ShadingAgent final : public Agent {
   std::vector<RayBatch> made_;  // by worker: the camera rays of its job
   HitBatch shaded_;
   std::vector<RayGroup> groups_;
-  std::vector<Cycle> load_free_, last_sent_;  // by resource
+  std::vector<Cycle> load_free_;                   // by resource
+  std::vector<SideWire> id_wires_, answer_wires_;  // likewise
   bool source_finished_ = false, source_dry_ = false, started_ = false;
   std::size_t making_ = 0;
   std::unique_ptr<OutstandingRays> ledger_;  // where a resource may stop

@@ -11,8 +11,9 @@ bool Tile::may_inject(const Packet& packet) const {
 }
 
 bool Tile::handle_issue(Cycle now) {
-  if (issue_.empty() || !issue_.front().ready()) return false;
-  const PacketId id = issue_.front().packet;
+  if (issue_.empty() || !is_ready(issue_.front())) return false;
+  const Issue issue = issue_.front();
+  const PacketId id = issue.packet;
   Packet& packet = machine_.packet(id);
   const bool travels = logic_.travels(packet);
   if (travels && !may_inject(packet)) return false;
@@ -20,14 +21,17 @@ bool Tile::handle_issue(Cycle now) {
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   issue_.pop_front();
+  if (issue.takes_data) shapes_.leave_queue(issue.user);
   trips_.inject(id.value, now);
   trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
   occupy_dispatch(now, packet.members.size());
   if (tested) {
     if (travels) out_for(packet).reserve();
-    begin_test(*context, id, dispatch_free_);
+    if (issue.takes_data) shapes_.hand_over(issue.user, user_of(*context));
+    begin_test(*context, id, dispatch_free_, issue.takes_data);
     return true;
   }
+  if (issue.takes_data) shapes_.release(issue.user, now);  // the packet takes them along
   if (packet.kind == PacketKind::kTest) {
     ++passed_;
     passed_rays_ += packet.members.size();
@@ -36,35 +40,61 @@ bool Tile::handle_issue(Cycle now) {
   return true;
 }
 
+bool Tile::nothing_else_to_do(Cycle now) const {
+  return issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
+         std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
+}
+
+Cycle Tile::work_ahead_ends(Cycle now) const {
+  Cycle ends = std::max(dispatch_free_, now);
+  for (const Issue& issue : issue_) ends += dispatch_cycles(machine_.packet(issue.packet).members.size());
+  for (const Context& context : contexts_)
+    if (context.phase == Context::Phase::kComputing) ends = std::max(ends, context.done);
+  return ends;
+}
+
+Cycle Tile::partial_may_go(Cycle now) const {
+  switch (partial_) {
+    case Partial::kIdle:
+      return nothing_else_to_do(now) ? now : kNever;
+    case Partial::kAhead: {
+      if (help_.holds()) return kNever;
+      const Cycle ends = work_ahead_ends(now);
+      return ends <= now + memory_latency_ ? now : ends - memory_latency_;
+    }
+    case Partial::kAfter:  // it becomes ready by itself
+      break;
+  }
+  return kNever;
+}
+
+/// Tells whether a packet waits in the issue queue for its shapes: to bring them along, or because it will be tested
+/// here.
+bool Tile::fetches_ahead(const Packet& packet) const {
+  if (packet.kind != PacketKind::kTest) return false;
+  return (!fetch_by_resource_ && !resource_.is_treelet(packet.key)) || logic_.has_rays_of(packet);
+}
+
 bool Tile::fill_issue(Cycle now) {
   bool moved = false;
+  next_partial_ = kNever;
   while (issue_.size() < issue_places_ && !resource_.idle()) {
-    // Collections that are not full are issued only when there is nothing better to do: waiting fills them.
-    const bool nothing_else =
-        issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
-        std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
-    const std::optional<PacketId> id = logic_.free.take();
+    const std::optional<PacketId> id = logic_.free.front();
     if (!id) return moved;
+    const Cycle partial_at = partial_may_go(now);
     Packet& packet = machine_.packet(*id);
-    const Resource::Offer offer = resource_.offer(nothing_else, packet);
+    const Resource::Offer offer = resource_.offer(partial_at <= now, packet);
     storage_full_ = offer == Resource::Offer::kStorage;
     if (offer != Resource::Offer::kPacket) {
-      logic_.discard(*id);
+      next_partial_ = partial_at;
       return moved;
     }
+    logic_.free.take();
     moved = true;
-    Issue issue{*id, next_tag_};
-    const bool brings_shapes =
-        packet.kind == PacketKind::kTest && !fetch_by_resource_ && !resource_.is_treelet(packet.key);
-    if (brings_shapes) {
-      // The issuer cannot know whether all rays have their copies, so it brings the transform in any case.
-      for (const ShapeSpan& span : shape_data(packet.key, true)) {
-        if (!lacks(span)) continue;
-        fetch(span, issue.tag, now);
-        ++issue.outstanding;
-      }
-      next_tag_ = (next_tag_ + 1) & ~kContextTag;
-    }
+    Issue issue{*id, static_cast<ShapeBuffer::User>(contexts_.size() + issued_++ % issue_places_)};
+    issue.takes_data = fetches_ahead(packet);
+    // The issuer cannot know whether all rays have their copies, so it takes the transform in any case.
+    if (issue.takes_data) shapes_.take_ahead(issue.user, shape_data(packet, true), now);
     issue_.push_back(issue);
   }
   return moved;

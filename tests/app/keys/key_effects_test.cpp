@@ -33,10 +33,7 @@ std::string result_of(Json report) {
   report.erase("host");
   if (report.contains("shading")) report["shading"].erase("workers");
   if (report.contains("links") && report["links"].is_array())
-    for (Json& link : report["links"]) {
-      link.erase("depth");
-      link.erase("occupancy");  // of native links, by wall time
-    }
+    for (Json& link : report["links"]) link.erase("depth");
   return report.dump() + host.value("simd", "") + host.value("threads", Json()).dump();
 }
 
@@ -78,6 +75,7 @@ class KeyEffects : public testing::Test {
       }
       std::vector<std::string> sets = row.sets;
       sets.push_back(row.key + "=" + value);
+      sets.insert(sets.end(), row.with.begin(), row.with.end());
       const KeyOutcome other = run(row.machine, sets);
       if (other.refusal.empty())
         EXPECT_NE(other.result, base.result) << value << " does nothing";
