@@ -137,12 +137,14 @@ TEST(WhatIf, EveryLiftIsNoticed) {
          c.testers.units[UnitKind::kBundle] = {1, 100, 100};
        }},
       {"collection_storage",
-       [](Config& c) { c.collections.when_full = WhenFull::kReserve, c.collections.capacity = 3000; }},
+       [](Config& c) { c.collections.when_full = WhenFull::kReserve, c.collections.capacity = 0; }},
       {"shape_buffer",
        [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.l2_latency_cycles = 500, c.memory.fetch_ahead = 0; }},
       {"fetch_ahead", [](Config& c) { c.memory.fetch_ahead = 0, c.memory.l2_latency_cycles = 500; }},
       {"l2_size", [](Config& c) { c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
       {"l2_port", [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.line_bytes = 16; }},
+      {"issue_rule",
+       [](Config& c) { c.collections.partial = Partial::kAfter, c.collections.partial_after_cycles = 20000; }},
       {"rings",
        [](Config& c) {
          c.topology.shape = TopologyShape::kMultiRing;
@@ -158,6 +160,8 @@ TEST(WhatIf, EveryLiftIsNoticed) {
     Config config = generous_machine();
     plant.make(config);
     const accel::Accel& accel = scene.accel(config.bvh);
+    if (config.collections.capacity == 0)  // as little as there may be
+      config.collections.capacity = minimum_capacity(config, accel.width, accel.max_depth);
     const std::vector<WhatIf> all = what_ifs(config, accel);
     const auto lift = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == plant.name; });
     ASSERT_NE(lift, all.end()) << plant.name;
