@@ -42,6 +42,12 @@ struct BankUse {
   friend bool operator==(const BankUse&, const BankUse&) = default;
 };
 
+/// Bytes of collection entries that a resource moved to memory and back.
+struct SpillBytes {
+  std::uint64_t written = 0, read = 0;
+  friend bool operator==(const SpillBytes&, const SpillBytes&) = default;
+};
+
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
   PerUnit<BankUse> units;
@@ -49,6 +55,7 @@ struct TileResult {
   Utilisation dispatch;
   ShapeBufferCounts shapes;
   StackTraffic stack;
+  SpillBytes spilled;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
   LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they retire
   Cycle packet_cycles = 0;               ///< packets of its own in flight, summed over the cycles
@@ -92,7 +99,7 @@ struct CycleResult {
   std::vector<TileResult> tiles;  ///< by resource
   std::vector<LinkUse> links;
   std::vector<CacheCounts> caches;
-  std::uint64_t memory_lines = 0;
+  std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
