@@ -33,6 +33,7 @@ class Rules {
     traffic_has_a_network();
     flow_that_can_deadlock();
     bubble_needs_two_places();
+    direct_wires_go_to_owners();
     ordered_needs_strips();
     hashed_homes_spill();
     overrides_name_resources();
@@ -215,6 +216,16 @@ class Rules {
       issue("topology.link.depth",
             fmt::format("flow: bubble keeps one place of a link free; expected at least 2, found {}",
                         c.topology.link.depth));
+  }
+
+  // A round through all resources uses the wires to neighbours alone.
+  void direct_wires_go_to_owners() {
+    if (c.topology.shape != TopologyShape::kPointToPoint || c.topology.visit != Visit::kAll) return;
+    if (c.topology.resources <= 2 || c.workload.kind == WorkloadConfig::Kind::kTraffic) return;
+    issue(
+        "topology.visit",
+        "point_to_point sends a packet straight to the owners of its rays, and to visit all would be a ring with idle "
+        "wires; expected owners, or topology.shape: ring; found all");
   }
 
   void ordered_needs_strips() {

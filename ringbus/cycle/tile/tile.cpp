@@ -37,8 +37,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visits_(memory, shapes_, tester_, contexts_.size(),
               static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
-      spill_memory_(id, static_cast<std::uint64_t>(
-                            block_rays(settings.resource.collections, settings.resource.packets))),
+      spill_memory_(id,
+                    static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_) {
   using Kind = FaultsConfig::Resource::Kind;

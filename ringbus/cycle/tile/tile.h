@@ -83,7 +83,7 @@ class Tile final : public ResourceAgent {
   struct Issue {
     PacketId packet;
     ShapeBuffer::User user = 0;
-    bool takes_data = false;     // it waits for its shapes
+    bool takes_data = false;    // it waits for its shapes
     std::uint32_t spilled = 0;  // reads of spilled entries that it waits for
   };
 
@@ -196,7 +196,7 @@ class Tile final : public ResourceAgent {
   std::size_t questions_out_ = 0;
   SpillMemory spill_memory_;
   std::size_t spills_out_ = 0;  // reads under way
-  HitBatch done_;  // to be handed over
+  HitBatch done_;               // to be handed over
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
