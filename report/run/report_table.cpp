@@ -149,9 +149,12 @@ void packet_lines(Table& table, const Report& report) {
                percent(p->local_fraction()), percent(p->bubble_fraction()));
   }
   if (const auto& c = report.collections) {
-    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled",
-               grouped(c->counts.created), grouped(c->counts.peak), percent(c->fullness_mean),
+    table.line("collections", "{} made   {} full   most in one resource: {}, with {} ray IDs   {} spilled",
+               grouped(c->counts.created), percent(c->fullness_mean), grouped(c->counts.peak),
                grouped(c->counts.memberships_peak), grouped(c->counts.spilled));
+    if (c->ids_at_once)
+      table.line("", "{} ray IDs in all resources at once, of every {} cycles", grouped(*c->ids_at_once),
+                 grouped(*c->ids_interval));
   }
 }
 

@@ -139,10 +139,11 @@ void packet_words(Words& w) {
       .item("N of visits find none", "packets.bubble_fraction");
   w.line("collections")
       .item("N made", "collections.created")
-      .item("N at once", "collections.peak")
       .item("N full", "collections.fullness_mean")
-      .item("N ray IDs at once", "collections.memberships_peak")
-      .item("N spilled", "collections.spilled");
+      .item("most in one resource: N, with N ray IDs", "collections.peak",
+            "most collections that any resource had at one time, and most ray IDs")
+      .item("N spilled", "collections.spilled")
+      .item("N ray IDs in all resources at once, of every N cycles", "collections.ids_at_once");
   w.line("all effects")
       .item("hits *", "shading.proof.same_hits")
       .item("image *", "shading.proof.same_image")

@@ -81,6 +81,21 @@ class CycleRun {
     if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
+  std::optional<IdsAtOnce> ids_at_once() const {
+    if (!machine_.shared().topology.has_packets()) return std::nullopt;
+    IdsAtOnce out;
+    std::vector<std::uint64_t> sums;
+    for (const auto& tile : machine_.resources()) {
+      // All resources were looked at over the same cycles.
+      const IdCensus& census = *tile->census();
+      sums.resize(census.samples().size());
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += census.samples()[i];
+      out.interval = census.interval();
+    }
+    for (const std::uint64_t sum : sums) out.most = std::max(out.most, sum);
+    return out;
+  }
+
   RunResult result(Cycle end, bool complete) const {
     RunResult out;
     out.rays_emitted = machine_.shading().emitted();
@@ -95,6 +110,7 @@ class CycleRun {
     if (machine_.shading().stop() && machine_.shading().stop()->noticed > 0) c.stop = machine_.shading().stop();
     for (const auto& tile : machine_.resources()) out.packets_discarded += tile->packets_discarded();
     c.memory_lines = machine_.memory().memory().lines();
+    c.memory_lines_written = machine_.memory().memory().lines_written();
     c.memory_busy = machine_.memory().memory().busy();
     steady(c);
     std::vector<const Trace*> traces{&machine_.shading().trace()};
@@ -108,6 +124,7 @@ class CycleRun {
       c.tiles.push_back(tile->result());
       if (kChecked) check_ledger(c.tiles.back(), end);
     }
+    c.ids = ids_at_once();
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port_number) {
       const OutPort& port = machine_.out_of(wire.from)[port_number];
       c.hops += port.packets();

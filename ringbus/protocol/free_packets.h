@@ -20,16 +20,21 @@ class FreePackets {
         free_[d].push_back(PacketId(first.value + static_cast<std::uint32_t>(d) * per_direction + i));
   }
 
+  /// The packet that take() would take now. To look costs no direction its turn.
+  std::optional<PacketId> front() const {
+    for (std::size_t i = 0; i < free_.size(); ++i)
+      if (const std::vector<PacketId>& free = free_[direction(i)]; !free.empty()) return free.back();
+    return std::nullopt;
+  }
   /// Takes a packet of the next direction that has one and that `may_leave(direction)`.
   template <class MayLeave>
   std::optional<PacketId> take(const MayLeave& may_leave) {
-    const std::size_t directions = free_.size();
-    for (std::size_t i = 0; i < directions; ++i) {
-      const std::size_t d = turn_ + i < directions ? turn_ + i : turn_ + i - directions;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const std::size_t d = direction(i);
       if (free_[d].empty() || !may_leave(d)) continue;
       const PacketId id = free_[d].back();
       free_[d].pop_back();
-      turn_ = d + 1 < directions ? d + 1 : 0;
+      turn_ = d + 1 < free_.size() ? d + 1 : 0;
       return id;
     }
     return std::nullopt;
@@ -49,6 +54,9 @@ class FreePackets {
   }
 
  private:
+  /// The i-th direction from the one whose turn it is.
+  std::size_t direction(std::size_t i) const { return turn_ + i < free_.size() ? turn_ + i : turn_ + i - free_.size(); }
+
   std::vector<std::vector<PacketId>> free_;
   std::size_t turn_ = 0;
 };

@@ -43,6 +43,12 @@ struct BankUse {
   friend bool operator==(const BankUse&, const BankUse&) = default;
 };
 
+/// Bytes of collection entries that a resource moved to memory and back.
+struct SpillBytes {
+  std::uint64_t written = 0, read = 0;
+  friend bool operator==(const SpillBytes&, const SpillBytes&) = default;
+};
+
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
   PerUnit<BankUse> units;
@@ -50,6 +56,7 @@ struct TileResult {
   Utilisation dispatch;
   ShapeBufferCounts shapes;
   StackTraffic stack;
+  SpillBytes spilled;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
   LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they retire
   Cycle packet_cycles = 0;               ///< packets of its own in flight, summed over the cycles
@@ -79,6 +86,13 @@ struct StopTimes {
   friend bool operator==(const StopTimes&, const StopTimes&) = default;
 };
 
+/// The ray IDs in the collections of all resources together, looked at in one of every `interval` cycles.
+struct IdsAtOnce {
+  std::uint64_t most = 0;
+  Cycle interval = 0;
+  friend bool operator==(const IdsAtOnce&, const IdsAtOnce&) = default;
+};
+
 struct CycleResult {
   Cycle cycles = 0;               ///< from cycle 0 to the last in which a resource, ray control or shading did anything
   Cycle steady_cycles = 0;        ///< between a quarter and three quarters of the rays
@@ -88,10 +102,11 @@ struct CycleResult {
   std::vector<LinkUse> links;
   std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
-  std::uint64_t memory_lines = 0;
+  std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
+  std::optional<IdsAtOnce> ids;   ///< where there are collections
   std::optional<StopTimes> stop;  ///< if one was excluded before the last ray was shaded
   EpochDigests epochs;
   std::vector<Step> steps;  ///< of RunOptions::trace

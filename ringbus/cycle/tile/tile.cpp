@@ -14,7 +14,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       transforms_(settings.accuracy, machine.accel, machine.stores[id.value]->slots()),
       walk_(machine.accel, transforms_),
       resource_(settings.resource, machine.accel, *machine.stores[id.value],
-                {settings.statistics ? &sink_ : nullptr, &walk_, &transforms_, ports.questions != nullptr}),
+                {settings.statistics ? &sink_ : nullptr, &walk_, &transforms_,
+                 settings.resource.collections.when_full == WhenFull::kSpill, ports.questions != nullptr}),
       logic_(machine, resource_),
       ports_(std::move(ports)),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
@@ -29,11 +30,15 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
+      partial_(settings.resource.collections.partial),
+      memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       visits_(memory, shapes_, tester_, contexts_.size(),
               static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
+      spill_memory_(id,
+                    static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_) {
   using Kind = FaultsConfig::Resource::Kind;
@@ -81,6 +86,7 @@ Cycle Tile::next_egress() const {
   for (const Context& context : contexts_)
     if (context.phase == Context::Phase::kComputing || context.phase == Context::Phase::kStarting)
       consider(context.done);
+  consider(next_partial_);
   if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
 }
@@ -109,9 +115,12 @@ void Tile::run(Cycle end) {
 
 void Tile::step(Cycle now) {
   now_ = now;
+  census_.until(now, resource_.collections().memberships());
   for (OutPort& out : ports_.out) out.take_credits(now);
+  resource_.ripen(now);
   if (stops_ && fault_is_due()) stop(now);
   shapes_.take_answers(now);
+  take_spilled();
   serve(now);
   start_tests(now);
   take_opacities(now);
@@ -139,6 +148,8 @@ void Tile::step(Cycle now) {
   const TileState state = classify();
   ledger_.enter(state, now);
   help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
+  if (const std::optional<std::uint64_t> ripe = resource_.next_ripe(); ripe && issue_.size() < issue_places_)
+    next_partial_ = std::min<Cycle>(next_partial_, *ripe);
   next_here_ = next_egress();
   may_send_ = wants_credit() ||
               std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
@@ -179,6 +190,7 @@ bool Tile::admit() {
   if (logic_.admission.empty()) return false;
   const bool moved =
       logic_.admission.admit(resource_, [this](std::size_t count) { trace_.note(now_, StepKind::kNewRays, 0, count); });
+  write_spilled(now_);
   storage_full_ = logic_.admission.short_of_room();
   return moved;
 }
@@ -217,6 +229,7 @@ ResourceStatistics Tile::statistics() const {
 
 void Tile::close(Cycle end) {
   ledger_.close(end);
+  census_.until(end, resource_.collections().memberships());
   // The dispatch stage may still look through the IDs of the last packet.
   if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
 }
@@ -226,6 +239,7 @@ TileResult Tile::result() const {
   ledger_.fill_in(t);
   t.dispatch.busy = dispatch_busy_;
   t.shapes = shapes_.counts();
+  t.spilled = spill_memory_.moved();
   t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();
   t.packet_cycles = trips_.packet_cycles();

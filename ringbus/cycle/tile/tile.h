@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -14,6 +15,7 @@
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/tile/spill_memory.h"
 #include "ringbus/cycle/tile/subtree_visits.h"
 #include "ringbus/cycle/tile/subtree_walk.h"
 #include "ringbus/cycle/tile/tile_ledger.h"
@@ -58,6 +60,7 @@ class Tile final : public ResourceAgent {
   std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
+  const IdCensus* census() const override { return &census_; }
   const std::vector<OutPort>& out() const override { return ports_.out; }
   std::string blocked(std::size_t port) const override;
   std::uint64_t packets_discarded() const override { return discarded_; }
@@ -82,7 +85,8 @@ class Tile final : public ResourceAgent {
   struct Issue {
     PacketId packet;
     ShapeBuffer::User user = 0;
-    bool takes_data = false;  // it waits for its shapes
+    bool takes_data = false;    // it waits for its shapes
+    std::uint32_t spilled = 0;  // reads of spilled entries that it waits for
   };
 
   std::uint64_t hops() const;
@@ -105,6 +109,12 @@ class Tile final : public ResourceAgent {
   bool pass_through_dispatch(std::size_t d, Cycle now);
   bool handle_issue(Cycle now);
   bool fill_issue(Cycle now);
+  bool nothing_else_to_do(Cycle now) const;
+  /// The end of the tests under way, or of the dispatch of all packets in the issue queue, if that is later.
+  Cycle work_ahead_ends(Cycle now) const;
+  /// The time from which a collection that is not ready may go, by `collections.partial`; kNever while that waits for
+  /// another event.
+  Cycle partial_may_go(Cycle now) const;
   bool send(Cycle now);
 
   // When a resource has stopped (tile_stop.cpp).
@@ -122,7 +132,12 @@ class Tile final : public ResourceAgent {
   ShapeBuffer::User user_of(const Context& context) const {
     return static_cast<ShapeBuffer::User>(&context - contexts_.data());
   }
-  bool is_ready(const Issue& issue) const { return !issue.takes_data || shapes_.is_here(issue.user); }
+  bool is_ready(const Issue& issue) const {
+    return issue.spilled == 0 && (!issue.takes_data || shapes_.is_here(issue.user));
+  }
+  void take_spilled();
+  void write_spilled(Cycle now);
+  void read_spilled(Issue& issue, Cycle now);
   void begin_test(Context& context, PacketId id, Cycle at, bool has_data);
   void start(Context& context, Cycle now);
   void compute(Context& context, Cycle at);
@@ -134,6 +149,7 @@ class Tile final : public ResourceAgent {
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
+  Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
   void occupy_dispatch(Cycle now, std::size_t ids);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
   bool may_inject(const Packet& packet) const;
@@ -159,6 +175,8 @@ class Tile final : public ResourceAgent {
   SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, fetch_by_resource_;
+  Partial partial_;
+  Cycle memory_latency_;  // of a miss
   bool starts_later_;  // tests begin, and take units, when dispatch has read the packet; otherwise that is known before
 
   Cycle now_ = 0;
@@ -168,6 +186,7 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::deque<Issue> issue_;
+  Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::size_t issued_ = 0;
   std::vector<Context> contexts_;
   SubtreeVisits visits_;
@@ -178,11 +197,14 @@ class Tile final : public ResourceAgent {
   bool told_drained_ = false;
   std::uint64_t discarded_ = 0;
   std::size_t questions_out_ = 0;
-  HitBatch done_;  // to be handed over
+  SpillMemory spill_memory_;
+  std::size_t spills_out_ = 0;  // reads under way
+  HitBatch done_;               // to be handed over
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
+  IdCensus census_;
 };
 
 }  // namespace carousel::ringbus::cycle

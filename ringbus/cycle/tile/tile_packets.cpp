@@ -21,10 +21,11 @@ void Tile::retire_at_owner(PacketId id) {
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
   trips_.return_home(id.value, now_);
   logic_.retire(id, packet);
+  write_spilled(now_);
 }
 
 void Tile::occupy_dispatch(Cycle now, std::size_t ids) {
-  const Cycle cycles = std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_));
+  const Cycle cycles = dispatch_cycles(ids);
   const Cycle start = std::max(dispatch_free_, now);
   if (start != dispatch_ends_) dispatch_since_ = start;
   dispatch_ends_ = dispatch_free_ = start + cycles;
@@ -105,6 +106,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   }
   if (fate == PacketFate::kJoin) {
     resource_.join(packet);
+    write_spilled(now);
   } else {
     ++passed_;
     passed_rays_ += packet.members.size();

@@ -1,6 +1,7 @@
 #include "ringbus/resource/collections/collection_store.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace carousel::ringbus {
 
@@ -23,7 +24,7 @@ void CollectionStore::enlist(std::uint32_t index, std::uint32_t bucket) {
 
 void CollectionStore::relist(std::uint32_t index, bool was_ready) {
   Collection& c = collections_[index];
-  c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready;
+  c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready || c.ripe;
   const std::uint32_t bucket = this->bucket(c);
   if (c.ready == was_ready && list(c).bucket_of(index) == bucket) return;
   (was_ready ? ready_ : partial_).remove(index);
@@ -41,7 +42,9 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
     index = free_collections_.back();
     free_collections_.pop_back();
   }
-  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict};
+  const std::uint32_t waits = collections_[index].waits;
+  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict, false, waits};
+  begin_to_wait(index);
   table_.insert(key, index);
   ++statistics_.created;
   statistics_.peak = std::max<std::uint64_t>(statistics_.peak, table_.size());
@@ -49,17 +52,61 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
   return index;
 }
 
-std::uint32_t CollectionStore::new_block() {
-  ++blocks_used_;
-  if (!free_blocks_.empty()) {
-    const std::uint32_t block = free_blocks_.back();
-    free_blocks_.pop_back();
-    return block;
+void CollectionStore::begin_to_wait(std::uint32_t index) {
+  if (settings_.ripe_after == 0) return;
+  collections_[index].ripe = false;
+  waiting_.push_back({now_, index, ++collections_[index].waits});
+}
+
+void CollectionStore::ripen(std::uint64_t now) {
+  now_ = now;
+  for (std::optional<std::uint64_t> at; (at = next_ripe()) && *at <= now; waiting_.pop_front()) {
+    Collection& c = collections_[waiting_.front().collection];
+    c.ripe = true;
+    relist(waiting_.front().collection, c.ready);
   }
-  const std::uint32_t block = static_cast<std::uint32_t>(next_block_.size());
-  next_block_.push_back(0);
-  block_rays_.resize(block_rays_.size() + settings_.block_rays);
+}
+
+std::optional<std::uint64_t> CollectionStore::next_ripe() {
+  for (; !waiting_.empty(); waiting_.pop_front()) {
+    const Waiting& first = waiting_.front();
+    const Collection& c = collections_[first.collection];
+    if (c.waits == first.waits && c.count > 0 && !c.ready) return first.since + settings_.ripe_after;
+  }
+  return std::nullopt;
+}
+
+std::uint32_t CollectionStore::new_block() {
+  const bool spilled = blocks_used_ - blocks_spilled_ >= settings_.capacity_blocks;
+  ++blocks_used_;
+  std::uint32_t block;
+  if (!free_blocks_.empty()) {
+    block = free_blocks_.back();
+    free_blocks_.pop_back();
+  } else {
+    block = static_cast<std::uint32_t>(next_block_.size());
+    next_block_.push_back(0);
+    spilled_as_.push_back(kNotSpilled);
+    block_rays_.resize(block_rays_.size() + settings_.block_rays);
+  }
+  if (!spilled) return block;
+  ++blocks_spilled_;
+  if (free_numbers_.empty()) {
+    spilled_as_[block] = numbers_++;
+  } else {
+    spilled_as_[block] = free_numbers_.back();
+    free_numbers_.pop_back();
+  }
   return block;
+}
+
+void CollectionStore::free_block(std::uint32_t block) {
+  free_blocks_.push_back(block);
+  --blocks_used_;
+  if (spilled_as_[block] == kNotSpilled) return;
+  free_numbers_.push_back(spilled_as_[block]);
+  spilled_as_[block] = kNotSpilled;
+  --blocks_spilled_;
 }
 
 void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays) {
@@ -81,7 +128,10 @@ void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, 
                 block_rays_.begin() + std::ptrdiff_t{c.tail} * b + filled);
     c.count += static_cast<std::uint32_t>(n);
     done += n;
-    if (blocks_used_ > settings_.capacity_blocks) statistics_.spilled += n;
+    if (const std::uint32_t spilled = spilled_as_[c.tail]; spilled != kNotSpilled) {
+      statistics_.spilled += n;
+      if (settings_.reports_spills) spills_.written.push_back({spilled, filled, static_cast<std::uint32_t>(n)});
+    }
   }
   memberships_ += rays.size();
   statistics_.memberships_peak = std::max<std::uint64_t>(statistics_.memberships_peak, memberships_);
@@ -104,7 +154,11 @@ std::optional<CollectionId> CollectionStore::deepest() const {
 }
 
 std::uint32_t CollectionStore::front_rays(CollectionId id) const {
-  return std::min(collections_[id.value].count, settings_.block_rays);
+  return std::min(collections_[id.value].count, settings_.packet_rays);
+}
+
+std::uint32_t CollectionStore::front_blocks(CollectionId id) const {
+  return (front_rays(id) + settings_.block_rays - 1) / settings_.block_rays;
 }
 
 void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
@@ -112,12 +166,17 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   // The chain is filled at the tail and takes go by whole blocks, so all blocks but the last are full. The remainder of
   // `count` in the tail relies on that.
   const std::uint32_t n = front_rays(id);
-  const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
-  rays.assign(first, first + n);
-  const std::uint32_t freed = c.head;
-  c.head = next_block_[freed];
-  free_blocks_.push_back(freed);
-  --blocks_used_;
+  rays.clear();
+  while (rays.size() < n) {
+    const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
+    const auto ids = std::min<std::uint32_t>(settings_.block_rays, n - static_cast<std::uint32_t>(rays.size()));
+    rays.insert(rays.end(), first, first + ids);
+    const std::uint32_t freed = c.head;
+    c.head = next_block_[freed];
+    if (settings_.reports_spills && spilled_as_[freed] != kNotSpilled)
+      spills_.read.push_back({spilled_as_[freed], 0, ids});
+    free_block(freed);
+  }
   c.count -= n;
   memberships_ -= n;
   if (c.count == 0) {
@@ -125,14 +184,17 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
     table_.erase(c.key);
     free_collections_.push_back(id.value);
   } else {
+    begin_to_wait(id.value);
     relist(id.value, c.ready);
   }
 }
 
 void CollectionStore::discard() {
   const Statistics kept = statistics_;
+  const std::uint64_t now = now_;
   *this = CollectionStore(settings_);
   statistics_ = kept;
+  now_ = now;
 }
 
 }  // namespace carousel::ringbus

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,26 +18,42 @@ namespace carousel::ringbus {
 
 using CollectionId = Id<struct CollectionTag>;
 
+/// IDs of a spilled block that move to memory, or back from it.
+struct SpillMove {
+  std::uint32_t block = 0;           ///< number of the spilled block
+  std::uint32_t first = 0, ids = 0;  ///< places within it
+};
+/// Spilled entries that have moved since an engine last looked. It clears both.
+struct SpillMoves {
+  std::vector<SpillMove> written, read;
+};
+
 /// A resource's collections: ray IDs in fixed blocks, a chain of blocks a collection, all but the last one full.
-/// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block.
+/// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block; or a single ID, so
+/// that storage is taken only for the IDs there are, and issuing a packet frees a block for each of its rays.
 class CollectionStore {
  public:
   struct Settings {
-    std::uint32_t block_rays = 32;  ///< packets.rays
+    std::uint32_t block_rays = 32;   ///< packets.rays, or 1
+    std::uint32_t packet_rays = 32;  ///< packets.rays
     std::uint32_t ready = 32;
     std::uint32_t capacity_blocks = 2048;
     Policy policy = Policy::kNearest;
     Select select = Select::kFullFirst;
     float scene_size = 1;
     int max_depth = 1;  ///< of the structure, in strips
+    /// A collection that has waited for so long is ready, however few rays it has; 0: it is not.
+    std::uint64_t ripe_after = 0;
+    bool reports_spills = false;  ///< what is spilled is noted in spills(), for an engine that empties it
   };
   using Statistics = CollectionCounts;
 
   explicit CollectionStore(const Settings& settings);
 
   /// Adds rays to the collection of `key`, created if need be. `entry` is the nearest entry of any of them.
-  /// Takes at most one new block when at most block_rays rays are added. Blocks beyond the capacity are taken as well
-  /// and counted as spilled; the caller says whether that may happen (StorageRule).
+  /// Takes at most one new block when at most block_rays rays are added. Without a free block within the capacity it
+  /// takes one in memory, a spilled one, until that is taken away; the caller says whether that may happen
+  /// (StorageRule). Spilled blocks are numbered from 0 on, and a new one takes the number that was given up last.
   void add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays);
 
   /// The collection to issue from, by policy: among those that are ready, or with `partial` among all; with
@@ -50,8 +67,19 @@ class CollectionStore {
   float entry(CollectionId id) const { return collections_[id.value].entry; }
   /// How many rays the next take() gives.
   std::uint32_t front_rays(CollectionId id) const;
-  /// Moves the first block's rays to `rays`; an empty collection ceases to exist.
+  /// How many blocks it frees.
+  std::uint32_t front_blocks(CollectionId id) const;
+  /// Moves the rays of the first packet to `rays`; an empty collection ceases to exist.
   void take(CollectionId id, std::vector<RayId>& rays);
+
+  /// The time is `now`: collections that have waited for Settings::ripe_after become ready. A collection waits from its
+  /// first ray on, or since rays were taken from it.
+  void ripen(std::uint64_t now);
+  /// The time at which the next collection will be ready for having waited; absent if none will.
+  std::optional<std::uint64_t> next_ripe();
+
+  /// With Settings::reports_spills.
+  SpillMoves& spills() { return spills_; }
 
   /// Forgets all collections; the statistics go on.
   void discard();
@@ -73,14 +101,22 @@ class CollectionStore {
     float entry = 0;
     std::uint16_t depth = 0;
     bool ready = false;
+    bool ripe = false;        // it has waited for long enough
+    std::uint32_t waits = 0;  // how often it has begun to wait, to tell old entries of waiting_ from its own
+  };
+  struct Waiting {
+    std::uint64_t since;
+    std::uint32_t collection, waits;
   };
 
   std::uint32_t new_collection(accel::NodeKey key, std::uint16_t depth, float entry);
   std::uint32_t new_block();
+  void free_block(std::uint32_t block);
   std::uint32_t bucket(const Collection& c) const;
   PriorityLists& list(const Collection& c) { return c.ready ? ready_ : partial_; }
   void enlist(std::uint32_t index, std::uint32_t bucket);
   void relist(std::uint32_t index, bool was_ready);
+  void begin_to_wait(std::uint32_t index);
 
   Settings settings_;
   const IssuePolicy* policy_;
@@ -89,9 +125,17 @@ class CollectionStore {
   PriorityLists ready_, partial_;
   std::vector<Collection> collections_;
   std::vector<std::uint32_t> free_collections_;
+  std::deque<Waiting> waiting_;  // with ripe_after, oldest first; also of collections that have begun to wait anew
+  std::uint64_t now_ = 0;
   std::vector<RayId> block_rays_;          // block_rays IDs a block
   std::vector<std::uint32_t> next_block_;  // one a block
   std::vector<std::uint32_t> free_blocks_;
+  static constexpr std::uint32_t kNotSpilled = ~0u;
+  std::vector<std::uint32_t> spilled_as_;  // one a block: its number as a spilled block
+  std::vector<std::uint32_t> free_numbers_;
+  std::uint32_t numbers_ = 0;
+  std::size_t blocks_spilled_ = 0;
+  SpillMoves spills_;
   std::size_t blocks_used_ = 0, memberships_ = 0;
   Statistics statistics_;
 };
