@@ -191,6 +191,13 @@ void cycle_lines(Table& table, const Report& report) {
              sum.shading > 0 ? "   shading " + part(sum.shading) : "");
 }
 
+void bottleneck_lines(Table& table, const Bottleneck& b) {
+  table.line("bottleneck", "{}", b.verdict);
+  if (b.rays > 0 && !b.whole_frame)
+    table.line("", "by {} of the frame's rays, which foretell its cycles to {:+.1f} %", grouped(b.rays),
+               100 * b.deviation);
+}
+
 std::string image_text(const nlohmann::ordered_json& config) {
   const auto image = config.find("image");
   if (image == config.end()) return "";
@@ -208,7 +215,7 @@ std::string ring_text(const nlohmann::ordered_json& config) {
 
 std::string report_table(const Report& report) {
   Table table;
-  if (report.incomplete) table.line("INCOMPLETE", "the run was interrupted; what follows is what was done");
+  if (report.incomplete) table.line("INCOMPLETE", "the work was interrupted; this is the part that was done");
   table.line("scene", "{}: {} triangles, {} instances{}", report.scene.name, grouped(report.scene.triangles),
              grouped(report.scene.instances), image_text(report.config));
   const bool simulated = report.engine.cycles.has_value();
@@ -243,7 +250,7 @@ std::string report_table(const Report& report) {
                scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
                seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
   if (report.engine.cycles && report.throughput) cycle_lines(table, report);
-  if (report.bottleneck) table.line("bottleneck", "{}", report.bottleneck->verdict);
+  if (report.bottleneck) bottleneck_lines(table, *report.bottleneck);
   if (report.bound && !report.bound->classes.empty())
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
                report.bound->classes.front().name, percent(report.bound->reached));

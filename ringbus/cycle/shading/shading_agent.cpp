@@ -26,14 +26,14 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       gather_(group_),
       bundled_(settings.bundles.size > 0),
       builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
-      queues_(settings.shading, settings.seed),
+      queues_(settings.shading.distribute, settings.workers, settings.seed),
       helpers_(clients_, settings.link),
-      made_(static_cast<std::size_t>(settings.shading.workers)),
+      made_(settings.workers),
       load_free_(clients_.size()),
       id_wires_(clients_.size(), SideWire(settings.link, latency_)),
       answer_wires_(clients_.size(), SideWire(settings.link, latency_)) {
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
-  for (std::uint32_t w = static_cast<std::uint32_t>(settings.shading.workers); w-- > 0;) idle_.push_back(w);
+  for (std::uint32_t w = static_cast<std::uint32_t>(settings.workers); w-- > 0;) idle_.push_back(w);
   const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
   if (bundled_) gather_ = std::max(group_, std::min(slots_ / 4, open));
 }
@@ -121,7 +121,6 @@ bool ShadingAgent::finish_jobs(Cycle now) {
   outstanding_ -= shaded_.size();
   completed_ += shaded_.size();
   source_dry_ = false;
-  milestone(now);
   return true;
 }
 
@@ -262,15 +261,6 @@ void ShadingAgent::order_all(NewRays::Order order, Cycle now) {
     const NewRays message{{}, order, 0};
     clients_[r].new_rays->send(id_wires_[r].send(message.bytes(), now), message);
   }
-}
-
-void ShadingAgent::milestone(Cycle now) {
-  if (completed_ < milestone_rays_ * (milestones_.size() + 1)) return;
-  milestones_.push_back({now, completed_});
-  if (milestones_.size() < 1024) return;
-  for (std::size_t i = 0; i < 512; ++i) milestones_[i] = milestones_[2 * i + 1];
-  milestones_.resize(512);
-  milestone_rays_ *= 2;
 }
 
 std::string ShadingAgent::describe() const {

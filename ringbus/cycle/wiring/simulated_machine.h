@@ -27,6 +27,8 @@ class SimulatedMachine {
   const Machine& shared() const { return shared_; }
   const Network& network() const { return network_; }
   const MemorySystem& memory() const { return *memory_; }
+  /// Before the start.
+  void warm(const WarmCaches& caches) { memory_->warm(caches); }
   const ShadingAgent& shading() const { return *shading_; }
   const std::vector<std::unique_ptr<ResourceAgent>>& resources() const { return resources_; }
   const std::vector<std::unique_ptr<SideChannels>>& channels() const { return channels_; }  ///< by resource
