@@ -179,7 +179,7 @@ void resource_words(Words& w) {
 
 void last_words(Words& w) {
   w.line("bytes").item(
-      "* N N a ray from * to *, over * of N bytes a cycle", "bytes[]",
+      "* N N a ray from * to *, over *, N bytes a cycle", "bytes[]",
       "a kind of message: its bytes in all and for each completed ray, its sender and receiver, and the wires "
       "or ports that it occupies, with the width of each");
   w.line("host")
