@@ -52,13 +52,16 @@ std::uint64_t drain_begins(const PilotRun& run) {
   return run.result->all_begun ? run.result->all_begun->completed : run.rays;
 }
 
-/// The standard error of the sum, from the differences between neighbours.
+/// The standard error of the sum of steps between block means, from the differences between neighbours. If rays take
+/// their times independently of each other, with a variance of v for a block, steps have a variance of 2/3 v and, as
+/// neighbours share half a block, a covariance of 1/6 v; the squared differences then come to v, as does a step's part
+/// of the variance of the sum.
 double standard_error(std::span<const double> terms) {
   if (terms.size() < 2) return 0;
   double squares = 0;
   for (std::size_t i = 1; i < terms.size(); ++i) squares += (terms[i] - terms[i - 1]) * (terms[i] - terms[i - 1]);
   const double n = static_cast<double>(terms.size());
-  return std::sqrt(n / (2 * (n - 1)) * squares);
+  return std::sqrt(n / (n - 1) * squares);
 }
 
 }  // namespace
