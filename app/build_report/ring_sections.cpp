@@ -68,10 +68,12 @@ void add_links(report::Report& r, const ringbus::RunResult& result, const Config
     out.received_at_once = ratio(s.packets, s.receives);
     out.full_stalls = s.full_stalls;
     out.empty_stalls = s.empty_stalls;
-    out.occupancy.emplace();
+    if (!r.host.links) r.host.links.emplace();
+    std::vector<report::LinkOccupancy>& occupancy =
+        r.host.links->emplace_back(report::HostLink{link.from.value, link.to.value, {}}).occupancy;
     for (const ringbus::OccupancySeries::Entry& entry : link.series.entries())
-      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(),
-                                ratio(entry.sum, entry.samples), entry.most});
+      occupancy.push_back({std::chrono::duration<double>(entry.end - result.start).count(),
+                           ratio(entry.sum, entry.samples), entry.most});
   }
 }
 

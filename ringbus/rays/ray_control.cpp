@@ -140,6 +140,7 @@ void RayControl::send(ResourceId resource, RayGroup&& group) {
 std::size_t RayControl::place(std::span<const RayRequest> rays) {
   if (builder_) return place_bundles(rays);
   std::size_t done = 0;
+  std::uint32_t turn = turn_;  // behind the last group that found room
   while (done < rays.size()) {
     const std::span<const RayRequest> next = rays.subspan(done, std::min(group_rays_, rays.size() - done));
     RayGroup group;
@@ -166,8 +167,11 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
     }
     if (placed == 0) break;
     done += placed;
+    turn = turn_;
     send(issuer, std::move(group));
   }
+  // A group that has to wait costs no resource its turn, so it does not matter how often it is tried.
+  turn_ = turn;
   return done;
 }
 

@@ -45,11 +45,13 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
     std::size_t wanted = 0;
     for (std::size_t i = bundle; i < std::min(bundle + group_rays_, waiting_bundles_.size()); ++i)
       wanted += waiting_bundles_[i];
+    const std::uint32_t turn = turn_;
     const ResourceId issuer = local_ && placement_ == Placement::kBalanced ? emptiest() : next_resource();
     if ((local_ ? free_slots(issuer) : free_slots()) < std::min(wanted, enough_slots_)) {
       slot_waits_.fetch_add(1, std::memory_order_relaxed);
       if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= std::min(wanted, enough_slots_))
         continue;
+      turn_ = turn;  // a group that has to wait costs no resource its turn
       break;
     }
     RayGroup group;
@@ -64,7 +66,10 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
       done += load_bundle(owner, rays.subspan(done, size), group.ids);
       ++bundle;
     }
-    if (!group.ids.empty()) send(issuer, std::move(group));
+    if (group.ids.empty())
+      turn_ = turn;
+    else
+      send(issuer, std::move(group));
   }
   waiting_bundles_head_ = bundle;
   if (2 * bundle >= waiting_bundles_.size()) {

@@ -112,12 +112,12 @@ class OutPortOf {
     if (!queue_.empty()) return kNever;
     return credits_ >= places ? free_at_ : std::max(free_at_, next_credit());
   }
-  /// The time at which something can be sent, as far as is known; `want_credit`: the next credit counts even with an
-  /// empty egress queue.
+  /// The time at which something can be sent, as far as is known; `want_credit`: the next credit counts even if no
+  /// packet in the egress queue waits for it.
   Cycle next(bool want_credit) const {
-    if (queue_.empty()) return want_credit ? next_credit() : kNever;
-    if (credits_ == 0) return next_credit();
-    return std::max(free_at_, queue_.front().ready);
+    const Cycle credit = want_credit || (credits_ == 0 && !queue_.empty()) ? next_credit() : kNever;
+    if (queue_.empty() || credits_ == 0) return credit;
+    return std::min(credit, std::max(free_at_, queue_.front().ready));
   }
 
   bool empty() const { return queue_.empty(); }

@@ -9,6 +9,7 @@
 #include "ringbus/cycle/fabric/packet_size.h"
 #include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/resource_agent.h"
@@ -56,6 +57,7 @@ class Tile final : public ResourceAgent {
   Cycle last_event() const override { return now_; }
   void close(Cycle end) override;
   TileResult result() const override;
+  std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
   const IdCensus* census() const override { return &census_; }
@@ -169,7 +171,8 @@ class Tile final : public ResourceAgent {
   CompletedPort completed_port_;
   ShadeHelp help_;
   PacketSize packet_size_;
-  Cycle link_bytes_, ids_per_cycle_, control_latency_;
+  Cycle link_bytes_, ids_per_cycle_;
+  SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, fetch_by_resource_;
   Partial partial_;

@@ -10,8 +10,8 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   OutPort& out = out_for(packet);
   if (reserved) out.release();
   Token token{id, 0, 1, static_cast<std::uint16_t>(packet.members.size())};
-  token.link_cycles = static_cast<std::uint16_t>(
-      ceil_div(packet_size_.bytes(packet, memory_, resource_.is_treelet(packet.key)), link_bytes_));
+  token.size_bytes = packet_size_.bytes(packet, memory_, resource_.is_treelet(packet.key));
+  token.link_cycles = static_cast<std::uint16_t>(ceil_div(token.size_bytes, link_bytes_));
   token.skip = machine_.topology.skip(packet, id_);
   out.push(token, ready, !visit_all_ && token.skip > 0);
 }

@@ -150,6 +150,20 @@ TEST(RayControl, RaysWaitForSlotsInTheirOrder) {
 }
 
 // Every ray that is submitted comes out once, in a slot that no other ray has, in whatever order slots are freed.
+TEST(RayControl, AGroupThatWaitsCostsNoTurn) {
+  Bench bench(Placement::kBalanced, Home::kIssuer, 2, 4, 8);
+  bench.control->submit(rays(16));
+  const auto first = bench.collect_all();
+  ASSERT_EQ(first.size(), 1u);  // no slot is left for the second group
+  EXPECT_EQ(first[0].first, 0u);
+  bench.control->place_waiting();  // however often it is tried
+  for (std::uint32_t r = 0; r < 2; ++r) bench.control->free(ResourceId(r), std::vector<std::uint32_t>{0, 1, 2, 3});
+  bench.control->place_waiting();
+  const auto second = bench.collect_all();
+  ASSERT_EQ(second.size(), 1u);
+  EXPECT_EQ(second[0].first, 1u);
+}
+
 TEST(RayControl, LosesAndDoublesNothingUnderRandomCalls) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

@@ -1,0 +1,64 @@
+"""A resource of the conventional machine: every ray in a slot is a thread ("Independent resources")."""
+import heapq
+
+from .shape_buffer import ShapeBuffer, User
+from .testers import Testers
+from .traversal import Transforms
+from .walk import Walk
+
+
+class Thread:
+    def __init__(self, ray, nodes, transforms):
+        self.ray, self.walk, self.node, self.user = ray, Walk(ray, 0, nodes, transforms), None, User(self)
+
+
+class IndependentTile:
+    def __init__(self, number, machine, shapes, control):
+        self.number, self.clock, self.trace, self.nodes = number, machine.clock, machine.trace, machine.nodes
+        self.control = control
+        self.shapes = ShapeBuffer(machine.config, shapes)
+        self.testers = Testers(machine.config, number)
+        self.transforms = Transforms(machine.config)
+        self.tests, self.turn = [], 0
+        self.done = []
+
+    def step(self, now):
+        while self.control.new_rays.ready(now):
+            rays = self.control.new_rays.take()
+            self.trace.note(now, self.number, "new_rays", 0, len(rays))
+            for ray in rays:
+                self.go_on(Thread(ray, self.nodes, self.transforms), now)
+        self.shapes.take_answers(now)
+        self.serve(now)
+        while self.tests and self.tests[0][0] <= now:
+            thread = heapq.heappop(self.tests)[2]
+            self.trace.note(now, self.number, "tested_ray", thread.ray.slot, 1)
+            self.shapes.release(thread.user, now)
+            self.go_on(thread, now)
+            self.serve(now)
+        if self.done:
+            self.trace.note(now, self.number, "complete", 0, len(self.done))
+            self.control.complete(self.done, now)
+            self.done = []
+
+    def serve(self, now):
+        ready, self.shapes.ready = self.shapes.ready, []
+        for user in ready:
+            self.test(user.owner, now)
+
+    def go_on(self, thread, now):
+        thread.node = thread.walk.next()
+        if thread.node is None:
+            self.done.append(thread.ray)
+            return
+        node = self.nodes[thread.node]
+        need = [node.strip] + ([node.transform] if thread.walk.enters(thread.node) else [])
+        if self.shapes.take(thread.user, need, now):
+            self.test(thread, now)
+
+    def test(self, thread, now):
+        counts = thread.walk.test(thread.node)
+        end = self.testers.ray(now, counts, counts.inversions)
+        self.turn += 1
+        heapq.heappush(self.tests, (end, self.turn, thread))
+        self.clock.wake(end)

@@ -1,0 +1,38 @@
+"""The whole machine."""
+from .clock import Clock, Trace
+from .memory import Cache, Memory, ShapePort
+from .network import Topology, connect
+from .shading import Shading
+from .tile import Control, Tile
+from .traversal import Spread
+from .tree import Node
+
+
+class Machine:
+    def __init__(self, facts):
+        config = self.config = facts["config"]
+        self.facts, self.clock, self.trace = facts, Clock(), Trace()
+        self.nodes = [Node(i, fact) for i, fact in enumerate(facts["nodes"])]
+        self.topology = Topology(config)
+        self.initial_tests = Spread(config, facts, self.nodes).tests_at(0)
+        resources, link = self.topology.resources, config["topology"]["link"]
+        ends = connect(self.clock, self.topology, link, config["testers"]["contexts"] + 1)
+        shapes = [ShapePort(config, self.clock) for _ in range(resources)]
+        controls = [Control(config, self.clock) for _ in range(resources)]
+        if self.topology.shape == "independent":
+            from .independent import IndependentTile
+            self.tiles = [IndependentTile(r, self, shapes[r], controls[r]) for r in range(resources)]
+        else:
+            self.tiles = [Tile(r, self, ends[r], shapes[r], controls[r]) for r in range(resources)]
+        shared = config["memory"]["shared_by"]
+        caches = [Cache(config, self.clock, shapes[first:first + shared]) for first in range(0, resources, shared)]
+        self.shading = Shading(self, controls)
+        self.parts = [*self.tiles, *caches, Memory(config, caches), self.shading]
+
+    def run(self):
+        """The cycle at which each ray has been shaded, by its name."""
+        while self.clock.heap:
+            now = self.clock.next()
+            for part in self.parts:
+                part.step(now)
+        return self.shading.shaded

@@ -1,0 +1,144 @@
+"""Links, and who is linked to whom ("Links")."""
+from collections import deque
+
+from .clock import Channel, ceil_div
+
+
+class Packet:
+    def __init__(self, number, owner, direction):
+        self.number, self.owner, self.direction = number, owner, direction
+        self.home = owner
+        self.memberships = False  # carries memberships to their home; otherwise rays to be tested
+        self.node = None
+        self.depth = 0
+        self.lane = None          # the one shape it tests; None: the whole strip
+        self.rays, self.masks = [], []
+        self.nearest = []
+        self.next = []            # ordered traversal: one a ray
+        self.owners = set()
+        self.blocks = 0           # of collection storage that its retirement may take
+
+
+class Token:
+    """A packet on a link, with the number of resources to pass before one that has work with it."""
+
+    def __init__(self, packet, skip, cycles):
+        self.packet, self.skip, self.cycles = packet, skip, cycles
+
+
+class InPort:
+    def __init__(self, packets, credits, latency):
+        self.packets, self.credits, self.latency = packets, credits, latency
+
+    def ready(self, now):
+        return self.packets.ready(now)
+
+    def front(self):
+        return self.packets.front()
+
+    def take(self, now):
+        self.credits.send(now + self.latency, None)
+        return self.packets.take()
+
+
+class OutPort:
+    def __init__(self, clock, packets, credits, latency, depth, places):
+        self.clock, self.packets, self.credit_channel, self.latency = clock, packets, credits, latency
+        self.credits, self.places = depth, places
+        self.queue, self.reserved, self.free_at = deque(), 0, 0
+
+    def has_place(self):
+        return len(self.queue) + self.reserved < self.places
+
+    def spare_places(self):
+        return self.credits - len(self.queue) - self.reserved
+
+    def push(self, token, ready, cut_through):
+        self.queue.append((token, ready, cut_through))
+        self.clock.wake(ready)
+
+    def take_credits(self, now):
+        while self.credit_channel.ready(now):
+            self.credit_channel.take()
+            self.credits += 1
+
+    def send(self, now):
+        if not self.queue or self.free_at > now or self.queue[0][1] > now or self.credits == 0:
+            return False
+        token, _, cut_through = self.queue.popleft()
+        self.credits -= 1
+        self.free_at = now + token.cycles
+        self.clock.wake(self.free_at)
+        self.packets.send(now + self.latency + (0 if cut_through else token.cycles - 1), token)
+        return True
+
+
+class Topology:
+    """The rounds of a ring, of two opposite rings, or of several rings side by side."""
+
+    def __init__(self, config):
+        t = config["topology"]
+        self.resources, self.shape = t["resources"], t["shape"]
+        self.visit_all = t["visit"] == "all"
+        forward, backward = 1, self.resources - 1
+        self.steps = {"ring": [forward], "bidirectional": [forward, backward], "independent": [forward],
+                      "multi_ring": [forward] * t["rings"]}[self.shape]
+        self.directions = len(self.steps)
+        depth = t["link"]["depth"]
+        self.in_flight = depth if t["flow"] == "credits" else min(depth * self.resources, 256)
+
+    def next(self, here, direction):
+        return (here + self.steps[direction]) % self.resources
+
+    def wanted(self, packet, at):
+        return at == packet.home if packet.memberships else at in packet.owners
+
+    def travels(self, packet):
+        if self.resources == 1:
+            return False
+        if self.visit_all:
+            return True
+        if packet.memberships:
+            return packet.home != packet.owner
+        return any(owner != packet.owner for owner in packet.owners)
+
+    def skip(self, packet, here):
+        at, skip = self.next(here, packet.direction), 0
+        while at != packet.owner and not self.wanted(packet, at):
+            at, skip = self.next(at, packet.direction), skip + 1
+        return skip
+
+
+class PacketSize:
+    def __init__(self, config, nodes):
+        self.nodes = nodes
+        self.ordered = config["collections"]["traversal"] == "ordered"
+        self.entries = config["collections"]["policy"] == "nearest"
+        self.data = config["packets"]["carry"] == "data"
+        self.width = config["topology"]["link"]["bytes_per_cycle"]
+
+    def cycles(self, packet, treelet):
+        n = len(packet.rays)
+        size = 16 + 4 * n
+        if not packet.memberships:
+            node = self.nodes[packet.node]
+            if self.ordered:
+                size += 12 * n
+            elif node.inner and not treelet:
+                size += n + (32 if self.entries else 0)
+            if self.data and not treelet:
+                size += node.shapes_of(packet.lane)[1] + node.transform[1]
+        return ceil_div(size, self.width)
+
+
+def connect(clock, topology, link, places):
+    """The ports of each resource, by direction: [(in ports, out ports)]."""
+    ends = [([None] * topology.directions, [None] * topology.directions) for _ in range(topology.resources)]
+    if topology.resources == 1 or topology.shape == "independent":
+        return [([], []) for _ in range(topology.resources)]
+    for r in range(topology.resources):
+        for d in range(topology.directions):
+            packets, credits = Channel(clock), Channel(clock)
+            ends[r][1][d] = OutPort(clock, packets, credits, link["latency_cycles"], link["depth"], places)
+            ends[topology.next(r, d)][0][d] = InPort(packets, credits, link["latency_cycles"])
+    return ends

@@ -1,0 +1,86 @@
+"""A resource without a clock: its collections, and the packets that it fills from them ("Packets")."""
+from .collections import Collections, Storage
+from .traversal import Ordered, Spread
+
+NOTHING, PACKET, STORAGE = "nothing", "packet", "storage"
+
+
+class Resource:
+    def __init__(self, number, config, facts, nodes):
+        self.number, self.nodes = number, nodes
+        self.resources = config["topology"]["resources"]
+        self.hash = config["collections"]["home"] == "hash"
+        self.local = self.resources == 1 or config["collections"]["home"] == "local"
+        self.collections = Collections(config, facts)
+        self.storage = Storage(config, facts, self.collections)
+        ordered = config["collections"]["traversal"] == "ordered"
+        self.traversal = (Ordered if ordered else Spread)(config, facts, nodes)
+        self.block = config["packets"]["rays"]
+        self.in_flight = 0
+        self.rest = None  # of a block that goes out in several packets: (rays, node, depth, entry, next, packets)
+        self.completed = []
+
+    def idle(self):
+        return len(self.collections) == 0 and self.rest is None
+
+    def home_of(self, node):
+        if not self.hash:
+            return self.number
+        return ((self.nodes[node].key * 0x9e3779b97f4a7c15 & (1 << 64) - 1) >> 33) % self.resources
+
+    def admit(self, rays):
+        for first in range(0, len(rays), self.block):
+            self.collections.add(0, 0, 0.0, rays[first:first + self.block])
+        self.storage.held += len(rays)
+
+    def offer(self, partial, packet):
+        """Fills `packet` from the next collection: among the ready ones, or with `partial` among all."""
+        t = self.traversal
+        if self.rest is None:
+            c = self.collections.best(partial)
+            if c is None:
+                return NOTHING
+            if not self.storage.fits(t.blocks_needed(c.node, min(len(c.rays), self.block)), 1):
+                if self.in_flight > 0:
+                    return STORAGE
+                c = self.collections.deepest()
+            node, depth, entry = c.node, c.depth, c.entry
+            rays = self.collections.take(c)
+            packets = t.tests_at(node) if self.home_of(node) == self.number else 1
+            self.rest = (rays, node, depth, entry, 0, packets)
+        elif self.in_flight > 0 and not self.storage.fits(t.blocks_needed(self.rest[1], 0), 0):
+            return STORAGE
+        rays, node, depth, entry, number, packets = self.rest
+        self.fill(packet, rays, node, depth, entry, number)
+        self.rest = (rays, node, depth, entry, number + 1, packets) if number + 1 < packets else None
+        return PACKET
+
+    def fill(self, packet, rays, node, depth, entry, number):
+        packet.home = self.home_of(node)
+        packet.memberships = packet.home != packet.owner
+        packet.node, packet.depth = node, depth
+        packet.lane = number if self.traversal.single and not self.traversal.is_treelet(node) else None
+        packet.blocks = 0 if packet.memberships else self.traversal.blocks_needed(node, len(rays))
+        packet.rays, packet.masks, packet.next = list(rays), [[] for _ in rays], [None for _ in rays]
+        packet.nearest = [float("inf")] * 8
+        packet.entry = entry
+        packet.owners = {packet.owner} if self.local else {ray.owner for ray in rays}
+        self.storage.promised += packet.blocks
+        self.in_flight += 1
+
+    def local_members(self, packet):
+        return [i for i, ray in enumerate(packet.rays) if ray.owner == self.number]
+
+    def test(self, packet, members):
+        return self.traversal.test(packet, members, self.completed.append)
+
+    def retire(self, packet):
+        before = self.collections.memberships()
+        if not packet.memberships:
+            self.traversal.retire(packet, self.collections)
+        self.storage.retire(packet.blocks, len(packet.rays), self.collections.memberships() - before)
+        self.in_flight -= 1
+
+    def join(self, packet):
+        self.collections.add(packet.node, packet.depth, packet.entry, packet.rays)
+        packet.rays, packet.masks, packet.next = [], [], []

@@ -1,0 +1,220 @@
+"""Ray control and the shader workers ("Ray control", "Shading")."""
+import heapq
+from collections import deque
+
+from .clock import ceil_div
+from .tree import Ray
+
+
+class RayControl:
+    """Gives new rays slots."""
+
+    def __init__(self, config, tests):
+        self.resources = config["topology"]["resources"]
+        slots = config["rays"]["slots_per_resource"]
+        self.balanced = config["rays"]["placement"] == "balanced"
+        self.local = config["collections"]["home"] == "local" or config["topology"]["shape"] == "independent"
+        self.group = config["packets"]["rays"]
+        self.tests = tests
+        self.free = [list(range(slots - 1, -1, -1)) for _ in range(self.resources)]
+        self.enough = max(1, (slots if self.local else slots * self.resources) // 4)
+        self.turn = 0
+        self.waiting = deque()
+
+    def next_resource(self):
+        self.turn += 1
+        return (self.turn - 1) % self.resources
+
+    def emptiest(self):
+        best = self.turn % self.resources
+        for i in range(1, self.resources):
+            r = (self.turn + i) % self.resources
+            if len(self.free[r]) > len(self.free[best]):
+                best = r
+        return best
+
+    def load(self, r, rays):
+        """Gives slots of resource `r` to as many as there are; how many."""
+        count = min(len(rays), len(self.free[r]))
+        for ray in rays[:count]:
+            ray.owner, ray.slot, ray.pending = r, self.free[r].pop(), self.tests
+        return count
+
+    def spread(self, rays):
+        placed = 0
+        if not self.balanced:
+            refused = 0
+            while placed < len(rays) and refused < self.resources:
+                took = self.load(self.next_resource(), rays[placed:placed + 1])
+                refused = 0 if took else refused + 1
+                placed += took
+            return placed
+        for share_out in (True, False):
+            for i in range(self.resources):
+                if placed == len(rays):
+                    break
+                left = self.resources - i
+                share = ceil_div(len(rays) - placed, left) if share_out else len(rays) - placed
+                placed += self.load((self.turn + i) % self.resources, rays[placed:placed + share])
+        return placed
+
+    def place(self, rays):
+        """Places groups from the front of `rays` (a deque); yields (issuer, group)."""
+        turn = self.turn  # behind the last group that found room
+        while rays:
+            group = [rays[i] for i in range(min(self.group, len(rays)))]
+            issuer = self.next_resource()
+            if self.local and self.balanced:
+                issuer = self.emptiest()
+            room = len(self.free[issuer]) if self.local else sum(len(free) for free in self.free)
+            if room < min(len(group), self.enough):
+                if self.local and not self.balanced and len(self.free[self.emptiest()]) >= self.enough:
+                    continue
+                break
+            placed = self.load(issuer, group) if self.local else self.spread(group)
+            if placed == 0:
+                break
+            for _ in range(placed):
+                rays.popleft()
+            turn = self.turn
+            yield issuer, group[:placed]
+        self.turn = turn  # a group that waits costs nobody a turn
+
+    def place_waiting(self):
+        return list(self.place(self.waiting))
+
+    def submit(self, rays):
+        fresh = deque(rays)
+        placed = [] if self.waiting else list(self.place(fresh))
+        self.waiting.extend(fresh)
+        return placed
+
+
+class Queues:
+    """Completed rays that wait for workers."""
+
+    def __init__(self, config):
+        s = config["shading"]
+        self.how, self.seed = s["distribute"], config["image"]["seed"]
+        self.queues = [deque() for _ in range(1 if self.how == "fifo_fill" else s["workers"])]
+        self.in_work = [0] * s["workers"]
+        self.turn = 0
+
+    def push(self, ray):
+        queue = 0
+        if self.how == "round_robin":
+            queue, self.turn = self.turn % len(self.queues), self.turn + 1
+        elif self.how == "load":
+            queue = min(range(len(self.queues)), key=lambda w: (len(self.queues[w]) + self.in_work[w], w))
+        self.queues[queue].append(ray)
+
+    def take(self, worker):
+        queue = self.queues[0 if self.how == "fifo_fill" else worker]
+        return queue.popleft() if queue else None
+
+    def empty(self):
+        return not any(self.queues)
+
+
+class Shading:
+    def __init__(self, machine, controls):
+        config = machine.config
+        s, link = config["shading"], config["topology"]["link"]
+        self.clock, self.trace, self.facts = machine.clock, machine.trace, machine.facts
+        self.rays = {tuple(fact["name"]): fact for fact in self.facts["rays"]}
+        self.camera = [tuple(name) for name in self.facts["camera"]]
+        self.controls, self.node = controls, config["topology"]["resources"]
+        self.control = RayControl(config, machine.initial_tests)
+        self.shade, self.effect = s["cycles_per_shade"], s["cycles_per_effect"]
+        self.latency, self.record = link["latency_cycles"], ceil_div(64, link["bytes_per_cycle"])
+        self.slots = config["rays"]["slots_per_resource"] * self.node
+        self.group = config["packets"]["rays"]
+        self.queues = Queues(config)
+        self.idle = list(range(s["workers"] - 1, -1, -1))  # the next one last
+        self.jobs = []  # (end, worker, ray or nothing, names of the camera rays that it makes)
+        self.gathered = []
+        self.load_free, self.last_sent = [0] * self.node, [0] * self.node
+        self.made = self.making = self.outstanding = 0
+        self.shaded = {}
+        self.clock.wake(0)
+
+    def step(self, now):
+        for r, control in enumerate(self.controls):
+            while control.completed.ready(now):
+                rays = control.completed.take()
+                self.control.free[r].extend(ray.slot for ray in rays)
+                for ray in rays:
+                    self.queues.push(ray)
+        while self.finish_jobs(now) or self.start_jobs(now):
+            pass
+        self.place(now)
+
+    def emit(self, names):
+        self.gathered.extend(Ray(self.rays[tuple(name)]) for name in names)
+        self.outstanding += len(names)
+
+    def finish_jobs(self, now):
+        shaded, any_done = [], False
+        while self.jobs and self.jobs[0][0] <= now:
+            _, worker, ray, names = heapq.heappop(self.jobs)
+            any_done = True
+            self.idle.append(worker)
+            self.queues.in_work[worker] = 0
+            if ray is not None:
+                shaded.append(ray)
+                continue
+            self.making -= len(names)
+            self.emit(names)
+        if not shaded:
+            return any_done
+        for ray in shaded:
+            self.emit(ray.fact["children"])
+            self.shaded[ray.name] = now
+        self.trace.note(now, self.node, "shade", 0, len(shaded))
+        self.outstanding -= len(shaded)
+        return True
+
+    def room(self):
+        return max(0, min(self.group, self.slots - self.outstanding - self.making))
+
+    def start_jobs(self, now):
+        any_started = False
+        for worker in reversed(list(self.idle)):
+            if self.start_job(worker, now):
+                self.idle.remove(worker)
+                any_started = True
+        return any_started
+
+    def start_job(self, worker, now):
+        ray, names = self.queues.take(worker), []
+        if ray is not None:
+            end = now + self.shade + self.effect * ray.effects
+        else:
+            names = self.camera[self.made:self.made + self.room()]
+            if not names:
+                return False
+            self.made += len(names)
+            self.making += len(names)
+            end = now + self.shade * len(names)
+        self.queues.in_work[worker] = max(1, len(names))
+        heapq.heappush(self.jobs, (end, worker, ray, names))
+        self.clock.wake(end)
+        return True
+
+    def place(self, now):
+        last = self.queues.empty() and not self.jobs
+        groups = self.control.place_waiting()
+        if len(self.gathered) >= self.group or (last and self.gathered):
+            groups += self.control.submit(self.gathered)
+            self.gathered = []
+        for r in range(self.node):
+            for issuer, rays in groups:
+                if issuer != r:
+                    continue
+                loaded = now
+                for ray in rays:
+                    self.load_free[ray.owner] = max(self.load_free[ray.owner], now) + self.record
+                    loaded = max(loaded, self.load_free[ray.owner])
+                self.trace.note(now, self.node, "place", 0, len(rays))
+                self.last_sent[r] = max(self.last_sent[r], loaded + self.latency)
+                self.controls[r].new_rays.send(self.last_sent[r], rays)

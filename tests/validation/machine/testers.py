@@ -1,0 +1,104 @@
+"""Banks of test units ("Testers")."""
+from .clock import ceil_div
+
+BOX, TRIANGLE, PLANE, BUNDLE, TRANSFORM, PROCEDURAL, ANY_HIT = (
+    "box", "triangle", "plane", "bundle", "transform", "procedural", "any_hit_unit")
+KINDS = (BOX, TRIANGLE, PLANE, BUNDLE, TRANSFORM, PROCEDURAL, ANY_HIT)
+INVERSION_PASSES = 2
+DOUBLE_PASSES = 4
+
+
+class Counts:
+    """The tests of a visit."""
+
+    __slots__ = ("box", "triangle", "procedural", "transforms", "inversions")
+
+    def __init__(self):
+        self.box = self.triangle = self.procedural = self.transforms = self.inversions = 0
+
+    def add(self, other):
+        for name in self.__slots__:
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+
+    def passes(self, kind):
+        if kind == TRANSFORM:
+            return self.transforms + INVERSION_PASSES * self.inversions
+        return getattr(self, kind, 0)
+
+
+class Bank:
+    def __init__(self, units, interval, latency):
+        self.units, self.interval, self.latency = units, interval, latency
+        self.free_at = self.spare = 0
+
+    def reserve(self, at, tests):
+        """The first and the last answer to tests that start at `at`, or as soon as the bank is free."""
+        if tests == 0:
+            return at, at
+        start = max(at, self.free_at)
+        rounds = ceil_div(tests, self.units)
+        self.free_at = start + rounds * self.interval
+        self.spare = rounds * self.units - tests
+        return start + self.latency, self.free_at - self.interval + self.latency
+
+    def reserve_beside(self, at, tests):
+        """For a single ray: units left idle by the last start are taken first. The last answer."""
+        last_start = self.free_at - self.interval
+        if tests == 0 or self.spare == 0 or at > last_start:
+            return self.reserve(at, tests)[1]
+        beside = min(tests, self.spare)
+        self.spare -= beside
+        if beside == tests:
+            return last_start + self.latency
+        return self.reserve(at, tests - beside)[1]
+
+
+class Testers:
+    def __init__(self, config, resource):
+        t = config["testers"]
+        for one in config["topology"].get("overrides", []):
+            if one["resource"] == resource:
+                t = one["testers"]
+        accuracy = config["accuracy"]
+        longer = {TRIANGLE: accuracy["triangle"] in ("double", "exact"), BOX: accuracy["box"] == "double",
+                  TRANSFORM: accuracy["transform"] == "two_step_double"}
+        self.banks = {k: Bank(t[k]["units"], t[k]["interval_cycles"] * (DOUBLE_PASSES if longer.get(k) else 1),
+                              t[k]["latency_cycles"]) for k in KINDS}
+        self.reads_per_cycle = config["rays"]["reads_per_cycle"]
+        self.store = Bank(max(1, self.reads_per_cycle), 1, 1)
+
+    def _reads(self, at, reads):
+        return self.store.reserve(at, reads if self.reads_per_cycle > 0 else 0)
+
+    @staticmethod
+    def _behind(bank, before, tests):
+        """Tests of rays that come one after another from the bank before."""
+        if tests == 0:
+            return before
+        first, last = bank.reserve(before[0], tests)
+        return first, max(last, before[1] + bank.latency) if before[1] > before[0] else last
+
+    def strip(self, at, counts, reads):
+        first, last = self._reads(at, reads)
+        inverse = self.banks[TRANSFORM].reserve(first, INVERSION_PASSES * counts.inversions)[1]
+        moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)), counts.transforms)
+        end = self._behind(self.banks[BOX], moved, counts.box)[1]
+        for kind in (TRIANGLE, PROCEDURAL):
+            end = max(end, self._behind(self.banks[kind], moved, counts.passes(kind))[1])
+        return end
+
+    def read(self, at, records):
+        return self.store.reserve_beside(at, records) if self.reads_per_cycle > 0 else at
+
+    def invert(self, at):
+        return self.banks[TRANSFORM].reserve(at, INVERSION_PASSES)[1]
+
+    def ray(self, at, counts, inversions):
+        """The last answer to the tests of a single ray."""
+        bank = self.banks
+        if inversions > 0:
+            at = self.invert(at)
+        moved = bank[TRANSFORM].reserve_beside(at, counts.transforms)
+        return max(moved, bank[BOX].reserve_beside(moved, counts.box),
+                   bank[TRIANGLE].reserve_beside(moved, counts.triangle),
+                   bank[PROCEDURAL].reserve_beside(moved, counts.procedural))

@@ -1,0 +1,160 @@
+"""How rays go down the tree: what a packet's visit tests, and which collections its rays join afterwards ("Visits")."""
+from .testers import Counts
+from .walk import Walk, farthest_first
+
+
+class Transforms:
+    """Which rays have to be brought to model space at a visit."""
+
+    def __init__(self, config):
+        a = config["accuracy"]
+        self.store = a["transformed_ray"] == "store"
+        data = a.get("instance_data") or ("forward" if a.get("invert") == "visit" else "")
+        self.forward = data == "forward"
+
+    def needs(self, ray, node):
+        if not self.store:
+            return True
+        if node.instance in ray.kept:
+            return False
+        ray.kept.add(node.instance)
+        return True
+
+    def inverts(self, node):
+        return self.forward and not node.transposed
+
+    def charge(self, rays, node, counts):
+        if not node.moves:
+            return
+        counts.transforms = sum(self.needs(ray, node) for ray in rays if not ray.done)
+        counts.inversions = int(counts.transforms > 0 and self.inverts(node))
+
+
+class Spread:
+    """Every ray joins the collections of all children that it hits. A packet tests a strip, or with `packets.shapes:
+    single` one shape of it, and then a ray waits for as many tests at a node as the strip has shapes."""
+
+    ordered = False
+
+    def __init__(self, config, facts, nodes):
+        self.nodes = nodes
+        self.transforms = Transforms(config)
+        self.single = config["packets"]["shapes"] == "single"
+        treelets = config["collections"]["traversal"] == "treelet"
+        self.most_triangles = config["bvh"]["treelet_triangles"] if treelets else None
+
+    def is_treelet(self, node):
+        return self.most_triangles is not None and self.nodes[node].triangles_below <= self.most_triangles
+
+    def tests_at(self, node):
+        if not self.single or self.is_treelet(node):
+            return 1
+        return max(1, self.nodes[node].shapes)
+
+    def blocks_needed(self, node, rays):
+        if self.is_treelet(node) or not self.nodes[node].inner:
+            return 0
+        return 1 if self.single else len(self.nodes[node].children)
+
+    def lanes(self, packet):
+        node = self.nodes[packet.node]
+        return range(node.shapes) if packet.lane is None else [lane for lane in [packet.lane] if lane < node.shapes]
+
+    def test(self, packet, members, complete):
+        """Tests the rays at the places `members` of the packet; `complete` takes those that wait for nothing more."""
+        if self.is_treelet(packet.node):
+            return self.walk(packet, members, complete)
+        node, counts = self.nodes[packet.node], Counts()
+        rays = [packet.rays[i] for i in members]
+        self.transforms.charge(rays, node, counts)
+        lanes = self.lanes(packet)
+        below = self.tests_at(node.children[packet.lane]) if node.inner and packet.lane in lanes else 1
+        for i, ray in zip(members, rays):
+            hits = []
+            if not ray.done and node.inner:
+                counts.box += len(lanes)
+                hits = ray.meet_boxes(node, lanes)
+            elif not ray.done:
+                if node.procedural:
+                    counts.procedural += len(lanes)
+                else:
+                    counts.triangle += len(lanes)
+                ray.meet_triangles(node, lanes)
+            packet.masks[i] = [lane for lane, _ in hits]
+            for lane, entry in hits:
+                packet.nearest[lane] = min(packet.nearest[lane], entry)
+            ray.pending += len(hits) * below - 1
+            if ray.pending == 0:
+                complete(ray)
+        return counts
+
+    def walk(self, packet, members, complete):
+        """The ways of the rays through a treelet: for each its steps (node, tests)."""
+        ways = []
+        for i in members:
+            ray, steps = packet.rays[i], []
+            walk = Walk(ray, packet.node, self.nodes, self.transforms)
+            while (node := walk.next()) is not None:
+                steps.append((node, walk.test(node)))
+            ways.append(steps)
+        for i in members:
+            packet.rays[i].pending -= 1
+            if packet.rays[i].pending == 0:
+                complete(packet.rays[i])
+        return ways
+
+    def retire(self, packet, collections):
+        node = self.nodes[packet.node]
+        if self.is_treelet(packet.node):
+            return
+        for lane, child in enumerate(node.children):
+            rays = [ray for ray, mask in zip(packet.rays, packet.masks) if lane in mask]
+            collections.add(child, packet.depth + 1, packet.nearest[lane], rays)
+
+
+class Ordered(Spread):
+    """A ray is in one collection, that of its nearest node; the others wait on its stack."""
+
+    ordered = True
+
+    def blocks_needed(self, node, rays):
+        return rays
+
+    def test(self, packet, members, complete):
+        node, counts = self.nodes[packet.node], Counts()
+        rays = [packet.rays[i] for i in members]
+        self.transforms.charge(rays, node, counts)
+        for i, ray in zip(members, rays):
+            if not ray.done and node.inner:
+                counts.box += node.shapes
+                hits = ray.meet_boxes(node, range(node.shapes))
+                for lane, entry in hits:
+                    packet.nearest[lane] = min(packet.nearest[lane], entry)
+                for lane, entry in farthest_first(hits):
+                    ray.stack.append((node.children[lane], entry, packet.depth + 1))
+            elif not ray.done:
+                if node.procedural:
+                    counts.procedural += node.shapes
+                else:
+                    counts.triangle += node.shapes
+                ray.meet_triangles(node, range(node.shapes))
+            packet.next[i] = self.next_of(ray)
+            if packet.next[i] is None:
+                ray.pending -= 1
+                complete(ray)
+        return counts
+
+    @staticmethod
+    def next_of(ray):
+        while ray.stack and not ray.done:
+            if ray.stack[-1][1] <= ray.t:
+                return ray.stack.pop()
+            ray.stack.pop()
+        ray.stack.clear()
+        return None
+
+    def retire(self, packet, collections):
+        for ray, following in zip(packet.rays, packet.next):
+            if following is not None:
+                node, entry, depth = following
+                collections.add(node, depth, entry, [ray])

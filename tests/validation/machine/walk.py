@@ -1,0 +1,124 @@
+"""Rays that go through a subtree by themselves, depth first and nearest first ("Walks")."""
+import heapq
+
+from .shape_buffer import User
+from .testers import Counts
+
+
+def farthest_first(hits):
+    """[(lane, entry)] by falling entry; of equal entries the higher lane first."""
+    return sorted(hits, key=lambda hit: (-hit[1], -hit[0]))
+
+
+class Walk:
+    """The way of one ray: its next strip, and its tests there. Hits count at once."""
+
+    def __init__(self, ray, root, nodes, transforms):
+        self.ray, self.nodes, self.transforms = ray, nodes, transforms
+        self.stack = [(root, 0.0)]
+        self.instance = 0xffffffff
+
+    def next(self):
+        while self.stack and not self.ray.done:
+            node, entry = self.stack.pop()
+            if entry <= self.ray.t:
+                return node
+        return None
+
+    def enters(self, node):
+        return self.nodes[node].instance != self.instance
+
+    def test(self, number):
+        node, counts = self.nodes[number], Counts()
+        if self.enters(number):
+            self.instance = node.instance
+            if node.moves and self.transforms.needs(self.ray, node):
+                counts.transforms = 1
+                counts.inversions = int(self.transforms.inverts(node))
+        if node.inner:
+            counts.box = node.shapes
+            for lane, entry in farthest_first(self.ray.meet_boxes(node, range(node.shapes))):
+                self.stack.append((node.children[lane], entry))
+        else:
+            setattr(counts, "procedural" if node.procedural else "triangle", node.shapes)
+            self.ray.meet_triangles(node, range(node.shapes))
+        return counts
+
+
+class Visitor:
+    """A ray of a treelet's visit: the steps of its way, taken one after another under the clock."""
+
+    def __init__(self, visit, steps):
+        self.visit, self.steps, self.at, self.user = visit, steps, 0, User(self)
+        self.in_test = False
+
+
+class Visit:
+    def __init__(self, ways):
+        self.rays = [Visitor(self, steps) for steps in ways]
+        self.left = len(self.rays)
+        self.inverted = {}  # by instance: the end of the inversion
+
+
+class Visits:
+    """The treelet visits of a resource."""
+
+    def __init__(self, clock, nodes, shapes, testers):
+        self.clock, self.nodes, self.shapes, self.testers = clock, nodes, shapes, testers
+        self.events, self.turn = [], 0
+
+    def add(self, at, ray):
+        self.turn += 1
+        heapq.heappush(self.events, (at, self.turn, ray))
+        self.clock.wake(at)
+
+    def begin(self, visit, now):
+        for ray in visit.rays:
+            at = self.testers.read(now, 1)
+            if at > now:
+                self.add(at, ray)
+            else:
+                self.go_on(ray, now)
+
+    def go_on(self, ray, now):
+        if ray.at == len(ray.steps):
+            ray.visit.left -= 1
+            return
+        number, counts = ray.steps[ray.at]
+        need = [self.nodes[number].strip]
+        if counts.transforms > 0:
+            need.append(self.nodes[number].transform)
+        if self.shapes.take(ray.user, need, now):
+            self.test(ray, now)
+
+    def test(self, ray, now):
+        number, counts = ray.steps[ray.at]
+        ray.at += 1
+        at = now
+        if counts.inversions > 0:
+            instance = self.nodes[number].instance
+            if instance not in ray.visit.inverted:
+                ray.visit.inverted[instance] = self.testers.invert(now)
+            at = max(now, ray.visit.inverted[instance])
+        ray.in_test = True
+        self.add(self.testers.ray(at, counts, inversions=0), ray)
+
+    def run(self, now, others):
+        """Rays whose events have come go on; contexts whose data has come are appended to `others`."""
+        self.serve(now, others)
+        while self.events and self.events[0][0] <= now:
+            ray = heapq.heappop(self.events)[2]
+            if ray.in_test:
+                ray.in_test = False
+                self.shapes.release(ray.user, now)
+            self.go_on(ray, now)
+            self.serve(now, others)
+
+    def serve(self, now, others):
+        while self.shapes.ready:
+            ready, self.shapes.ready = self.shapes.ready, []
+            for user in ready:
+                if isinstance(user.owner, Visitor):
+                    self.test(user.owner, now)
+                else:
+                    others.append(user.owner)
