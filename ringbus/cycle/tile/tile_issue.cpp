@@ -90,6 +90,9 @@ Cycle Tile::partial_may_go(Cycle now) const {
       return nothing_else_to_do(now) ? now : kNever;
     case Partial::kAhead: {
       if (help_.holds()) return kNever;
+      // Where a packet waits in contexts for its shapes, more packets than free contexts only wait in line, and fewer
+      // rays share a wait.
+      if (contexts_fetch_ && issue_.size() >= free_contexts()) return kNever;
       const Cycle ends = work_ahead_ends(now);
       return ends <= now + memory_latency_ ? now : ends - memory_latency_;
     }
