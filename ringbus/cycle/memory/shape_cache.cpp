@@ -69,7 +69,7 @@ void ShapeCache::write(const FetchRequest& request, Cycle now) {
 }
 
 void ShapeCache::look_up(std::uint32_t client, const FetchRequest& request, Cycle now) {
-  if (request.writes) [[unlikely]]
+  if (request.written > 0) [[unlikely]]
     return write(request, now);
   std::uint32_t index;
   if (free_pending_.empty()) {
