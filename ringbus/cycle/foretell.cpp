@@ -19,8 +19,8 @@ double at_count(const cycle::CycleResult& result, std::uint64_t completed, const
   const double reached = value(*after);
   if (after == all.begin()) return reached;
   const cycle::ProgressSample& before = *(after - 1);
-  const double part = static_cast<double>(completed - before.completed) /
-                      static_cast<double>(after->completed - before.completed);
+  const double part =
+      static_cast<double>(completed - before.completed) / static_cast<double>(after->completed - before.completed);
   return value(before) + part * (reached - value(before));
 }
 
@@ -105,8 +105,7 @@ Estimate Foretelling::gain(PilotRun relaxed, double deviation) const {
   const double all = std::max(1.0, other.back() - other.front());
   const double of_window = (base.back() - base.front()) / all;
   std::vector<double> d;
-  for (std::size_t i = 0; i < kBlocks; ++i)
-    d.push_back(base[i + 1] - base[i] - of_window * (other[i + 1] - other[i]));
+  for (std::size_t i = 0; i < kBlocks; ++i) d.push_back(base[i + 1] - base[i] - of_window * (other[i + 1] - other[i]));
   const double half = 2 * standard_error(d) / all + std::abs(deviation) * ratio * ratio / 2;
   return {gain, gain - half, gain + half};
 }

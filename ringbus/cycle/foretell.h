@@ -41,9 +41,9 @@ class Foretelling {
   /// The interval has two parts. The pilot is cut into blocks of equal numbers of rays. Both machines simulate the same
   /// rays, so only the difference between the times of one block on both counts, d; neighbouring blocks are of
   /// neighbouring strata, so the variance is that of their successive differences, (d[i+1] - d[i])^2 / 2, as for any
-  /// systematic sample (K. Wolter, Introduction to Variance Estimation, 2nd edition 2007, section 8.2, v2). Two standard
-  /// errors count. `deviation`, the fraction by which the frame is known to differ from its foretelling, is added: if
-  /// it lies in the class at question, the time that the class limits is off by as much.
+  /// systematic sample (K. Wolter, Introduction to Variance Estimation, 2nd edition 2007, section 8.2, v2). Two
+  /// standard errors count. `deviation`, the fraction by which the frame is known to differ from its foretelling, is
+  /// added: if it lies in the class at question, the time that the class limits is off by as much.
   Estimate gain(PilotRun relaxed, double deviation) const;
 
  private:

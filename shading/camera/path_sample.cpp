@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 namespace carousel::shading {
@@ -40,9 +41,13 @@ std::uint64_t PathSample::ordinal(std::uint64_t i) const {
 
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw) {
   constexpr double kEnoughTiles = 128;
-  const std::uint64_t columns = order.tile_columns(), rows = order.tile_rows(), samples = order.samples();
-  const double pixels = PixelOrder::kTile * PixelOrder::kTile, wanted = static_cast<double>(paths) / pixels;
-  const auto each = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(wanted / kEnoughTiles), 1, samples);
+  const std::uint64_t together = getenv("CLUSTER") ? atoi(getenv("CLUSTER")) : 4;
+  const std::uint64_t columns = (order.tile_columns() + together - 1) / together, rows = order.tile_rows(),
+                      samples = order.samples();
+  const double pixels = PixelOrder::kTile * PixelOrder::kTile,
+               wanted = static_cast<double>(paths) / pixels / static_cast<double>(together);
+  const auto each = std::clamp<std::uint64_t>(
+      static_cast<std::uint64_t>(wanted * static_cast<double>(together) / kEnoughTiles), 1, samples);
   const double tiles = std::max(1.0, wanted / static_cast<double>(each));
   // Rectangles of about the shape of a tile.
   const auto parts = [](double count, std::uint64_t most) {
@@ -64,7 +69,9 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
       }
       if (taken[row * columns + column]) continue;
       taken[row * columns + column] = true;
-      runs.push_back({order.tile_begin(column, row), each * order.tile_pixels(column, row)});
+      for (std::uint64_t i = column * together;
+           i < std::min<std::uint64_t>(order.tile_columns(), (column + 1) * together); ++i)
+        runs.push_back({order.tile_begin(i, row), each * order.tile_pixels(i, row)});
     }
   }
   return PathSample(runs);

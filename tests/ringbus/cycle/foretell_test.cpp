@@ -15,8 +15,8 @@ namespace {
 
 using cycle::CycleResult;
 
-/// A machine that needs `fill` cycles before the first ray completes, `each(i)` cycles for ray i, and `drain` cycles for
-/// the last `in_flight` rays, which begin together.
+/// A machine that needs `fill` cycles before the first ray completes, `each(i)` cycles for ray i, and `drain` cycles
+/// for the last `in_flight` rays, which begin together.
 template <class Each>
 CycleResult machine(std::uint64_t rays, double fill, const Each& each, double drain = 0, std::uint64_t in_flight = 0) {
   CycleResult out;
@@ -114,7 +114,8 @@ TEST(Foretell, AKnownDeviationWidensTheInterval) {
 }
 
 TEST(SteadyState, LeavesFillAndDrainOut) {
-  const CycleResult run = machine(10000, 5000, [](std::uint64_t) { return 10.0; }, 30000, 500);
+  const CycleResult run = machine(
+      10000, 5000, [](std::uint64_t) { return 10.0; }, 30000, 500);
   const auto steady = steady_state(run, 10000, 400);
   ASSERT_TRUE(steady);
   EXPECT_NEAR(10000 * steady->share / static_cast<double>(steady->cycles), 0.1, 0.003);
@@ -133,7 +134,8 @@ TEST(SteadyState, IsNeverAboveTheBound) {
 }
 
 TEST(SteadyState, AFrameThatOnlyFillsAndDrainsHasNone) {
-  const CycleResult run = machine(1000, 500, [](std::uint64_t) { return 10.0; }, 3000, 600);
+  const CycleResult run = machine(
+      1000, 500, [](std::uint64_t) { return 10.0; }, 3000, 600);
   EXPECT_FALSE(steady_state(run, 1000, 400));
 }
 
