@@ -62,6 +62,7 @@ void add_to_link(report::Link& out, const ringbus::cycle::LinkUse& link, std::ui
 
 report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& config) {
   report::Memory out;
+  for (const ringbus::cycle::TileResult& tile : c.tiles) out.shape_buffers.counts += tile.shapes;
   for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, c.cycles)});
   out.dram_lines = c.memory_lines;
   out.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.line_bytes);

@@ -13,6 +13,7 @@
 #include "app/host/machine_info.h"
 #include "app/run/memory_need.h"
 #include "core/system/executor.h"
+#include "ringbus/cycle/memory/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
 #include "scene/load_scene.h"
 #include "shading/effects/effects_plan.h"
@@ -68,6 +69,8 @@ void build_accel(Prepared& p) {
   accel::add_cull_planes(p.accel, p.scene, p.config().cull_planes, *executor);
   p.plane_seconds = watch.seconds() - p.build_seconds;
   if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
+    throw ConfigError(std::move(issues));
+  if (std::vector<ConfigIssue> issues = ringbus::cycle::check_shape_buffer(p.config(), p.accel); !issues.empty())
     throw ConfigError(std::move(issues));
 }
 

@@ -28,7 +28,7 @@ class Rules {
     all_is_built();
     stored_transform_fits();
     planes_and_bundles_fit();
-    carried_data_comes_from_the_issuer();
+    shapes_reach_the_resources();
     effects_are_known();
     traffic_has_a_network();
     flow_that_can_deadlock();
@@ -69,11 +69,22 @@ class Rules {
     for (config::Refusal& refusal : config::refusals(c)) issue(refusal.key, std::move(refusal.message));
   }
 
-  void carried_data_comes_from_the_issuer() {
-    if (cycle() && c.packets.carry == PacketCarry::kData && c.memory.fetch == MemoryConfig::Fetch::kResource)
+  // The shapes reach a resource within packets, or it reads them itself.
+  void shapes_reach_the_resources() {
+    if (!cycle()) return;
+    const bool data = c.packets.carry == PacketCarry::kData;
+    if (data && c.memory.fetch == MemoryConfig::Fetch::kResource)
       issue("memory.fetch",
             "a packet that carries its shapes' data gets them from its issuer; expected packet, found "
             "resource");
+    if (!data && c.memory.fetch == MemoryConfig::Fetch::kPacket && packets_travel())
+      issue("memory.fetch",
+            "packets that carry a reference bring no shapes along; expected resource, or packets.carry: data, whose "
+            "bytes are charged on every hop; found packet");
+  }
+  bool packets_travel() const {
+    return c.topology.shape != TopologyShape::kIndependent && c.topology.resources > 1 &&
+           c.collections.home != Home::kLocal && c.workload.kind != WorkloadConfig::Kind::kTraffic;
   }
 
   void stored_transform_fits() {

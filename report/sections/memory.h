@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/statistics/cache_counts.h"
+#include "core/statistics/shape_buffer_counts.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -18,7 +19,19 @@ void describe(V& v, const Cache& r) {
           "fraction of the run's cycles in which the port looked up lines");
 }
 
+struct ShapeBuffers {
+  ShapeBufferCounts counts;
+};
+
+template <class V>
+void describe(V& v, const ShapeBuffers& r) {
+  describe(v, r.counts);
+  v.field("hit_fraction", ratio(r.counts.hits, r.counts.hits + r.counts.merged + r.counts.misses), "fraction",
+          "hits over strips and transforms needed");
+}
+
 struct Memory {
+  ShapeBuffers shape_buffers;
   std::vector<Cache> caches;
   std::uint64_t dram_lines = 0, dram_bytes = 0, dram_busy_cycles = 0;
   double dram_utilisation = 0;
@@ -26,6 +39,7 @@ struct Memory {
 
 template <class V>
 void describe(V& v, const Memory& r) {
+  v.section("shape_buffers", r.shape_buffers, "use of the shape buffers of all resources");
   v.section("caches", r.caches, "use of each L2 cache");
   v.field("dram_lines", r.dram_lines, "lines", "lines read from DRAM");
   v.field("dram_bytes", r.dram_bytes, "bytes", "bytes read from DRAM");

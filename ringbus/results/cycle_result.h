@@ -8,6 +8,7 @@
 #include "core/numeric/latency_histogram.h"
 #include "core/statistics/cache_counts.h"
 #include "core/statistics/ray_bytes.h"
+#include "core/statistics/shape_buffer_counts.h"
 #include "core/types/unit_kind.h"
 #include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/trace.h"
@@ -46,6 +47,7 @@ struct TileResult {
   PerUnit<BankUse> units;
   BankUse ray_reads;  ///< the port of the ray store
   Utilisation dispatch;
+  ShapeBufferCounts shapes;
   StackTraffic stack;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
   LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they retire

@@ -9,7 +9,7 @@ namespace carousel {
 struct MemoryConfig {
   std::int64_t l2_kib = 1024, line_bytes = 64, ways = 8, shared_by = 4;
   std::int64_t l2_lines_per_cycle = 1, l2_latency_cycles = 30, dram_latency_cycles = 200, dram_bytes_per_cycle = 32;
-  enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kPacket;
+  enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kResource;
   std::int64_t fetch_ahead = 2, shape_buffer_kib = 4;
 };
 
@@ -34,10 +34,13 @@ void describe(V& v, MemoryConfig& c) {
   v.field("dram_latency_cycles", c.dram_latency_cycles, kCycles, "cycles", "The time of a miss.");
   v.field("dram_bytes_per_cycle", c.dram_bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle",
           "The bandwidth of the memory.");
-  v.choice("fetch", c.fetch, "Shape data is fetched by the issuer of a packet, by each resource, or once for all.");
+  v.choice(
+      "fetch", c.fetch,
+      "Shape data is fetched by the issuer of a packet, which brings it along, by each resource, or once for all.");
   v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets",
           "The number of packets whose shapes are fetched in advance.");
-  v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB", "The shape data that a resource holds.");
+  v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB",
+          "The shape data that a resource holds, in places of 64 bytes.");
 }
 
 }  // namespace config

@@ -15,7 +15,8 @@ namespace carousel::ringbus::cycle {
 ///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte), or with ordered traversal the next
 ///   node 12 (key 8, entry 4)
 ///   per shape of a strip of boxes: nearest entry 4, for policies that read them
-///   with `carry: data` the shapes themselves, and below an instance what is stored of its transform
+///   with `carry: data` the shapes that are tested (ShapeMemory::shapes()), and below an instance what is stored of its
+///   transform
 class PacketSize {
  public:
   PacketSize(const CollectionsConfig& collections, PacketCarry carry)
@@ -31,7 +32,8 @@ class PacketSize {
       bytes += 12 * rays;
     else if (packet.key.ref.is_inner() && !treelet)
       bytes += rays + (entries_ ? 4 * accel::kMaxWidth : 0);
-    if (data_ && !treelet) bytes += memory.strip(packet.key).bytes + memory.transform(packet.key.instance).bytes;
+    if (data_ && !treelet)
+      bytes += memory.shapes(packet.key, packet.lanes).bytes + memory.transform(packet.key.instance).bytes;
     return bytes;
   }
 

@@ -1,34 +1,120 @@
 #pragma once
 
-#include <bit>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <utility>
+#include <vector>
 
 #include "core/config/config.h"
-#include "ringbus/cycle/memory/line_cache.h"
+#include "core/statistics/shape_buffer_counts.h"
 #include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/memory/shape_port.h"
 
 namespace carousel::ringbus::cycle {
 
-/// The strips that a resource has at hand: memory.shape_buffer_kib of them, in places of a node's size.
+/// The shape data that a resource has at hand, or on its way from its cache: at most `memory.shape_buffer_kib`, in
+/// places of 64 bytes, any of which can hold any part of a span.
+///
+/// Test contexts, rays and packets of the issue queue are its users, numbered from 0 on. A user takes all that it
+/// needs for its next test together, and gives it back when the test has ended. Until then the data keeps its places.
+/// A span that is not there is fetched, once for all who want it (D. Kroft, Lockup-free instruction fetch/prefetch
+/// cache organization, ISCA 1981), and is there when its last line has arrived. Its places are taken when it is asked
+/// for: free ones first, then those of the spans that nobody holds, the one given back longest ago first. A user that
+/// does not find room waits, and holds nothing meanwhile; such users are served in the order in which they came, and
+/// whoever needs room waits behind them. So a user that holds something never waits for room, and nothing can block.
+///
+/// Packets of the issue queue take their data in advance, in the order of the queue, and only while no test waits for
+/// room. When a test finds too little room, they give up their data, the last packet first.
 class ShapeBuffer {
  public:
-  explicit ShapeBuffer(const MemoryConfig& config)
-      : cache_(static_cast<std::uint64_t>(config.shape_buffer_kib) * 1024, sizeof(accel::Node), 16) {}
+  using User = std::uint32_t;
+  static constexpr std::uint64_t kPlaceBytes = 64;
+  static std::uint64_t places(const ShapeSpan& span) { return ceil_div(span.bytes, kPlaceBytes); }
 
-  /// Tells whether all of a strip is here.
-  bool has(const ShapeSpan& strip) {
-    bool all = true;
-    for (std::uint32_t at = 0; at < strip.bytes; at += kPlace) all &= cache_.touch(tag(strip.address + at));
-    return all;
-  }
-  void keep(const ShapeSpan& strip) {
-    for (std::uint32_t at = 0; at < strip.bytes; at += kPlace) cache_.insert(tag(strip.address + at));
-  }
+  ShapeBuffer(const MemoryConfig& config, const SidePorts& ports);
+
+  /// Takes what `user`, which holds nothing, needs for a test. Returns whether all is there; if not, the user waits,
+  /// and will be among ready().
+  bool take(User user, const ShapeNeed& need, Cycle now);
+  /// Ends the hold of a user, or its wait.
+  void release(User user, Cycle now);
+  /// `to`, which holds nothing, gets all that `from` has, which must be all there.
+  void hand_over(User from, User to);
+
+  /// Takes what a packet that joins the issue queue will need, as soon as there is room.
+  void take_ahead(User user, const ShapeNeed& need, Cycle now);
+  /// Tells whether all that `user` took is there.
+  bool is_here(User user) const { return users_[user].state == State::kHolds && users_[user].missing == 0; }
+  /// The first packet leaves the issue queue. Its user must have all; afterwards it holds it like a test.
+  void leave_queue(User user);
+  /// All packets leave the issue queue; they give back what they hold.
+  void clear_queue(Cycle now);
+
+  /// The time at which the next answer comes from the cache.
+  Cycle next() const { return port_.next(); }
+  /// Takes in the answers that have come.
+  void take_answers(Cycle now);
+  /// Users who waited and need wait no longer, in the order in which their data was complete. The caller empties it.
+  std::vector<User>& ready() { return ready_; }
+  /// Tells whether anything changed for the issue queue since the last call.
+  bool queue_changed() { return std::exchange(queue_changed_, false); }
+
+  std::size_t fetches() const { return fetches_; }  ///< on their way
+  const ShapeBufferCounts& counts() const { return counts_; }
 
  private:
-  static constexpr std::uint32_t kPlace = sizeof(accel::Node);
-  // An odd factor spreads them over the sets and keeps them apart.
-  static std::uint64_t tag(std::uint64_t address) { return std::rotr(address * 0x9e3779b97f4a7c15ull, 40); }
-  LineCache cache_;
+  static constexpr std::uint32_t kNone = ~0u;
+  /// A span in the buffer. Its index is the tag of its fetch.
+  struct Entry {
+    ShapeSpan span;
+    std::uint32_t holders = 0;
+    bool here = false;
+    std::uint32_t chain = kNone;                 // the next entry of its bucket, or of the free ones
+    std::uint32_t older = kNone, newer = kNone;  // among those that nobody holds
+    std::uint32_t first_wait = kNone, last_wait = kNone;
+  };
+  enum class State : std::uint8_t { kNothing, kWaits, kHolds };
+  struct UserState {
+    State state = State::kNothing;
+    bool ahead = false;        // in the issue queue
+    std::uint8_t missing = 0;  // spans that have not come
+    std::array<std::uint32_t, 2> entries{kNone, kNone};
+    std::array<std::uint32_t, 2> next_wait{kNone, kNone};  // behind it at the same entry: 2 * user + which of its spans
+    ShapeNeed need;                                        // while it waits for room
+  };
+
+  UserState& state_of(User user);
+  bool grant(User user, const ShapeNeed& need, bool test, Cycle now);
+  std::uint32_t find(const ShapeSpan& span) const;
+  std::uint32_t allocate(const ShapeSpan& span);
+  void evict_oldest();
+  void hold(std::uint32_t entry);
+  void let_go(std::uint32_t entry);
+  void wait_for(std::uint32_t entry, User user, std::size_t which);
+  void stop_waiting(std::uint32_t entry, std::uint32_t wait);
+  void drop(UserState& state, User user);
+  void serve(Cycle now);
+  void grow_buckets();
+  std::size_t bucket(const ShapeSpan& span) const {
+    return static_cast<std::size_t>((span.address + span.bytes) * 0x9e3779b97f4a7c15ull >> shift_);
+  }
+
+  ShapePort port_;
+  std::uint64_t places_, free_places_, idle_places_ = 0;  // idle: of spans that are here and nobody holds
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> buckets_;
+  int shift_;
+  std::size_t used_ = 0;  // entries
+  std::uint32_t free_entry_ = kNone, oldest_ = kNone, newest_ = kNone;
+  std::vector<UserState> users_;
+  std::deque<User> room_;    // tests that wait for room
+  std::deque<User> queue_;   // packets of the issue queue
+  std::size_t granted_ = 0;  // the first packets of the queue, which have places
+  std::vector<User> ready_;
+  bool queue_changed_ = false;
+  std::size_t fetches_ = 0;
+  ShapeBufferCounts counts_;
 };
 
 }  // namespace carousel::ringbus::cycle

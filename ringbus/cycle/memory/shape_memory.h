@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +15,11 @@ namespace carousel::ringbus::cycle {
 struct ShapeSpan {
   std::uint64_t address = 0;
   std::uint32_t bytes = 0;
+  friend bool operator==(const ShapeSpan&, const ShapeSpan&) = default;
 };
+/// What a test needs at one time: shapes, and what is stored of their instance's transform. A span without bytes is not
+/// needed.
+using ShapeNeed = std::array<ShapeSpan, 2>;
 
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
@@ -40,6 +47,22 @@ class ShapeMemory {
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
   }
 
+  /// The shapes of the strip below `key` that `lanes` selects: all of them, or with `packets.shapes: single` one. A
+  /// child of a node is its eighth of the node (a box of 24 bytes or a sphere of 16, its reference, its flags), with
+  /// its own cull planes and the primitives that the node holds for it. A primitive of a leaf is its 40 bytes of a
+  /// block.
+  ShapeSpan shapes(accel::NodeKey key, std::uint32_t lanes) const {
+    const ShapeSpan whole = strip(key);
+    if (std::popcount(lanes) != 1) return whole;
+    const int lane = std::countr_zero(lanes);
+    if (!key.ref.is_inner())
+      return {whole.address + static_cast<std::uint64_t>(lane) * kPrimitiveBytes, kPrimitiveBytes};
+    std::uint32_t before = 0;
+    for (int l = 0; l < lane; ++l) before += child_bytes(key.ref.node(), l);
+    const std::uint32_t bytes = std::min(child_bytes(key.ref.node(), lane), whole.bytes);
+    return {whole.address + std::min(before, whole.bytes - bytes), bytes};
+  }
+
   /// The transform data that testing in `instance` needs; no bytes above the instances and where rays are not moved.
   ShapeSpan transform(std::uint32_t instance) const {
     if (instance == kNoInstance || accel_.instances[instance].transform.identity) return {};
@@ -47,6 +70,17 @@ class ShapeMemory {
   }
 
  private:
+  static constexpr std::uint32_t kPrimitiveBytes = sizeof(accel::TriangleBlock) / accel::kBlockTriangles;
+
+  std::uint32_t child_bytes(std::uint32_t index, int lane) const {
+    const accel::Node& node = accel_.nodes[index];
+    std::uint32_t bytes = node_bytes_ / accel::kMaxWidth;
+    if (node.plane_counts != 0)
+      bytes += static_cast<std::uint32_t>(accel::plane_count(node, lane)) * std::uint32_t{sizeof(accel::CullPlane)};
+    if (node.direct >> lane & 1)
+      bytes += node.child[lane].blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock));
+    return bytes;
+  }
   /// Fills in behind_before_; the bytes in all.
   std::uint64_t bytes_behind_nodes() {
     std::uint64_t bytes = 0;

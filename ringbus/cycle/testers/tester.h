@@ -43,30 +43,26 @@ class Tester {
     return std::max(boxes(moved, counts), primitives(moved, counts));
   }
 
-  /// The same for a walk through a subtree, whose slowest ray needs `chain` cycles for its tests one by one.
-  Cycle walk(Cycle at, const IntersectionCounts& counts, Cycle chain, std::uint64_t reads = 0) {
-    Cycle last = std::max(at + chain, store_.reserve(at, reads_cost_ ? reads : 0).last);
-    for (const auto [kind, bank] : banks_)
-      if (kind != UnitKind::kBundle)
-        last = std::max(last,
-                        bank.reserve(at, kind == UnitKind::kAnyHit ? lookups(counts) : passes_of(kind, counts)).last);
-    return last;
-  }
-
   /// The same for a single ray, beside others.
-  Cycle ray(Cycle at, const IntersectionCounts& counts) {
-    UnitBank &box = banks_[UnitKind::kBox], &plane = banks_[UnitKind::kPlane];
-    const Cycle moved = banks_[UnitKind::kTransform].reserve_beside(inverted(at, counts), counts.transforms).last;
-    const bool planes_first = order_ == Order::kPlanesFirst && counts.plane > 0;
-    const Cycle boxed = planes_first
-                            ? box.reserve_beside(plane.reserve_beside(moved, counts.plane).last, counts.box).last
-                            : plane.reserve_beside(box.reserve_beside(moved, counts.box).last, counts.plane).last;
+  Cycle ray(Cycle at, const RayTests& ray) {
+    const auto beside = [&](UnitKind kind, Cycle from) {
+      return banks_[kind].reserve_beside(from, ray.tests[kind]).last;
+    };
+    if (ray.inversions > 0) at = invert(at);
+    const Cycle moved = beside(UnitKind::kTransform, at);
+    const bool planes_first = order_ == Order::kPlanesFirst && ray.tests[UnitKind::kPlane] > 0;
+    const Cycle boxed = planes_first ? beside(UnitKind::kBox, beside(UnitKind::kPlane, moved))
+                                     : beside(UnitKind::kPlane, beside(UnitKind::kBox, moved));
     Cycle met = moved;
     for (const UnitKindRow& row : kUnitKinds)
-      if (row.stage == Stage::kPrimitive)
-        met = std::max(met, banks_[row.kind].reserve_beside(moved, counts.*row.tests).last);
-    return std::max(boxed, banks_[UnitKind::kAnyHit].reserve_beside(met, lookups(counts)).last);
+      if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, moved));
+    return std::max(boxed, inline_ ? beside(UnitKind::kAnyHit, met) : met);
   }
+  Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
+  /// The end of the inversion of a matrix.
+  Cycle invert(Cycle at) { return banks_[UnitKind::kTransform].reserve(at, accel::kInversionPasses).last; }
+  /// The time at which `records` records that are wanted at `at` have been read, beside others.
+  Cycle read(Cycle at, std::uint64_t records) { return reads_cost_ ? store_.reserve_beside(at, records).last : at; }
 
   /// Adds the cycles in which each bank was busy, from the last call until `now`, to those in `state`, the resource's
   /// state in all of these cycles.

@@ -20,17 +20,17 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       trace_(id.value, settings.trace),
       ports_(ports),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
-      fetches_(settings.memory, ports),
+      shapes_(settings.memory, ports),
       completed_port_(settings.link, ports),
       help_(settings.link, ports),
       transforms_(settings.accuracy, machine.accel, store_.slots()),
-      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, false, 0}),
+      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, 0}),
       ledger_(tester_) {}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
   const Cycle answered = ports_.answers == nullptr ? kNever : ports_.answers->next();
-  return std::min({tested, answered, ports_.new_rays->next(), fetches_.next(), help_.next()});
+  return std::min({tested, answered, ports_.new_rays->next(), shapes_.next(), help_.next()});
 }
 
 void IndependentTile::run(Cycle end) {
@@ -42,17 +42,19 @@ void IndependentTile::step(Cycle now) {
   take_new_rays(now);
   while (ports_.answers != nullptr && ports_.answers->next() <= now)
     for (const std::uint32_t slot : ports_.answers->take().slots) keep_running(slot, now);
-  while (fetches_.next() <= now)
-    for (const std::uint32_t slot : fetches_.take()) fetched(slot, now);
+  shapes_.take_answers(now);
+  serve(now);
   do {
     while (!tests_.empty() && tests_.top().done <= now) {
       const std::uint32_t slot = tests_.top().slot;
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
+      shapes_.release(slot, now);
       if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0)
         ports_.questions->send(now + control_latency_, {{slot}, times});
       else
         keep_running(slot, now);
+      serve(now);
     }
   } while (help_.step(now, tests_.empty()));
   if (!help_.holds()) test_held_back(now);
@@ -65,7 +67,7 @@ void IndependentTile::step(Cycle now) {
 TileState IndependentTile::classify() const {
   if (help_.shading()) return TileState::kShading;
   if (!tests_.empty()) return TileState::kTesting;
-  return fetches_.empty() ? TileState::kIdle : TileState::kMemory;
+  return shapes_.fetches() == 0 ? TileState::kIdle : TileState::kMemory;
 }
 
 void IndependentTile::take_new_rays(Cycle now) {
@@ -95,21 +97,15 @@ void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
     return;
   }
   thread.strip = *next;
-  const ShapeSpan transform = memory_.transform(next->instance);
-  thread.fetches_transform =
-      thread.walk.enters(next->instance) && transform.bytes > 0 && !fetches_.want(transform, slot, now);
-  if (!thread.fetches_transform) want_strip(slot, now);
+  ShapeNeed need{memory_.strip(*next), {}};
+  if (thread.walk.enters(next->instance)) need[1] = memory_.transform(next->instance);
+  if (shapes_.take(slot, need, now)) test(slot, now);
 }
 
-void IndependentTile::fetched(std::uint32_t slot, Cycle now) {
-  if (std::exchange(threads_[slot].fetches_transform, false))
-    want_strip(slot, now);
-  else
-    test(slot, now);
-}
-
-void IndependentTile::want_strip(std::uint32_t slot, Cycle now) {
-  if (fetches_.want(memory_.strip(threads_[slot].strip), slot, now)) test(slot, now);
+/// Tests the rays that waited for data and need wait no longer.
+void IndependentTile::serve(Cycle now) {
+  for (const std::uint32_t slot : shapes_.ready()) test(slot, now);
+  shapes_.ready().clear();
 }
 
 void IndependentTile::test_held_back(Cycle now) {
@@ -164,6 +160,7 @@ void IndependentTile::hand_over(Cycle now) {
 TileResult IndependentTile::result() const {
   TileResult t;
   ledger_.fill_in(t);
+  t.shapes = shapes_.counts();
   t.stack = stack_;
   t.transformed_rays = transforms_.bytes();
   return t;

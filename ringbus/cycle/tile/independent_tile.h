@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/memory/strip_fetches.h"
+#include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/ray_walk.h"
@@ -20,10 +20,11 @@ namespace carousel::ringbus::cycle {
 /// A resource of the conventional machine: it traces its own rays depth-first, each with a stack of its own, and has no
 /// links, packets or collections.
 ///
-/// Every ray in a slot is a thread that in turn waits for the strip it needs next and is tested against it. A ray that
-/// is ready takes the units at once, or behind the rays that were ready before it, so that the tests of other rays hide
-/// its wait for memory. Picking rays and moving stack entries costs no cycles: the baseline is given its best, and the
-/// bytes that its stacks move are reported apart.
+/// Every ray in a slot is a thread that in turn waits for the strip it needs next (at the border of an instance also
+/// for its transform), is tested against it, and gives it back. A ray that is ready takes the units at once, or behind
+/// the rays that were ready before it, so that the tests of other rays hide its wait for memory. Picking rays and
+/// moving stack entries costs no cycles: the baseline is given its best, and the bytes that its stacks move are
+/// reported apart.
 class IndependentTile final : public ResourceAgent {
  public:
   /// Keeps references to the machine and its memory.
@@ -49,7 +50,6 @@ class IndependentTile final : public ResourceAgent {
     RayId ray;
     RayWalk walk;
     accel::NodeKey strip;         // fetched or in test
-    bool fetches_transform;       // the transform comes first
     std::uint64_t calls_any_hit;  // calls to ask shading for when it has been tested
   };
   /// A ray in test. Of rays whose tests end at one time, the one that began first goes on first.
@@ -64,8 +64,7 @@ class IndependentTile final : public ResourceAgent {
   void take_new_rays(Cycle now);
   void keep_running(std::uint32_t slot, Cycle now);
   void test(std::uint32_t slot, Cycle now);
-  void fetched(std::uint32_t slot, Cycle now);
-  void want_strip(std::uint32_t slot, Cycle now);
+  void serve(Cycle now);
   void test_held_back(Cycle now);
   void complete(std::uint32_t slot);
   void hand_over(Cycle now);
@@ -84,7 +83,7 @@ class IndependentTile final : public ResourceAgent {
   Trace trace_;
   SidePorts ports_;
   Tester tester_;
-  StripFetches fetches_;
+  ShapeBuffer shapes_;  // users: slots
   CompletedPort completed_port_;
   ShadeHelp help_;
 

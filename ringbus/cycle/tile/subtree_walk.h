@@ -6,42 +6,44 @@
 
 #include "accel/structure/accel.h"
 #include "core/statistics/intersection_counts.h"
-#include "core/types/unit_kind.h"
+#include "ringbus/cycle/testers/unit_passes.h"
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/resource/resource.h"
 
 namespace carousel::ringbus::cycle {
 
-/// Takes rays through a subtree, depth-first and nearest first, a strip at a time, and keeps an account of the work of
-/// the hardware that does so. The kernels' own walk is faster on the host but keeps no account.
+/// A strip that a ray comes to, and its tests there.
+struct WalkStep {
+  accel::NodeKey key;
+  RayTests tests;  ///< with an inversion wherever the ray needs one, also if another ray's will do
+};
+static_assert(sizeof(WalkStep) == 16);
+
+/// The ways of a visit's rays, one behind the other.
+struct WalkSteps {
+  std::vector<WalkStep> steps;
+  std::vector<std::uint32_t> ends;  ///< by ray: the end of its steps
+};
+
+/// Takes rays through a subtree, depth-first and nearest first, a strip at a time, and writes down their ways for the
+/// clock to follow (SubtreeVisits). The kernels' own walk is faster on the host but writes nothing down.
 class SubtreeWalk final : public SubtreeTracer {
  public:
-  /// Cycles that one ray waits for its tests of each kind in a strip, and for each pass through a transform unit.
-  using StepCycles = PerUnit<std::uint64_t>;
-  struct Account {
-    std::uint64_t chain = 0;               ///< cycles of the slowest ray
-    std::vector<accel::NodeKey> strips;    ///< read by any ray, once each, in order of the first reading
-    std::vector<std::uint32_t> instances;  ///< whose transform was read, likewise
-  };
   /// Keeps references.
-  SubtreeWalk(const accel::Accel& accel, const StepCycles& step, TransformAccount& transforms)
-      : accel_(accel), step_(step), walk_(transforms) {}
+  SubtreeWalk(const accel::Accel& accel, TransformAccount& transforms) : accel_(accel), walk_(transforms) {}
 
   void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) override;
-  /// The account of the last trace().
-  const Account& account() const { return account_; }
+  /// The ways of the last trace(). The caller may take them away.
+  WalkSteps& ways() { return ways_; }
 
  private:
-  std::uint64_t walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* any_hit_calls,
-                         IntersectionCounts& counts);
-  void note(accel::NodeKey key);
+  void walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* any_hit_calls,
+                IntersectionCounts& counts);
 
   const accel::Accel& accel_;
-  StepCycles step_;
-  Account account_;
+  WalkSteps ways_;
   RayWalk walk_;
-  std::unordered_set<std::uint32_t> entered_;  // instances by any of the rays
-  std::vector<std::uint32_t> seen_;            // by a hash of the strip: its place in account_.strips, plus one
+  std::unordered_set<std::uint32_t> inverted_;  // instances whose matrix any of the rays needs inverted
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -6,25 +6,13 @@
 
 namespace carousel::ringbus::cycle {
 
-namespace {
-
-SubtreeWalk::StepCycles step_cycles(const TestersConfig& testers) {
-  SubtreeWalk::StepCycles out;
-  for (const auto [kind, units] : testers.units) out[kind] = static_cast<std::uint64_t>(units.latency_cycles);
-  // With any_hit: shader a ray goes on meanwhile, since the outcome is known, and waits for the answer at the end.
-  if (testers.any_hit != TestersConfig::AnyHit::kInline) out[UnitKind::kAnyHit] = 0;
-  return out;
-}
-
-}  // namespace
-
 Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings, Ports ports)
     : machine_(machine),
       memory_(memory),
       id_(id),
       trace_(id.value, settings.trace),
       transforms_(settings.accuracy, machine.accel, machine.stores[id.value]->slots()),
-      walk_(machine.accel, step_cycles(settings.testers), transforms_),
+      walk_(machine.accel, transforms_),
       resource_(settings.resource, machine.accel, *machine.stores[id.value],
                 {settings.statistics ? &sink_ : nullptr, &walk_, &transforms_, ports.questions != nullptr}),
       logic_(machine, resource_),
@@ -41,7 +29,10 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
+      starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
+      visits_(memory, shapes_, tester_, contexts_.size(),
+              static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_) {
@@ -53,7 +44,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
 // ---- time
 
 Cycle Tile::next() const {
-  return std::min(next_arrival(), next_beside_ring());
+  return std::min({next_arrival(), next_beside_ring(), visits_.next()});
 }
 
 // An arrival that is not later than the last step was dealt with in it, or waits for another event.
@@ -79,7 +70,7 @@ Cycle Tile::next_beside_ring() const {
 }
 
 bool Tile::wants_credit() const {
-  return machine_.flow.bubble() && !issue_.empty() && issue_.front().ready();
+  return machine_.flow.bubble() && !issue_.empty() && is_ready(issue_.front());
 }
 
 Cycle Tile::next_egress() const {
@@ -88,24 +79,29 @@ Cycle Tile::next_egress() const {
     if (at > now_ && at < first) first = at;
   };
   for (const Context& context : contexts_)
-    if (context.phase == Context::Phase::kComputing || context.subtree) consider(context.done);
+    if (context.phase == Context::Phase::kComputing || context.phase == Context::Phase::kStarting)
+      consider(context.done);
   if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
 }
 
 bool Tile::dispatch_wanted() const {
   // Collections that are not full are issued when the dispatch stage has nothing else to do.
-  if (issue_.empty() ? !resource_.idle() : issue_.front().ready()) return true;
+  if (issue_.empty() ? !resource_.idle() : is_ready(issue_.front())) return true;
   return std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now_; });
 }
 
 void Tile::run(Cycle end) {
   Cycle rest = next_beside_ring();  // packets that pass by do not change it
   for (;;) {
-    const Cycle arrival = next_arrival(), now = std::min(arrival, rest);
-    if (now >= end) return;
-    // Not with the bubble rule, under which a packet that waits to be injected must see every credit.
-    if (now < rest && !machine_.flow.bubble() && cut_through(now, true)) continue;
+    Cycle now = std::min(next_arrival(), rest);
+    if (const Cycle event = visits_.run_before(std::min(now, end)); event != kNever) {
+      now = event;
+    } else {
+      if (now >= end) return;
+      // Not with the bubble rule, under which a packet that waits to be injected must see every credit.
+      if (now < rest && !machine_.flow.bubble() && cut_through(now, true)) continue;
+    }
     step(now);
     rest = next_beside_ring();
   }
@@ -115,7 +111,9 @@ void Tile::step(Cycle now) {
   now_ = now;
   for (OutPort& out : ports_.out) out.take_credits(now);
   if (stops_ && fault_is_due()) stop(now);
-  take_answers(now);
+  shapes_.take_answers(now);
+  serve(now);
+  start_tests(now);
   take_opacities(now);
   take_new_rays(now);
   bool again = true;
@@ -138,7 +136,7 @@ void Tile::step(Cycle now) {
     dispatch_free_ = std::max(dispatch_free_, now) + static_cast<Cycle>(fault_.cycles);
     pauses_ = false;
   }
-  const TileState state = classify(now);
+  const TileState state = classify();
   ledger_.enter(state, now);
   help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
   next_here_ = next_egress();
@@ -146,19 +144,20 @@ void Tile::step(Cycle now) {
               std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
 }
 
-TileState Tile::classify(Cycle now) const {
+TileState Tile::classify() const {
   if (help_.shading()) return TileState::kShading;
   bool fetching = false, computing = false;
   for (const Context& c : contexts_) {
-    computing |=
-        c.phase == Context::Phase::kComputing || (c.phase == Context::Phase::kFetching && c.subtree && c.done > now);
-    fetching |= c.phase == Context::Phase::kFetching;
+    using enum Context::Phase;
+    const bool walking = c.phase == kWalking;
+    computing |= c.phase == kComputing || c.phase == kStarting || (walking && visits_.testing());
+    fetching |= c.phase == kFetching || walking;
   }
   if (computing) return TileState::kTesting;
   if (fetching) return TileState::kMemory;
   for (const OutPort& out : ports_.out)
     if (out.blocked()) return TileState::kLink;
-  if (!issue_.empty()) return issue_.front().ready() ? TileState::kLink : TileState::kMemory;
+  if (!issue_.empty()) return is_ready(issue_.front()) ? TileState::kLink : TileState::kMemory;
   if (storage_full_) return TileState::kStorage;
   if (!resource_.idle() && resource_.packets_in_flight() > 0 && logic_.free.none()) return TileState::kCredits;
   return TileState::kIdle;
@@ -226,6 +225,7 @@ TileResult Tile::result() const {
   TileResult t;
   ledger_.fill_in(t);
   t.dispatch.busy = dispatch_busy_;
+  t.shapes = shapes_.counts();
   t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();
   t.packet_cycles = trips_.packet_cycles();

@@ -1,19 +1,19 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <string>
 #include <vector>
 
 #include "ringbus/cycle/fabric/packet_size.h"
+#include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/memory/shape_memory.h"
-#include "ringbus/cycle/memory/shape_port.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/tile/subtree_visits.h"
 #include "ringbus/cycle/tile/subtree_walk.h"
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
@@ -24,14 +24,10 @@
 
 namespace carousel::ringbus::cycle {
 
-/// A packet in a subtree has a fetch under way for each of its rays, but at most this many.
-inline constexpr std::size_t kSubtreeFetches = 32;
-/// Set in the tag of a fetch that is for a test context; the others are for the issue queue.
-inline constexpr std::uint32_t kContextTag = 1u << 31;
-
 /// A resource with a clock. Packets come in by input queues, pass a dispatch stage that looks through their IDs, are
 /// tested in contexts, and leave by egress queues. Packets of its own wait in an issue queue while their shapes are
-/// fetched. PortLogic and FlowRules make the decisions that do not depend on time.
+/// fetched. A packet that does not bring its shapes waits in its context for them. PortLogic and FlowRules make the
+/// decisions that do not depend on time.
 ///
 /// The dispatch stage takes one packet at a time, `packets.ids_per_cycle` IDs a cycle; packets of other resources go
 /// first. With `visit: owners` packets without a ray here pass beside it. A packet with rays here is taken only when a
@@ -68,9 +64,10 @@ class Tile final : public ResourceAgent {
  private:
   /// A packet in test.
   struct Context {
-    enum class Phase : std::uint8_t { kFree, kFetching, kComputing } phase = Phase::kFree;
+    /// kStarting: the dispatch stage reads its IDs; kWalking: its rays go through a subtree by themselves.
+    enum class Phase : std::uint8_t { kFree, kStarting, kFetching, kComputing, kWalking } phase = Phase::kFree;
     PacketId packet;
-    Cycle done = 0;             // kComputing: the end; kFetching a subtree: the end of its tests
+    Cycle done = 0;             // kStarting, kComputing: the end
     IntersectionCounts counts;  // of tests that begin when the shapes are there
     std::uint32_t reads = 0;    // records read for them
     std::uint32_t bundle_passes = 0;
@@ -78,15 +75,12 @@ class Tile final : public ResourceAgent {
     HitBatch completed;       // rays handed over then, with the slots they leave
     std::vector<std::uint32_t> freed_slots;
     bool subtree = false;
-    std::uint32_t outstanding = 0;  // fetches under way
-    std::vector<ShapeSpan> strips;  // of a subtree, yet to be fetched, the next one last
+    bool has_data = false;  // it came from the issue queue with its shapes
   };
   struct Issue {
     PacketId packet;
-    std::uint32_t tag = 0;
-    std::uint32_t outstanding = 0;  // fetches under way
-
-    bool ready() const { return outstanding == 0; }
+    ShapeBuffer::User user = 0;
+    bool takes_data = false;  // it waits for its shapes
   };
 
   std::uint64_t hops() const;
@@ -96,7 +90,8 @@ class Tile final : public ResourceAgent {
   bool wants_credit() const;
   bool at_rest() const;
   void step(Cycle now);
-  void take_answers(Cycle now);
+  void serve(Cycle now);
+  void start_tests(Cycle now);
   void take_new_rays(Cycle now);
   void take_opacities(Cycle now);
   bool admit();
@@ -122,10 +117,15 @@ class Tile final : public ResourceAgent {
 
   Context* free_context();
   bool testers_free() const;
-  void begin_test(Context& context, PacketId id, Cycle at);
-  std::array<ShapeSpan, 2> shape_data(accel::NodeKey key, bool transform) const;
-  bool lacks(const ShapeSpan& span);
-  void begin_fetch(Context& context, const ShapeSpan& strip, Cycle now);
+  ShapeBuffer::User user_of(const Context& context) const {
+    return static_cast<ShapeBuffer::User>(&context - contexts_.data());
+  }
+  bool is_ready(const Issue& issue) const { return !issue.takes_data || shapes_.is_here(issue.user); }
+  void begin_test(Context& context, PacketId id, Cycle at, bool has_data);
+  void start(Context& context, Cycle now);
+  void compute(Context& context, Cycle at);
+  bool fetches_ahead(const Packet& packet) const;
+  ShapeNeed shape_data(const Packet& packet, bool transform) const;
   void end_test(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
@@ -133,11 +133,10 @@ class Tile final : public ResourceAgent {
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
   void occupy_dispatch(Cycle now, std::size_t ids);
-  void fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
   bool may_inject(const Packet& packet) const;
   bool dispatch_wanted() const;
-  TileState classify(Cycle now) const;
+  TileState classify() const;
 
   Machine& machine_;
   const ShapeMemory& memory_;
@@ -150,13 +149,14 @@ class Tile final : public ResourceAgent {
   PortLogic logic_;
   Ports ports_;
   Tester tester_;
-  ShapePort shapes_;
+  ShapeBuffer shapes_;  // users: contexts, then places of the issue queue, then rays in subtrees
   CompletedPort completed_port_;
   ShadeHelp help_;
   PacketSize packet_size_;
   Cycle link_bytes_, ids_per_cycle_, control_latency_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, fetch_by_resource_;
+  bool starts_later_;  // tests begin, and take units, when dispatch has read the packet; otherwise that is known before
 
   Cycle now_ = 0;
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
@@ -165,15 +165,16 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::deque<Issue> issue_;
-  std::uint32_t next_tag_ = 0;
+  std::size_t issued_ = 0;
   std::vector<Context> contexts_;
+  SubtreeVisits visits_;
   bool storage_full_ = false;
   FaultsConfig::Resource fault_;
   bool pauses_ = false;  // once, when fault_.after_rays rays are complete
   bool stops_ = false;   // likewise, for good
   bool told_drained_ = false;
   std::uint64_t discarded_ = 0;
-  std::size_t fetches_out_ = 0, questions_out_ = 0;
+  std::size_t questions_out_ = 0;
   HitBatch done_;  // to be handed over
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;

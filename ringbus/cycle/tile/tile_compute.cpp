@@ -17,20 +17,13 @@ Tile::Context* Tile::free_context() {
   return nullptr;
 }
 
-std::array<ShapeSpan, 2> Tile::shape_data(accel::NodeKey key, bool transform) const {
-  return {memory_.strip(key), transform ? memory_.transform(key.instance) : ShapeSpan{}};
+/// The shapes of a packet's tests, and what is stored of their instance's transform.
+ShapeNeed Tile::shape_data(const Packet& packet, bool transform) const {
+  return {resource_.is_treelet(packet.key) ? memory_.strip(packet.key) : memory_.shapes(packet.key, packet.lanes),
+          transform ? memory_.transform(packet.key.instance) : ShapeSpan{}};
 }
 
-bool Tile::lacks(const ShapeSpan& span) {
-  return span.bytes > 0 && !shapes_.has(span);
-}
-
-void Tile::begin_fetch(Context& context, const ShapeSpan& strip, Cycle now) {
-  ++context.outstanding;
-  fetch(strip, kContextTag | static_cast<std::uint32_t>(&context - contexts_.data()), now);
-}
-
-void Tile::begin_test(Context& context, PacketId id, Cycle at) {
+void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   Packet& packet = machine_.packet(id);
   const TestOutcome outcome = resource_.test(packet);
   context.packet = id;
@@ -44,35 +37,55 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at) {
   context.completed.swap(resource_.completed());
   context.freed_slots.swap(resource_.freed_slots());
   context.subtree = resource_.is_treelet(packet.key);
-  context.phase = Context::Phase::kComputing;
+  context.has_data = has_data;
+  if (context.subtree) visits_.prepare(user_of(context), walk_.ways());
+  if (!starts_later_) return compute(context, at);
+  context.phase = Context::Phase::kStarting;
+  context.done = at;
+}
+
+void Tile::start_tests(Cycle now) {
+  for (Context& context : contexts_)
+    if (context.phase == Context::Phase::kStarting && context.done <= now) start(context, now);
+}
+
+/// The dispatch stage has read the packet.
+void Tile::start(Context& context, Cycle now) {
   if (context.subtree) {
-    // Each ray fetches the strip that it needs next, so as many fetches are under way as there are rays.
-    context.done = tester_.walk(at, context.counts, walk_.account().chain, context.reads);
-    context.strips.clear();
-    for (const std::uint32_t instance : walk_.account().instances)
-      if (const ShapeSpan span = memory_.transform(instance); !shapes_.has(span)) context.strips.push_back(span);
-    for (const accel::NodeKey key : walk_.account().strips)
-      if (const ShapeSpan strip = memory_.strip(key); !shapes_.has(strip)) context.strips.push_back(strip);
-    std::reverse(context.strips.begin(), context.strips.end());
-    const std::size_t together = std::min({outcome.rays, kSubtreeFetches, context.strips.size()});
-    for (std::size_t i = 0; i < together; ++i) {
-      begin_fetch(context, context.strips.back(), at);
-      context.strips.pop_back();
-    }
-  } else {
-    if (fetch_by_resource_)
-      for (const ShapeSpan& span : shape_data(packet.key, context.counts.transforms > 0))
-        if (lacks(span)) begin_fetch(context, span, at);
-    if (context.outstanding == 0)
-      context.done = tester_.strip(at, context.counts, context.reads, context.bundle_passes);
+    context.phase = Context::Phase::kWalking;
+    visits_.begin(user_of(context), context.reads, now);
+    if (context.has_data) shapes_.release(user_of(context), now);  // its rays have taken it
+    return;
   }
-  if (context.outstanding > 0) context.phase = Context::Phase::kFetching;
+  const Packet& packet = machine_.packet(context.packet);
+  if (context.has_data || !fetch_by_resource_ ||
+      shapes_.take(user_of(context), shape_data(packet, context.counts.transforms > 0), now))
+    compute(context, now);
+  else
+    context.phase = Context::Phase::kFetching;
+}
+
+void Tile::compute(Context& context, Cycle at) {
+  context.phase = Context::Phase::kComputing;
+  context.done = tester_.strip(at, context.counts, context.reads, context.bundle_passes);
+}
+
+/// Rays in subtrees go on, and those whose data has come begin their tests, then packets likewise.
+void Tile::serve(Cycle now) {
+  visits_.serve(now);
+  visits_.run(now);
+  for (const ShapeBuffer::User context : visits_.others()) compute(contexts_[context], now);
+  visits_.others().clear();
 }
 
 bool Tile::finish_tests(Cycle now) {
+  serve(now);
   bool moved = false;
   for (Context& context : contexts_) {
-    if (context.phase != Context::Phase::kComputing || context.done > now) continue;
+    const bool ended = context.phase == Context::Phase::kWalking
+                           ? visits_.ended(user_of(context))
+                           : context.phase == Context::Phase::kComputing && context.done <= now;
+    if (!ended) continue;
     end_test(context, now);
     moved = true;
   }
@@ -83,6 +96,7 @@ void Tile::end_test(Context& context, Cycle now) {
   const PacketId id = context.packet;
   const Packet& packet = machine_.packet(id);
   trace_.note(now, StepKind::kTested, id.value, packet.members.size());
+  if (!context.subtree) shapes_.release(user_of(context), now);
   context.phase = Context::Phase::kFree;
   context.subtree = false;
   ask(context, now);
@@ -119,36 +133,6 @@ void Tile::take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots) {
   done_slots_.insert(done_slots_.end(), slots.begin(), slots.end());
   rays.clear();
   slots.clear();
-}
-
-void Tile::fetch(const ShapeSpan& strip, std::uint32_t tag, Cycle now) {
-  shapes_.request(strip, tag, now);
-  ++fetches_out_;
-  // Its place in the buffer is taken now; another packet that wants it meanwhile waits behind this fetch.
-  shapes_.keep(strip);
-}
-
-void Tile::take_answers(Cycle now) {
-  while (shapes_.next() <= now) {
-    const std::uint32_t tag = shapes_.take();
-    --fetches_out_;
-    if (logic_.only_forwards()) continue;
-    if ((tag & kContextTag) == 0) {
-      for (Issue& issue : issue_)
-        if (issue.tag == tag && !issue.ready()) --issue.outstanding;
-      continue;
-    }
-    Context& context = contexts_[tag & ~kContextTag];
-    --context.outstanding;
-    if (!context.strips.empty()) {
-      begin_fetch(context, context.strips.back(), now);
-      context.strips.pop_back();
-    }
-    if (context.outstanding > 0) continue;
-    context.phase = Context::Phase::kComputing;
-    context.done = context.subtree ? std::max(context.done, now + tester_.bank(UnitKind::kBox).latency())
-                                   : tester_.strip(now, context.counts, context.reads, context.bundle_passes);
-  }
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -11,8 +11,9 @@ bool Tile::may_inject(const Packet& packet) const {
 }
 
 bool Tile::handle_issue(Cycle now) {
-  if (issue_.empty() || !issue_.front().ready()) return false;
-  const PacketId id = issue_.front().packet;
+  if (issue_.empty() || !is_ready(issue_.front())) return false;
+  const Issue issue = issue_.front();
+  const PacketId id = issue.packet;
   Packet& packet = machine_.packet(id);
   const bool travels = logic_.travels(packet);
   if (travels && !may_inject(packet)) return false;
@@ -20,20 +21,30 @@ bool Tile::handle_issue(Cycle now) {
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   issue_.pop_front();
+  if (issue.takes_data) shapes_.leave_queue(issue.user);
   trips_.inject(id.value, now);
   trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
   occupy_dispatch(now, packet.members.size());
   if (tested) {
     if (travels) out_for(packet).reserve();
-    begin_test(*context, id, dispatch_free_);
+    if (issue.takes_data) shapes_.hand_over(issue.user, user_of(*context));
+    begin_test(*context, id, dispatch_free_, issue.takes_data);
     return true;
   }
+  if (issue.takes_data) shapes_.release(issue.user, now);  // the packet takes them along
   if (packet.kind == PacketKind::kTest) {
     ++passed_;
     passed_rays_ += packet.members.size();
   }
   depart(id, dispatch_free_, false);
   return true;
+}
+
+/// Tells whether a packet waits in the issue queue for its shapes: to bring them along, or because it will be tested
+/// here.
+bool Tile::fetches_ahead(const Packet& packet) const {
+  if (packet.kind != PacketKind::kTest) return false;
+  return (!fetch_by_resource_ && !resource_.is_treelet(packet.key)) || logic_.has_rays_of(packet);
 }
 
 bool Tile::fill_issue(Cycle now) {
@@ -51,18 +62,10 @@ bool Tile::fill_issue(Cycle now) {
     if (offer != Resource::Offer::kPacket) return moved;
     logic_.free.take();
     moved = true;
-    Issue issue{*id, next_tag_};
-    const bool brings_shapes =
-        packet.kind == PacketKind::kTest && !fetch_by_resource_ && !resource_.is_treelet(packet.key);
-    if (brings_shapes) {
-      // The issuer cannot know whether all rays have their copies, so it brings the transform in any case.
-      for (const ShapeSpan& span : shape_data(packet.key, true)) {
-        if (!lacks(span)) continue;
-        fetch(span, issue.tag, now);
-        ++issue.outstanding;
-      }
-      next_tag_ = (next_tag_ + 1) & ~kContextTag;
-    }
+    Issue issue{*id, static_cast<ShapeBuffer::User>(contexts_.size() + issued_++ % issue_places_)};
+    issue.takes_data = fetches_ahead(packet);
+    // The issuer cannot know whether all rays have their copies, so it takes the transform in any case.
+    if (issue.takes_data) shapes_.take_ahead(issue.user, shape_data(packet, true), now);
     issue_.push_back(issue);
   }
   return moved;

@@ -100,7 +100,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   occupy_dispatch(now, packet.members.size());
   if (fate == PacketFate::kTest) {
     out.reserve();
-    begin_test(*context, id, dispatch_free_);
+    begin_test(*context, id, dispatch_free_, false);
     return true;
   }
   if (fate == PacketFate::kJoin) {

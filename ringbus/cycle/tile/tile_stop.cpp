@@ -31,8 +31,11 @@ void Tile::discard_work(Cycle now) {
   storage_full_ = false;
   for (const Issue& issue : issue_) logic_.discard(issue.packet);
   issue_.clear();
+  shapes_.clear_queue(now);
   for (Context& context : contexts_) {
     if (context.phase == Context::Phase::kFree) continue;
+    if (context.subtree) visits_.drop(user_of(context), now);
+    shapes_.release(user_of(context), now);
     const PacketId id = context.packet;
     const Packet& packet = machine_.packet(id);
     if (packet.owner != id_) {
@@ -43,6 +46,8 @@ void Tile::discard_work(Cycle now) {
     }
     context = Context{};
   }
+  shapes_.ready().clear();  // their packets are gone
+  visits_.others().clear();
 }
 
 void Tile::discard_at_owner(PacketId id) {
@@ -52,7 +57,7 @@ void Tile::discard_at_owner(PacketId id) {
 
 /// Nothing of its own is under way. Packets of others that are here count for their owners.
 bool Tile::drained() const {
-  return logic_.all_home() && fetches_out_ == 0 && questions_out_ == 0;
+  return logic_.all_home() && shapes_.fetches() == 0 && questions_out_ == 0;
 }
 
 }  // namespace carousel::ringbus::cycle

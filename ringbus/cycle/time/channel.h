@@ -4,15 +4,18 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "ringbus/cycle/time/clock.h"
+#include "ringbus/rays/ray_id.h"
 
 namespace carousel::ringbus::cycle {
 
 /// A one-way channel from one agent to another: things with the time at which they arrive, in sending order. Arrival
-/// times must not decrease. The two agents may live on different threads: a thing that is sent within a window arrives
-/// after it (see windows.h), so nothing changes if the receiver sees it a little earlier.
+/// times must not decrease (checked builds throw a std::logic_error). The two agents may live on different threads: a
+/// thing that is sent within a window arrives after it (see windows.h), so nothing changes if the receiver sees it a
+/// little earlier.
 ///
 /// Things stand in a chain of blocks; the block that the receiver has emptied goes back to the sender.
 template <class T>
@@ -27,6 +30,10 @@ class Channel {
   Channel& operator=(const Channel&) = delete;
 
   void send(Cycle arrival, T thing) {
+    if constexpr (kChecked) {
+      if (arrival < last_sent_) throw std::logic_error("a channel's arrivals go back in time");
+      last_sent_ = arrival;
+    }
     const std::size_t tail = tail_.load(std::memory_order_relaxed), place = tail % kBlock;
     if (place == 0 && tail > 0) {
       // Acquire: the receiver has done with the block it gave back.
@@ -100,6 +107,7 @@ class Channel {
   // Used by the sender.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
+  Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds
   Cycle unconnected_ = kNever;
   Cycle* wake_ = &unconnected_;
   mutable std::atomic<Block*> spare_{nullptr};  // used by both, but only once a block

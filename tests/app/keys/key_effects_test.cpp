@@ -78,6 +78,7 @@ class KeyEffects : public testing::Test {
       }
       std::vector<std::string> sets = row.sets;
       sets.push_back(row.key + "=" + value);
+      sets.insert(sets.end(), row.with.begin(), row.with.end());
       const KeyOutcome other = run(row.machine, sets);
       if (other.refusal.empty())
         EXPECT_NE(other.result, base.result) << value << " does nothing";

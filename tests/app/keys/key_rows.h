@@ -13,6 +13,7 @@ struct KeyRow {
   BaseMachine machine;
   std::vector<std::string> sets{};    ///< that the machine has besides
   std::vector<std::string> values{};  ///< to try; empty: all names of an enumeration, or both values of a switch
+  std::vector<std::string> with{};    ///< set together with the values, which are refused without
 };
 
 /// One row, or several, for every key.
@@ -57,7 +58,7 @@ inline std::vector<KeyRow> key_rows() {
       {"rays.reads_per_cycle", kTerrain, {}, {"1"}},
       {"packets.rays", kTerrain, {}, {"4"}},
       {"packets.shapes", kTerrain},
-      {"packets.carry", kTerrain},
+      {"packets.carry", kTerrain, {"packets.carry=reference"}, {"data"}, {"memory.fetch=packet"}},
       {"packets.results", kTerrain},
       {"packets.ids_per_cycle", kTerrain, {}, {"1"}},
       {"collections.ready", kTerrain, {}, {"3"}},
@@ -159,7 +160,7 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.l2_latency_cycles", kTerrain, {}, {"90"}},
       {"memory.dram_latency_cycles", kTerrain, {}, {"500"}},
       {"memory.dram_bytes_per_cycle", kTerrain, {}, {"1"}},
-      {"memory.fetch", kTerrain},
+      {"memory.fetch", kTerrain, {"memory.fetch=resource"}, {"packet", "multicast"}, {"packets.carry=data"}},
       {"memory.fetch_ahead", kTerrain, {}, {"0"}},
       {"memory.shape_buffer_kib", kTerrain, {"memory.fetch=resource", "memory.shape_buffer_kib=64"}, {"1"}},
       {"shading.workers", kTerrain, {}, {"1"}},

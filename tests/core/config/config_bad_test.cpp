@@ -196,7 +196,13 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:62: topology.overrides.0.testers.simd.lanes: a choice of lanes is not built yet; "
                   "expected 8, found 4"},
         BadConfig{"Multicast", SCENE "memory: {fetch: multicast}\n",
-                  "test.yaml:2:17: memory.fetch: multicast is not built yet; expected packet"},
+                  "test.yaml:2:17: memory.fetch: multicast is not built yet; expected packet or resource"},
+        BadConfig{"FetchByPacketsWithoutData", SCENE "engine: {kind: cycle}\nmemory: {fetch: packet}\n",
+                  "test.yaml:3:17: memory.fetch: packets that carry a reference bring no shapes along; expected "
+                  "resource, or packets.carry: data, whose bytes are charged on every hop; found packet"},
+        BadConfig{"DataThatNobodyBrings", SCENE "engine: {kind: cycle}\npackets: {carry: data}\n",
+                  "test.yaml: memory.fetch: a packet that carries its shapes' data gets them from its issuer; expected "
+                  "packet, found resource"},
         BadConfig{"QueueOfTheCycleEngine", SCENE "engine: {kind: cycle}\ntopology: {link: {queue: mutex}}\n",
                   "test.yaml:3:26: topology.link.queue: the cycle engine has no real queues; expected spsc_ring, found "
                   "mutex"},

@@ -17,6 +17,7 @@
 #include "core/statistics/raster_counts.h"
 #include "core/statistics/ray_bytes.h"
 #include "core/statistics/resource_counts.h"
+#include "core/statistics/shape_buffer_counts.h"
 #include "core/statistics/stall_counts.h"
 
 namespace carousel {
@@ -25,8 +26,9 @@ namespace {
 template <class S>
 class CounterStructs : public testing::Test {};
 
-using All = testing::Types<IntersectionCounts, CullLevel, BundleCounts, LinkFaultCounts, StallCounts, ResourceCounts,
-                           CollectionCounts, CacheCounts, StackTraffic, TransformedRayBytes, RasterCounts>;
+using All =
+    testing::Types<IntersectionCounts, CullLevel, BundleCounts, LinkFaultCounts, StallCounts, ResourceCounts,
+                   CollectionCounts, CacheCounts, ShapeBufferCounts, StackTraffic, TransformedRayBytes, RasterCounts>;
 TYPED_TEST_SUITE(CounterStructs, All);
 
 /// Each counter another number, from `first` on.

@@ -58,17 +58,20 @@ TEST(BundleUnits, ABundleReadsOneRecordWhereItsRaysReadAllOfTheirs) {
   EXPECT_EQ(as_rays.strip(0, counts(256, 0), 32), 32u + 4u);
 }
 
-TEST(BundleUnits, AWalkThroughASubtreeReadsItsRaysOnce) {
-  Tester tester(bundle_testers(), kOrder, 1);
-  EXPECT_EQ(tester.walk(5, counts(8, 0), 3, 32), 5u + 32u);
-  EXPECT_EQ(tester.walk(100, counts(8, 0), 50, 32), 150u);
+TEST(BundleUnits, RaysOfAWalkBeginAsTheirRecordsAreRead) {
+  Tester one(bundle_testers(), kOrder, 1), two(bundle_testers(), kOrder, 2), wide(bundle_testers());
+  for (Cycle ray = 1; ray <= 32; ++ray) {
+    EXPECT_EQ(one.read(5, 1), 5 + ray);
+    EXPECT_EQ(two.read(5, 1), 5 + ceil_div(ray, 2));
+    EXPECT_EQ(wide.read(5, 1), 5u);
+  }
 }
 
 // Rays that need no test any more are read all the same, and the visit lasts as long as that: busy cycles beyond the
 // resource's time in test would leave its ledger with less than nothing.
 TEST(BundleUnits, AVisitLastsAsLongAsItsReading) {
   Tester strip(bundle_testers(), kOrder, 1), walk(bundle_testers(), kOrder, 1);
-  const Cycle strip_done = strip.strip(10, counts(0, 0), 6), walk_done = walk.walk(10, counts(0, 0), 0, 6);
+  const Cycle strip_done = strip.strip(10, counts(0, 0), 6), walk_done = walk.read(10, 6);
   EXPECT_EQ(strip.store().busy(), 6u);
   EXPECT_EQ(strip_done, 10u + strip.store().busy());
   EXPECT_EQ(walk_done, 10u + walk.store().busy());

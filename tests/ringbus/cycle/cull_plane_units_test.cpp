@@ -54,11 +54,11 @@ TEST(PlaneUnits, ComeBeforeTheBoxesThatAreLeft) {
   EXPECT_EQ(tester.strip(600, {.triangle = 4}), 600 + TestersConfig{}.units[UnitKind::kTriangle].latency_cycles);
 }
 
-TEST(PlaneUnits, ServeSingleRaysAndWalks) {
+TEST(PlaneUnits, ServeSingleRays) {
   Tester tester(plane_testers());
   EXPECT_EQ(tester.ray(0, {.box = 8, .plane = 2}), 4 + 5);
-  Tester walk(plane_testers());
-  EXPECT_EQ(walk.walk(0, {.box = 8, .plane = 100}, 20), 49 * 3 + 5);
+  Tester many(plane_testers());
+  EXPECT_EQ(many.ray(0, {.box = 8, .plane = 100}), 4 + 49 * 3 + 5);
 }
 
 void expect_behind_their_nodes(bool shared_normals) {
@@ -91,13 +91,17 @@ TEST(PlaneBytes, StandBehindTheirNodesWithoutOverlap) {
 
 TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
   MemoryConfig config;
-  config.shape_buffer_kib = 4;  // 16 places
-  ShapeBuffer buffer(config);
-  const ShapeSpan node{4096, 256 + 8 * 4 * 16};
-  buffer.keep(node);
-  EXPECT_TRUE(buffer.has(node));
-  for (std::uint64_t i = 1; i <= 8; ++i) buffer.keep({4096 + i * 1024, node.bytes});
-  EXPECT_FALSE(buffer.has(node));  // nine such nodes are 27 places
+  config.shape_buffer_kib = 4;
+  Channel<FetchRequest> requests;
+  Channel<FetchAnswer> answers;
+  SidePorts ports;
+  ports.fetch = &requests;
+  ports.fetched = &answers;
+  ShapeBuffer buffer(config, ports);
+  const auto node = [](std::uint64_t i) { return ShapeNeed{ShapeSpan{4096 + i * 1024, 256 + 8 * 4 * 16}, {}}; };
+  for (ShapeBuffer::User user = 0; user < 6; ++user) buffer.take(user, node(user), 0);
+  EXPECT_EQ(buffer.fetches(), 5u);  // of 12 places each, of 64
+  EXPECT_EQ(buffer.counts().room_waits, 1u);
 }
 
 TEST(PlaneUnits, AreLiftedWhereThereAreAny) {

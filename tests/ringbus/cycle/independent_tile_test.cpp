@@ -36,6 +36,7 @@ class LoneTile {
     for (Cycle now; (now = std::min(tile_.next(), fetch_.next())) != kNever;) {
       while (fetch_.next() <= now) {
         const Cycle at = fetch_.next();
+        rounds += at != std::exchange(last_fetch_, at);
         fetched_.send(at + answer, {fetch_.take().tag});
         ++fetches;
       }
@@ -53,6 +54,7 @@ class LoneTile {
   ResourceStatistics statistics() const { return tile_.statistics(); }
 
   std::uint64_t fetches = 0, completed = 0;
+  std::uint64_t rounds = 0;  ///< times at which anything was asked for
   Cycle last_completed = 0;
 
  private:
@@ -64,6 +66,7 @@ class LoneTile {
   Channel<CompletedRays> completed_;
   Channel<FetchRequest> fetch_;
   Channel<FetchAnswer> fetched_;
+  Cycle last_fetch_ = kNever;
   IndependentTile tile_;
 };
 
@@ -94,7 +97,8 @@ TEST(IndependentTile, OneRayTakesTheSumOfItsLatencies) {
     lone.run(100);
     const TileResult tile = lone.result();
     // Units enough for a strip at once, so a bank is busy for a cycle a strip.
-    const Cycle memory = lone.fetches * (34 / 2 + 100);
+    // A strip and its transform are asked for together.
+    const Cycle memory = lone.rounds * (34 / 2 + 100);
     const Cycle tests = 7 * tile.units[UnitKind::kBox].busy + 11 * tile.units[UnitKind::kTriangle].busy +
                         13 * tile.units[UnitKind::kTransform].busy;
     const Cycle record = sizeof(RayRecord) / 16, wire = 5;
@@ -145,7 +149,7 @@ TEST(IndependentTile, OtherRaysHideTheWaitForMemory) {
     cell.config = independent_machine();
     cell.config.rays.slots_per_resource = slots;
     cell.config.packets.rays = 1;
-    cell.config.memory.shape_buffer_kib = 1;
+    cell.config.memory.shape_buffer_kib = 16;  // room for a strip of each ray
     cell.config.memory.l2_latency_cycles = 300;
     cell.config.shading.cycles_per_shade = 1;
     const Outcome out = run_cell(scene, cell);

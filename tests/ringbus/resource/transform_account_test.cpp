@@ -146,6 +146,7 @@ TEST(TransformPolicies, ChangeTestsBytesAndCyclesButNoHit) {
         c.bvh.treelet_triangles = 200;
         c.rays.slots_per_resource = 64;
         c.memory.fetch = fetch;
+        if (fetch == MemoryConfig::Fetch::kPacket) c.packets.carry = PacketCarry::kData;
         c.testers.units[UnitKind::kTransform] = {1, 200,
                                                  200};  // the limit of the run; otherwise order and caches decide
         const Machine today = run(scene, c);

@@ -16,6 +16,7 @@
 #include "core/system/executor.h"
 #include "core/types/enum_names.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/cycle/memory/shape_room.h"
 #include "ringbus/native/native_engine.h"
 #include "ringbus/protocol/deadlock.h"
 #include "scene/builtin/builtin.h"
@@ -40,8 +41,8 @@ struct Outcome {
   std::uint64_t spilled = 0, refusals = 0;
 };
 
-/// Runs the cell with its storage, and compares digest, counts and conservation with the reference tracer's run at the
-/// cell's level of accuracy.
+/// Runs the cell with its storage, and with room for the largest strip in its shape buffers, and compares digest,
+/// counts and conservation with the reference tracer's run at the cell's level of accuracy.
 inline Outcome run_cell(TestScene& scene, Cell cell) {
   const accel::Accel& accel = scene.accel(cell.config.bvh, cell.config.cull_planes, cell.config.accuracy);
   const TestScene::Reference& reference = scene.reference(cell.config.accuracy);
@@ -51,6 +52,7 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   else
     c.collections.capacity = minimum_capacity(c, accel.width, accel.max_depth) * (cell.tight_storage ? 1 : 50);
   c.collections.capacity = std::max(c.collections.capacity, c.packets.rays);
+  c.memory.shape_buffer_kib = std::max(c.memory.shape_buffer_kib, cycle::least_shape_buffer_kib(accel, c.accuracy));
   ScatterWorkload workload = scene.workload();
   RunOptions options;
   options.threads = cell.threads;

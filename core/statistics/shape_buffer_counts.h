@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/statistics/counters.h"
+
+namespace carousel {
+
+/// Use of a resource's shape buffer.
+struct ShapeBufferCounts {
+  std::uint64_t hits = 0, merged = 0, misses = 0, evictions = 0, room_waits = 0;
+
+  static constexpr auto counters() {
+    using C = ShapeBufferCounts;
+    return std::array{
+        Counter{"hits", &C::hits, "strips", "strips and transforms that were there when they were needed"},
+        Counter{"merged", &C::merged, "strips", "strips and transforms that were already on their way"},
+        Counter{"misses", &C::misses, "strips", "strips and transforms that were fetched"},
+        Counter{"evictions", &C::evictions, "strips", "strips and transforms that gave up their places"},
+        Counter{"room_waits", &C::room_waits, "waits", "waits of a packet or ray for places that others needed"},
+    };
+  }
+  friend bool operator==(const ShapeBufferCounts&, const ShapeBufferCounts&) = default;
+};
+
+}  // namespace carousel

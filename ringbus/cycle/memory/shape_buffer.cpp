@@ -1,0 +1,286 @@
+#include "ringbus/cycle/memory/shape_buffer.h"
+
+#include <algorithm>
+
+#include "core/system/error.h"
+
+namespace carousel::ringbus::cycle {
+
+ShapeBuffer::ShapeBuffer(const MemoryConfig& config, const SidePorts& ports)
+    : port_(config, ports),
+      places_(static_cast<std::uint64_t>(config.shape_buffer_kib) * 1024 / kPlaceBytes),
+      free_places_(places_),
+      buckets_(64, kNone),
+      shift_(64 - 6) {}
+
+ShapeBuffer::UserState& ShapeBuffer::state_of(User user) {
+  if (user >= users_.size()) users_.resize(user + 1);
+  return users_[user];
+}
+
+// ---- users
+
+bool ShapeBuffer::take(User user, const ShapeNeed& need, Cycle now) {
+  UserState& state = state_of(user);
+  if (grant(user, need, true, now)) return state.missing == 0;
+  ++counts_.room_waits;
+  state.state = State::kWaits;
+  state.need = need;
+  room_.push_back(user);
+  return false;
+}
+
+void ShapeBuffer::release(User user, Cycle now) {
+  if (user >= users_.size()) return;
+  UserState& state = users_[user];
+  if (state.state == State::kWaits) {
+    room_.erase(std::find(room_.begin(), room_.end(), user));
+    state.state = State::kNothing;
+  } else if (state.state == State::kHolds) {
+    drop(state, user);
+  }
+  if (!room_.empty() || granted_ < queue_.size()) serve(now);
+}
+
+void ShapeBuffer::hand_over(User from, User to) {
+  UserState& receiver = state_of(to);
+  UserState& giver = users_[from];
+  receiver.state = State::kHolds;
+  receiver.missing = 0;
+  receiver.entries = giver.entries;
+  giver.state = State::kNothing;
+}
+
+/// Gives up all that a user holds.
+void ShapeBuffer::drop(UserState& state, User user) {
+  for (std::uint32_t which = 0; which < 2; ++which) {
+    const std::uint32_t entry = state.entries[which];
+    if (entry == kNone) continue;
+    if (!entries_[entry].here) stop_waiting(entry, 2 * user + which);
+    let_go(entry);
+  }
+  state.state = State::kNothing;
+}
+
+// ---- the issue queue
+
+void ShapeBuffer::take_ahead(User user, const ShapeNeed& need, Cycle now) {
+  UserState& state = state_of(user);
+  state.state = State::kWaits;
+  state.ahead = true;
+  state.need = need;
+  queue_.push_back(user);
+  serve(now);
+}
+
+void ShapeBuffer::leave_queue(User user) {
+  queue_.pop_front();
+  --granted_;
+  users_[user].ahead = false;
+}
+
+void ShapeBuffer::clear_queue(Cycle now) {
+  for (const User user : queue_) {
+    UserState& state = users_[user];
+    if (state.state == State::kHolds) drop(state, user);
+    state.state = State::kNothing;
+    state.ahead = false;
+  }
+  queue_.clear();
+  granted_ = 0;
+  serve(now);
+}
+
+// ---- room
+
+/// Gives `user` the places for all that it needs, if there are enough, and asks for what is not there. A test goes
+/// before the packets of the issue queue, which give up their places for it.
+bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) {
+  std::array<std::uint32_t, 2> found{kNone, kNone};
+  std::uint64_t wanted = 0;
+  for (std::size_t which = 0; which < 2; ++which) {
+    if (need[which].bytes == 0) continue;
+    found[which] = find(need[which]);
+    if (found[which] == kNone) wanted += places(need[which]);
+  }
+  if (wanted > 0) {
+    if (test && !room_.empty() && room_.front() != user) return false;
+    if (!test && !room_.empty()) return false;
+    const auto room = [&] {
+      std::uint64_t own = 0;  // what it needs itself cannot make room
+      for (const std::uint32_t entry : found)
+        if (entry != kNone && entries_[entry].here && entries_[entry].holders == 0) own += places(entries_[entry].span);
+      return free_places_ + idle_places_ - own;
+    };
+    while (room() < wanted) {
+      if (places(need[0]) + places(need[1]) > places_)
+        throw SimulationError("a strip with its transform is larger than the shape buffer");
+      if (!test || granted_ == 0) return false;
+      const User last = queue_[--granted_];
+      UserState& state = users_[last];
+      drop(state, last);
+      state.state = State::kWaits;
+      queue_changed_ = true;
+    }
+  }
+  UserState& state = users_[user];
+  state.state = State::kHolds;
+  state.missing = 0;
+  state.entries = found;
+  for (const std::uint32_t entry : found)
+    if (entry != kNone) hold(entry);
+  for (std::size_t which = 0; which < 2; ++which) {
+    if (need[which].bytes == 0) continue;
+    std::uint32_t& entry = state.entries[which];
+    if (entry == kNone) {
+      while (free_places_ < places(need[which])) evict_oldest();
+      entry = allocate(need[which]);
+      hold(entry);
+      port_.request(need[which], entry, now);
+      ++fetches_;
+      ++counts_.misses;
+    } else {
+      ++(entries_[entry].here ? counts_.hits : counts_.merged);
+    }
+    if (!entries_[entry].here) wait_for(entry, user, which);
+  }
+  return true;
+}
+
+/// Gives room to those who wait for it: tests first, then the issue queue.
+void ShapeBuffer::serve(Cycle now) {
+  while (!room_.empty()) {
+    const User user = room_.front();
+    const ShapeNeed need = users_[user].need;
+    if (!grant(user, need, true, now)) return;
+    room_.pop_front();
+    if (users_[user].missing == 0) ready_.push_back(user);
+  }
+  for (; granted_ < queue_.size(); ++granted_) {
+    const User user = queue_[granted_];
+    const ShapeNeed need = users_[user].need;
+    if (!grant(user, need, false, now)) return;
+    queue_changed_ = true;
+  }
+}
+
+// ---- fetches
+
+void ShapeBuffer::wait_for(std::uint32_t index, User user, std::size_t which) {
+  const std::uint32_t wait = 2 * user + static_cast<std::uint32_t>(which);
+  Entry& entry = entries_[index];
+  users_[user].next_wait[which] = kNone;
+  if (entry.first_wait == kNone)
+    entry.first_wait = wait;
+  else
+    users_[entry.last_wait / 2].next_wait[entry.last_wait % 2] = wait;
+  entry.last_wait = wait;
+  ++users_[user].missing;
+}
+
+/// Takes one wait from the middle of an entry's list.
+void ShapeBuffer::stop_waiting(std::uint32_t index, std::uint32_t wait) {
+  Entry& entry = entries_[index];
+  const auto next = [&](std::uint32_t of) -> std::uint32_t& { return users_[of / 2].next_wait[of % 2]; };
+  std::uint32_t before = kNone;
+  for (std::uint32_t at = entry.first_wait; at != wait; at = next(at)) before = at;
+  (before == kNone ? entry.first_wait : next(before)) = next(wait);
+  if (entry.last_wait == wait) entry.last_wait = before;
+}
+
+void ShapeBuffer::take_answers(Cycle now) {
+  bool idle = false;
+  while (port_.next() <= now) {
+    Entry& entry = entries_[port_.take()];
+    --fetches_;
+    entry.here = true;
+    for (std::uint32_t wait = entry.first_wait; wait != kNone; wait = users_[wait / 2].next_wait[wait % 2]) {
+      UserState& state = users_[wait / 2];
+      if (--state.missing > 0) continue;
+      if (state.ahead)
+        queue_changed_ = true;
+      else
+        ready_.push_back(wait / 2);
+    }
+    entry.first_wait = entry.last_wait = kNone;
+    if (entry.holders > 0) continue;
+    // Those who asked for it have given it up meanwhile.
+    ++entry.holders;
+    let_go(static_cast<std::uint32_t>(&entry - entries_.data()));
+    idle = true;
+  }
+  if (idle) serve(now);
+}
+
+// ---- entries
+
+std::uint32_t ShapeBuffer::find(const ShapeSpan& span) const {
+  std::uint32_t at = buckets_[bucket(span)];
+  while (at != kNone && entries_[at].span != span) at = entries_[at].chain;
+  return at;
+}
+
+std::uint32_t ShapeBuffer::allocate(const ShapeSpan& span) {
+  if (++used_ > buckets_.size()) grow_buckets();
+  std::uint32_t index = free_entry_;
+  if (index == kNone) {
+    index = static_cast<std::uint32_t>(entries_.size());
+    entries_.emplace_back();
+  } else {
+    free_entry_ = entries_[index].chain;
+  }
+  std::uint32_t& first = buckets_[bucket(span)];
+  entries_[index] = Entry{};
+  entries_[index].span = span;
+  entries_[index].chain = first;
+  first = index;
+  free_places_ -= places(span);
+  return index;
+}
+
+void ShapeBuffer::grow_buckets() {
+  buckets_.assign(2 * buckets_.size(), kNone);
+  --shift_;
+  std::vector<bool> free(entries_.size());
+  for (std::uint32_t at = free_entry_; at != kNone; at = entries_[at].chain) free[at] = true;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    if (free[i]) continue;
+    std::uint32_t& first = buckets_[bucket(entries_[i].span)];
+    entries_[i].chain = first;
+    first = i;
+  }
+}
+
+void ShapeBuffer::evict_oldest() {
+  const std::uint32_t index = oldest_;
+  hold(index);  // takes it from the list
+  Entry& entry = entries_[index];
+  std::uint32_t* at = &buckets_[bucket(entry.span)];
+  while (*at != index) at = &entries_[*at].chain;
+  *at = entry.chain;
+  entry.chain = free_entry_;
+  free_entry_ = index;
+  free_places_ += places(entry.span);
+  --used_;
+  ++counts_.evictions;
+}
+
+void ShapeBuffer::hold(std::uint32_t index) {
+  Entry& entry = entries_[index];
+  if (entry.holders++ > 0 || !entry.here) return;
+  (entry.older == kNone ? oldest_ : entries_[entry.older].newer) = entry.newer;
+  (entry.newer == kNone ? newest_ : entries_[entry.newer].older) = entry.older;
+  idle_places_ -= places(entry.span);
+}
+
+void ShapeBuffer::let_go(std::uint32_t index) {
+  Entry& entry = entries_[index];
+  if (--entry.holders > 0 || !entry.here) return;
+  entry.older = newest_;
+  entry.newer = kNone;
+  (newest_ == kNone ? oldest_ : entries_[newest_].newer) = index;
+  newest_ = index;
+  idle_places_ += places(entry.span);
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,42 @@
+#include "ringbus/cycle/memory/shape_room.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ringbus/cycle/memory/shape_buffer.h"
+#include "ringbus/cycle/memory/shape_memory.h"
+
+namespace carousel::ringbus::cycle {
+
+std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyConfig& accuracy) {
+  const ShapeMemory memory(accel, accuracy);
+  std::uint64_t strip = 0, transform = 0;
+  const auto consider = [&](accel::NodeRef ref) {
+    if (!ref.is_instance()) strip = std::max(strip, ShapeBuffer::places(memory.strip({kNoInstance, ref})));
+  };
+  for (std::uint32_t i = 0; i < accel.nodes.size(); ++i) {
+    consider(accel::NodeRef::inner(i));
+    for (int lane = 0; lane < accel.nodes[i].count; ++lane) consider(accel.nodes[i].child[lane]);
+  }
+  for (std::uint32_t i = 0; i < accel.instances.size(); ++i) {
+    consider(accel.instances[i].root);
+    transform = std::max(transform, ShapeBuffer::places(memory.transform(i)));
+  }
+  return static_cast<std::int64_t>(ceil_div((strip + transform) * ShapeBuffer::kPlaceBytes, 1024));
+}
+
+std::vector<ConfigIssue> check_shape_buffer(const Config& config, const accel::Accel& accel) {
+  if (config.engine.kind != EngineKind::kCycle) return {};
+  const std::int64_t least = least_shape_buffer_kib(accel, config.accuracy);
+  if (config.memory.shape_buffer_kib >= least) return {};
+  ConfigIssue issue;
+  issue.key_path = "memory.shape_buffer_kib";
+  issue.message = fmt::format(
+      "a test needs a whole strip and its transform at once, and this scene's largest do not fit; expected at least "
+      "{}, found {}",
+      least, config.memory.shape_buffer_kib);
+  return {issue};
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,134 @@
+#include "ringbus/cycle/tile/subtree_visits.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace carousel::ringbus::cycle {
+
+void SubtreeVisits::prepare(std::size_t context, WalkSteps& ways) {
+  Visit& visit = visits_[context];
+  std::swap(visit.ways, ways);
+  visit.rays = static_cast<std::uint32_t>(visit.ways.ends.size());
+  visit.inverted.clear();
+}
+
+void SubtreeVisits::begin(std::size_t context, std::uint32_t reads, Cycle now) {
+  const std::vector<std::uint32_t>& ends = visits_[context].ways.ends;
+  std::uint32_t first = 0;
+  std::uint64_t records = reads - ends.size() + 1;
+  for (const std::uint32_t end : ends) {
+    const std::uint32_t index = new_ray();
+    rays_[index] = {first, end, static_cast<std::uint32_t>(context), Ray::Phase::kBegins};
+    first = end;
+    const Cycle at = tester_.read(now, records);
+    records = 1;
+    if (at > now)
+      events_.add(now, at, index);
+    else
+      go_on(index, now);
+  }
+}
+
+std::uint32_t SubtreeVisits::new_ray() {
+  if (free_rays_.empty()) {
+    rays_.emplace_back();
+    return static_cast<std::uint32_t>(rays_.size() - 1);
+  }
+  const std::uint32_t index = free_rays_.back();
+  free_rays_.pop_back();
+  return index;
+}
+
+/// The ray comes to its next strip, or ends.
+void SubtreeVisits::go_on(std::uint32_t index, Cycle now) {
+  Ray& ray = rays_[index];
+  Visit& visit = visits_[ray.context];
+  if (ray.step == ray.end) {
+    ray.phase = Ray::Phase::kFree;
+    free_rays_.push_back(index);
+    visit_ended_ |= --visit.rays == 0;
+    return;
+  }
+  const WalkStep& step = visit.ways.steps[ray.step];
+  ShapeNeed need{memory_.strip(step.key), {}};
+  if (step.tests.tests[UnitKind::kTransform] > 0) need[1] = memory_.transform(step.key.instance);
+  ray.phase = Ray::Phase::kWaits;
+  if (shapes_.take(first_user_ + index, need, now)) test(index, now);
+}
+
+void SubtreeVisits::test(std::uint32_t index, Cycle now) {
+  Ray& ray = rays_[index];
+  Visit& visit = visits_[ray.context];
+  const WalkStep& step = visit.ways.steps[ray.step++];
+  Cycle at = now;
+  RayTests tests = step.tests;
+  if (std::exchange(tests.inversions, 0) > 0) [[unlikely]] {
+    // The first ray that needs a matrix inverted has it done for all of the visit.
+    const auto done = std::find_if(visit.inverted.begin(), visit.inverted.end(),
+                                   [&](const Inverted& one) { return one.instance == step.key.instance; });
+    at = done != visit.inverted.end()
+             ? std::max(now, done->at)
+             : visit.inverted.emplace_back(Inverted{step.key.instance, tester_.invert(now)}).at;
+  }
+  ray.phase = Ray::Phase::kInTest;
+  ++in_test_;
+  events_.add(now, tester_.ray(at, tests), index);
+}
+
+void SubtreeVisits::run(Cycle now) {
+  while (events_.next() <= now) {
+    const std::uint32_t index = events_.take();
+    const Ray::Phase phase = rays_[index].phase;
+    if (phase == Ray::Phase::kDropped) [[unlikely]] {
+      rays_[index].phase = Ray::Phase::kFree;
+      free_rays_.push_back(index);
+      continue;
+    }
+    if (phase == Ray::Phase::kInTest) {
+      --in_test_;
+      shapes_.release(first_user_ + index, now);
+    }
+    go_on(index, now);
+    if (!shapes_.ready().empty()) serve(now);
+  }
+}
+
+Cycle SubtreeVisits::run_before(Cycle limit) {
+  visit_ended_ = false;
+  shapes_.queue_changed();
+  while (events_.next() < limit) {
+    const Cycle now = events_.next();
+    const bool tested = testing();
+    run(now);
+    if (visit_ended_ || tested != testing() || !others_.empty() || shapes_.queue_changed()) return now;
+  }
+  return kNever;
+}
+
+void SubtreeVisits::serve(Cycle now) {
+  for (const ShapeBuffer::User user : shapes_.ready()) {
+    if (user >= first_user_)
+      test(user - first_user_, now);
+    else
+      others_.push_back(user);
+  }
+  shapes_.ready().clear();
+}
+
+void SubtreeVisits::drop(std::size_t context, Cycle now) {
+  for (std::uint32_t index = 0; index < rays_.size(); ++index) {
+    Ray& ray = rays_[index];
+    if (ray.context != context || ray.phase == Ray::Phase::kFree || ray.phase == Ray::Phase::kDropped) continue;
+    shapes_.release(first_user_ + index, now);
+    in_test_ -= ray.phase == Ray::Phase::kInTest;
+    if (ray.phase == Ray::Phase::kWaits) {
+      ray.phase = Ray::Phase::kFree;
+      free_rays_.push_back(index);
+    } else {
+      ray.phase = Ray::Phase::kDropped;  // until its event comes
+    }
+  }
+  visits_[context].rays = 0;
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ringbus/cycle/memory/shape_buffer.h"
+#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/testers/tester.h"
+#include "ringbus/cycle/tile/subtree_walk.h"
+#include "ringbus/cycle/time/event_wheel.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Lets the rays of treelet visits follow their ways under the clock, each by itself: a ray takes the strip that it has
+/// come to, is tested when the strip is there, behind the rays that were ready before it, gives the strip back, and
+/// goes to the next one. It knows no strip before its tests of the one before have ended. The rays of a visit begin
+/// in the packet's order when their records have been read. The visit ends with its last ray.
+class SubtreeVisits {
+ public:
+  /// Keeps references. Rays are users of `shapes` from `first_user` on.
+  SubtreeVisits(const ShapeMemory& memory, ShapeBuffer& shapes, Tester& tester, std::size_t contexts,
+                ShapeBuffer::User first_user)
+      : memory_(memory), shapes_(shapes), tester_(tester), visits_(contexts), first_user_(first_user) {}
+
+  /// Takes away the ways of the rays of a packet, which is in test context `context`.
+  void prepare(std::size_t context, WalkSteps& ways);
+  /// Starts them. `reads`: the records that the visit reads; those of its rays are the last.
+  void begin(std::size_t context, std::uint32_t reads, Cycle now);
+  bool ended(std::size_t context) const { return visits_[context].rays == 0; }
+  /// Forgets the visit, which has begun.
+  void drop(std::size_t context, Cycle now);
+
+  /// The time at which the next ray begins or has been tested.
+  Cycle next() const { return events_.next(); }
+  /// Lets rays go on at `now`.
+  void run(Cycle now);
+  /// Lets rays go on before `limit`, up to the first time at which the resource has something to do, which it returns;
+  /// kNever if there was none.
+  Cycle run_before(Cycle limit);
+  /// Starts the tests of rays whose data has come. The other users for whom ShapeBuffer::ready() waits go to `others`.
+  void serve(Cycle now);
+  std::vector<ShapeBuffer::User>& others() { return others_; }
+
+  /// Any ray is in test.
+  bool testing() const { return in_test_ > 0; }
+
+ private:
+  struct Ray {
+    std::uint32_t step = 0, end = 0;
+    std::uint32_t context = 0;
+    enum class Phase : std::uint8_t { kFree, kBegins, kWaits, kInTest, kDropped } phase = Phase::kFree;
+  };
+  struct Inverted {
+    std::uint32_t instance = 0;
+    Cycle at = 0;
+  };
+  struct Visit {
+    WalkSteps ways;
+    std::uint32_t rays = 0;          // that have not ended
+    std::vector<Inverted> inverted;  // matrices, and when
+  };
+
+  std::uint32_t new_ray();
+  void go_on(std::uint32_t index, Cycle now);
+  void test(std::uint32_t index, Cycle now);
+
+  const ShapeMemory& memory_;
+  ShapeBuffer& shapes_;
+  Tester& tester_;
+  std::vector<Visit> visits_;  // by context
+  ShapeBuffer::User first_user_;
+  std::vector<Ray> rays_;
+  std::vector<std::uint32_t> free_rays_;
+  std::vector<ShapeBuffer::User> others_;
+  EventWheel events_;
+  std::size_t in_test_ = 0;
+  bool visit_ended_ = false;
+};
+
+}  // namespace carousel::ringbus::cycle
