@@ -27,6 +27,7 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
   out.measured = result.offered;
   const std::uint64_t resource_cycles =
       (result.window_end - result.window_begin) * static_cast<std::uint64_t>(config.topology.resources);
+  out.accepted_of_links = result.accepted_of_links();
   out.offered = ratio(result.offered, resource_cycles);
   out.accepted = ratio(result.accepted, resource_cycles);
   out.routers_mean = result.routers_mean();

@@ -1,5 +1,6 @@
 #include "app/commands/check_command.h"
 
+#include <filesystem>
 #include <sstream>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "app/host/output.h"
 #include "app/run/memory_need.h"
 #include "core/config/write.h"
+#include "report/csv/ray_csv.h"
 #include "ringbus/protocol/deadlock.h"
 
 namespace carousel::app {
@@ -21,6 +23,12 @@ std::string commented(const std::string& text) {
   std::string out;
   for (std::string line; std::getline(in, line);) out += "# " + line + "\n";
   return out;
+}
+
+/// Reads the list, so that its errors are found here as well.
+std::string ray_list_text(const Prepared& p) {
+  const std::filesystem::path path = find_beside(p.config_folder, p.config().workload.rays_from);
+  return fmt::format("rays: {} of {}\n", report::read_rays_csv(path).size(), path.string());
 }
 
 }  // namespace
@@ -35,6 +43,7 @@ int check_command(const CheckArguments& arguments) {
   } else {
     text = fmt::format("scene: {}, {} triangles, {} instances\n", p.scene.name, p.scene.unique_triangle_count(),
                        p.scene.instances.size());
+    if (p.config().workload.kind == WorkloadConfig::Kind::kRaysFrom) text += ray_list_text(p);
     text += memory_text(estimate(p.config(), false, p.scene, p.accel), usable_memory_bytes());
   }
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);

@@ -139,6 +139,12 @@ void add_stress(CLI::App& program, StressArguments& s) {
   stress->add_option("--repetitions", s.repetitions, "Number of times each trial is repeated")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  stress
+      ->add_option("--pairs", s.pairs,
+                   "Number of pairs of runs that compare the best and the worst queue and depth in the "
+                   "configuration's ring; fewer than 8 show no difference")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   stress->add_option("--capacity", s.capacity, "Capacity in messages of a queue tested by itself")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();

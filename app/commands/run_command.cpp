@@ -21,6 +21,7 @@
 #include "app/run/render_job.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
+#include "core/system/error.h"
 #include "report/run/report_json.h"
 #include "report/run/report_table.h"
 #include "report/run/traffic_table.h"
@@ -82,6 +83,14 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   return verdict(report);
 }
 
+/// Synthetic traffic has no rays whose hits could be written.
+void require_no_hits(const RunArguments& arguments) {
+  constexpr const char* kMessage =
+      "synthetic traffic has no rays; expected workload: rays, or a run without this option";
+  if (arguments.hits) throw ConfigError({{{}, "--hits", kMessage}});
+  if (!arguments.dump_rays.empty()) throw ConfigError({{{}, "--dump-rays", kMessage}});
+}
+
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
                  const RenderJob& job, const report::Report& report, HitRecorder* recorder) {
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
@@ -103,7 +112,10 @@ int run_command(const RunArguments& arguments) {
   const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits);
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
-  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return run_traffic_command(arguments, p, interrupt);
+  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
+    require_no_hits(arguments);
+    return run_traffic_command(arguments, p, interrupt);
+  }
 
   RenderJob job(p);
   std::optional<HitRecorder> recorder;

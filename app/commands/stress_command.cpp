@@ -154,10 +154,14 @@ int stress_command(const StressArguments& arguments) {
   if (prepared && !interrupt.interrupted()) {
     const std::vector<std::int64_t> depths =
         arguments.depths.empty() ? depths_about(prepared->config().topology) : arguments.depths;
-    out.ring = try_in_ring(*prepared, kinds, depths, arguments.repetitions, interrupt.token(), [&](double part) {
+    RingTrial trial{kinds, depths, arguments.repetitions, arguments.pairs, interrupt.token()};
+    trial.progress = [&](double part) {
       if (line) line->update(0.5 + part / 2, 0);
-    });
-    out.ring_verdict = ring_verdict(out.ring);
+    };
+    RingTrialResult tried = try_in_ring(*prepared, trial);
+    out.ring = std::move(tried.rows);
+    if (tried.pairs) out.ring_verdict = ring_verdict(*tried.pairs);
+    out.ring_pairs = std::move(tried.pairs);
   }
   line.reset();
   out.incomplete = interrupt.interrupted();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <spdlog/spdlog.h>
 
@@ -12,6 +13,7 @@
 #include "accel/traverse/kernels.h"
 #include "app/host/machine_info.h"
 #include "app/run/memory_need.h"
+#include "core/system/error.h"
 #include "core/system/executor.h"
 #include "ringbus/cycle/memory/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
@@ -33,6 +35,20 @@ auto with_positions(const KeyPositions& positions, const Body& body) {
       if (issue.position.file.empty()) issue.position = positions.find(issue.key_path);
     throw ConfigError(std::move(issues));
   }
+}
+
+/// Refuses a list of rays that is not there before the scene is loaded.
+void require_ray_file(const Prepared& p) {
+  if (p.config().workload.kind != WorkloadConfig::Kind::kRaysFrom) return;
+  const std::string& name = p.config().workload.rays_from;
+  const std::filesystem::path path = find_beside(p.config_folder, name);
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
+  const std::string key = "workload.rays_from";
+  throw ConfigError({{p.located.positions.find(key), key,
+                      fmt::format("expected a file of rays beside the configuration or in the working directory, "
+                                  "found '{}', which is not there",
+                                  name)}});
 }
 
 class Stopwatch {
@@ -83,6 +99,7 @@ void prepare_located(Prepared& p, bool keep_hits) {
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene
   const KeyPositions& positions = p.located.positions;
+  require_ray_file(p);
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
     load_scene(p);

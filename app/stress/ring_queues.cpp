@@ -10,6 +10,7 @@
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 #include "ringbus/native/native_engine.h"
+#include "ringbus/stress/paired_rates.h"
 
 namespace carousel::app {
 
@@ -56,64 +57,119 @@ double median(std::vector<double> values) {
   return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
+/// Tries the cells of one configuration.
+class RingCells {
+ public:
+  RingCells(const Prepared& prepared, const RingTrial& trial) : prepared_(prepared), trial_(trial) {
+    for (const QueueKind kind : trial.kinds)
+      for (const std::int64_t depth : trial.depths) cells_.push_back({kind, depth, {}});
+    paired_ = cells_.size() > 1 ? trial.pairs : 0;
+  }
+
+  void repeat_all() {
+    const std::size_t count = cells_.size(), repetitions = trial_.repetitions;
+    for (std::size_t repetition = 0; repetition < repetitions; ++repetition)
+      for (std::size_t k = 0; k < count; ++k)
+        // Each repetition begins with another cell, so that no cell always follows the same one.
+        if (!run(cells_[(k + repetition * (count / repetitions + 1)) % count])) return;
+  }
+
+  std::optional<report::StressPairs> compare_best_and_worst() {
+    if (paired_ == 0 || trial_.stop.stop_requested()) return std::nullopt;
+    const auto [worst, best] = std::minmax_element(
+        cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return median(a.rates) < median(b.rates); });
+    std::vector<ringbus::stress::RatePair> pairs;
+    Cell fast{best->kind, best->depth, {}}, slow{worst->kind, worst->depth, {}};
+    for (std::size_t i = 0; i < paired_; ++i) {
+      if (!run(i % 2 == 0 ? fast : slow) || !run(i % 2 == 0 ? slow : fast)) break;
+      pairs.push_back({fast.rates.back(), slow.rates.back()});
+    }
+    best->same_digest &= fast.same_digest;
+    worst->same_digest &= slow.same_digest;
+    return pairs_section(fast, slow, ringbus::stress::compare_pairs(pairs));
+  }
+
+  std::vector<report::StressRingRow> rows() const {
+    std::vector<report::StressRingRow> rows;
+    double best = 0;
+    for (const Cell& cell : cells_) best = std::max(best, median(cell.rates));
+    for (const Cell& cell : cells_) {
+      if (cell.rates.empty()) continue;
+      report::StressRingRow& row = rows.emplace_back();
+      row.queue = enum_name(cell.kind);
+      row.depth = static_cast<std::uint64_t>(cell.depth);
+      row.rate_median = median(cell.rates);
+      row.rate_least = *std::min_element(cell.rates.begin(), cell.rates.end());
+      row.rate_most = *std::max_element(cell.rates.begin(), cell.rates.end());
+      row.relative = report::ratio(row.rate_median, best);
+      row.refused = report::ratio(cell.refusals, cell.packets + cell.refusals);
+      row.occupancy_mean = report::ratio(cell.occupancy, cell.samples);
+      row.same_digest = cell.same_digest;
+    }
+    return rows;
+  }
+
+ private:
+  /// False if it was stopped.
+  bool run(Cell& cell) {
+    if (trial_.stop.stop_requested()) return false;
+    const Digests digests = run_cell(prepared_, cell, trial_.stop);
+    if (trial_.stop.stop_requested()) return false;
+    if (!expected_) expected_ = digests;
+    cell.same_digest &= digests == *expected_;
+    if (trial_.progress)
+      trial_.progress(++done_ / static_cast<double>(cells_.size() * trial_.repetitions + 2 * paired_));
+    return true;
+  }
+
+  static report::StressPairs pairs_section(const Cell& fast, const Cell& slow,
+                                           const ringbus::stress::PairedDifference& difference) {
+    report::StressPairs out;
+    out.first = {std::string(enum_name(fast.kind)), static_cast<std::uint64_t>(fast.depth)};
+    out.second = {std::string(enum_name(slow.kind)), static_cast<std::uint64_t>(slow.depth)};
+    out.pairs = difference.pairs;
+    out.wins = difference.wins;
+    out.ratio = difference.ratio;
+    if (difference.pairs >= ringbus::stress::PairedDifference::kLeastPairs) {
+      out.ratio_least = difference.least;
+      out.ratio_most = difference.most;
+    }
+    out.difference = difference.first_is_faster || difference.second_is_faster;
+    return out;
+  }
+
+  const Prepared& prepared_;
+  const RingTrial& trial_;
+  std::vector<Cell> cells_;
+  std::size_t paired_ = 0;
+  std::optional<Digests> expected_;
+  double done_ = 0;
+};
+
 }  // namespace
 
-std::vector<report::StressRingRow> try_in_ring(const Prepared& p, const std::vector<QueueKind>& kinds,
-                                               const std::vector<std::int64_t>& depths, std::size_t repetitions,
-                                               std::stop_token stop, const std::function<void(double part)>& progress) {
-  std::vector<Cell> cells;
-  for (const QueueKind kind : kinds)
-    for (const std::int64_t depth : depths) cells.push_back({kind, depth, {}});
-  std::optional<Digests> expected;
-  double done = 0;
-  for (std::size_t repetition = 0; repetition < repetitions; ++repetition)
-    for (std::size_t k = 0; k < cells.size() && !stop.stop_requested(); ++k) {
-      // Each repetition begins with another cell, so that no cell always follows the same one.
-      Cell& cell = cells[(k + repetition * (cells.size() / repetitions + 1)) % cells.size()];
-      const Digests digests = run_cell(p, cell, stop);
-      if (stop.stop_requested()) break;
-      if (!expected) expected = digests;
-      cell.same_digest &= digests == *expected;
-      progress(++done / static_cast<double>(cells.size() * repetitions));
-    }
-
-  std::vector<report::StressRingRow> rows;
-  double best = 0;
-  for (const Cell& cell : cells) best = std::max(best, median(cell.rates));
-  for (const Cell& cell : cells) {
-    if (cell.rates.empty()) continue;
-    report::StressRingRow& row = rows.emplace_back();
-    row.queue = enum_name(cell.kind);
-    row.depth = static_cast<std::uint64_t>(cell.depth);
-    row.rate_median = median(cell.rates);
-    row.rate_least = *std::min_element(cell.rates.begin(), cell.rates.end());
-    row.rate_most = *std::max_element(cell.rates.begin(), cell.rates.end());
-    row.relative = report::ratio(row.rate_median, best);
-    row.refused = report::ratio(cell.refusals, cell.packets + cell.refusals);
-    row.occupancy_mean = report::ratio(cell.occupancy, cell.samples);
-    row.same_digest = cell.same_digest;
-  }
-  return rows;
+RingTrialResult try_in_ring(const Prepared& p, const RingTrial& trial) {
+  RingCells cells(p, trial);
+  cells.repeat_all();
+  RingTrialResult out;
+  out.pairs = cells.compare_best_and_worst();
+  out.rows = cells.rows();
+  return out;
 }
 
-std::string ring_verdict(const std::vector<report::StressRingRow>& rows) {
-  if (rows.empty()) return "";
-  const auto slower = [](const auto& a, const auto& b) { return a.rate_median < b.rate_median; };
-  const auto [worst, best] = std::minmax_element(rows.begin(), rows.end(), slower);
-  double spread = 0;  // between repetitions of one cell
-  for (const report::StressRingRow& row : rows)
-    spread = std::max(spread, report::ratio(row.rate_most - row.rate_least, row.rate_median));
-  const auto named = [](const report::StressRingRow& row) {
-    return fmt::format("{} of depth {}", row.queue, row.depth);
+std::string ring_verdict(const report::StressPairs& p) {
+  const auto named = [](const report::StressRingChoice& choice) {
+    return fmt::format("{} of depth {}", choice.queue, choice.depth);
   };
-  const double gain = report::ratio(best->rate_median, worst->rate_median) - 1;
-  // The cells differ if the worst cell's best repetition is below the best cell's worst.
-  const bool sure = worst->rate_most < best->rate_least;
-  std::string text = fmt::format("{} traces {} rays/s, {} {}: {} more", named(*best), report::scaled(best->rate_median),
-                                 named(*worst), report::scaled(worst->rate_median), report::percent(gain));
-  text += fmt::format("; repetitions of one cell differ by up to {}, so this is {}", report::percent(spread),
-                      sure ? "no accident" : "not sure");
-  return text;
+  const auto gain = [](double ratio) { return fmt::format("{:+.1f} %", 100 * (ratio - 1)); };
+  const std::string first = named(p.first), second = named(p.second);
+  std::string text = p.difference ? fmt::format("{} is {} than {}", first, p.ratio > 1 ? "faster" : "slower", second)
+                                  : fmt::format("no difference shown between {} and {}", first, second);
+  text += fmt::format(": {} traced more rays a second in {} of {} pairs of runs, median {}",
+                      p.difference ? "it" : "the first", p.wins, p.pairs, gain(p.ratio));
+  if (!p.ratio_least)
+    return text + fmt::format("; fewer than {} pairs show nothing", ringbus::stress::PairedDifference::kLeastPairs);
+  return text + fmt::format(", 99 % interval {} to {}", gain(*p.ratio_least), gain(*p.ratio_most));
 }
 
 }  // namespace carousel::app

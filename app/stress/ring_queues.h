@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "app/run/prepare.h"
@@ -9,13 +11,27 @@
 
 namespace carousel::app {
 
-/// Runs the ring of a prepared configuration on the native engine with each kind of queue at each depth, repetition by
-/// repetition and in turn. Rows by kind, then depth.
-std::vector<report::StressRingRow> try_in_ring(const Prepared& prepared, const std::vector<QueueKind>& kinds,
-                                               const std::vector<std::int64_t>& depths, std::size_t repetitions,
-                                               std::stop_token stop, const std::function<void(double part)>& progress);
+/// How to try queues inside a ring.
+struct RingTrial {
+  std::vector<QueueKind> kinds;
+  std::vector<std::int64_t> depths;
+  std::size_t repetitions = 3;  ///< of every kind and depth
+  std::size_t pairs = 12;       ///< of runs of the best and the worst by these repetitions
+  std::stop_token stop{};
+  std::function<void(double part)> progress{};
+};
 
-/// A sentence that compares queues and depths, with the spread of the repetitions.
-std::string ring_verdict(const std::vector<report::StressRingRow>& rows);
+struct RingTrialResult {
+  std::vector<report::StressRingRow> rows;  ///< by kind, then depth
+  std::optional<report::StressPairs> pairs;
+};
+
+/// Runs the ring of a prepared configuration on the native engine with each kind of queue at each depth, repetition by
+/// repetition and in turn. The best and the worst by the medians then run in pairs, each of them first in every other
+/// pair: medians of few runs, picked out of many, differ by chance.
+RingTrialResult try_in_ring(const Prepared& prepared, const RingTrial& trial);
+
+/// A sentence that says whether the pairs show a difference, and which.
+std::string ring_verdict(const report::StressPairs& pairs);
 
 }  // namespace carousel::app

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/config/edit_distance.h"
+#include "core/config/network_rules.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
 #include "core/types/effect.h"
@@ -30,13 +30,11 @@ class Rules {
     planes_and_bundles_fit();
     shapes_reach_the_resources();
     effects_are_known();
-    traffic_has_a_network();
-    flow_that_can_deadlock();
-    bubble_needs_two_places();
     ordered_needs_strips();
     hashed_homes_spill();
-    overrides_name_resources();
-    faults_have_a_place();
+    cache_holds_a_set();
+    config::check_network(c, options_.force,
+                          [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
     vary_names_keys();
     return std::move(issues_);
   }
@@ -51,6 +49,8 @@ class Rules {
       if (c.workload.kind == WorkloadConfig::Kind::kTraffic) return;  // traffic meets no scene
       issue("scene", "expected a scene: file, or builtin (cornell, spheres, terrain, instances, sliver)");
     }
+    if (c.scene.procedural && c.scene.builtin != BuiltinScene::kSpheres)
+      issue("scene.procedural", "only the built-in spheres are procedural primitives; expected false, found true");
     if (!c.scene.file.empty() && c.scene.builtin) issue("scene.builtin", "expected either file or builtin, found both");
   }
 
@@ -108,6 +108,9 @@ class Rules {
     if (c.verify == Verify::kEffects && c.shading.effects.choice != ShadingConfig::Effects::Choice::kAuto)
       issue("verify",
             "effects compares the effects that the scene calls for with all effects; expected shading.effects: auto");
+    if (c.verify == Verify::kEffects && c.workload.kind == WorkloadConfig::Kind::kRaysFrom)
+      issue("verify",
+            "a list of rays is not shaded, so effects change nothing; expected none or reference, found effects");
     if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
       constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
       if (c.cull_planes.count > 0) issue("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
@@ -186,40 +189,17 @@ class Rules {
     }
   }
 
-  void traffic_has_a_network() {
-    if (c.workload.kind != WorkloadConfig::Kind::kTraffic) return;
-    if (!cycle()) issue("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
-    if (c.topology.shape == TopologyShape::kHierarchical || c.topology.shape == TopologyShape::kBus ||
-        c.topology.shape == TopologyShape::kIndependent)
-      issue("topology.shape", fmt::format("there is no traffic on {}; expected ring, bidirectional, multi_ring or "
-                                          "point_to_point",
-                                          enum_name(c.topology.shape)));
-    const TrafficConfig& traffic = c.workload.traffic;
-    if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
-      issue("workload.traffic.hotspot",
-            fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, traffic.hotspot));
-    // There is at least one cycle without a packet between two bursts.
-    const double burst = static_cast<double>(traffic.burst_packets), most = burst / (burst + 1);
-    if (traffic.pattern == TrafficConfig::Pattern::kBursty && traffic.rate > most)
-      issue("workload.traffic.rate", fmt::format("bursts of {} packets make at most {:.4g} packets per cycle, found {}",
-                                                 traffic.burst_packets, most, traffic.rate));
-  }
-
-  void flow_that_can_deadlock() {
-    if (c.topology.flow == Flow::kNone && !options_.force)
-      issue("topology.flow", "none lets the links fill up and stop; expected credits or bubble, or --force");
-  }
-
-  void bubble_needs_two_places() {
-    if (c.topology.flow == Flow::kBubble && c.topology.link.depth < 2)
-      issue("topology.link.depth",
-            fmt::format("flow: bubble keeps one place of a link free; expected at least 2, found {}",
-                        c.topology.link.depth));
-  }
-
   void ordered_needs_strips() {
     if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip)
       issue("packets.shapes", "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
+  }
+
+  void cache_holds_a_set() {
+    const std::int64_t lines = c.memory.l2_kib * 1024 / c.memory.line_bytes;
+    if (c.memory.ways > lines)
+      issue("memory.ways", fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the "
+                                       "cache; expected at most {}, found {}",
+                                       c.memory.l2_kib, lines, c.memory.line_bytes, lines, c.memory.ways));
   }
 
   void hashed_homes_spill() {
@@ -227,52 +207,6 @@ class Rules {
       issue("collections.when_full",
             "home: hash can fill one resource with another's collections and stop; expected spill, found "
             "reserve");
-  }
-
-  void overrides_name_resources() {
-    std::map<std::int64_t, std::size_t> seen;
-    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i) {
-      const ResourceOverride& one = c.topology.overrides[i];
-      const std::string key = fmt::format("topology.overrides.{}.resource", i);
-      if (one.resource >= c.topology.resources)
-        issue(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, one.resource));
-      else if (!seen.emplace(one.resource, i).second)
-        issue(key, fmt::format("resource {} has an override already", one.resource));
-      if (one.testers.any_hit != c.testers.any_hit)
-        issue(fmt::format("topology.overrides.{}.testers.any_hit", i),
-              fmt::format("all resources have the same any-hit calls; expected {}, found {}",
-                          enum_name(c.testers.any_hit), enum_name(one.testers.any_hit)));
-    }
-  }
-
-  void faults_have_a_place() {
-    const FaultsConfig::Resource& r = c.faults.resource;
-    const bool resource = r.kind != FaultsConfig::Resource::Kind::kNone;
-    if (resource && r.number >= c.topology.resources)
-      issue("faults.resource.number",
-            fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
-    if (c.workload.kind == WorkloadConfig::Kind::kTraffic && (resource || c.faults.links.any()))
-      issue("faults", "there are no faults in traffic; expected none, or workload: rays");
-    if (resource && c.topology.shape == TopologyShape::kIndependent)
-      issue("faults.resource.kind", "independent resources have no faults; expected none");
-    if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
-      issue("faults.resource.after_rays",
-            fmt::format("under virtual time a slow resource is slow from the beginning; expected 0, found {}",
-                        r.after_rays));
-    if (r.kind == FaultsConfig::Resource::Kind::kStop) stop_leaves_a_resource();
-    if (c.faults.compare && !cycle())
-      issue("faults.compare",
-            "on the wall clock two runs differ by more than faults cost; expected false, or engine.kind: cycle");
-    // The engine takes a machine that does nothing for ten seconds for one that is stuck.
-    if (!cycle() && r.kind == FaultsConfig::Resource::Kind::kPause && r.cycles / c.engine.clock_mhz > 5'000'000)
-      issue("faults.resource.cycles",
-            fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
-                        5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
-  }
-
-  void stop_leaves_a_resource() {
-    if (c.topology.resources < 2)
-      issue("topology.resources", "when a resource stops, another has to continue; expected at least 2, found 1");
   }
 
   void vary_names_keys() {

@@ -24,6 +24,7 @@ struct Traffic {
   Latency latency;
   LinkUse link_utilisation;
   std::uint64_t flit_hops = 0;
+  double accepted_of_links = 0;
 };
 
 template <class V>
@@ -37,6 +38,8 @@ void describe(V& v, const Traffic& r) {
   v.field("offered", r.offered, "packets/resource/cycle", "load of the packets created within the window");
   v.field("accepted", r.accepted, "packets/resource/cycle",
           "load of the packets delivered within the window; less than offered in a saturated network");
+  v.field("accepted_of_links", r.accepted_of_links, "fraction",
+          "part of what all links could move within the window that the packets delivered in it needed");
   v.field("routers_mean", r.routers_mean, "resources",
           "resources that a measured packet visited, the first and the last included");
   v.field("zero_load_latency", r.zero_load_latency, "cycles",

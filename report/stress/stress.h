@@ -78,6 +78,41 @@ void describe(V& v, const StressRingRow& r) {
   v.field("same_digest", r.same_digest, "", "true if hits and picture are those of the first row");
 }
 
+/// A queue of a depth, of those tried inside the ring.
+struct StressRingChoice {
+  std::string queue;
+  std::uint64_t depth = 0;
+};
+
+template <class V>
+void describe(V& v, const StressRingChoice& r) {
+  v.field("queue", r.queue, "", "kind of queue");
+  v.field("depth", r.depth, "packets", "capacity of each link");
+}
+
+/// Pairs of runs of the best and the worst choice by the medians.
+struct StressPairs {
+  StressRingChoice first, second;
+  std::uint64_t pairs = 0, wins = 0;
+  double ratio = 1;
+  std::optional<double> ratio_least{}, ratio_most{};
+  bool difference = false;
+};
+
+template <class V>
+void describe(V& v, const StressPairs& r) {
+  v.section("first", r.first, "the choice with the highest median rate");
+  v.section("second", r.second, "the choice with the lowest median rate");
+  v.field("pairs", r.pairs, "pairs", "pairs of runs made after the two had been chosen, each first in every other one");
+  v.field("wins", r.wins, "pairs", "pairs in which `first` traced more rays per second");
+  v.field("ratio", r.ratio, "", "median over the pairs of the rate of `first` over that of `second`");
+  v.field("ratio_least", r.ratio_least, "",
+          "lower end of the 99 % interval of the median; absent with fewer than 8 pairs");
+  v.field("ratio_most", r.ratio_most, "", "upper end of the 99 % interval of the median");
+  v.field("difference", r.difference, "",
+          "true if the interval does not contain 1, so that the pairs show a difference");
+}
+
 /// The report of `carousel stress`.
 struct Stress {
   bool incomplete = false;
@@ -85,6 +120,7 @@ struct Stress {
   double seconds = 0;
   std::vector<StressRow> rows;
   std::vector<StressRingRow> ring;
+  std::optional<StressPairs> ring_pairs;
   std::string ring_verdict;
 
   bool broken() const {
@@ -104,7 +140,8 @@ void describe(V& v, const Stress& r) {
   v.field("seconds", r.seconds, "s", "time of the whole run");
   v.section("rows", r.rows, "queues by themselves");
   v.section("ring", r.ring, "queues inside the ring of the configuration");
-  v.field("ring_verdict", r.ring_verdict, "", "effect of the choice of queue and depth on rays per second, in words");
+  v.section("ring_pairs", r.ring_pairs, "the best choice of queue and depth against the worst, in pairs of runs");
+  v.field("ring_verdict", r.ring_verdict, "", "the difference that the pairs show, in words; empty without pairs");
 }
 
 }  // namespace carousel::report

@@ -51,7 +51,7 @@ void inside(const Stress& s, std::string& out) {
         fmt::format("  {:<14}{:>6}{:>12}{:>18}{:>10}{:>10}{:>11.1f}{}\n", row.queue, row.depth, scaled(row.rate_median),
                     scaled(row.rate_least) + "-" + scaled(row.rate_most), percent(row.relative), percent(row.refused),
                     row.occupancy_mean, row.same_digest ? "" : "  BROKEN: other hits or another image");
-  out += s.ring_verdict + "\n";
+  if (!s.ring_verdict.empty()) out += s.ring_verdict + "\n";
 }
 
 }  // namespace

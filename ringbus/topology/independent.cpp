@@ -7,7 +7,6 @@ namespace carousel::ringbus {
 TopologyPlan plan_independent(const TopologyConfig& config) {
   TopologyPlan plan;
   plan.successors = {round_in_steps(config, 1)};
-  plan.has_packets = false;
   plan.verdict = {false, "independent: every resource traces its own rays, there are no links"};
   return plan;
 }

@@ -50,10 +50,6 @@ struct TopologyPlan {
   /// Packets of its own that a resource may have under way in each direction.
   std::uint32_t packets_in_flight = 0;
   DeadlockVerdict verdict;
-  /// Resources exchange packets. Otherwise each traces its own rays, and there are no wires.
-  bool has_packets = true;
-  /// Synthetic traffic (`workload: traffic`) runs on it. Every round then goes through all resources and no hub.
-  bool carries_traffic = false;
   /// By direction of a packet: the direction in which the acknowledgement of its delivery travels back to its source.
   /// Only where traffic runs and packets are not sent directly.
   std::vector<std::uint16_t> ack_directions;

@@ -23,7 +23,6 @@ TopologyPlan plan_of_rounds(const TopologyConfig& config, std::vector<std::vecto
       plan.wires.push_back({ResourceId(r), plan.successors[d][r], d, config.link.latency_cycles});
   plan.packets_in_flight = packets_in_flight(config);
   plan.verdict = verdict_of_flow(config);
-  plan.carries_traffic = true;
   for (std::uint16_t d = 0; d < directions; ++d) plan.ack_directions.push_back(d);
   return plan;
 }

@@ -8,6 +8,7 @@ namespace carousel::ringbus {
 
 Topology::Topology(const TopologyConfig& config)
     : plan_(plan_topology(config)),
+      properties_(properties_of(config.shape)),
       resources_(static_cast<std::uint32_t>(config.resources)),
       visit_all_(config.visit == Visit::kAll),
       ports_(resources_ + plan_.hubs.size()) {
@@ -16,7 +17,7 @@ Topology::Topology(const TopologyConfig& config)
   for (std::uint32_t g = 0; g < plan_.groups.size(); ++g)
     group_of_.insert(group_of_.end(), plan_.groups[g].last.value - plan_.groups[g].first.value + 1, g);
   number_ports();
-  if (plan_.carries_traffic) number_positions();
+  if (properties_.carries_traffic) number_positions();
 }
 
 void Topology::number_ports() {

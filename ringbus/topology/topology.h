@@ -11,11 +11,11 @@
 #include "ringbus/topology/plan.h"
 
 // A new topology takes these places and no others (docs/extending.md has an example):
-//   1. its value in TopologyShape with its name (core/config/fields/topology.h); if an engine cannot run it, also a row
-//      in core/config/not_built.cpp, and if no traffic runs on it, traffic_has_a_network() in core/config/validate.cpp;
+//   1. its value in TopologyShape with its name and its properties (core/config/fields/topology.h); if an engine cannot
+//      run it, also a row in core/config/not_built.cpp;
 //   2. its own file here, with one function that fills in a TopologyPlan (plan.h): the wires, the next node in each
-//      direction, hubs, packets in flight, the verdict on deadlock, and if traffic runs on it. Shapes whose packets
-//      travel rings only name the rounds (rounds.h);
+//      direction, hubs, packets in flight and the verdict on deadlock. Shapes whose packets travel rings only name the
+//      rounds (rounds.h);
 //   3. that function's declaration in shapes.h and its row in the table of shapes.cpp.
 // A hub of a new kind also needs an agent of the cycle engine (cycle/fabric).
 
@@ -47,8 +47,8 @@ class Topology {
 
   bool direct() const { return plan_.direct; }
   bool visits_all() const { return visit_all_; }
-  bool has_packets() const { return plan_.has_packets; }
-  bool carries_traffic() const { return plan_.carries_traffic; }
+  bool has_packets() const { return properties_.has_packets; }
+  bool carries_traffic() const { return properties_.carries_traffic; }
   std::uint32_t packets_in_flight() const { return plan_.packets_in_flight; }
   std::uint16_t ack_direction(std::size_t direction) const { return plan_.ack_directions[direction]; }
   const DeadlockVerdict& verdict() const { return plan_.verdict; }
@@ -119,6 +119,7 @@ class Topology {
   void number_positions();
 
   TopologyPlan plan_;
+  ShapeProperties properties_;
   std::uint32_t resources_;
   bool visit_all_;
   std::vector<ResourceId> successors_;   // the plan's, direction after direction

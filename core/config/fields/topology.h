@@ -31,6 +31,31 @@ inline constexpr auto kEnumNames<TopologyShape> = [] {
                                {kIndependent, "independent"}});
 }();
 
+/// Properties of a shape that do not depend on numbers. Its wires and its rule against deadlock are its plan's
+/// (ringbus/topology).
+struct ShapeProperties {
+  bool has_packets = true;       ///< resources exchange packets; otherwise each traces its own rays, without links
+  bool carries_traffic = false;  ///< synthetic traffic runs on it: each round goes through all resources and no hub
+};
+
+constexpr ShapeProperties properties_of(TopologyShape shape) {
+  using enum TopologyShape;
+  switch (shape) {
+    case kRing:
+    case kBidirectional:
+    case kMultiRing:
+    case kPointToPoint:
+      return {.carries_traffic = true};
+    case kIndependent:
+      return {.has_packets = false};
+    case kHierarchical:
+    case kBus:
+    case kCentral:
+      break;
+  }
+  return {};
+}
+
 enum class CentralForm { kCells, kDistributor };
 template <>
 inline constexpr auto kEnumNames<CentralForm> = [] {

@@ -9,6 +9,7 @@ namespace carousel {
 
 struct TrafficConfig {
   enum class Pattern { kUniform, kTornado, kNeighbour, kHotspot, kBursty } pattern = Pattern::kUniform;
+  enum class SourceQueues { kShared, kPerDirection } source_queues = SourceQueues::kShared;
   double rate = 0.1;
   std::int64_t packets = 100000;
   std::int64_t packet_bytes = 32;
@@ -29,6 +30,12 @@ inline constexpr auto kEnumNames<TrafficConfig::Pattern> = [] {
                                         {kBursty, "bursty"}});
 }();
 
+template <>
+inline constexpr auto kEnumNames<TrafficConfig::SourceQueues> = [] {
+  using enum TrafficConfig::SourceQueues;
+  return names<TrafficConfig::SourceQueues>({{kShared, "shared"}, {kPerDirection, "per_direction"}});
+}();
+
 struct WorkloadConfig {
   enum class Kind { kRays, kRaysFrom, kTraffic } kind = Kind::kRays;
   std::string rays_from;  ///< ray CSV; its path is relative to the config's folder, then to the working one
@@ -40,6 +47,8 @@ namespace config {
 template <class V>
 void describe(V& v, TrafficConfig& c) {
   v.choice("pattern", c.pattern, "The rule that chooses the destination of a packet.");
+  v.choice("source_queues", c.source_queues,
+           "A source has one queue, whose first packet holds up all others, or one for each way out.");
   v.field("rate", c.rate, RealRange{0, 1, true}, "packets per resource and cycle", "The rate at which packets start.");
   v.field("packets", c.packets, IntRange{1, 1'000'000'000'000}, "packets",
           "The number of packets, those of the warm-up included.");

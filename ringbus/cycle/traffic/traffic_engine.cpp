@@ -108,6 +108,7 @@ class TrafficRun {
       out.delivered += node->delivered();
       out.offered += node->offered();
       out.accepted += node->accepted();
+      out.accepted_hops += node->accepted_hops();
       out.routers += node->routers();
       out.latency.add(node->latency());
     }

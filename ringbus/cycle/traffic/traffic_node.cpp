@@ -12,7 +12,6 @@ TrafficNode::TrafficNode(ResourceId id, const Topology& topology, const FlowRule
     : topology_(topology),
       id_(id),
       ports_(std::move(ports)),
-      source_(std::move(source)),
       window_(window),
       inject_cycles_(settings.inject_cycles),
       eject_cycles_(settings.eject_cycles),
@@ -21,24 +20,33 @@ TrafficNode::TrafficNode(ResourceId id, const Topology& topology, const FlowRule
       places_wanted_(flow.places_to_inject()),
       arrivals_(ports_.in.size()),
       injects_first_(flow.injects_first()),
-      to_create_(packets),
       allowances_(ports_.acks_in.size(), {settings.link_depth, {}}),
       passing_acks_(ports_.acks_in.size()) {
-  create();
+  queues_.assign(settings.shared_queue ? 1 : ports_.out.size() + 1, {std::move(source), packets});
+  for (SourceQueue& queue : queues_) create(queue);
 }
 
-void TrafficNode::create() {
-  waiting_ = to_create_ > 0;
-  if (!waiting_) return;
-  --to_create_;
-  source_.advance();
-  const ResourceId to = source_.destination();
-  route_ = topology_.route(id_, to, source_.random());
-  exit_ = topology_.direct() ? topology_.out_port_to(id_, to) : route_.direction;
-  ready_ = std::max(source_.created() + inject_cycles_, inject_free_);
-  if (source_.created() < window_.begin) return;
+void TrafficNode::create(SourceQueue& queue) {
+  constexpr int kAhead = 64;  // packets of other queues that it reads past before they have been created
+  look_at_next(queue);
+  for (int i = 0; i < kAhead && queue.waiting && !queue.mine; ++i) look_at_next(queue);
+}
+
+void TrafficNode::look_at_next(SourceQueue& queue) {
+  queue.waiting = queue.to_create > 0;
+  if (!queue.waiting) return;
+  --queue.to_create;
+  queue.source.advance();
+  const ResourceId to = queue.source.destination();
+  queue.route = topology_.route(id_, to, queue.source.random());
+  queue.exit = topology_.direct() ? topology_.out_port_to(id_, to) : queue.route.direction;
+  queue.mine = queues_.size() == 1 || static_cast<std::size_t>(&queue - queues_.data()) ==
+                                          (queue.route.hops == 0 ? ports_.out.size() : queue.exit);
+  if (!queue.mine) return;
+  queue.ready = std::max(queue.source.created() + inject_cycles_, queue.free);
+  if (queue.source.created() < window_.begin) return;
   ++offered_;
-  routers_ += route_.hops + 1u;
+  routers_ += queue.route.hops + 1u;
 }
 
 // ---- time
@@ -52,7 +60,9 @@ Cycle TrafficNode::next() const {
 }
 
 Cycle TrafficNode::next_here() const {
-  Cycle first = waiting_ ? next_injection() : kNever;
+  Cycle first = kNever;
+  for (const SourceQueue& queue : queues_)
+    if (queue.waiting) first = std::min(first, queue.mine ? next_injection(queue) : queue.source.created());
   for (std::size_t d = 0; d < arrivals_.size(); ++d) {
     // An arrival that is not later than the last step waits: for the sink, or for the egress place.
     if (arrivals_[d] > now_)
@@ -66,15 +76,15 @@ Cycle TrafficNode::next_here() const {
   return first;
 }
 
-Cycle TrafficNode::next_injection() const {
-  if (ready_ > now_) return ready_;
-  if (route_.hops == 0) return sink_free_ - (flits_ - 1u);
+Cycle TrafficNode::next_injection(const SourceQueue& queue) const {
+  if (queue.ready > now_) return queue.ready;
+  if (queue.route.hops == 0) return sink_free_ - (flits_ - 1u);
   if (!allowances_.empty()) {
-    const Allowance& allowance = allowances_[route_.direction];
+    const Allowance& allowance = allowances_[queue.route.direction];
     if (allowance.left == 0 && allowance.acks.empty()) return kNever;
     if (allowance.left == 0 && allowance.acks.front() > now_) return allowance.acks.front();
   }
-  return ports_.out[exit_].opens(places_wanted_);
+  return ports_.out[queue.exit].opens(places_wanted_);
 }
 
 void TrafficNode::run(Cycle end) {
@@ -94,13 +104,13 @@ void TrafficNode::step(Cycle now) {
       egress_count_ -= out.send(now);
     }
   }
-  if (injects_first_ && waiting_ && ready_ <= now) inject(now);
+  if (injects_first_) inject_all(now);
   const std::size_t ways = arrivals_.size(), first = first_in_;
   for (std::size_t i = 0; i < ways; ++i) {
     const std::size_t d = first + i < ways ? first + i : first + i - ways;
     if (arrivals_[d] <= now) pass(d, now);
   }
-  if (waiting_ && ready_ <= now) inject(now);
+  inject_all(now);
 }
 
 // ---- packets
@@ -131,31 +141,42 @@ void TrafficNode::pass(std::size_t d, Cycle now) {
   }
 }
 
-void TrafficNode::inject(Cycle now) {
-  const TrafficToken token{source_.created(), static_cast<std::uint16_t>(id_.value),
-                           static_cast<std::uint16_t>(route_.hops == 0 ? 0 : route_.hops - 1), flits_};
-  if (route_.hops == 0) {
+void TrafficNode::inject_all(Cycle now) {
+  for (SourceQueue& queue : queues_) {
+    while (queue.waiting && !queue.mine && queue.source.created() <= now) create(queue);
+    if (queue.waiting && queue.mine && queue.ready <= now) inject(queue, now);
+  }
+}
+
+void TrafficNode::inject(SourceQueue& queue, Cycle now) {
+  const std::uint16_t hops = queue.route.hops;
+  const TrafficToken token{queue.source.created(), static_cast<std::uint16_t>(id_.value),
+                           static_cast<std::uint16_t>(hops == 0 ? 0 : hops - 1), flits_, hops};
+  if (hops == 0) {
     const Cycle tail = now + flits_ - 1u;
     if (!sink_open(tail)) return;
     deliver(token, tail);
-  } else if (Out& out = ports_.out[exit_]; injects_first_) {
+  } else if (Out& out = ports_.out[queue.exit]; injects_first_) {
     if (!out.has_place()) return;
     out.push(token, now, token.skip > 0);
     out.take_credits(now);
     if (!out.send(now)) ++egress_count_;
   } else {
-    if (!out.open(now, places_wanted_) || !may_send_more(now)) return;
+    if (!out.open(now, places_wanted_) || !may_send_more(queue.route.direction, now)) return;
     out.launch(token, now, token.skip > 0);
   }
-  inject_free_ = now + flits_;
-  create();
+  queue.free = now + flits_;
+  create(queue);
 }
 
 void TrafficNode::deliver(const TrafficToken& token, Cycle tail) {
   sink_free_ = tail + flits_;
   last_ = tail + eject_cycles_;  // the sink's packets come one after the other
   ++delivered_;
-  accepted_ += last_ >= window_.begin && last_ < window_.end;
+  if (last_ >= window_.begin && last_ < window_.end) {
+    ++accepted_;
+    accepted_hops_ += token.hops;
+  }
   if (token.created >= window_.begin) latency_.add(last_ - token.created);
 }
 
@@ -186,9 +207,9 @@ void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle no
   ports_.acks_out[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
 }
 
-bool TrafficNode::may_send_more(Cycle now) {
+bool TrafficNode::may_send_more(std::size_t direction, Cycle now) {
   if (allowances_.empty()) return true;
-  Allowance& allowance = allowances_[route_.direction];
+  Allowance& allowance = allowances_[direction];
   for (; !allowance.acks.empty() && allowance.acks.front() <= now; allowance.acks.pop_front()) ++allowance.left;
   if (allowance.left == 0) return false;
   --allowance.left;
@@ -205,7 +226,10 @@ std::string TrafficNode::describe() const {
       text += fmt::format("; a packet of resource {}, {} hops from its destination, waits for a place",
                           out.first().source, out.first().skip + 1);
   }
-  if (waiting_) text += fmt::format("; {} packets wait to get in", to_create_ + 1);
+  std::uint64_t unread = 0;  // by the queue that has the most before it
+  for (const SourceQueue& queue : queues_)
+    if (queue.waiting) unread = std::max(unread, queue.to_create + 1);
+  if (unread > 0) text += fmt::format("; {} packets wait to get in", unread);
   return text.empty() ? text : fmt::format("resource {}", id_.value) + text;
 }
 

@@ -21,14 +21,18 @@ struct TrafficNodeSettings {
   Cycle inject_cycles = 0, eject_cycles = 0;
   Cycle link_latency = 1;
   std::uint32_t link_depth = 1;
-  std::uint16_t flits = 1;  ///< of a packet
+  std::uint16_t flits = 1;   ///< of a packet
+  bool shared_queue = true;  ///< the source has one queue for all packets
 };
 
 inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, const LinkConfig& link) {
-  return {static_cast<Cycle>(traffic.inject_cycles), static_cast<Cycle>(traffic.eject_cycles),
-          static_cast<Cycle>(link.latency_cycles), static_cast<std::uint32_t>(link.depth),
+  return {static_cast<Cycle>(traffic.inject_cycles),
+          static_cast<Cycle>(traffic.eject_cycles),
+          static_cast<Cycle>(link.latency_cycles),
+          static_cast<std::uint32_t>(link.depth),
           static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(traffic.packet_bytes),
-                                              static_cast<std::uint64_t>(link.bytes_per_cycle)))};
+                                              static_cast<std::uint64_t>(link.bytes_per_cycle))),
+          traffic.source_queues == TrafficConfig::SourceQueues::kShared};
 }
 
 /// A resource in a network without rays: a source of packets, a sink, and a router with one egress place for each way
@@ -36,15 +40,15 @@ inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, c
 /// may still be arriving), so a hop takes topology.link.latency_cycles. A packet of L flits whose destination is h hops
 /// away takes, from its creation until its last flit is delivered and if no other packet is in its way,
 ///     inject_cycles + h * latency_cycles + L - 1 + eject_cycles.
-/// One flit a cycle gets in from the source, and one out to the sink. Packets on their way go before packets of the
-/// source. The queue of the source has no bound, and is first in, first out.
+/// Packets on their way go before packets of the source. The source has one queue, or one for each way out and one for
+/// packets that stay here. A queue has no bound and is first in, first out, and one flit a cycle leaves it. One flit a
+/// cycle gets out to the sink.
 ///
 /// Packets that go only part of the way round a ring cannot stop it (DESIGN.md section 4):
 /// - `bubble`: a packet is injected only if it leaves a free place in the next queue, so injecting never fills a round
 ///   of queues, and moving on does not change how many are full. Some packet always has a free place ahead
 ///   (V. Puente et al., The adaptive bubble router, J. Parallel and Distributed Computing 61 (2001)).
-/// - `credits`: a source has at most `depth` packets on each ring until an acknowledgement comes that one was
-/// delivered,
+/// - `credits`: a source has at most `depth` packets on each ring until an acknowledgement says that one was delivered,
 ///   so R sources have R * depth packets against R * depth places in queues and R egress places: a place is always
 ///   free. Acknowledgements travel on wires of their own that are never full, in the direction that the topology names.
 /// - `none`: nothing prevents it, and packets of the source go first, so that it shows.
@@ -71,30 +75,44 @@ class TrafficNode final : public Agent {
   const LatencyHistogram& latency() const { return latency_; }  ///< of measured packets delivered here
   std::uint64_t flits() const { return flits_; }                ///< of a packet
   std::uint64_t delivered() const { return delivered_; }
-  std::uint64_t accepted() const { return accepted_; }  ///< delivered within the window
-  std::uint64_t offered() const { return offered_; }    ///< created within the window
+  std::uint64_t accepted() const { return accepted_; }            ///< delivered within the window
+  std::uint64_t accepted_hops() const { return accepted_hops_; }  ///< links that these crossed
+  std::uint64_t offered() const { return offered_; }              ///< created within the window
   /// Routers that the packets offered had to visit, first and last included.
   std::uint64_t routers() const { return routers_; }
   Cycle last() const { return last_; }  ///< when something was last delivered
 
  private:
+  /// The source as one queue sees it: it reads on to the next packet that is its own. All queues read the same packets,
+  /// so none of them has to be stored.
+  struct SourceQueue {
+    TrafficSource source;
+    std::uint64_t to_create;  // after the packet that it looks at
+    bool waiting = false;     // it looks at a packet; the packet need not have been created yet
+    bool mine = false;        // the packet takes the way of this queue
+    Topology::Route route{};
+    std::size_t exit = 0;
+    Cycle ready = 0, free = 0;  // not injected before
+  };
+
   Cycle next_here() const;
-  Cycle next_injection() const;
+  Cycle next_injection(const SourceQueue& queue) const;
   void step(Cycle now);
   void take_acks(Cycle end);
   void forward_acks(std::size_t a, Cycle end);
   void acknowledge(const TrafficToken& token, std::size_t d, Cycle now);
-  bool may_send_more(Cycle now);
+  bool may_send_more(std::size_t direction, Cycle now);
   void pass(std::size_t d, Cycle now);
-  void inject(Cycle now);
+  void inject_all(Cycle now);
+  void inject(SourceQueue& queue, Cycle now);
   bool sink_open(Cycle tail) const { return sink_free_ <= tail; }
   void deliver(const TrafficToken& token, Cycle tail);
-  void create();
+  void create(SourceQueue& queue);
+  void look_at_next(SourceQueue& queue);
 
   const Topology& topology_;
   ResourceId id_;
   Ports ports_;
-  TrafficSource source_;
   TrafficWindow window_;
   Cycle inject_cycles_, eject_cycles_, ack_latency_;
   std::uint16_t flits_;
@@ -108,12 +126,7 @@ class TrafficNode final : public Agent {
 
   bool injects_first_;  // before packets on their way
 
-  // The packet to inject next; it need not have been created yet.
-  bool waiting_ = false;
-  Topology::Route route_;
-  std::size_t exit_ = 0;
-  Cycle ready_ = 0, inject_free_ = 0;  // not injected before
-  std::uint64_t to_create_;            // after it
+  std::vector<SourceQueue> queues_;  // one; or by way out, and the last one for packets that stay here
   struct Allowance {
     std::uint32_t left = 0;  // packets that it may send besides those on the way
     Fifo<Cycle> acks;        // times at which there will be one more
@@ -126,7 +139,7 @@ class TrafficNode final : public Agent {
   std::vector<Fifo<PassingAck>> passing_acks_;  // by their direction
 
   LatencyHistogram latency_;
-  std::uint64_t delivered_ = 0, accepted_ = 0, offered_ = 0, routers_ = 0;
+  std::uint64_t delivered_ = 0, accepted_ = 0, accepted_hops_ = 0, offered_ = 0, routers_ = 0;
   Cycle last_ = 0;
 };
 

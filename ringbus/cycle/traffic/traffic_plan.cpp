@@ -17,9 +17,10 @@ TrafficPlan::TrafficPlan(const TrafficConfig& traffic, std::uint64_t seed, std::
     --left;
     sources[r].advance();
   };
-  // A source creates a packet a cycle at most, so all may run for so long without making too many.
-  for (Cycle at = 0; left >= resources;) {
-    at += left / resources;
+  // A source creates a packet a cycle at most, so all may run for so long and at least the last packet is left, which
+  // ends the window.
+  for (Cycle at = 0; left > resources;) {
+    at += (left - 1) / resources;
     for (std::size_t r = 0; r < resources; ++r)
       while (sources[r].created() <= at) count(r);
   }

@@ -18,6 +18,7 @@ struct TrafficResult {
   std::uint64_t flits = 1;                   ///< of a packet
   std::uint64_t offered = 0;                 ///< packets created within the window
   std::uint64_t accepted = 0;                ///< packets delivered within the window
+  std::uint64_t accepted_hops = 0;           ///< links that these crossed
   std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
   std::uint64_t hops = 0;                    ///< links crossed by packets
   LatencyHistogram latency;                  ///< of the packets offered
@@ -27,6 +28,11 @@ struct TrafficResult {
   std::size_t threads = 1;
 
   std::uint64_t flit_hops() const { return hops * flits; }
+  /// Part of what all links could move within the window that packets delivered in it needed.
+  double accepted_of_links() const {
+    const double most = static_cast<double>(links.size()) * static_cast<double>(window_end - window_begin);
+    return most == 0 ? 0 : static_cast<double>(accepted_hops * flits) / most;
+  }
   double routers_mean() const { return offered == 0 ? 0 : static_cast<double>(routers) / static_cast<double>(offered); }
   /// Mean latency of the packets offered if each were alone: see ringbus/cycle/traffic/traffic_node.h.
   double zero_load_latency(const Config& config) const {

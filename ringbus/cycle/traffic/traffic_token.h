@@ -12,6 +12,7 @@ struct TrafficToken {
   std::uint16_t source = 0;
   std::uint16_t skip = 0;         ///< resources to pass before its last one
   std::uint16_t link_cycles = 1;  ///< its flits: the cycles for which it occupies a link
+  std::uint16_t hops = 0;         ///< links that it crosses in all
 };
 
 /// A packet has been delivered; its source may have another one on the way.

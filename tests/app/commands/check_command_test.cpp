@@ -40,6 +40,44 @@ TEST(CheckCommand, WhatDoesNotFitTheMachineIsRefusedBeforeItIsLoaded) {
   EXPECT_THAT(outcome.err, HasSubstr("a.yaml:4:23: rays.slots_per_resource: expected what fits into the machine's"));
 }
 
+TEST(CheckCommand, RefusesTheMachinesThatARunRefuses) {
+  const Program program;
+  const std::string cycle = "scene: {builtin: cornell}\nengine: {kind: cycle}\n";
+  const struct {
+    std::string text, message;
+  } machines[] = {
+      {cycle + "topology: {resources: 8, shape: multi_ring, rings: 64}\n",
+       "a.yaml:3:52: topology.rings: expected at most topology.resources = 8, found 64"},
+      {cycle + "memory: {l2_kib: 2, line_bytes: 128, ways: 32}\n",
+       "a.yaml:3:44: memory.ways: a cache of 2 KiB has 16 lines of 128 bytes, and a set is no larger than the cache; "
+       "expected at most 16, found 32"},
+      {cycle + "topology: {shape: independent}\nfaults: {links: {corrupt: 0.1}}\n",
+       "a.yaml:4:17: faults.links: independent resources have no links; expected no faults of links"},
+      {cycle + "workload: {rays_from: nowhere.csv}\n",
+       "a.yaml:3:23: workload.rays_from: expected a file of rays beside the configuration or in the working directory, "
+       "found 'nowhere.csv', which is not there"},
+  };
+  for (const auto& machine : machines) {
+    program.write("a.yaml", machine.text);
+    for (const char* command : {"check", "run"}) {
+      const Outcome outcome = program.run({command, "a.yaml"});
+      EXPECT_EQ(outcome.status, 2) << command << " " << machine.text;
+      EXPECT_THAT(outcome.err, HasSubstr(machine.message));
+    }
+  }
+}
+
+TEST(CheckCommand, ReadsTheListOfRays) {
+  const Program program;
+  program.write("a.yaml", "scene: {builtin: cornell}\nworkload: {rays_from: rays.csv}\n");
+  program.write("rays.csv", "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n0,camera,0,0,0,0,0,1,0,inf\n");
+  EXPECT_THAT(program.run({"check", "a.yaml"}).out, HasSubstr("# rays: 1 of rays.csv"));
+  program.write("rays.csv", "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n0,camera,0,0,0,0,0,0,0,inf\n");
+  const Outcome outcome = program.run({"check", "a.yaml"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("rays.csv:2:16: expected a direction, found 0,0,0"));
+}
+
 TEST(MemoryNeed, NamesTheKeyThatWeighsMost) {
   const LocatedConfig located =
       load_config({"scene: {builtin: terrain, triangles: 1000000}\nimage: {width: 16}\n", "m.yaml"});

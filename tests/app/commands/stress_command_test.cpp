@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/stress/ring_queues.h"
 #include "report/run/report_json.h"
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
@@ -40,7 +41,7 @@ TEST(StressCommand, TriesQueuesInsideTheRing) {
                 "{depth: 4}}\n");
   const Outcome outcome =
       program.run({"stress", "a.yaml", "--seconds", "0.1", "--messages", "500", "--repetitions", "2", "--queue",
-                   "spsc_ring,mutex", "--pattern", "stream", "--depths", "1,4", "--json"});
+                   "spsc_ring,mutex", "--pattern", "stream", "--depths", "1,4", "--pairs", "3", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json json = Json::parse(outcome.out);
   EXPECT_EQ(schema_problems(report::report_schema()["$defs"]["stress"], json), std::vector<std::string>{});
@@ -50,7 +51,37 @@ TEST(StressCommand, TriesQueuesInsideTheRing) {
     EXPECT_EQ(row["same_digest"], true);
     EXPECT_LE(row["occupancy_mean"].get<double>(), row["depth"].get<double>());
   }
-  EXPECT_THAT(json["ring_verdict"].get<std::string>(), HasSubstr(" more; repetitions of one cell differ by up to "));
+  const Json& pairs = json["ring_pairs"];
+  EXPECT_EQ(pairs["pairs"], 3);
+  EXPECT_EQ(pairs["difference"], false);  // whatever the rates
+  EXPECT_FALSE(pairs.contains("ratio_least"));
+  const std::string verdict = json["ring_verdict"];
+  EXPECT_THAT(verdict, HasSubstr("no difference shown between "));
+  EXPECT_THAT(verdict, HasSubstr(" of 3 pairs of runs, median "));
+  EXPECT_THAT(verdict, HasSubstr("; fewer than 8 pairs show nothing"));
+}
+
+TEST(StressCommand, ClaimsADifferenceInsideTheRingOnlyWithAnInterval) {
+  report::StressPairs pairs;
+  pairs.first = {"spsc_ring", 16};
+  pairs.second = {"mutex", 1};
+  pairs.pairs = 12;
+  pairs.wins = 12;
+  pairs.ratio = 1.3;
+  pairs.ratio_least = 1.2;
+  pairs.ratio_most = 1.4;
+  pairs.difference = true;
+  EXPECT_EQ(app::ring_verdict(pairs),
+            "spsc_ring of depth 16 is faster than mutex of depth 1: it traced more rays a second in 12 of 12 pairs of "
+            "runs, median +30.0 %, 99 % interval +20.0 % to +40.0 %");
+  pairs.wins = 7;
+  pairs.ratio = 1.02;
+  pairs.ratio_least = 0.97;
+  pairs.ratio_most = 1.06;
+  pairs.difference = false;
+  EXPECT_EQ(app::ring_verdict(pairs),
+            "no difference shown between spsc_ring of depth 16 and mutex of depth 1: the first traced more rays a "
+            "second in 7 of 12 pairs of runs, median +2.0 %, 99 % interval -3.0 % to +6.0 %");
 }
 
 TEST(StressCommand, RefusesWhatThereIsNot) {

@@ -64,5 +64,17 @@ TEST(TrafficRun, CheckKnowsItAndNativeIsRefused) {
   EXPECT_THAT(native.err, HasSubstr("workload: traffic runs in virtual time"));
 }
 
+TEST(TrafficRun, HasNoHitsToWrite) {
+  const Program program;
+  program.write("net.yaml", kTraffic);
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--hits"}, {"--dump-rays", "rays.csv"}}) {
+    std::vector<std::string> arguments{"run", "net.yaml"};
+    arguments.insert(arguments.end(), option.begin(), option.end());
+    const Outcome outcome = program.run(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(option[0] + ": synthetic traffic has no rays"));
+  }
+}
+
 }  // namespace
 }  // namespace carousel

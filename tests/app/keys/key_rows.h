@@ -198,6 +198,7 @@ inline std::vector<KeyRow> key_rows() {
       {"verify", kTerrain},
       {"workload.rays_from", kCornell, {}, {"fewer.csv"}},
       {"workload.traffic.pattern", kTraffic},
+      {"workload.traffic.source_queues", kTraffic, {"topology.shape=bidirectional", "workload.traffic.rate=0.9"}},
       {"workload.traffic.rate", kTraffic, {}, {"0.1"}},
       {"workload.traffic.packets", kTraffic, {}, {"1000"}},
       {"workload.traffic.packet_bytes", kTraffic, {}, {"64"}},

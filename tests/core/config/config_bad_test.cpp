@@ -206,6 +206,33 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"QueueOfTheCycleEngine", SCENE "engine: {kind: cycle}\ntopology: {link: {queue: mutex}}\n",
                   "test.yaml:3:26: topology.link.queue: the cycle engine has no real queues; expected spsc_ring, found "
                   "mutex"},
+        BadConfig{"RingsWithoutResources",
+                  SCENE "engine: {kind: cycle}\ntopology: {resources: 8, shape: multi_ring, rings: 64}\n",
+                  "test.yaml:3:52: topology.rings: expected at most topology.resources = 8, found 64"},
+        BadConfig{"GroupsWithoutResources",
+                  SCENE "engine: {kind: cycle}\ntopology: {resources: 3, shape: hierarchical, groups: 5}\n",
+                  "test.yaml:3:55: topology.groups: expected at most topology.resources = 3, found 5"},
+        BadConfig{"SetLargerThanTheCache", SCENE "memory: {l2_kib: 1, line_bytes: 64, ways: 17}\n",
+                  "test.yaml:2:43: memory.ways: a cache of 1 KiB has 16 lines of 64 bytes, and a set is no larger than "
+                  "the cache; expected at most 16, found 17"},
+        BadConfig{"FaultyLinksOfIndependentResources",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\nfaults: {links: {drop: 0.1}}\n",
+                  "test.yaml:4:17: faults.links: independent resources have no links; expected no faults of links, or "
+                  "another topology.shape"},
+        BadConfig{"FaultyLinksOfOneResource", SCENE "topology: {resources: 1}\nfaults: {links: {drop: 0.1}}\n",
+                  "test.yaml:3:17: faults.links: one resource has no links; expected no faults of links, or more "
+                  "topology.resources"},
+        BadConfig{"FaultyLinksThatNoPacketCrosses", SCENE "collections: {home: local}\nfaults: {links: {drop: 0.1}}\n",
+                  "test.yaml:3:17: faults.links: with collections.home: local no packet travels; expected no faults of "
+                  "links, or another home"},
+        BadConfig{"VerifiedTraffic", "engine: {kind: cycle}\nverify: reference\nworkload: {traffic: {rate: 0.1}}\n",
+                  "test.yaml:2:9: verify: traffic has no hits to verify; expected none, found reference"},
+        BadConfig{"EffectsOfAListOfRays", SCENE "verify: effects\nworkload: {rays_from: a.csv}\n",
+                  "test.yaml:2:9: verify: a list of rays is not shaded, so effects change nothing; expected none or "
+                  "reference, found effects"},
+        BadConfig{"ProceduralTerrain", "scene: {builtin: terrain, procedural: true}\n",
+                  "test.yaml:1:39: scene.procedural: only the built-in spheres are procedural primitives; expected "
+                  "false, found true"},
         BadConfig{"EffectsList", SCENE "shading: {effects: [sky, shadow_ray]}\n",
                   "test.yaml:2:26: shading.effects.1: expected the name of an effect, found 'shadow_ray'; did you mean "
                   "'shadow_rays'?"},
@@ -263,6 +290,15 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ConfigRules, FlowNoneIsPermittedByForce) {
   const auto config = parse_config(SCENE "topology: {flow: none}\n", "test.yaml", {}, {.force = true});
   EXPECT_EQ(config.topology.flow, Flow::kNone);
+}
+
+TEST(ConfigRules, OneResourceHasNoLinksWhateverTheShapeSays) {
+  for (const char* shape : {"{resources: 1, shape: multi_ring}", "{resources: 1, shape: hierarchical}"})
+    EXPECT_THAT(issues_of(SCENE "engine: {kind: cycle}\ntopology: " + std::string(shape) + "\n"), testing::IsEmpty());
+}
+
+TEST(ConfigRules, ASetMayBeTheWholeCache) {
+  EXPECT_THAT(issues_of(SCENE "memory: {l2_kib: 1, line_bytes: 64, ways: 16}\n"), testing::IsEmpty());
 }
 
 TEST(ConfigRules, AFieldThatCannotBeReadIsNotJudgedByItsDefault) {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/config/config.h"
+#include "core/config/load.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
@@ -34,6 +34,8 @@ Config random_network(std::uint32_t seed) {
   c.topology.flow = any(Flow::kBubble, Flow::kCredits);
   c.topology.link.depth = any(2, 3, 16);
   c.topology.link.latency_cycles = any(1, 2, 4, 7);
+  c.workload.traffic.source_queues =
+      any(TrafficConfig::SourceQueues::kShared, TrafficConfig::SourceQueues::kPerDirection);
   c.workload.traffic.packet_bytes = any(1, 32, 33, 200);
   c.workload.traffic.inject_cycles = any(0, 1, 3);
   c.workload.traffic.eject_cycles = any(0, 2);
@@ -78,6 +80,31 @@ TEST(Traffic, IsTheSameOnAnyNumberOfThreads) {
       EXPECT_TRUE(together.links == alone.links);
     }
   }
+}
+
+TEST(Traffic, SourceQueuesChangeTimesAndNotPackets) {
+  for (const Shape shape : {Shape::kBidirectional, Shape::kMultiRing, Shape::kPointToPoint}) {
+    Config c = traffic_config(shape, 8, Pattern::kUniform, 0.9, 20000);
+    const TrafficResult shared = run_traffic(c, {});
+    c.workload.traffic.source_queues = TrafficConfig::SourceQueues::kPerDirection;
+    const TrafficResult apart = run_traffic(c, {});
+    EXPECT_EQ(apart.delivered, shared.delivered);
+    EXPECT_EQ(apart.offered, shared.offered);
+    EXPECT_EQ(apart.routers, shared.routers);
+    EXPECT_EQ(apart.link_packets, shared.link_packets);
+    EXPECT_GT(apart.accepted, shared.accepted) << enum_name(shape);
+    EXPECT_LT(apart.latency.mean(), shared.latency.mean()) << enum_name(shape);
+  }
+}
+
+// All packets leave by the one way out.
+TEST(Traffic, AQueueADirectionChangesNothingWithOneDirection) {
+  Config c = traffic_config(Shape::kRing, 8, Pattern::kTornado, 0.9, 20000);
+  const TrafficResult shared = run_traffic(c, {});
+  c.workload.traffic.source_queues = TrafficConfig::SourceQueues::kPerDirection;
+  const TrafficResult apart = run_traffic(c, {});
+  EXPECT_EQ(apart.cycles, shared.cycles);
+  EXPECT_TRUE(apart.latency == shared.latency);
 }
 
 TEST(Traffic, StopsWhenToldTo) {
@@ -127,6 +154,23 @@ TEST(TrafficPlan, SharesOutExactlyThePackets) {
     std::uint64_t sum = 0;
     for (const std::uint64_t one : plan.packets) sum += one;
     EXPECT_EQ(sum, static_cast<std::uint64_t>(packets));
+  }
+}
+
+// The window ended at cycle 0, and with it the load was 0, when the sources made the last packets all at once.
+TEST(TrafficPlan, FullLoadIsMeasured) {
+  for (const std::int64_t packets : {8, 800, 801, 8000}) {
+    Config c = load_config({fmt::format("engine: {{kind: cycle}}\ntopology: {{shape: bidirectional}}\nworkload: "
+                                        "{{traffic: {{rate: 1.0, packets: {}}}}}\n",
+                                        packets),
+                            "full.yaml"})
+                   .config;
+    const cycle::TrafficPlan plan = plan_of(c);
+    EXPECT_EQ(plan.window.end, static_cast<std::uint64_t>((packets + 7) / 8 + 1));
+    const TrafficResult r = run_traffic(c, {});
+    const double cycles = static_cast<double>(r.window_end - r.window_begin);
+    EXPECT_NEAR(static_cast<double>(r.offered) / (8 * cycles), 1, 2 / cycles) << packets;
+    if (packets >= 800) EXPECT_GT(r.accepted, 0u);
   }
 }
 

@@ -1,4 +1,5 @@
 // The network alone against closed forms and against another simulator's numbers (docs/validation.md).
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -6,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/config/config.h"
+#include "core/config/load.h"
 #include "core/types/enum_names.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "tests/ringbus/traffic/traffic_config.h"
@@ -105,6 +106,33 @@ TEST(TrafficValidation, SaturatesBelowTheBoundOfTheLinks) {
           EXPECT_GE(accepted, 0.9 * bound);
         }
       }
+    }
+  }
+}
+
+// The first packet of a queue holds up packets that could leave in other directions, so a source with one queue for all
+// of them leaves links idle (M. Karol, M. Hluchyj, S. Morgan, Input versus output queueing on a space-division packet
+// switch, IEEE Trans. Communications 35 (1987)). With a queue a direction the links are the limit, as in the closed
+// form.
+TEST(TrafficValidation, AQueueADirectionReachesTheBoundOfTheLinks) {
+  for (const char* network : {"{shape: bidirectional, resources: 8}", "{shape: bidirectional, resources: 16}",
+                              "{shape: multi_ring, rings: 2, resources: 16}"}) {
+    for (const char* flow : {"bubble", "credits"}) {
+      const auto part_of_links = [&](const char* queues) {
+        Config c = load_config({fmt::format("engine: {{kind: cycle}}\ntopology: {}\nworkload: {{traffic: {{rate: 1.0, "
+                                            "packets: 200000, source_queues: {}}}}}\n",
+                                            network, queues),
+                                "saturated.yaml"},
+                               std::array{std::string("topology.flow=") + flow})
+                       .config;
+        return run_traffic(c, {}).accepted_of_links();
+      };
+      const double shared = part_of_links("shared"), apart = part_of_links("per_direction");
+      fmt::print("{} {}: {:.1f} % of the links' time with one queue, {:.1f} % with a queue a direction\n", network,
+                 flow, 100 * shared, 100 * apart);
+      EXPECT_LT(shared, 0.87);
+      EXPECT_GT(apart, 0.97);
+      EXPECT_LE(apart, 1.005);  // some packets delivered were on their way when the window began
     }
   }
 }

@@ -1,0 +1,162 @@
+#include "core/config/network_rules.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/config/not_built.h"
+
+namespace carousel::config {
+
+namespace {
+
+bool is_built(TopologyShape shape) {
+  return !engines_with("topology.shape", enum_name(shape)).empty();
+}
+
+/// "a, b or c"
+std::string shapes_with_traffic() {
+  std::string out;
+  for (const auto& [shape, name] : kEnumNames<TopologyShape>)
+    if (properties_of(shape).carries_traffic) out += (out.empty() ? "" : ", ") + std::string(name);
+  if (const std::size_t last = out.rfind(", "); last != std::string::npos) out.replace(last, 2, " or ");
+  return out;
+}
+
+class NetworkRules {
+ public:
+  NetworkRules(const Config& config, bool force, const RuleBreach& breach)
+      : c(config), force_(force), breach_(breach) {}
+
+  void check() {
+    parts_are_not_more_than_resources();
+    traffic_has_a_network();
+    flow_that_can_deadlock();
+    bubble_needs_two_places();
+    overrides_name_resources();
+    faults_have_a_place();
+  }
+
+ private:
+  bool cycle() const { return c.engine.kind == EngineKind::kCycle; }
+
+  /// More rings than resources would be wires without work, and groups without a resource cannot be made. One resource
+  /// has no links, whatever the shape.
+  void parts_are_not_more_than_resources() {
+    const std::int64_t resources = c.topology.resources;
+    const auto check = [&](TopologyShape shape, const char* key, std::int64_t parts) {
+      if (resources > 1 && c.topology.shape == shape && parts > resources)
+        breach_(key, fmt::format("expected at most topology.resources = {}, found {}", resources, parts));
+    };
+    check(TopologyShape::kMultiRing, "topology.rings", c.topology.rings);
+    check(TopologyShape::kHierarchical, "topology.groups", c.topology.groups);
+  }
+
+  void traffic_has_a_network() {
+    if (c.workload.kind != WorkloadConfig::Kind::kTraffic) return;
+    if (!cycle()) breach_("engine.kind", "workload: traffic runs in virtual time; expected cycle, found native");
+    if (!properties_of(c.topology.shape).carries_traffic && is_built(c.topology.shape))
+      breach_("topology.shape", fmt::format("there is no traffic on {}; expected {}", enum_name(c.topology.shape),
+                                            shapes_with_traffic()));
+    if (c.verify != Verify::kNone)
+      breach_("verify", fmt::format("traffic has no hits to verify; expected none, found {}", enum_name(c.verify)));
+    const TrafficConfig& traffic = c.workload.traffic;
+    if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
+      breach_("workload.traffic.hotspot",
+              fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, traffic.hotspot));
+    // There is at least one cycle without a packet between two bursts.
+    const double burst = static_cast<double>(traffic.burst_packets), most = burst / (burst + 1);
+    if (traffic.pattern == TrafficConfig::Pattern::kBursty && traffic.rate > most)
+      breach_("workload.traffic.rate",
+              fmt::format("bursts of {} packets make at most {:.4g} packets per cycle, found {}", traffic.burst_packets,
+                          most, traffic.rate));
+  }
+
+  void flow_that_can_deadlock() {
+    if (c.topology.flow == Flow::kNone && !force_)
+      breach_("topology.flow", "none lets the links fill up and stop; expected credits or bubble, or --force");
+  }
+
+  void bubble_needs_two_places() {
+    if (c.topology.flow == Flow::kBubble && c.topology.link.depth < 2)
+      breach_("topology.link.depth",
+              fmt::format("flow: bubble keeps one place of a link free; expected at least 2, found {}",
+                          c.topology.link.depth));
+  }
+
+  void overrides_name_resources() {
+    std::map<std::int64_t, std::size_t> seen;
+    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i) {
+      const ResourceOverride& one = c.topology.overrides[i];
+      const std::string key = fmt::format("topology.overrides.{}.resource", i);
+      if (one.resource >= c.topology.resources)
+        breach_(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, one.resource));
+      else if (!seen.emplace(one.resource, i).second)
+        breach_(key, fmt::format("resource {} has an override already", one.resource));
+      if (one.testers.any_hit != c.testers.any_hit)
+        breach_(fmt::format("topology.overrides.{}.testers.any_hit", i),
+                fmt::format("all resources have the same any-hit calls; expected {}, found {}",
+                            enum_name(c.testers.any_hit), enum_name(one.testers.any_hit)));
+    }
+  }
+
+  void faults_have_a_place() {
+    const FaultsConfig::Resource& r = c.faults.resource;
+    const bool resource = r.kind != FaultsConfig::Resource::Kind::kNone;
+    if (resource && r.number >= c.topology.resources)
+      breach_("faults.resource.number",
+              fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
+    if (c.workload.kind == WorkloadConfig::Kind::kTraffic && (resource || c.faults.links.any()))
+      breach_("faults", "there are no faults in traffic; expected none, or workload: rays");
+    if (resource && !properties_of(c.topology.shape).has_packets)
+      breach_("faults.resource.kind",
+              fmt::format("{} resources have no faults; expected none", enum_name(c.topology.shape)));
+    if (c.faults.links.any()) faulty_links_carry_packets();
+    if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
+      breach_("faults.resource.after_rays",
+              fmt::format("under virtual time a slow resource is slow from the beginning; expected 0, found {}",
+                          r.after_rays));
+    if (r.kind == FaultsConfig::Resource::Kind::kStop) stop_leaves_a_resource();
+    if (c.faults.compare && !cycle())
+      breach_("faults.compare",
+              "on the wall clock two runs differ by more than faults cost; expected false, or engine.kind: cycle");
+    // The engine takes a machine that does nothing for ten seconds for one that is stuck.
+    if (!cycle() && r.kind == FaultsConfig::Resource::Kind::kPause && r.cycles / c.engine.clock_mhz > 5'000'000)
+      breach_("faults.resource.cycles",
+              fmt::format("the native engine pauses at most 5 seconds; expected at most {} at {} MHz, found {}",
+                          5'000'000 * c.engine.clock_mhz, c.engine.clock_mhz, r.cycles));
+  }
+
+  /// A fault of a link that no packet crosses would never happen.
+  void faulty_links_carry_packets() {
+    constexpr std::string_view otherwise = "; expected no faults of links, or ";
+    if (!properties_of(c.topology.shape).has_packets)
+      breach_("faults.links", fmt::format("{} resources have no links{}another topology.shape",
+                                          enum_name(c.topology.shape), otherwise));
+    else if (c.topology.resources == 1)
+      breach_("faults.links", fmt::format("one resource has no links{}more topology.resources", otherwise));
+    else if (c.collections.home == Home::kLocal)
+      breach_("faults.links", fmt::format("with collections.home: local no packet travels{}another home", otherwise));
+  }
+
+  void stop_leaves_a_resource() {
+    if (c.topology.resources < 2)
+      breach_("topology.resources", "when a resource stops, another has to continue; expected at least 2, found 1");
+  }
+
+  const Config& c;
+  bool force_;
+  const RuleBreach& breach_;
+};
+
+}  // namespace
+
+void check_network(const Config& config, bool force, const RuleBreach& breach) {
+  NetworkRules(config, force, breach).check();
+}
+
+}  // namespace carousel::config

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/config/config.h"
+
+namespace carousel::config {
+
+/// Takes the breach of a rule: the key, and the rest of the message.
+using RuleBreach = std::function<void(const std::string& key, std::string message)>;
+
+/// The rules of topology, flow control, synthetic traffic and faults. `force` permits `flow: none`.
+void check_network(const Config& config, bool force, const RuleBreach& breach);
+
+}  // namespace carousel::config
