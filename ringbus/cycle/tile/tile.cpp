@@ -34,6 +34,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visits_(memory, shapes_, tester_, contexts_.size(),
               static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
+      in_test_(machine.stores[id.value]->slots(), contexts_.size() > 1 && settings.resource.bundles.size == 0),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_) {
   using Kind = FaultsConfig::Resource::Kind;

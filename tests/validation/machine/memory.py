@@ -67,18 +67,22 @@ class Cache:
             self.ports[request.client].answers.send(now + self.back, request.tag)
 
     def look_up(self, request, asked, now):
-        first, lines, _ = asked
+        first, lines, tag = asked
         for line in range(first, first + lines):
             self.looked_up = max(self.looked_up, now * self.lines_a_cycle) + 1
             request.ready = ceil_div(self.looked_up, self.lines_a_cycle)
-            if self.lines.touch(line):
+            there = self.lines.touch(line)
+            if tag is None:  # a write, which goes through
+                self.to_memory.send(request.ready + self.memory_latency, None)
+            if there or tag is None:
                 continue
             request.missing += 1
             if line not in self.waiting:
                 self.waiting[line] = []
                 self.to_memory.send(request.ready + self.memory_latency, line)
             self.waiting[line].append(request)
-        self.complete_if_all_there(request)
+        if tag is not None:
+            self.complete_if_all_there(request)
 
     def fill(self, line, now):
         self.lines.insert(line)
@@ -107,4 +111,6 @@ class Memory:
         for cache in self.caches:
             while cache.to_memory.ready(now):
                 self.moved = max(self.moved, now * self.width) + self.line
-                cache.from_memory.send(ceil_div(self.moved, self.width) + self.back, cache.to_memory.take())
+                line = cache.to_memory.take()
+                if line is not None:  # a line that is written gets no answer
+                    cache.from_memory.send(ceil_div(self.moved, self.width) + self.back, line)

@@ -25,6 +25,10 @@ class Issue:
 
     def __init__(self, packet):
         self.packet, self.user = packet, None
+        self.spilled = 0  # spilled blocks that have not come back
+
+    def ready(self):
+        return self.spilled == 0 and (self.user is None or self.user.here())
 
 
 class Control:
@@ -57,6 +61,8 @@ class Tile:
         self.ids_per_cycle = config["packets"]["ids_per_cycle"]
         self.issue_places = config["memory"]["fetch_ahead"] + 1
         self.fetch_by_resource = config["memory"]["fetch"] == "resource"
+        self.partial = config["collections"].get("partial", "idle")
+        self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
         self.bubble = config["topology"]["flow"] == "bubble"
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
         self.contexts = [Context() for _ in range(config["testers"]["contexts"])]
@@ -69,13 +75,16 @@ class Tile:
         self.issue = deque()
         self.admission = deque()
         self.dispatch_free = self.next_in = 0
-        self.done = []
+        self.done, self.late = [], []
 
     # ---- a cycle
 
     def step(self, now):
         for out in self.out_ports:
             out.take_credits(now)
+        ripe = self.resource.collections.ripen(now)
+        if ripe is not None:
+            self.clock.wake(ripe)
         self.shapes.take_answers(now)
         self.serve(now)
         for context in self.contexts:
@@ -97,8 +106,11 @@ class Tile:
             self.control.complete(self.done, now)
             self.done = []
 
+    def reading(self, ids):
+        return max(1, ceil_div(ids, self.ids_per_cycle))
+
     def dispatch(self, now, ids):
-        self.dispatch_free = max(self.dispatch_free, now) + max(1, ceil_div(ids, self.ids_per_cycle))
+        self.dispatch_free = max(self.dispatch_free, now) + self.reading(ids)
         self.clock.wake(self.dispatch_free)
 
     def travels(self, packet):
@@ -113,13 +125,14 @@ class Tile:
             count = min(len(rays), self.resource.storage.admissible())
             if count == 0:
                 break
-            self.resource.admit(rays[:count])
+            self.resource.admit(rays[:count], now)
             self.trace.note(now, self.number, "new_rays", 0, count)
             moved = True
             if count < len(rays):
                 self.admission[0] = rays[count:]
             else:
                 self.admission.popleft()
+        self.write_spilled(now)
         return moved
 
     # ---- packets on their way
@@ -178,7 +191,8 @@ class Tile:
             self.begin_test(context, packet, self.dispatch_free, False)
             return True
         if packet.memberships and packet.home == self.number:
-            self.resource.join(packet)
+            self.resource.join(packet, now)
+            self.write_spilled(now)
         self.depart(packet, self.dispatch_free)
         return True
 
@@ -190,10 +204,43 @@ class Tile:
 
     def retire(self, packet, now):
         self.trace.note(now, self.number, "retire", packet.number, len(packet.rays))
-        self.resource.retire(packet)
+        self.resource.retire(packet, now)
         self.free[packet.direction].append(packet)
+        self.write_spilled(now)
+
+    # ---- spilled collections
+
+    def spill_span(self, move):
+        number, first, ids = move
+        block = 12 + 4 * self.resource.collections.block
+        return (self.number + 1 << 40) + number * block + 4 * first, 12 + 4 * ids
+
+    def write_spilled(self, now):
+        written, self.resource.collections.written = self.resource.collections.written, []
+        for move in written:
+            self.shapes.port.request(self.spill_span(move), None, now)
+
+    def read_spilled(self, issue, now):
+        read, self.resource.collections.read = self.resource.collections.read, []
+        for move in read:
+            self.shapes.port.request(self.spill_span(move), issue, now)
+            issue.spilled += 1
 
     # ---- packets of its own
+
+    def partial_may_go(self, now):
+        """Whether a collection that is not ready may go."""
+        if self.partial == "idle":
+            return (not self.issue and self.dispatch_free <= now and all(c.phase == FREE for c in self.contexts) and
+                    not any(port.ready(now) for port in self.in_ports))
+        if self.partial == "after":
+            return False
+        ends = max(self.dispatch_free, now) + sum(self.reading(len(issue.packet.rays)) for issue in self.issue)
+        ends = max([ends] + [c.at for c in self.contexts if c.phase == COMPUTING])
+        if ends > now + self.memory_latency:
+            self.clock.wake(ends - self.memory_latency)
+            return False
+        return True
 
     def next_free(self):
         for i in range(len(self.free)):
@@ -205,14 +252,11 @@ class Tile:
     def fill_issue(self, now):
         moved = False
         while len(self.issue) < self.issue_places and not self.resource.idle():
-            nothing_else = (not self.issue and self.dispatch_free <= now and
-                            all(c.phase == FREE for c in self.contexts) and
-                            not any(port.ready(now) for port in self.in_ports))
             d = self.next_free()
             if d is None:
                 return moved
             packet = self.free[d][-1]
-            if self.resource.offer(nothing_else, packet) != PACKET:
+            if self.resource.offer(self.partial_may_go(now), packet, now) != PACKET:
                 return moved
             self.free[d].pop()
             self.turn = (d + 1) % len(self.free)
@@ -222,11 +266,12 @@ class Tile:
             if not packet.memberships and (brings or self.number in packet.owners):
                 issue.user = User(issue)
                 self.shapes.take_ahead(issue.user, self.shape_data(packet, True), now)
+            self.read_spilled(issue, now)
             self.issue.append(issue)
         return moved
 
     def handle_issue(self, now):
-        if not self.issue or (self.issue[0].user is not None and not self.issue[0].user.here()):
+        if not self.issue or not self.issue[0].ready():
             return False
         packet, user = self.issue[0].packet, self.issue[0].user
         travels = self.travels(packet)
@@ -263,6 +308,7 @@ class Tile:
     def begin_test(self, context, packet, at, has_data):
         members = self.resource.local_members(packet)
         context.packet, context.reads, context.has_data = packet, len(members), has_data
+        context.rays = [packet.rays[i] for i in members]
         context.tests = self.resource.test(packet, members)
         context.completed, self.resource.completed[:] = list(self.resource.completed), []
         context.phase, context.at = STARTING, at
@@ -306,7 +352,7 @@ class Tile:
             if context.phase == COMPUTING:
                 self.shapes.release(context.user, now)
             context.phase = FREE
-            self.done.extend(context.completed)
+            self.hand_over(context.completed)
             if packet.owner == self.number and not self.travels(packet):
                 self.dispatch(now, len(packet.rays))
                 self.retire(packet, now)
@@ -314,6 +360,13 @@ class Tile:
                 self.out_ports[packet.direction].reserved -= 1
                 self.depart(packet, now)
         return moved
+
+    def hand_over(self, completed):
+        """Those that another visit still tests are kept back."""
+        tested = {ray for context in self.contexts if context.phase != FREE for ray in context.rays}
+        completed = self.late + completed
+        self.done.extend(ray for ray in completed if ray not in tested)
+        self.late = [ray for ray in completed if ray in tested]
 
     def shape_data(self, packet, transform):
         """What the tests of a packet need: its shapes, and what is stored of their instance's transform."""
