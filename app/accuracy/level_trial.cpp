@@ -58,7 +58,7 @@ std::optional<report::ModelledCost> modelled_cost(const Config& config, const ac
   machine.engine.kind = EngineKind::kCycle;
   machine.accuracy = accel.accuracy;
   if (!validate_config(machine, {}, {}).empty() || !ringbus::check_storage(machine, accel).empty()) return std::nullopt;
-  RayListWorkload workload(rays, static_cast<std::size_t>(machine.shading.workers));
+  RayListWorkload workload(rays, static_cast<std::size_t>(shader_workers(machine)));
   const ringbus::RunResult result = ringbus::run_cycle(machine, accel, scene_size, workload, {});
   std::uint64_t busy = 0;
   for (const ringbus::cycle::TileResult& tile : result.cycle->tiles)

@@ -115,7 +115,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
     add_ring(r, result, config, prepared.accel);
     add_links(r, result, config);
   }
-  r.shading.workers = static_cast<std::uint64_t>(config.shading.workers);
+  r.shading.workers = static_cast<std::uint64_t>(shader_workers(config));
   r.shading.shaded = result.rays_completed;
   r.shading.saturated = job.saturated();
   add_effects(r.shading, prepared.scene, config);

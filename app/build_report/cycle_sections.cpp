@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "report/text/ratio.h"
+#include "ringbus/cycle/steady_state.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
 
@@ -12,8 +13,8 @@ using report::ratio;
 
 namespace {
 
-report::Rate rate(std::uint64_t rays, std::uint64_t cycles, std::int64_t clock_mhz) {
-  const double per_cycle = ratio(rays, cycles);
+report::Rate rate(double rays, std::uint64_t cycles, std::int64_t clock_mhz) {
+  const double per_cycle = ratio(rays, static_cast<double>(cycles));
   return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
 }
 
@@ -57,6 +58,7 @@ void add_to_link(report::Link& out, const ringbus::cycle::LinkUse& link, std::ui
   out.occupancy_mean = ratio(link.queue.packet_cycles, cycles);
   out.occupancy_max = link.queue.most;
   out.stalled = link.use.stalled;
+  out.bytes = link.bytes;
   out.cycles = report::LinkCycles{link.use.busy, link.use.stalled, cycles - link.use.busy - link.use.stalled};
 }
 
@@ -71,6 +73,13 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   return out;
 }
 
+std::vector<report::Bytes> bytes(const ringbus::cycle::CycleResult& c) {
+  std::vector<report::Bytes> out;
+  for (const ringbus::cycle::ByteRow& row : c.bytes)
+    out.push_back({row.what, row.from, row.to, row.over, row.width, row.bytes, row.messages});
+  return out;
+}
+
 }  // namespace
 
 void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config,
@@ -80,8 +89,11 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   epochs.cycles_each = c.epochs.cycles_each;
   for (const std::uint64_t digest : c.epochs.digests) epochs.digests.push_back(fmt::format("{:016x}", digest));
   if (r.throughput) {
-    r.throughput->whole = rate(r.rays.completed, c.cycles, config.engine.clock_mhz);
-    if (c.steady_cycles > 0) r.throughput->steady = rate(c.steady_rays, c.steady_cycles, config.engine.clock_mhz);
+    const double rays = static_cast<double>(r.rays.completed);
+    r.throughput->whole = rate(rays, c.cycles, config.engine.clock_mhz);
+    const auto slots = static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
+    if (const auto steady = ringbus::steady_state(c, r.rays.completed, slots))
+      r.throughput->steady = rate(rays * steady->share, steady->cycles, config.engine.clock_mhz);
   }
   for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i)
     add_to_resource((*r.resources)[i], c.tiles[i], c.cycles, config, accel);
@@ -91,8 +103,13 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (r.packets && trips.count() > 0)
     r.packets->latency =
         report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
+  if (r.collections && c.ids) {
+    r.collections->ids_at_once = c.ids->most;
+    r.collections->ids_interval = c.ids->interval;
+  }
   r.memory = memory(c, config.memory);
-  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(config.shading.workers));
+  r.bytes = bytes(c);
+  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 
 }  // namespace carousel::app

@@ -1,5 +1,6 @@
 #include "app/build_report/ring_sections.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/config/config.h"
@@ -12,6 +13,19 @@ namespace carousel::app {
 
 using report::ratio;
 
+namespace {
+
+/// Peaks of two resources need not have been at one time, so the greater one is kept.
+void add_apart(CollectionCounts& to, const CollectionCounts& from) {
+  const std::uint64_t peak = std::max(to.peak, from.peak),
+                      memberships = std::max(to.memberships_peak, from.memberships_peak);
+  to += from;
+  to.peak = peak;
+  to.memberships_peak = memberships;
+}
+
+}  // namespace
+
 void add_ring(report::Report& r, const ringbus::RunResult& result, const Config& config, const accel::Accel& accel) {
   const std::uint64_t rays = result.rays_completed;
   ringbus::ResourceStatistics sum;
@@ -20,8 +34,13 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Config&
   for (std::size_t i = 0; i < result.resources.size(); ++i) {
     const ringbus::ResourceStatistics& s = result.resources[i];
     sum += s;
-    collections.counts += result.collections[i];
-    r.resources->push_back({i, s, s.tests, result.collections[i], s.stalls});
+    add_apart(collections.counts, result.collections[i]);
+    report::Resource& resource = r.resources->emplace_back();
+    resource = {i, s, s.tests, result.collections[i]};
+    if (result.cycle)
+      resource.reserve_entered = s.stalls[StallReason::kReserve];
+    else
+      resource.stalls = s.stalls;
   }
   collections.fullness_mean =
       ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.packets.rays));
@@ -49,10 +68,12 @@ void add_links(report::Report& r, const ringbus::RunResult& result, const Config
     out.received_at_once = ratio(s.packets, s.receives);
     out.full_stalls = s.full_stalls;
     out.empty_stalls = s.empty_stalls;
-    out.occupancy.emplace();
+    if (!r.host.links) r.host.links.emplace();
+    std::vector<report::LinkOccupancy>& occupancy =
+        r.host.links->emplace_back(report::HostLink{link.from.value, link.to.value, {}}).occupancy;
     for (const ringbus::OccupancySeries::Entry& entry : link.series.entries())
-      out.occupancy->push_back({std::chrono::duration<double>(entry.end - result.start).count(),
-                                ratio(entry.sum, entry.samples), entry.most});
+      occupancy.push_back({std::chrono::duration<double>(entry.end - result.start).count(),
+                           ratio(entry.sum, entry.samples), entry.most});
   }
 }
 

@@ -4,9 +4,9 @@
 
 namespace carousel::app {
 
-ExitStatus verdict(const report::Report& report) {
+ExitStatus verdict(const report::Report& report, ExitStatus interrupted) {
   const bool failed = report.verify && report.verify->mismatches > 0;
-  if (report.incomplete) spdlog::warn("interrupted; report and picture are partial");
+  if (report.incomplete) spdlog::warn("interrupted; the report is partial");
   if (failed)
     spdlog::error("verification failed: {} of {} rays differ from the reference tracer", report.verify->mismatches,
                   report.verify->compared);
@@ -17,7 +17,7 @@ ExitStatus verdict(const report::Report& report) {
                   proof->same_hits ? "pixels" : "hits");
   const bool harmed = report.faults && !report.faults->same_hits.value_or(true);
   if (harmed) spdlog::error("without faults hits or picture differ");
-  if (report.incomplete) return kInterrupted;
+  if (report.incomplete) return interrupted;
   return failed || changed || harmed ? kBroken : kDone;
 }
 

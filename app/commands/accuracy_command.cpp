@@ -218,7 +218,7 @@ int accuracy_command(const AccuracyArguments& arguments) {
     print_result(json);
   else if (!arguments.quiet)
     print_result(report::accuracy_table(accuracy) + "files: " + folder.string() + "/accuracy.json, accuracy.svg\n");
-  return accuracy.incomplete ? kInterrupted : kDone;
+  return accuracy.incomplete ? interrupt.status() : kDone;
 }
 
 }  // namespace carousel::app

@@ -61,7 +61,7 @@ int certify_command(const AccuracyArguments& arguments) {
   else if (!arguments.quiet || certificate.violations() > 0)
     print_result(certificate_table(certificate));
   if (certificate.violations() > 0) return kBroken;
-  return certificate.incomplete ? kInterrupted : kDone;
+  return certificate.incomplete ? interrupt.status() : kDone;
 }
 
 int reproduce_command(const AccuracyArguments& arguments) {

@@ -226,7 +226,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       ->required()
       ->check(CLI::IsMember({"config", "report"}));
   schema->add_flag("--markdown", arguments.schema.markdown,
-                   "With `config`: print every key as Markdown (default: JSON Schema)");
+                   "Print every key with its meaning as Markdown (default: JSON Schema)");
   program.footer("carousel COMMAND --help describes the options of a command.");
 }
 

@@ -80,7 +80,7 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
   write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
   print_report(arguments, report, report::traffic_table(report), folder);
-  return verdict(report);
+  return verdict(report, interrupt.status());
 }
 
 /// Synthetic traffic has no rays whose hits could be written.
@@ -119,7 +119,7 @@ int run_command(const RunArguments& arguments) {
 
   RenderJob job(p);
   std::optional<HitRecorder> recorder;
-  if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(p.config().shading.workers)));
+  if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(shader_workers(p.config()))));
   std::optional<accel::VerifyingWorkload> verifying;
   std::optional<accel::Accel> plain;  // planes and spheres are verified as well
   if (p.config().verify == Verify::kReference) {
@@ -131,8 +131,11 @@ int run_command(const RunArguments& arguments) {
   const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {
-    report.bound = bound_of(p.config(), result);
-    if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, job, interrupt.token());
+    report.bound = bound_of(result);
+    if (p.config().engine.what_if) {
+      report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), arguments.quiet);
+      report.incomplete |= !report.bottleneck->complete;
+    }
   }
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, interrupt, report);
@@ -140,7 +143,7 @@ int run_command(const RunArguments& arguments) {
   write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr);
 
   print_report(arguments, report, report::report_table(report), folder);
-  return verdict(report);
+  return verdict(report, interrupt.status());
 }
 
 }  // namespace carousel::app

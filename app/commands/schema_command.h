@@ -6,7 +6,7 @@ namespace carousel::app {
 
 struct SchemaArguments {
   std::string file;       ///< config | report
-  bool markdown = false;  ///< config only
+  bool markdown = false;  ///< every key or number as Markdown, instead of JSON Schema
 };
 
 /// `carousel schema`. Returns the exit status.

@@ -184,7 +184,7 @@ int stress_command(const StressArguments& arguments) {
         spdlog::error("{} under {}: {} ({})", row.queue, row.pattern, row.found, row.detail);
     return kBroken;
   }
-  return out.incomplete ? kInterrupted : kDone;
+  return out.incomplete ? interrupt.status() : kDone;
 }
 
 }  // namespace carousel::app

@@ -1,5 +1,6 @@
 #include "app/host/interrupt.h"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -10,22 +11,31 @@ namespace carousel::app {
 
 namespace {
 
-std::atomic<bool> g_interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "written by a signal handler");
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 
-// Relaxed here and below: the flag guards no data.
-void on_interrupt(int) {
-  g_interrupted.store(true, std::memory_order_relaxed);
+std::atomic<int> g_signal{0};  // the first that came
+static_assert(std::atomic<int>::is_always_lock_free, "written by a signal handler");
+
+// Relaxed here and below: the number guards no data.
+void on_signal(int number) {
+  int none = 0;
+  if (g_signal.compare_exchange_strong(none, number, std::memory_order_relaxed)) return;
+  std::signal(number, SIG_DFL);
+  std::raise(number);  // is blocked until this handler has returned
 }
 
 }  // namespace
 
 InterruptScope::InterruptScope() {
-  g_interrupted.store(false, std::memory_order_relaxed);
-  struct sigaction action {};
-  action.sa_handler = on_interrupt;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal ends the program
-  sigaction(SIGINT, &action, nullptr);
+  g_signal.store(0, std::memory_order_relaxed);
+  for (const int number : kSignals) {
+    struct sigaction action {
+    }, before{};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART;
+    sigaction(number, &action, &before);
+    if (before.sa_handler == SIG_IGN) sigaction(number, &before, nullptr);
+  }
   watcher_ = std::jthread([this](std::stop_token ended) {
     std::mutex mutex;
     std::condition_variable_any wake;
@@ -41,13 +51,20 @@ InterruptScope::InterruptScope() {
 }
 
 InterruptScope::~InterruptScope() {
-  struct sigaction action {};
-  action.sa_handler = SIG_DFL;
-  sigaction(SIGINT, &action, nullptr);
+  for (const int number : kSignals) {
+    struct sigaction now {};
+    sigaction(number, nullptr, &now);
+    if (now.sa_handler != SIG_IGN) std::signal(number, SIG_DFL);
+  }
 }
 
 bool InterruptScope::interrupted() const {
-  return g_interrupted.load(std::memory_order_relaxed);
+  return g_signal.load(std::memory_order_relaxed) != 0;
+}
+
+ExitStatus InterruptScope::status() const {
+  const int number = g_signal.load(std::memory_order_relaxed);
+  return number == 0 ? kInterrupted : static_cast<ExitStatus>(128 + number);
 }
 
 }  // namespace carousel::app

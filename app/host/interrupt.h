@@ -3,10 +3,13 @@
 #include <stop_token>
 #include <thread>
 
+#include "app/host/exit_status.h"
+
 namespace carousel::app {
 
-/// During its lifetime the first SIGINT requests a stop instead of ending the program; a second one ends it at once.
-/// At most one object may exist at a time.
+/// During its lifetime the first SIGINT, SIGTERM or SIGHUP requests a stop instead of ending the program; a second one
+/// ends it at once. A signal that the program was started to ignore (nohup) stays ignored. At most one object may exist
+/// at a time.
 class InterruptScope {
  public:
   InterruptScope();
@@ -16,6 +19,8 @@ class InterruptScope {
 
   std::stop_token token() const { return source_.get_token(); }
   bool interrupted() const;
+  /// The exit status of work that was interrupted: 128 plus the number of the signal, kInterrupted if none came.
+  ExitStatus status() const;
 
  private:
   std::stop_source source_;

@@ -1,99 +1,85 @@
 #include "app/run/bottleneck.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "report/run/judge_gains.h"
+#include "report/text/progress_line.h"
 #include "report/text/ratio.h"
-#include "ringbus/cycle/what_if.h"
+#include "ringbus/cycle/bottleneck_search.h"
 
 namespace carousel::app {
 
 namespace {
 
-// A gain below this is not worth a verdict.
-constexpr double kWorthIt = 0.05;
-
-/// The rays of a render job alone; their picture is thrown away.
-class FrameWorkload final : public Workload {
+/// Some of the rays of a render job alone, or all of them; their picture is thrown away.
+class PilotWorkload final : public Workload {
  public:
-  FrameWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits)
-      : frame_(prepared, config, first_hits) {}
-  std::uint32_t extra_effects(const RayResult& result) const override {
-    return frame_.workload().extra_effects(result);
+  PilotWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits,
+                std::uint64_t paths)
+      : job_(prepared, config, first_hits) {
+    if (paths < job_.first_rays()) job_.set_sample(&sample_.emplace(job_.draw(paths)));
   }
+  std::uint32_t extra_effects(const RayResult& result) const override { return job_.workload().extra_effects(result); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
-    return frame_.workload().generate(worker, max_rays, out);
+    return job_.workload().generate(worker, max_rays, out);
   }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
-    frame_.workload().shade(worker, completed, out);
+    job_.workload().shade(worker, completed, out);
   }
 
  private:
-  RenderJob frame_;
+  std::optional<shading::PathSample> sample_;
+  RenderJob job_;
 };
-
-std::string percent_text(double fraction) {
-  return fmt::format("{:+.1f} %", 100 * fraction);
-}
-
-std::string verdict(const report::Bottleneck& b) {
-  if (b.gains.empty()) return "not found out: the run was interrupted";
-  const report::BottleneckGain& first = b.gains.front();
-  if (b.limits.empty())
-    return fmt::format("no class of parts limits it alone: the best lift, {}, gains {}", first.action,
-                       percent_text(first.gain));
-  std::string text = fmt::format("{}: {} gains {}", first.name, first.action, percent_text(first.gain));
-  if (b.gains.size() > 1) text += fmt::format(", next is {} with {}", b.gains[1].name, percent_text(b.gains[1].gain));
-  return text;
-}
 
 }  // namespace
 
-report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, std::stop_token stop) {
-  const Config& config = prepared.config();
+report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& run,
+                                   std::stop_token stop, bool quiet) {
+  if (!run.complete) return report::judge_gains({.complete = false});
   ringbus::RunOptions options;
   options.threads = prepared.threads;
   options.stop = std::move(stop);
   options.statistics = false;
+  std::optional<report::ProgressLine> line;
+  if (!quiet) line.emplace(stderr);
+  const auto show = [&](const ringbus::SearchProgress& at) {
+    if (!line) return;
+    const double part = std::min(1.0, report::ratio(at.completed, at.rays));
+    line->update((static_cast<double>(at.done) + part) / static_cast<double>(at.of), at.completed,
+                 fmt::format("bottleneck, {} of {}: {}", std::min(at.done + 1, at.of), at.of,
+                             at.name.empty() ? "as configured" : at.name));
+  };
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
-      config, prepared.accel, prepared.scene_size(),
-      [&](const Config& machine) { return std::make_unique<FrameWorkload>(prepared, machine, job.first_hits()); },
-      std::min(job.first_rays(), ringbus::pilot_paths(config)), options);
-  report::Bottleneck out;
-  out.rays_per_kilocycle = found.rays_per_kilocycle;
-  out.noise = found.noise;
-  out.paths = found.paths;
+      prepared.config(), prepared.accel, prepared.scene_size(),
+      [&](const Config& machine, std::uint64_t paths) {
+        return std::make_unique<PilotWorkload>(prepared, machine, job.first_hits(), paths);
+      },
+      {run, job.first_rays()}, options, show);
+  report::Bottleneck out{.complete = found.complete,
+                         .unlike = found.unlike,
+                         .rays_per_kilocycle = found.rays_per_kilocycle,
+                         .noise = found.uncertainty,
+                         .deviation = found.deviation,
+                         .whole_frame = found.whole,
+                         .paths = found.paths,
+                         .rays = found.rays};
   for (const ringbus::Gain& gain : found.gains)
-    out.gains.push_back({gain.name, gain.action, gain.rays_per_kilocycle, gain.gain});
-  if (!out.gains.empty() && out.gains.front().gain >= kWorthIt) out.limits = out.gains.front().name;
-  out.verdict = verdict(out);
-  return out;
+    out.gains.push_back(
+        {gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high});
+  return report::judge_gains(std::move(out));
 }
 
-report::Bound bound_of(const Config& config, const ringbus::RunResult& result) {
+report::Bound bound_of(const ringbus::RunResult& result) {
   const ringbus::cycle::CycleResult& c = *result.cycle;
   const double rays = static_cast<double>(result.rays_completed);
   report::Bound out;
-  const auto add = [&](const char* name, double parts, double busy) {
-    if (busy <= 0 || parts <= 0) return;
-    out.classes.push_back({name, 1000 * rays * parts / busy});
-  };
-  PerUnit<double> units{};
-  double reads = 0, dispatch = 0, link = 0;
-  for (const ringbus::cycle::TileResult& tile : c.tiles) {
-    for (const auto [kind, use] : tile.units) units[kind] += static_cast<double>(use.busy);
-    reads += static_cast<double>(tile.ray_reads.busy);
-    dispatch += static_cast<double>(tile.dispatch.busy);
-  }
-  for (const ringbus::cycle::LinkUse& one : c.links) link += static_cast<double>(one.use.busy);
-  const double tiles = static_cast<double>(c.tiles.size());
-  for (const auto [kind, busy] : units) add(unit_row(kind).work, tiles, busy);
-  add("ray_reads", tiles, reads);
-  add("handling", tiles, dispatch);
-  add("link_bandwidth", static_cast<double>(c.links.size()), link);
-  add("memory_bandwidth", 1, static_cast<double>(c.memory_busy));
-  add("shading", static_cast<double>(config.shading.workers), static_cast<double>(c.shading_busy));
+  for (const ringbus::cycle::ClassUse& use : c.uses)
+    if (use.busy > 0 && use.parts > 0)
+      out.classes.push_back({std::string(use.name), 1000 * rays * use.parts / static_cast<double>(use.busy)});
   std::stable_sort(out.classes.begin(), out.classes.end(),
                    [](const auto& a, const auto& b) { return a.rays_per_kilocycle < b.rays_per_kilocycle; });
   if (out.classes.empty()) return out;

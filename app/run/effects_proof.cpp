@@ -31,7 +31,10 @@ void prove_effects(const ConfigArguments& arguments, const InterruptScope& inter
   options.stop = interrupt.token();
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   const ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), job.workload(), options);
-  if (!result.complete) return;
+  if (!result.complete) {
+    report.incomplete = true;
+    return;
+  }
   report::EffectsProof& proof = report.shading.proof.emplace();
   proof.same_hits = job.hits_digest() == report.digest.hits;
   proof.same_image = job.image_digest() == report.digest.image;

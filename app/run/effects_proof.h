@@ -7,7 +7,8 @@
 namespace carousel::app {
 
 /// `verify: effects`: runs the configuration that made `report` again with all effects, and adds to the report the
-/// result of comparing both runs and the work that was saved. Does nothing if the run was interrupted.
+/// result of comparing both runs and the work that was saved. Marks the report as incomplete if the second run is
+/// interrupted, and does nothing if the first one was.
 void prove_effects(const ConfigArguments& arguments, const InterruptScope& interrupt, report::Report& report);
 
 }  // namespace carousel::app

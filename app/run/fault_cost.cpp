@@ -18,7 +18,10 @@ void compare_without_faults(const Prepared& prepared, std::stop_token stop, repo
   options.statistics = false;
   const ringbus::RunResult result =
       ringbus::run_cycle(sound, prepared.accel, prepared.scene_size(), job.workload(), options);
-  if (!result.complete) return;
+  if (!result.complete) {
+    report.incomplete = true;
+    return;
+  }
   if (!report.faults) report.faults.emplace();
   report.faults->cycles_without = result.cycle->cycles;
   report.faults->cycles_lost =

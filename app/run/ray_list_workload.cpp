@@ -6,15 +6,17 @@ namespace carousel::app {
 
 Workload::Generated RayListWorkload::generate(WorkerId worker, std::size_t max_rays, RayBatch& out) {
   // Relaxed: the cursor assigns disjoint ranges of a list that is only read.
+  const std::size_t all = sample_ == nullptr ? rays_.size() : sample_->count();
   std::size_t begin = next_.load(std::memory_order_relaxed), end = begin;
   do {
-    end = begin + std::min(max_rays, rays_.size() - begin);
+    end = begin + std::min(max_rays, all - begin);
   } while (!next_.compare_exchange_weak(begin, end, std::memory_order_relaxed));
   for (std::size_t i = begin; i < end; ++i) {
-    out.push_back(rays_[i]);
-    ++workers_[worker.value].emitted[static_cast<std::size_t>(rays_[i].tag.kind)];
+    const RayRequest& ray = rays_[sample_ == nullptr ? i : sample_->ordinal(i)];
+    out.push_back(ray);
+    ++workers_[worker.value].emitted[static_cast<std::size_t>(ray.tag.kind)];
   }
-  return {end - begin, end == rays_.size()};
+  return {end - begin, end == all};
 }
 
 void RayListWorkload::shade(WorkerId worker, const HitBatch& completed, RayBatch&) {

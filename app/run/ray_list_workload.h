@@ -7,6 +7,7 @@
 
 #include "core/numeric/digest.h"
 #include "core/types/workload.h"
+#include "shading/camera/path_sample.h"
 #include "shading/tracer/ray_recorder.h"
 
 namespace carousel::app {
@@ -20,6 +21,9 @@ class RayListWorkload final : public Workload {
 
   /// The same as PathTracer::set_recorder().
   void set_recorder(shading::RayRecorder* recorder) { recorder_ = recorder; }
+
+  /// The same as PathTracer::set_sample(), of the rays of the list.
+  void set_sample(const shading::PathSample* sample) { sample_ = sample; }
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
@@ -40,6 +44,7 @@ class RayListWorkload final : public Workload {
   std::vector<Worker> workers_;
   std::atomic<std::size_t> next_{0};
   shading::RayRecorder* recorder_ = nullptr;
+  const shading::PathSample* sample_ = nullptr;  // null: all rays
 };
 
 }  // namespace carousel::app

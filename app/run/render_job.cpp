@@ -9,8 +9,11 @@
 
 namespace carousel::app {
 
-RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
-  const auto workers = static_cast<std::size_t>(config.shading.workers);
+RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits)
+    : seed_(static_cast<std::uint64_t>(config.image.seed)),
+      order_(static_cast<std::uint32_t>(config.image.width), static_cast<std::uint32_t>(config.image.height),
+             static_cast<std::uint32_t>(config.image.samples)) {
+  const auto workers = static_cast<std::size_t>(shader_workers(config));
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
     list_ = std::make_unique<RayListWorkload>(report::read_rays_csv(path), workers);
@@ -28,6 +31,15 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
     }
     first_rays_ = static_cast<std::uint64_t>(config.image.width * config.image.height * config.image.samples);
   }
+}
+
+shading::PathSample RenderJob::draw(std::uint64_t paths) const {
+  return tracer_ ? shading::draw_tiles(order_, paths, seed_) : shading::draw_list(first_rays_, paths, seed_);
+}
+
+void RenderJob::set_sample(const shading::PathSample* sample) {
+  if (tracer_) tracer_->set_sample(sample);
+  if (list_) list_->set_sample(sample);
 }
 
 Workload& RenderJob::workload() const {

@@ -24,6 +24,11 @@ class RenderJob {
   /// pass, and must outlive the job.
   RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
+  /// Draws about `paths` of the first rays, over all of them, for a pilot: tiles of the picture or runs of the list.
+  shading::PathSample draw(std::uint64_t paths) const;
+  /// Only these of the first rays are traced; `sample` must outlive the job. Before the first ray.
+  void set_sample(const shading::PathSample* sample);
+
   Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);
   /// The number of rays that no other ray causes, by which progress is measured.
@@ -50,7 +55,8 @@ class RenderJob {
   shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads
   std::unique_ptr<shading::PathTracer> tracer_;  // either tracer_ or list_ is set
   std::unique_ptr<RayListWorkload> list_;
-  std::uint64_t first_rays_;
+  std::uint64_t first_rays_, seed_;
+  shading::PixelOrder order_;
 };
 
 }  // namespace carousel::app

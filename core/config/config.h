@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -64,6 +65,12 @@ struct Config {
   std::map<std::string, std::vector<std::string>> vary;  ///< key path to values; for sweep
   Primary primary = Primary::kRays;
 };
+
+/// The number of shader workers that `shading.workers` stands for.
+inline std::int64_t shader_workers(const Config& c) {
+  return c.shading.workers.value_or(
+      c.engine.kind == EngineKind::kCycle ? std::min<std::int64_t>(256, 2 * c.topology.resources) : 2);
+}
 
 namespace config {
 

@@ -27,6 +27,7 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"topology.link.queue", "", kCycle, "real queues"},
     {"rays.placement", "first_taker", kCycle},
     {"rays.placement", "addressed", kCycle},
+    {"collections.partial", "after", kNative, "clock for collections that wait"},
     {"packets.carry", "data", kNative, "packets that carry data"},
     {"packets.results", "per_shape", kBoth},
     {"packets.results", "message", kBoth},

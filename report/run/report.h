@@ -4,6 +4,7 @@
 
 #include "core/statistics/raster_counts.h"
 #include "report/sections/bottleneck.h"
+#include "report/sections/bytes.h"
 #include "report/sections/cull_planes.h"
 #include "report/sections/engine.h"
 #include "report/sections/faults.h"
@@ -43,6 +44,7 @@ struct Report {
   std::optional<std::vector<Resource>> resources;
   std::optional<std::vector<Link>> links;
   std::optional<Memory> memory;
+  std::optional<std::vector<Bytes>> bytes;
   std::optional<Traffic> traffic;
   Shading shading;
   std::optional<Bound> bound;
@@ -56,7 +58,7 @@ struct Report {
 template <class V>
 void describe(V& v, const Report& r) {
   v.field("schema_version", r.schema_version, "", "version of these keys");
-  v.field("incomplete", r.incomplete, "", "true if the run was interrupted; counts are then partial");
+  v.field("incomplete", r.incomplete, "", "true if the run was interrupted, with counts that are then partial, or a search, comparison or verification after it");
   v.section("carousel", r.carousel, "program that wrote the report");
   v.any("config", r.config, "resolved configuration; see carousel schema config");
   v.section("scene", r.scene, "scene that was rendered");
@@ -71,6 +73,8 @@ void describe(V& v, const Report& r) {
   v.section("resources", r.resources, "each resource");
   v.section("links", r.links, "each link");
   v.section("memory", r.memory, "caches and memory of the simulated machine");
+  v.section("bytes", r.bytes,
+            "every byte that a part of the simulated machine hands to another, by kind of message (cycle)");
   v.section("traffic", r.traffic, "the network alone, when workload is traffic");
   v.section("shading", r.shading, "shader workers and effects of light");
   v.section("bound", r.bound, "rate that each class of parts alone would allow");

@@ -63,8 +63,9 @@ void resource_lines(Table& table, const std::vector<Resource>& resources) {
   spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.tests.triangle; });
   spread_line(table, "packets issued", resources, [](const Resource& r) { return r.counts.packets_issued; });
   spread_line(table, "packets seen", resources, [](const Resource& r) { return r.counts.visits; });
+  if (!resources.front().stalls) return;
   StallCounts stalls;
-  for (const Resource& r : resources) stalls += r.stalls;
+  for (const Resource& r : resources) stalls += *r.stalls;
   Items items;
   for (const Counter<StallCounts>& row : kCounters<StallCounts>) items.add(row.name, grouped(row.value(stalls)));
   table.line("stalls", "{}", items.text());
@@ -84,6 +85,18 @@ void link_line(Table& table, const std::vector<Link>& links) {
   table.line("links", "{} of depth {}   {} packets   occupancy {:.1f} mean, {} most   {} {}", links.size(), depth,
              grouped(packets), ratio(mean, double(packets)), occupancy, grouped(stalled),
              cycles ? "cycles stalled" : "refused");
+}
+
+/// Who sends how much to whom, and over what. Kinds of message of which there were none are left out.
+void byte_lines(Table& table, const std::vector<Bytes>& rows, std::uint64_t rays) {
+  std::string_view name = "bytes";
+  for (const Bytes& row : rows) {
+    if (row.bytes == 0) continue;
+    table.line(name, "{:<18} {:>10} {:>10} a ray   from {} to {}, over {} of {} bytes a cycle", row.what,
+               bytes_text(row.bytes), fmt::format("{:.1f}", ratio(row.bytes, rays)), row.from, row.to, row.over,
+               row.width_bytes_per_cycle);
+    name = "";
+  }
 }
 
 /// Tests of boxes and triangles and transforms always, other counts of the tests where there are any.
@@ -132,13 +145,16 @@ void packet_lines(Table& table, const Report& report) {
     table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(c.packets_issued),
                grouped(c.packets_retired), ratio(c.packets_issued, report.rays.completed),
                ratio(c.hops, c.packets_issued));
-    table.line("", "{:.1f} rays each   {} of them local where seen   {} of visits without any", p->rays_mean(),
+    table.line("", "{:.1f} rays each   {} of the rays seen are local   {} of visits find none", p->rays_mean(),
                percent(p->local_fraction()), percent(p->bubble_fraction()));
   }
   if (const auto& c = report.collections) {
-    table.line("collections", "{} made   {} at once   {} full   {} ray IDs at once   {} spilled",
-               grouped(c->counts.created), grouped(c->counts.peak), percent(c->fullness_mean),
+    table.line("collections", "{} made   {} full   most in one resource: {}, with {} ray IDs   {} spilled",
+               grouped(c->counts.created), percent(c->fullness_mean), grouped(c->counts.peak),
                grouped(c->counts.memberships_peak), grouped(c->counts.spilled));
+    if (c->ids_at_once)
+      table.line("", "{} ray IDs in all resources at once, of every {} cycles", grouped(*c->ids_at_once),
+                 grouped(*c->ids_interval));
   }
 }
 
@@ -165,14 +181,21 @@ void cycle_lines(Table& table, const Report& report) {
   Items busy;
   for (const UnitKindRow& row : kUnitKinds)
     if (report.resources->front().units->features.show(row.shown)) busy.add(row.name, part(sums[row.kind].busy));
-  busy.add("handling", part(dispatch));
+  busy.add("dispatch", part(dispatch));
   busy.add("shading", percent(report.shading.utilisation.value_or(0)));
-  busy.add("memory", percent(report.memory ? report.memory->dram_utilisation : 0));
+  busy.add("DRAM", percent(report.memory ? report.memory->dram_utilisation : 0));
   table.line("busy", "{}", busy.text());
   const UnitCycles& sum = sums[UnitKind::kBox];  // all kinds wait together
   table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),
              part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle),
              sum.shading > 0 ? "   shading " + part(sum.shading) : "");
+}
+
+void bottleneck_lines(Table& table, const Bottleneck& b) {
+  table.line("bottleneck", "{}", b.verdict);
+  if (b.rays > 0 && !b.whole_frame)
+    table.line("", "by {} of the frame's rays, which foretell its cycles to {:+.1f} %", grouped(b.rays),
+               100 * b.deviation);
 }
 
 std::string image_text(const nlohmann::ordered_json& config) {
@@ -192,11 +215,12 @@ std::string ring_text(const nlohmann::ordered_json& config) {
 
 std::string report_table(const Report& report) {
   Table table;
-  if (report.incomplete) table.line("INCOMPLETE", "the run was interrupted; what follows is what was done");
+  if (report.incomplete) table.line("INCOMPLETE", "the work was interrupted; this is the part that was done");
   table.line("scene", "{}: {} triangles, {} instances{}", report.scene.name, grouped(report.scene.triangles),
              grouped(report.scene.instances), image_text(report.config));
-  table.line("engine", "{}{} on {} threads, {} shader workers", report.engine.kind, ring_text(report.config),
-             report.host.threads, report.shading.workers);
+  const bool simulated = report.engine.cycles.has_value();
+  table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
+             simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);
   table.gap();
   const Rays& rays = report.rays;
   const std::optional<Stop> stop = report.faults ? report.faults->stop : std::nullopt;
@@ -221,11 +245,12 @@ std::string report_table(const Report& report) {
         "faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost,
         grouped(*report.faults->cycles_without),
         report.faults->same_hits.value_or(true) ? ", the same hits and picture" : ", OTHER HITS OR ANOTHER PICTURE");
-  table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
-             scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
-             seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
+  if (!simulated)
+    table.line("throughput", "{}rays/s   {} for the rays, {} to build the tree   {} memory",
+               scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
+               seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
   if (report.engine.cycles && report.throughput) cycle_lines(table, report);
-  if (report.bottleneck) table.line("bottleneck", "{}", report.bottleneck->verdict);
+  if (report.bottleneck) bottleneck_lines(table, *report.bottleneck);
   if (report.bound && !report.bound->classes.empty())
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
                report.bound->classes.front().name, percent(report.bound->reached));
@@ -235,7 +260,12 @@ std::string report_table(const Report& report) {
   if (report.shading.proof) proof_line(table, *report.shading.proof);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);
+  if (report.bytes) byte_lines(table, *report.bytes, report.rays.completed);
   table.gap();
+  if (simulated)
+    table.line("host", "{} to simulate on {} threads   {} to build the tree   {} memory",
+               seconds_text(report.host.wall_seconds), report.host.threads, seconds_text(report.host.build_seconds),
+               bytes_text(report.host.peak_memory_bytes));
   if (report.verify)
     table.line("verify", "{} rays traced again, {} mismatches{}", grouped(report.verify->compared),
                grouped(report.verify->mismatches), report.verify->example.empty() ? "" : "; " + report.verify->example);

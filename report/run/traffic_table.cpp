@@ -27,22 +27,23 @@ std::string traffic_table(const Report& report) {
     out += fmt::format("{:<13}{}\n", name, text);
   };
   if (report.incomplete) line("INCOMPLETE", "the run was interrupted; what follows is what was done");
-  line("network",
-       fmt::format("{}{} on {} threads", report.engine.kind, network_text(report.config), report.host.threads));
+  line("network", report.engine.kind + network_text(report.config));
   line("packets", fmt::format("{} created   {} delivered   {} flits each   {} measured, created from cycle {} to {}",
                               grouped(t.packets), grouped(t.delivered), t.flits_per_packet, grouped(t.measured),
                               grouped(t.window_begin), grouped(t.window_end)));
-  line("load", fmt::format("{:.5f} offered   {:.5f} accepted   packets per resource and cycle", t.offered, t.accepted));
+  line("load", fmt::format("{:.5f} offered   {:.5f} accepted packets per resource and cycle   {} of the links' time",
+                           t.offered, t.accepted, percent(t.accepted_of_links)));
   line("latency",
-       fmt::format("{:.3f} mean   {} p50   {} p95   {} p99   {} max   cycles", t.latency.mean, grouped(t.latency.p50),
+       fmt::format("{:.3f} mean   {} p50   {} p95   {} p99   {} max cycles", t.latency.mean, grouped(t.latency.p50),
                    grouped(t.latency.p95), grouped(t.latency.p99), grouped(t.latency.max)));
   line("",
        fmt::format("{:.3f} with nobody in the way, at {:.4f} resources visited", t.zero_load_latency, t.routers_mean));
   line("links", fmt::format("{} busy on average, {} the busiest   {} flit-hops", percent(t.link_utilisation.mean),
                             percent(t.link_utilisation.max), grouped(t.flit_hops)));
-  line("simulated", fmt::format("{} cycles in {}   {}flit-hops/s", grouped(report.engine.cycles.value_or(0)),
-                                seconds_text(report.host.wall_seconds),
-                                scaled(ratio(static_cast<double>(t.flit_hops), report.host.wall_seconds))));
+  line("simulated", grouped(report.engine.cycles.value_or(0)) + " cycles");
+  line("host",
+       fmt::format("{} to simulate on {} threads   {}flit-hops/s", seconds_text(report.host.wall_seconds),
+                   report.host.threads, scaled(ratio(static_cast<double>(t.flit_hops), report.host.wall_seconds))));
   return out;
 }
 

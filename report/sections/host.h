@@ -17,6 +17,32 @@ void describe(V& v, const Machine& r) {
   v.field("memory_bytes", r.memory_bytes, "bytes", "memory of the machine");
 }
 
+/// Occupancy of a link's queue during one part of the run.
+struct LinkOccupancy {
+  double seconds = 0, mean = 0;
+  std::uint64_t most = 0;
+};
+
+template <class V>
+void describe(V& v, const LinkOccupancy& r) {
+  v.field("seconds", r.seconds, "s", "end of this part, measured from the start of the run");
+  v.field("mean", r.mean, "packets", "mean of the packets waiting, sampled at every eighth send");
+  v.field("most", r.most, "packets", "most packets waiting, sampled at every eighth send");
+}
+
+/// The same over the whole run.
+struct HostLink {
+  std::uint64_t from = 0, to = 0;
+  std::vector<LinkOccupancy> occupancy;
+};
+
+template <class V>
+void describe(V& v, const HostLink& r) {
+  v.field("from", r.from, "", "resource that sends");
+  v.field("to", r.to, "", "resource that receives");
+  v.section("occupancy", r.occupancy, "occupancy over time, in parts of equal numbers of samples");
+}
+
 struct Host {
   std::uint64_t threads = 0;
   double wall_seconds = 0, rays_per_second = 0, scene_seconds = 0, build_seconds = 0;
@@ -24,6 +50,7 @@ struct Host {
   std::string simd;
   Machine machine;
   std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{}, all_effects_seconds{};
+  std::optional<std::vector<HostLink>> links{};
 };
 
 template <class V>
@@ -43,6 +70,7 @@ void describe(V& v, const Host& r) {
   v.field("accel_bytes", r.accel_bytes, "bytes", "size of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "most resident memory of the process");
   v.field("simd", r.simd, "", "instruction set of the intersection kernels");
+  v.section("links", r.links, "queues of the links over the time of the host, link by link as in links (native)");
   v.section("machine", r.machine, "machine that ran the simulation");
 }
 

@@ -18,29 +18,16 @@ struct LinkCycles {
   }
 };
 
-/// Occupancy of a link's queue during one part of the run.
-struct LinkOccupancy {
-  double seconds = 0, mean = 0;
-  std::uint64_t most = 0;
-};
-
-template <class V>
-void describe(V& v, const LinkOccupancy& r) {
-  v.field("seconds", r.seconds, "s", "end of this part, measured from the start of the run");
-  v.field("mean", r.mean, "packets", "mean of the packets waiting, sampled at every eighth send");
-  v.field("most", r.most, "packets", "most packets waiting, sampled at every eighth send");
-}
-
 struct Link {
   std::uint64_t from = 0, to = 0, depth = 0, packets = 0;
   double occupancy_mean = 0;
   std::uint64_t occupancy_max = 0, stalled = 0;
   std::optional<double> utilisation{};
   std::optional<LinkCycles> cycles{};
+  std::optional<std::uint64_t> bytes{};
   std::optional<std::string> queue{};
   std::optional<double> sent_at_once{}, received_at_once{};
   std::optional<std::uint64_t> full_stalls{}, empty_stalls{};
-  std::optional<std::vector<LinkOccupancy>> occupancy{};
   std::optional<LinkFaultCounts> faults{};
 };
 
@@ -56,15 +43,16 @@ void describe(V& v, const Link& r) {
           "most packets waiting: at every eighth send and at refusals (native), at any time (cycle)");
   v.field("stalled", r.stalled, "attempts|cycles",
           "sends refused by the full queue (native), cycles in which a packet waited for a credit (cycle)");
-  v.field("utilisation", r.utilisation, "fraction", "fraction of the run's cycles in which the link moved a packet");
-  v.section("cycles", r.cycles, "cycles of the link; they add up to engine.cycles");
+  v.field("utilisation", r.utilisation, "fraction",
+          "fraction of the run's cycles in which the link moved a packet (cycle)");
+  v.field("bytes", r.bytes, "bytes", "bytes of the packets carried (cycle)");
+  v.section("cycles", r.cycles, "cycles of the link; they add up to engine.cycles (cycle)");
   v.field("queue", r.queue, "", "kind of queue (native)");
   v.field("sent_at_once", r.sent_at_once, "packets", "mean of the packets of a send, where it took any (native)");
   v.field("received_at_once", r.received_at_once, "packets",
           "mean of the packets of a reception, where it brought any (native)");
   v.field("full_stalls", r.full_stalls, "sends", "sends of which the queue did not take all packets (native)");
   v.field("empty_stalls", r.empty_stalls, "receptions", "receptions that found no packet (native)");
-  v.section("occupancy", r.occupancy, "occupancy over time, in parts of equal numbers of samples (native)");
   v.section("faults", r.faults, "faults of frames and acknowledgements, with faults.links");
 }
 

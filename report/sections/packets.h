@@ -29,17 +29,21 @@ void describe(V& v, const Packets& r) {
 }
 
 struct Collections {
-  CollectionCounts counts;  ///< of all resources
+  CollectionCounts counts;  ///< of all resources; of the peaks the greatest
   double fullness_mean = 0;
+  std::optional<std::uint64_t> ids_at_once{}, ids_interval{};
 };
 
 template <class V>
 void describe(V& v, const Collections& r) {
   v.field("created", r.counts.created, "collections", "collections created in all");
-  v.field("peak", r.counts.peak, "collections", "sum of each resource's most collections at one time");
+  v.field("peak", r.counts.peak, "collections", "most collections that any one resource had at one time");
   v.field("fullness_mean", r.fullness_mean, "", "rays of an issued packet over packets.rays");
   v.field("memberships_peak", r.counts.memberships_peak, "ray IDs",
-          "sum of each resource's most ray IDs in collections at one time");
+          "most ray IDs that any one resource had in collections at one time");
+  v.field("ids_at_once", r.ids_at_once, "ray IDs",
+          "most ray IDs in the collections of all resources together, looked at in one of every ids_interval cycles");
+  v.field("ids_interval", r.ids_interval, "cycles", "cycles from one look at all collections to the next");
   v.field("spilled", r.counts.spilled, "ray IDs", "ray IDs stored in blocks beyond the capacity");
 }
 

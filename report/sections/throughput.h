@@ -27,7 +27,8 @@ void describe(V& v, const Throughput& r) {
   v.field("tests_per_ray", r.tests_per_ray, "tests/ray",
           "box, plane, triangle, procedural and bundle tests for each completed ray");
   v.section("whole", r.whole, "simulated speed from the first cycle to the last");
-  v.section("steady", r.steady, "simulated speed between a quarter and three quarters of the rays");
+  v.section("steady", r.steady,
+            "simulated speed between fill and drain, by the frame's work; absent if the frame is too short for it");
 }
 
 }  // namespace carousel::report

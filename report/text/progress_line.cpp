@@ -19,15 +19,19 @@ ProgressLine::~ProgressLine() {
   std::fflush(out_);
 }
 
-void ProgressLine::update(double fraction, std::uint64_t rays) {
+void ProgressLine::update(double fraction, std::uint64_t rays, std::string_view name) {
   if (!out_) return;
   constexpr std::size_t kWidth = 30;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
   const double part = std::clamp(fraction, 0.0, 1.0);
   const auto filled = static_cast<std::size_t>(part * kWidth);
-  fmt::print(out_, "\r[{}{}] {:3.0f} %  {}rays  {}rays/s  {}\033[K", std::string(filled, '#'),
-             std::string(kWidth - filled, '.'), 100 * part, scaled(double(rays)),
-             scaled(ratio(double(rays), seconds.count())), seconds_text(seconds.count()));
+  const std::string left =
+      part > 0 ? fmt::format("  {} left", seconds_text(seconds.count() * (1 - part) / part)) : std::string();
+  const std::string work =
+      name.empty() ? fmt::format("{}rays  {}rays/s", scaled(double(rays)), scaled(ratio(double(rays), seconds.count())))
+                   : std::string(name);
+  fmt::print(out_, "\r[{}{}] {:3.0f} %  {}  {}{}\033[K", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+             100 * part, work, seconds_text(seconds.count()), left);
   std::fflush(out_);
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <string_view>
 
 namespace carousel::report {
 
@@ -15,8 +16,9 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// `fraction` of the work is done, in [0, 1], and `rays` have been completed.
-  void update(double fraction, std::uint64_t rays);
+  /// `fraction` of the work is done, in [0, 1], and `rays` have been completed. `name`: of the work, if it is not the
+  /// run itself. The time that remains is shown as if the rest went as fast.
+  void update(double fraction, std::uint64_t rays, std::string_view name = "");
   bool shown() const { return out_ != nullptr; }
 
  private:

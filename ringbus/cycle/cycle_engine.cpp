@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "core/system/error.h"
+#include "ringbus/cycle/progress_log.h"
 #include "ringbus/cycle/time/windows.h"
+#include "ringbus/cycle/wiring/byte_ledger.h"
 #include "ringbus/cycle/wiring/simulated_machine.h"
 
 namespace carousel::ringbus {
@@ -19,9 +20,12 @@ class CycleRun {
  public:
   CycleRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
            const RunOptions& options)
-      : options_(options),
+      : config_(config),
+        options_(options),
         link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
-        machine_(config, accel, scene_size, workload, options.statistics, options.trace) {}
+        machine_(config, accel, scene_size, workload, options.statistics, options.trace) {
+    machine_.warm(options.warm);
+  }
 
   RunResult run() {
     const auto start = std::chrono::steady_clock::now();
@@ -30,8 +34,9 @@ class CycleRun {
     bool stopped = false;
     WakeupTable wakeups(parts);
     machine_.connect(wakeups);
-    run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle) {
+    run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle at) {
       stopped = options_.stop.stop_requested();
+      note_progress(at);
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
         last_report = now;
@@ -41,7 +46,7 @@ class CycleRun {
     });
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!stopped) check_at_rest();
-    RunResult out = result(last_event() + 1);
+    RunResult out = result(last_event() + 1, !stopped);
     out.complete = !stopped;
     out.wall_seconds = wall.count();
     out.threads = parts.size();
@@ -79,7 +84,22 @@ class CycleRun {
     if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
-  RunResult result(Cycle end) const {
+  std::optional<IdsAtOnce> ids_at_once() const {
+    if (!machine_.shared().topology.has_packets()) return std::nullopt;
+    IdsAtOnce out;
+    std::vector<std::uint64_t> sums;
+    for (const auto& tile : machine_.resources()) {
+      // All resources were looked at over the same cycles.
+      const IdCensus& census = *tile->census();
+      sums.resize(census.samples().size());
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += census.samples()[i];
+      out.interval = census.interval();
+    }
+    for (const std::uint64_t sum : sums) out.most = std::max(out.most, sum);
+    return out;
+  }
+
+  RunResult result(Cycle end, bool complete) const {
     RunResult out;
     out.rays_emitted = machine_.shading().emitted();
     out.rays_completed = machine_.shading().completed();
@@ -94,7 +114,9 @@ class CycleRun {
     for (const auto& tile : machine_.resources()) out.packets_discarded += tile->packets_discarded();
     c.memory_lines = machine_.memory().memory().lines();
     c.memory_busy = machine_.memory().memory().busy();
-    steady(c);
+    c.uses = uses();
+    c.progress = log_.samples();
+    c.all_begun = all_begun_;
     std::vector<const Trace*> traces{&machine_.shading().trace()};
     for (const auto& tile : machine_.resources()) traces.push_back(&tile->trace());
     c.epochs = combine(traces);
@@ -106,40 +128,78 @@ class CycleRun {
       c.tiles.push_back(tile->result());
       if (kChecked) check_ledger(c.tiles.back(), end);
     }
+    c.ids = ids_at_once();
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port_number) {
       const OutPort& port = machine_.out_of(wire.from)[port_number];
       c.hops += port.packets();
       c.links.push_back({wire.from.value,
                          wire.to.value,
                          {port.busy(end), port.stalled()},
-                         machine_.network().wire(c.links.size()).queue});
+                         machine_.network().wire(c.links.size()).queue,
+                         machine_.network().wire(c.links.size()).packets.bytes().sent});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
     });
-    for (const auto& cache : machine_.memory().caches()) c.caches.push_back(cache->statistics());
+    for (const auto& cache : machine_.memory().caches()) {
+      c.caches.push_back(cache->statistics());
+      c.cached_lines.push_back(cache->lines());
+    }
+    c.bytes = byte_ledger(machine_, config_);
+    if (kChecked && complete) check_byte_ledger(c.bytes);
     return out;
   }
 
-  void steady(CycleResult& c) const {
-    const std::vector<ShadingAgent::Milestone>& m = machine_.shading().milestones();
-    const std::uint64_t all = machine_.shading().completed();
-    const auto quarter = [&](std::uint64_t n) {
-      return std::find_if(m.begin(), m.end(), [&](const auto& x) { return 4 * x.completed >= n * all; });
-    };
-    const auto first = quarter(1), middle = quarter(2), last = quarter(3);
-    if (last == m.end() || last->at == middle->at || middle->at == first->at) return;
-    c.steady_cycles = last->at - first->at;
-    c.steady_rays = last->completed - first->completed;
-    const auto rate = [](const auto& from, const auto& to) {
-      return static_cast<double>(to->completed - from->completed) / static_cast<double>(to->at - from->at);
-    };
-    c.steady_spread = std::abs(rate(middle, last) - rate(first, middle)) / rate(first, last);
+  void note_progress(Cycle at) {
+    const ShadingAgent& shading = machine_.shading();
+    const bool begun = shading.all_begun() && !all_begun_, wanted = log_.wants(shading.completed());
+    if (!begun && !wanted) return;
+    ProgressSample sample{at, shading.completed(), {}};
+    for (const ClassUse& use : uses()) sample.busy.push_back(use.busy);
+    if (begun) all_begun_ = sample;
+    if (wanted) log_.add(std::move(sample));
   }
 
+  /// The classes of parts that the machine has, in a fixed order, and their use so far.
+  std::vector<ClassUse> uses() const {
+    PerUnit<Cycle> units{};
+    Cycle reads = 0, dispatch = 0;
+    for (const auto& tile : machine_.resources()) {
+      const TileResult result = tile->result();
+      for (const auto [kind, busy] : units) busy += result.units[kind].busy;
+      reads += result.ray_reads.busy;
+      dispatch += result.dispatch.busy;
+    }
+    const double tiles = static_cast<double>(machine_.resources().size());
+    std::vector<ClassUse> out;
+    for (const auto [kind, busy] : units) out.push_back({unit_row(kind).work, tiles, busy});
+    out.push_back({"ray_reads", tiles, reads});
+    out.push_back({"handling", tiles, dispatch});
+    out.push_back(link_use());
+    Cycle port = 0;
+    for (const auto& cache : machine_.memory().caches()) port += cache->statistics().port_busy;
+    out.push_back({"l2_port", static_cast<double>(machine_.memory().caches().size()), port});
+    out.push_back({"memory_bandwidth", 1, machine_.memory().memory().busy()});
+    out.push_back({"shading", static_cast<double>(shader_workers(config_)), machine_.shading().busy()});
+    return out;
+  }
+
+  /// The links are as many media side by side; a bus is one, which its hub's links leave.
+  ClassUse link_use() const {
+    const bool bus = config_.topology.shape == TopologyShape::kBus;
+    ClassUse out{"link_bandwidth", bus ? 1.0 : static_cast<double>(machine_.shared().topology.wires().size()), 0};
+    machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
+      if (!bus || wire.from.value >= machine_.resources().size()) out.busy += machine_.out_of(wire.from)[port].busy();
+    });
+    return out;
+  }
+
+  const Config& config_;
   const RunOptions& options_;
   std::size_t link_depth_;
   SimulatedMachine machine_;
+  ProgressLog log_;
+  std::optional<ProgressSample> all_begun_;
 };
 
 }  // namespace

@@ -74,9 +74,9 @@ class NativeRun {
       ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, settings, sinks_[r].get()));
     for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
     const std::int64_t slots = config_.topology.resources * config_.rays.slots_per_resource;
-    for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(config_.shading.workers); ++w)
+    for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(shader_workers(config_)); ++w)
       workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), machine_->shared.control, machine_->completed,
-                                                        workload_, count_, slots, config_.shading.workers,
+                                                        workload_, count_, slots, shader_workers(config_),
                                                         ledger_.get()));
   }
 

@@ -10,7 +10,7 @@ namespace carousel::ringbus {
 /// The ring on worker threads and real queues; the clock is the wall. R resources and W shader workers are
 /// shared out over the threads, each thread stepping its own in turn.
 ///
-/// Runs `workload` (which must allow config.shading.workers workers) to its end. Throws SimulationError when
+/// Runs `workload` (which must allow shader_workers(config) workers) to its end. Throws SimulationError when
 /// something got stuck or was lost; exceptions of the workload pass through.
 RunResult run_native(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
                      const RunOptions& options);

@@ -14,7 +14,7 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
 
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
   if (config.collections.when_full == WhenFull::kSpill || !Topology(config.topology).has_packets()) return 0;
-  if (one_collection_a_ray(config.collections.traversal)) return config.packets.rays;
+  if (one_collection_a_ray(config.collections.traversal)) return 1;
   const std::int64_t reserve = reserve_blocks(config.collections, config.bundles, width, max_depth);
   const std::int64_t children = width * std::max<std::int64_t>(1, config.bundles.size);
   return 2 * (reserve + children + 1) * config.packets.rays;
@@ -23,15 +23,13 @@ std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
 std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel& accel) {
   const std::int64_t needed = minimum_capacity(config, accel.width, accel.max_depth);
   if (config.collections.capacity >= needed) return {};
-  const bool ordered = one_collection_a_ray(config.collections.traversal);
   ConfigIssue issue;
   issue.key_path = "collections.capacity";
   issue.message = fmt::format(
       "expected at least {} ray IDs with when_full: reserve ({}), found {}; or use when_full: spill", needed,
-      ordered ? fmt::format("one block of packets.rays = {}", config.packets.rays)
-              : fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep{}", config.packets.rays,
-                            accel.width, accel.max_depth,
-                            config.bundles.size > 0 ? fmt::format(", bundles of {} rays", config.bundles.size) : ""),
+      fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep{}", config.packets.rays, accel.width,
+                  accel.max_depth,
+                  config.bundles.size > 0 ? fmt::format(", bundles of {} rays", config.bundles.size) : ""),
       config.collections.capacity);
   return {issue};
 }

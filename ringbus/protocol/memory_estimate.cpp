@@ -5,6 +5,7 @@
 #include "core/types/workload.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/ray_store.h"
+#include "ringbus/resource/storage_rule.h"
 #include "ringbus/resource/traversal/make_traversal.h"
 #include "ringbus/topology/topology.h"
 
@@ -32,8 +33,10 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   e.rays_waiting = resources * slots * (2 * sizeof(RayRequest) + sizeof(RayResult));
   if (!topology.has_packets()) return e;
   // An ID, and a block's share of a collection, its place in the table and its list links.
-  const std::uint64_t blocks = u(config.collections.capacity) / packet_rays + 1;
-  e.collections = resources * blocks * (packet_rays * sizeof(RayId) + 128);
+  const std::uint64_t block = u(block_rays(config.collections, config.packets));
+  std::uint64_t blocks = u(config.collections.capacity) / block + 1;
+  if (ordered) blocks = std::min(blocks, resources * slots);
+  e.collections = resources * blocks * (block * sizeof(RayId) + 128);
   const std::uint64_t packets = resources * topology.directions() * topology.packets_in_flight() + resources;
   e.packets = packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));
   return e;

@@ -24,7 +24,7 @@ std::optional<CollectionId> Offering::choose(bool partial, bool& storage) {
   const std::optional<CollectionId> best = collections_.best(partial);
   if (!best) return best;
   const std::uint32_t needed = traversal_.blocks_needed(collections_.key(*best), collections_.front_rays(*best));
-  if (storage_.fits(needed, 1)) return best;
+  if (storage_.fits(needed, collections_.front_blocks(*best))) return best;
   // One packet at a time, deepest first: each level down needs at most width - 1 blocks more, which the reserve holds,
   // and gives them all back when its subtree is done.
   if (in_flight_ > 0) {

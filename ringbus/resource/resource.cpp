@@ -11,13 +11,16 @@ namespace {
 
 CollectionStore::Settings collection_settings(const ResourceSettings& settings, const accel::Accel& accel) {
   CollectionStore::Settings s;
-  s.block_rays = static_cast<std::uint32_t>(settings.packets.rays);
+  s.block_rays = static_cast<std::uint32_t>(block_rays(settings.collections, settings.packets));
+  s.packet_rays = static_cast<std::uint32_t>(settings.packets.rays);
   s.ready = static_cast<std::uint32_t>(settings.collections.ready);
-  s.capacity_blocks = static_cast<std::uint32_t>(settings.collections.capacity / settings.packets.rays);
+  s.capacity_blocks = static_cast<std::uint32_t>(settings.collections.capacity) / s.block_rays;
   s.policy = settings.collections.policy;
   s.select = settings.collections.select;
   s.scene_size = settings.scene_size;
   s.max_depth = accel.max_depth;
+  if (settings.collections.partial == Partial::kAfter)
+    s.ripe_after = static_cast<std::uint64_t>(settings.collections.partial_after_cycles);
   return s;
 }
 
@@ -33,10 +36,10 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
     : events_(hooks.events),
       store_(store),
       root_(accel.root_key()),
-      block_rays_(static_cast<std::size_t>(settings.packets.rays)),
+      packet_rays_(static_cast<std::size_t>(settings.packets.rays)),
       collections_(collection_settings(settings, accel)),
       homes_(settings.collections.home, store.owner(), settings.resources),
-      storage_(settings.collections, settings.packets.rays,
+      storage_(settings.collections, block_rays(settings.collections, settings.packets),
                reserve_blocks(settings.collections, settings.bundles, accel.width, accel.max_depth), collections_),
       completion_(store, hooks.transforms),
       any_hit_(store, hooks.hold_any_hit_rays),
@@ -54,8 +57,8 @@ std::int32_t Resource::initial_tests(const ResourceSettings& settings, const acc
 }
 
 void Resource::admit(std::span<const RayId> rays) {
-  for (std::size_t i = 0; i < rays.size(); i += block_rays_)
-    collections_.add(root_, 0, 0.0f, rays.subspan(i, std::min(block_rays_, rays.size() - i)));
+  for (std::size_t i = 0; i < rays.size(); i += packet_rays_)
+    collections_.add(root_, 0, 0.0f, rays.subspan(i, std::min(packet_rays_, rays.size() - i)));
   storage_.admit(rays.size());
   record({.kind = EventKind::kAdmit, .resource = id(), .rays = static_cast<std::uint32_t>(rays.size())});
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,10 @@ class Resource {
   /// Fills `packet` from the next collection: by policy, among the ready ones, or with `partial` among all.
   Offer offer(bool partial, Packet& packet) { return offering_.offer(partial, packet); }
 
+  /// For engines with a clock: see CollectionStore.
+  void ripen(std::uint64_t now) { collections_.ripen(now); }
+  std::optional<std::uint64_t> next_ripe() { return collections_.next_ripe(); }
+
   /// Tests the packet's members that live here and writes the answers into it.
   TestOutcome test(Packet& packet);
   /// An any-hit call of the ray in `slot` has been answered: the ray may complete.
@@ -84,7 +89,7 @@ class Resource {
   EventSink* events_;
   RayStore& store_;
   accel::NodeKey root_;
-  std::size_t block_rays_;
+  std::size_t packet_rays_;
   CollectionStore collections_;
   Homes homes_;
   StorageRule storage_;

@@ -13,10 +13,14 @@ std::uint32_t reserve_blocks(const CollectionsConfig& collections, const Bundles
   return static_cast<std::uint32_t>((children - 1) * (max_depth + 1) + children);
 }
 
+std::int64_t block_rays(const CollectionsConfig& collections, const PacketsConfig& packets) {
+  return one_collection_a_ray(collections.traversal) ? 1 : packets.rays;
+}
+
 StorageRule::StorageRule(const CollectionsConfig& config, std::int64_t block_rays, std::uint32_t reserve,
                          const CollectionStore& store)
     : bounded_(config.when_full == WhenFull::kReserve),
-      ray_a_block_(one_collection_a_ray(config.traversal)),
+      single_(one_collection_a_ray(config.traversal)),
       block_rays_(block_rays),
       blocks_(config.capacity / block_rays),
       reserve_(reserve),
@@ -25,8 +29,8 @@ StorageRule::StorageRule(const CollectionsConfig& config, std::int64_t block_ray
 std::size_t StorageRule::admissible() const {
   constexpr std::size_t kAny = std::size_t{1} << 31;
   if (!bounded_) return kAny;
-  // Rays that are in one collection at a time may each end up alone in a block.
-  if (ray_a_block_) return static_cast<std::size_t>(std::max<std::int64_t>(0, blocks_ - rays_held_));
+  // Each ray has one ID in the collections, or is in a packet and will come back with one.
+  if (single_) return static_cast<std::size_t>(std::max<std::int64_t>(0, blocks_ - rays_held_));
   // Only above half free: the new rays in the root's collection must never crowd out their children.
   const std::int64_t room = store_.free_blocks() - blocks_promised_ - std::max<std::int64_t>(reserve_, blocks_ / 2);
   return room <= 0 ? 0 : static_cast<std::size_t>(room * block_rays_);
@@ -38,7 +42,7 @@ bool StorageRule::fits(std::uint32_t needed, std::uint32_t freed) const {
 
 void StorageRule::retire(std::uint32_t needed, std::size_t rays, std::size_t joined) {
   blocks_promised_ -= needed;
-  if (ray_a_block_ && bounded_) rays_held_ -= static_cast<std::uint32_t>(rays - joined);
+  if (single_ && bounded_) rays_held_ -= static_cast<std::uint32_t>(rays - joined);
 }
 
 }  // namespace carousel::ringbus

@@ -11,15 +11,20 @@ namespace carousel::ringbus {
 /// Collection blocks that must stay free so that draining deepest first cannot run out (DESIGN.md section 4): a packet
 /// retired at each level leaves at most width - 1 more blocks than it took, and one more strip's worth is in flight.
 /// With bundles an ID may become as many at one level as a bundle has rays. None are needed where a ray is in one
-/// collection at a time, as a new ray enters only if a block is left for it.
+/// collection at a time, as a new ray enters only if a place is left for it.
 std::uint32_t reserve_blocks(const CollectionsConfig& collections, const BundlesConfig& bundles, int width,
                              int max_depth);
+
+/// IDs in a block of collection storage: packets.rays, or 1 where a ray is in one collection at a time. There the rays
+/// of a packet may join as many collections as they are, each with a block of its own, so that larger blocks would
+/// leave room for only one ray each.
+std::int64_t block_rays(const CollectionsConfig& collections, const PacketsConfig& packets);
 
 /// Keeps bounded collection storage (`when_full: reserve`) from blocking: says how many new rays may enter and when a
 /// packet may be issued. With `when_full: spill` everything may.
 class StorageRule {
  public:
-  /// `reserve` as reserve_blocks() says. `block_rays` is `packets.rays`. Keeps a reference to `store`.
+  /// `reserve` as reserve_blocks() says, `block_rays` as block_rays() does. Keeps a reference to `store`.
   StorageRule(const CollectionsConfig& config, std::int64_t block_rays, std::uint32_t reserve,
               const CollectionStore& store);
 
@@ -36,12 +41,12 @@ class StorageRule {
   void discard() { blocks_promised_ = rays_held_ = 0; }
 
  private:
-  bool bounded_, ray_a_block_;
+  bool bounded_, single_;  // single_: a ray is in one collection at a time, a block holds one ID
   std::int64_t block_rays_, blocks_;
   std::uint32_t reserve_;
   const CollectionStore& store_;
   std::uint32_t blocks_promised_ = 0;  // to packets in flight
-  std::uint32_t rays_held_ = 0;        // in collections or in packets; counted where a ray may need a block of its own
+  std::uint32_t rays_held_ = 0;        // in collections or in packets; counted with single_
 };
 
 }  // namespace carousel::ringbus

@@ -11,6 +11,8 @@
 #include "core/statistics/shape_buffer_counts.h"
 #include "core/types/unit_kind.h"
 #include "ringbus/cycle/time/clock.h"
+#include "ringbus/results/byte_row.h"
+#include "ringbus/results/class_use.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -66,6 +68,7 @@ struct LinkUse {
   std::uint32_t from = 0, to = 0;
   Utilisation use;
   Occupancy queue;
+  std::uint64_t bytes = 0;  ///< of the packets; 0 for synthetic traffic
   friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
@@ -77,18 +80,29 @@ struct StopTimes {
   friend bool operator==(const StopTimes&, const StopTimes&) = default;
 };
 
+/// The ray IDs in the collections of all resources together, looked at in one of every `interval` cycles.
+struct IdsAtOnce {
+  std::uint64_t most = 0;
+  Cycle interval = 0;
+  friend bool operator==(const IdsAtOnce&, const IdsAtOnce&) = default;
+};
+
 struct CycleResult {
-  Cycle cycles = 0;               ///< from cycle 0 to the last in which a resource, ray control or shading did anything
-  Cycle steady_cycles = 0;        ///< between a quarter and three quarters of the rays
-  std::uint64_t steady_rays = 0;  ///< completed in these
-  double steady_spread = 0;       ///< by how much the rates of their halves differ, as a fraction
-  std::vector<TileResult> tiles;  ///< by resource
+  /// From cycle 0 to the last in which a resource, ray control or shading did anything.
+  Cycle cycles = 0;
+  std::vector<ClassUse> uses;               ///< of each class of parts, over the whole run
+  std::vector<ProgressSample> progress;     ///< in the order of time, at about equal numbers of rays
+  std::optional<ProgressSample> all_begun;  ///< when no ray was left that no other ray causes
+  std::vector<TileResult> tiles;            ///< by resource
   std::vector<LinkUse> links;
+  std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
+  std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0;
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
+  std::optional<IdsAtOnce> ids;   ///< where there are collections
   std::optional<StopTimes> stop;  ///< if one was excluded before the last ray was shaded
   EpochDigests epochs;
   std::vector<Step> steps;  ///< of RunOptions::trace

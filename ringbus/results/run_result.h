@@ -24,6 +24,7 @@ struct RunOptions {
   std::stop_token stop;                          ///< ends the run early; it is then incomplete
   std::chrono::milliseconds stuck_after{10000};  ///< native: a SimulationError after no progress for so long
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
+  cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
   std::function<void(std::uint64_t completed)> progress;
 };

@@ -6,8 +6,6 @@ namespace carousel::shading {
 
 namespace {
 
-constexpr std::uint32_t kTile = 8;
-
 /// Packs every second of 6 bits.
 std::uint32_t even_bits(std::uint32_t z) {
   return (z & 1) | (z >> 1 & 2) | (z >> 2 & 4);

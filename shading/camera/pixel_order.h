@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace carousel::shading {
@@ -17,11 +18,28 @@ class PixelOrder {
   PixelOrder(std::uint32_t width, std::uint32_t height, std::uint32_t samples)
       : width_(width), height_(height), samples_(samples) {}
 
+  static constexpr std::uint32_t kTile = 8;  ///< pixels, either way
+
+  std::uint32_t samples() const { return samples_; }
+  std::uint32_t tile_columns() const { return (width_ + kTile - 1) / kTile; }
+  std::uint32_t tile_rows() const { return (height_ + kTile - 1) / kTile; }
+  /// The tile's first path. Its paths follow one another: first sample 0 of all its pixels.
+  std::uint64_t tile_begin(std::uint64_t column, std::uint64_t row) const {
+    return kTile * std::uint64_t{samples_} * (row * width_ + column * tile_height(row));
+  }
+  std::uint64_t tile_pixels(std::uint64_t column, std::uint64_t row) const {
+    return std::min<std::uint64_t>(kTile, width_ - column * kTile) * tile_height(row);
+  }
+
   std::uint64_t count() const { return std::uint64_t{width_} * height_ * samples_; }
   /// Precondition: ordinal < count(). A bijection.
   PixelSample at(std::uint64_t ordinal) const;
 
  private:
+  std::uint64_t tile_height(std::uint64_t row) const {
+    return std::min<std::uint64_t>(kTile, height_ - row * kTile);
+  }
+
   std::uint32_t width_, height_, samples_;
 };
 

@@ -26,6 +26,9 @@ class PathPool {
     return sizeof(PathState) + shadow_slots * sizeof(Vec3) + (media ? 2 : 1) * sizeof(std::uint32_t);
   }
 
+  /// Of the paths, only so many are to be traced. Before the first admission.
+  void set_paths(std::uint64_t paths) { paths_ = paths; }
+
   struct Admission {
     std::uint64_t first = 0;  ///< ordinal of the first admitted path; the others follow
     std::size_t count = 0;    ///< states appended to `indices`

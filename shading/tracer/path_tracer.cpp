@@ -58,8 +58,14 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
 
 PathTracer::~PathTracer() = default;
 
+void PathTracer::set_sample(const PathSample* sample) {
+  sample_ = sample;
+  paths_ = sample == nullptr ? order_.count() : sample->count();
+  pool_.set_paths(paths_);
+}
+
 PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
-  const PixelSample at = order_.at(ordinal);
+  const PixelSample at = order_.at(sample_ == nullptr ? ordinal : sample_->ordinal(ordinal));
   PathState& path = pool_.state(index);
   // Relaxed and plain: no other thread knows this path until the engine has handed its ray over.
   for (auto& channel : path.radiance) channel.store(0, std::memory_order_relaxed);

@@ -14,6 +14,7 @@
 #include "scene/model/scene.h"
 #include "shading/camera/camera_rays.h"
 #include "shading/camera/film.h"
+#include "shading/camera/path_sample.h"
 #include "shading/camera/pixel_order.h"
 #include "shading/effects/effects_plan.h"
 #include "shading/lights/light_set.h"
@@ -50,6 +51,10 @@ class PathTracer : public Workload {
   /// Paths start at these hits, and need no camera ray where the hit is known; `hits` must outlive the tracing. Null:
   /// all paths start with a ray. Call before the first generate().
   void set_first_hits(const FirstHits* hits) { first_hits_ = hits; }
+
+  /// Only these paths of the frame are traced, in their order; `sample` must outlive the tracing. Call before the first
+  /// generate().
+  void set_sample(const PathSample* sample);
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
@@ -123,7 +128,7 @@ class PathTracer : public Workload {
 
   const scene::Scene& scene_;
   const EffectsPlan plan_;
-  const std::uint64_t paths_;
+  std::uint64_t paths_;
   const std::uint32_t max_depth_;  // 1 if there is nothing for bounce rays to find
   const SpawnOffset spawn_;
   const std::array<std::uint8_t, kRayKinds> ray_flags_;
@@ -141,6 +146,7 @@ class PathTracer : public Workload {
   std::atomic<std::uint64_t> held_{0};       // rays that workers hold back for their next generate()
   RayRecorder* recorder_ = nullptr;
   const FirstHits* first_hits_ = nullptr;
+  const PathSample* sample_ = nullptr;  // null: all paths
 };
 
 }  // namespace carousel::shading

@@ -28,6 +28,13 @@ inline constexpr auto kEnumNames<Select> = [] {
   return names<Select>({{kStrict, "strict"}, {kFullFirst, "full_first"}});
 }();
 
+enum class Partial { kIdle, kAhead, kAfter };
+template <>
+inline constexpr auto kEnumNames<Partial> = [] {
+  using enum Partial;
+  return names<Partial>({{kIdle, "idle"}, {kAhead, "ahead"}, {kAfter, "after"}});
+}();
+
 enum class Home { kIssuer, kHash, kLocal };
 template <>
 inline constexpr auto kEnumNames<Home> = [] {
@@ -47,6 +54,8 @@ struct CollectionsConfig {
   Traversal traversal = Traversal::kSpread;
   Policy policy = Policy::kNearest;
   Select select = Select::kFullFirst;
+  Partial partial = Partial::kAhead;
+  std::int64_t partial_after_cycles = 1000;
   Home home = Home::kIssuer;
   std::int64_t capacity = 65536;
   WhenFull when_full = WhenFull::kReserve;
@@ -63,8 +72,17 @@ void describe(V& v, CollectionsConfig& c) {
            "(ordered), or through a whole subtree at one visit (treelet).");
   v.choice("policy", c.policy, "The rule that chooses the collection that is tested next.");
   v.choice("select", c.select, "Full collections are tested first, or the policy alone decides.");
+  v.choice(
+      "partial", c.partial,
+      "A collection that is not ready may go when its resource has nothing else to do (idle), already when the work "
+      "before it ends within a memory latency (ahead), or when it has waited for a time (after). The native engine, "
+      "which has no clock, takes ahead as idle.");
+  v.field("partial_after_cycles", c.partial_after_cycles, IntRange{1, 1'000'000'000}, "cycles",
+          "The time that a collection waits to be filled, with partial: after.");
   v.choice("home", c.home, "The resource that keeps the collections of a packet's hits.");
-  v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource", "The storage for collections.");
+  v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource",
+          "The storage for collections. A ray takes one of them with traversal: ordered; otherwise collections take "
+          "blocks of packets.rays.");
   v.choice("when_full", c.when_full,
            "When the storage is full, a resource keeps a reserve and holds new rays back, or it spills to memory.");
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct RayFlags {
 };
 
 struct ShadingConfig {
-  std::int64_t workers = 2;
+  std::optional<std::int64_t> workers;  ///< absent: `auto`; see shader_workers() in core/config/config.h
   struct Effects {
     enum class Choice { kAuto, kAll, kList } choice = Choice::kAuto;
     std::vector<std::string> names;  ///< for kList
@@ -50,7 +51,9 @@ void describe(V& v, RayFlags& c) {
 
 template <class V>
 void describe(V& v, ShadingConfig& c) {
-  v.field("workers", c.workers, IntRange{1, 256}, "workers", "The number of shader workers.");
+  v.field_or_auto("workers", c.workers, IntRange{1, 256}, "workers",
+                  "The number of shader workers. With auto the cycle engine has two for each resource, and the native "
+                  "engine, where a worker is work for the host, two in all.");
   v.effects("effects", c.effects,
             "The effects of light: those that the scene calls for (auto), all of them (nothing is specialised), or of "
             "those that the scene calls for only the named ones.");

@@ -13,6 +13,9 @@ struct Token {
   std::uint16_t skip = 0;         ///< resources to pass before the next one that has work with it
   std::uint16_t link_cycles = 1;  ///< cycles for which it occupies a link
   std::uint16_t rays = 0;         ///< members
+  std::uint32_t size_bytes = 0;
+
+  std::uint64_t bytes() const { return size_bytes; }
 };
 
 }  // namespace carousel::ringbus::cycle

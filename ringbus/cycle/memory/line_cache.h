@@ -26,6 +26,14 @@ class LineCache {
     }
     return false;
   }
+  /// The lines that are there, in each set the one that is replaced next first.
+  std::vector<std::uint64_t> lines() const {
+    std::vector<std::uint64_t> out;
+    for (std::uint64_t set = 0; set < sets_; ++set)
+      for (std::uint64_t i = ways_; i-- > 0;)
+        if (lines_[set * ways_ + i] != kEmpty) out.push_back(lines_[set * ways_ + i]);
+    return out;
+  }
   void insert(std::uint64_t line) {
     if (touch(line)) return;
     std::uint64_t* set = set_of(line);

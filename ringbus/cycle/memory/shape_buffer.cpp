@@ -6,8 +6,8 @@
 
 namespace carousel::ringbus::cycle {
 
-ShapeBuffer::ShapeBuffer(const MemoryConfig& config, const SidePorts& ports)
-    : port_(config, ports),
+ShapeBuffer::ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports)
+    : port_(config, link, ports),
       places_(static_cast<std::uint64_t>(config.shape_buffer_kib) * 1024 / kPlaceBytes),
       free_places_(places_),
       buckets_(64, kNone),

@@ -32,7 +32,7 @@ class ShapeBuffer {
   static constexpr std::uint64_t kPlaceBytes = 64;
   static std::uint64_t places(const ShapeSpan& span) { return ceil_div(span.bytes, kPlaceBytes); }
 
-  ShapeBuffer(const MemoryConfig& config, const SidePorts& ports);
+  ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports);
 
   /// Takes what `user`, which holds nothing, needs for a test. Returns whether all is there; if not, the user waits,
   /// and will be among ready().
@@ -62,6 +62,7 @@ class ShapeBuffer {
 
   std::size_t fetches() const { return fetches_; }  ///< on their way
   const ShapeBufferCounts& counts() const { return counts_; }
+  std::uint64_t lines_asked() const { return port_.lines(); }
 
  private:
   static constexpr std::uint32_t kNone = ~0u;

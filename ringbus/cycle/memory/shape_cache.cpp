@@ -27,6 +27,13 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, 
       from_memory_(from_memory),
       port_lines_(static_cast<std::uint64_t>(config.l2_lines_per_cycle)) {}
 
+void ShapeCache::warm(std::span<const std::uint64_t> lines, double part) {
+  for (const std::uint64_t line : lines) {
+    const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull, drawn = (mixed ^ (mixed >> 31)) * 0xbf58476d1ce4e5b9ull;
+    if (static_cast<double>(drawn >> 11) * 0x1p-53 < part) cache_.insert(line);
+  }
+}
+
 Cycle ShapeCache::next() const {
   Cycle first = from_memory_.next();
   if (!answers_.empty()) first = std::min(first, answers_.top().ready);

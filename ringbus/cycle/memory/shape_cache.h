@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <queue>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -29,6 +30,10 @@ class ShapeCache final : public Agent {
 
   ShapeCache(const MemoryConfig& config, std::vector<Client> clients, Channel<std::uint64_t>& to_memory,
              Channel<std::uint64_t>& from_memory);
+
+  /// Holds part of these lines from the start.
+  void warm(std::span<const std::uint64_t> lines, double part);
+  std::vector<std::uint64_t> lines() const { return cache_.lines(); }
 
   Cycle next() const override;
   bool polled() const override { return false; }

@@ -3,6 +3,7 @@
 #include "ringbus/cycle/memory/shape_cache.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/messages/side_ports.h"
+#include "ringbus/cycle/messages/side_wire.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -10,26 +11,29 @@ namespace carousel::ringbus::cycle {
 class ShapePort {
  public:
   /// Keeps the ports' channels.
-  ShapePort(const MemoryConfig& config, const SidePorts& ports)
+  ShapePort(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports)
       : requests_(*ports.fetch),
         answers_(*ports.fetched),
-        latency_(ShapeCache::request_latency(config)),
+        wire_(link, ShapeCache::request_latency(config)),
         line_bytes_(static_cast<std::uint64_t>(config.line_bytes)) {}
 
   /// Asks for the lines of `span`; `tag` comes back when all are there. Requests are made in order of time.
   void request(const ShapeSpan& span, std::uint32_t tag, Cycle now) {
     const std::uint64_t first = span.address / line_bytes_, last = (span.address + span.bytes - 1) / line_bytes_;
-    requests_.send(now + latency_, {first, static_cast<std::uint32_t>(last - first + 1), tag});
+    const FetchRequest message{first, static_cast<std::uint32_t>(last - first + 1), tag};
+    requests_.send(wire_.send(message.bytes(), now), message);
+    lines_ += message.lines;
   }
   /// The time at which the next answer comes.
   Cycle next() const { return answers_.next(); }
   std::uint32_t take() { return answers_.take().tag; }
+  std::uint64_t lines() const { return lines_; }  ///< asked for
 
  private:
   Channel<FetchRequest>& requests_;
   Channel<FetchAnswer>& answers_;
-  Cycle latency_;
-  std::uint64_t line_bytes_;
+  SideWire wire_;
+  std::uint64_t line_bytes_, lines_ = 0;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -9,11 +9,17 @@ namespace carousel::ringbus::cycle {
 struct AnyHitQuestion {
   std::vector<std::uint32_t> slots;  ///< of the rays, which are held until the answer comes
   std::uint64_t times = 0;           ///< calls, all rays together
+
+  /// The ID of each ray, and for each call instance, primitive, u and v.
+  std::uint64_t bytes() const { return 4 * slots.size() + 16 * times; }
 };
 
 /// The calls of these rays have been answered. The resource has long known the answers: only the time is simulated.
 struct AnyHitAnswer {
   std::vector<std::uint32_t> slots;
+
+  /// The ID of each ray, and the distance of its closest hit.
+  std::uint64_t bytes() const { return 8 * slots.size(); }
 };
 
 }  // namespace carousel::ringbus::cycle

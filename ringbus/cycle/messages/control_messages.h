@@ -16,6 +16,12 @@ struct NewRays {
     kDiscard,  ///< discard all work and every packet that comes back, and note when that is done
     kGoOn,     ///< go on without the resource that has stopped
   } order = Order::kTake;
+  std::uint64_t records = 0;  ///< loaded for them into ray stores, those of bundles included
+
+  /// An order has 4 bytes.
+  std::uint64_t bytes() const {
+    return records * sizeof(RayRecord) + (order == Order::kTake ? 4 * ids.size() : std::uint64_t{4});
+  }
 };
 
 /// A resource sends shading completed rays and the slots they leave; or a note on its own state.
@@ -27,6 +33,9 @@ struct CompletedRays {
     kLastBeat,  ///< it has stopped: nothing will come from it any more
     kDrained,   ///< none of its packets, fetches and any-hit calls is under way
   } note = Note::kDone;
+
+  /// A record says where it lay, so the slots need no bytes of their own. A note has 4.
+  std::uint64_t bytes() const { return rays.size() * sizeof(RayRecord) + (note == Note::kDone ? 0 : 4); }
 };
 
 }  // namespace carousel::ringbus::cycle

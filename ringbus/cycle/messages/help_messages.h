@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/types/ray.h"
 #include "ringbus/cycle/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -7,12 +8,17 @@ namespace carousel::ringbus::cycle {
 /// To a resource with nothing to test: shade a ray, in so many cycles.
 struct ShadeJob {
   Cycle cycles = 0;
+
+  std::uint64_t bytes() const { return sizeof(RayRecord); }
 };
 
 /// A resource's testers have fallen idle or are needed again, or it has done its job.
 struct HelpNote {
   bool shaded = false;  ///< the job is done
   bool idle = false;    ///< its testers have nothing to do now
+
+  /// A job's result, light and a new ray, is as large as a record.
+  std::uint64_t bytes() const { return shaded ? 4 + sizeof(RayRecord) : 4; }
 };
 
 }  // namespace carousel::ringbus::cycle

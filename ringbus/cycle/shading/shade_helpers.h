@@ -8,6 +8,7 @@
 
 #include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -17,11 +18,11 @@ namespace carousel::ringbus::cycle {
 class ShadeHelpers {
  public:
   /// By resource; a resource without a channel for jobs does not help.
-  ShadeHelpers(const std::vector<SidePorts>& resources, Cycle latency) : latency_(latency) {
+  ShadeHelpers(const std::vector<SidePorts>& resources, const LinkConfig& link) {
     for (const SidePorts& ports : resources) {
       if (ports.jobs == nullptr) continue;
       idle_.push_back(helpers_.size());
-      helpers_.push_back({ports.jobs, ports.help, false, {}});
+      helpers_.push_back({ports.jobs, ports.help, SideWire(link, control_latency(link)), false, {}});
     }
   }
 
@@ -43,7 +44,8 @@ class ShadeHelpers {
     helper.ray = ray;
     helper.has_job = true;
     ++out_;
-    helper.jobs->send(now + latency_, {cycles});
+    const ShadeJob job{cycles};
+    helper.jobs->send(helper.wire.send(job.bytes(), now), job);
   }
   /// The helper whose jobs go by `jobs` has stopped. Returns the ray it had, if any, to be shaded elsewhere.
   std::optional<RayResult> exclude(const Channel<ShadeJob>* jobs) {
@@ -64,6 +66,7 @@ class ShadeHelpers {
   struct Helper {
     Channel<ShadeJob>* jobs;
     Channel<HelpNote>* notes;
+    SideWire wire;  // of the jobs
     bool has_job;
     RayResult ray;
   };
@@ -83,7 +86,6 @@ class ShadeHelpers {
       std::erase(idle_, i);
   }
 
-  Cycle latency_;
   std::vector<Helper> helpers_;
   std::deque<std::size_t> idle_;
   std::size_t out_ = 0;

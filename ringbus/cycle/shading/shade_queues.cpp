@@ -8,11 +8,11 @@ namespace carousel::ringbus::cycle {
 
 using Distribute = ShadingConfig::Distribute;
 
-ShadeQueues::ShadeQueues(const ShadingConfig& config, std::uint64_t seed)
-    : distribute_(config.distribute),
+ShadeQueues::ShadeQueues(ShadingConfig::Distribute distribute, std::size_t workers, std::uint64_t seed)
+    : distribute_(distribute),
       seed_(seed),
-      queues_(distribute_ == Distribute::kFifoFill ? 1 : static_cast<std::size_t>(config.workers)),
-      in_work_(static_cast<std::size_t>(config.workers)) {}
+      queues_(distribute_ == Distribute::kFifoFill ? 1 : workers),
+      in_work_(workers) {}
 
 std::size_t ShadeQueues::queue_for(const RayResult& ray) {
   switch (distribute_) {

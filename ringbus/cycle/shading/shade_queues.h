@@ -15,7 +15,7 @@ namespace carousel::ringbus::cycle {
 /// rays waiting and in work, each in turn, or at random, which depends on the ray and not on when it comes.
 class ShadeQueues {
  public:
-  ShadeQueues(const ShadingConfig& config, std::uint64_t seed);
+  ShadeQueues(ShadingConfig::Distribute distribute, std::size_t workers, std::uint64_t seed);
 
   void push(const RayResult& ray);
   std::size_t size() const { return size_; }

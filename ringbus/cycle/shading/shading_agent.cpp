@@ -26,13 +26,14 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       gather_(group_),
       bundled_(settings.bundles.size > 0),
       builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
-      queues_(settings.shading, settings.seed),
-      helpers_(clients_, latency_),
-      made_(static_cast<std::size_t>(settings.shading.workers)),
+      queues_(settings.shading.distribute, settings.workers, settings.seed),
+      helpers_(clients_, settings.link),
+      made_(settings.workers),
       load_free_(clients_.size()),
-      last_sent_(clients_.size()) {
+      id_wires_(clients_.size(), SideWire(settings.link, latency_)),
+      answer_wires_(clients_.size(), SideWire(settings.link, latency_)) {
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
-  for (std::uint32_t w = static_cast<std::uint32_t>(settings.shading.workers); w-- > 0;) idle_.push_back(w);
+  for (std::uint32_t w = static_cast<std::uint32_t>(settings.workers); w-- > 0;) idle_.push_back(w);
   const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
   if (bundled_) gather_ = std::max(group_, std::min(slots_ / 4, open));
 }
@@ -96,7 +97,9 @@ bool ShadingAgent::finish_jobs(Cycle now) {
     idle_.push_back(job.worker);
     queues_.set_in_work(job.worker, 0);
     if (job.question) {
-      clients_[job.question->from].answers->send(now + latency_, {job.question->rays.slots});
+      AnyHitAnswer answer{job.question->rays.slots};
+      const Cycle arrival = answer_wires_[job.question->from].send(answer.bytes(), now);
+      clients_[job.question->from].answers->send(arrival, std::move(answer));
       continue;
     }
     if (job.made == 0) {
@@ -118,7 +121,6 @@ bool ShadingAgent::finish_jobs(Cycle now) {
   outstanding_ -= shaded_.size();
   completed_ += shaded_.size();
   source_dry_ = false;
-  milestone(now);
   return true;
 }
 
@@ -199,6 +201,7 @@ void ShadingAgent::send_groups(Cycle now) {
     machine_.control.collect(ResourceId(r), groups_);
     for (RayGroup& group : groups_) {
       Cycle loaded = std::max(now, builder_free_);
+      std::uint64_t loads = 0;
       for (const RayId id : group.ids) {
         const RayStore& store = *machine_.stores[layout.owner(id).value];
         const std::uint32_t slot = layout.slot(id);
@@ -206,10 +209,11 @@ void ShadingAgent::send_groups(Cycle now) {
         Cycle& port = load_free_[layout.owner(id).value];
         port = std::max(port, now) + load_cycles_ * records;
         loaded = std::max(loaded, port);
+        loads += records;
       }
       trace_.note(now, StepKind::kPlace, 0, group.ids.size());
-      last_sent_[r] = std::max(last_sent_[r], loaded + latency_);
-      clients_[r].new_rays->send(last_sent_[r], {std::move(group.ids)});
+      const Cycle arrival = id_wires_[r].send(4 * group.ids.size(), loaded);
+      clients_[r].new_rays->send(arrival, {std::move(group.ids), NewRays::Order::kTake, loads});
     }
   }
 }
@@ -254,18 +258,9 @@ void ShadingAgent::restart(Cycle now) {
 /// Sends an order to all resources, behind the rays that were sent before it.
 void ShadingAgent::order_all(NewRays::Order order, Cycle now) {
   for (std::uint32_t r = 0; r < clients_.size(); ++r) {
-    last_sent_[r] = std::max(last_sent_[r], now + latency_);
-    clients_[r].new_rays->send(last_sent_[r], {{}, order});
+    const NewRays message{{}, order, 0};
+    clients_[r].new_rays->send(id_wires_[r].send(message.bytes(), now), message);
   }
-}
-
-void ShadingAgent::milestone(Cycle now) {
-  if (completed_ < milestone_rays_ * (milestones_.size() + 1)) return;
-  milestones_.push_back({now, completed_});
-  if (milestones_.size() < 1024) return;
-  for (std::size_t i = 0; i < 512; ++i) milestones_[i] = milestones_[2 * i + 1];
-  milestones_.resize(512);
-  milestone_rays_ *= 2;
 }
 
 std::string ShadingAgent::describe() const {

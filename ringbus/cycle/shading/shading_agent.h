@@ -10,6 +10,7 @@
 
 #include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "ringbus/cycle/shading/shade_queues.h"
 #include "ringbus/cycle/shading/shading_settings.h"
@@ -48,6 +49,8 @@ class ShadingAgent final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override;
 
+  /// No further ray comes that no other ray causes.
+  bool all_begun() const { return source_finished_; }
   bool done() const { return source_finished_ && outstanding_ == 0 && making_ == 0; }
   /// Since the start, for the progress bar; from the agent's thread.
   std::uint64_t emitted() const { return emitted_; }
@@ -56,12 +59,6 @@ class ShadingAgent final : public Agent {
   Cycle last_event() const { return now_; }
   /// Worker-cycles spent on jobs that are done: shading, camera rays and any-hit calls.
   Cycle busy() const { return busy_; }
-  /// How many rays had been shaded at a time, in steps of a number of rays; for the rate between fill and drain.
-  struct Milestone {
-    Cycle at = 0;
-    std::uint64_t completed = 0;
-  };
-  const std::vector<Milestone>& milestones() const { return milestones_; }
   const Trace& trace() const { return trace_; }
   /// The times at which a resource stopped and work began anew; absent if no stop was noted.
   const std::optional<StopTimes>& stop() const { return stop_; }
@@ -100,7 +97,6 @@ class ShadingAgent final : public Agent {
   void restart(Cycle now);
   void order_all(NewRays::Order order, Cycle now);
   std::size_t room() const;
-  void milestone(Cycle now);
 
   Machine& machine_;
   FaultsConfig::Resource fault_;
@@ -121,7 +117,8 @@ class ShadingAgent final : public Agent {
   std::vector<RayBatch> made_;  // by worker: the camera rays of its job
   HitBatch shaded_;
   std::vector<RayGroup> groups_;
-  std::vector<Cycle> load_free_, last_sent_;  // by resource
+  std::vector<Cycle> load_free_;                   // by resource
+  std::vector<SideWire> id_wires_, answer_wires_;  // likewise
   bool source_finished_ = false, source_dry_ = false, started_ = false;
   std::size_t making_ = 0;
   std::unique_ptr<OutstandingRays> ledger_;  // where a resource may stop
@@ -131,8 +128,6 @@ class ShadingAgent final : public Agent {
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;
-  std::uint64_t milestone_rays_ = 64;
-  std::vector<Milestone> milestones_;
 };
 
 }  // namespace carousel::ringbus::cycle

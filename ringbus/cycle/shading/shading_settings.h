@@ -12,6 +12,7 @@ struct ShadingSettings {
   BundlesConfig bundles;
   LinkConfig link;
   FaultsConfig::Resource fault;
+  std::size_t workers = 1;
   std::size_t slots = 0;        ///< of all resources
   std::size_t packet_rays = 1;  ///< new rays that make a group
   std::uint64_t seed = 1;
@@ -22,6 +23,7 @@ inline ShadingSettings shading_settings(const Config& config) {
           config.bundles,
           config.topology.link,
           config.faults.resource,
+          static_cast<std::size_t>(shader_workers(config)),
           static_cast<std::size_t>(config.topology.resources * config.rays.slots_per_resource),
           static_cast<std::size_t>(config.packets.rays),
           static_cast<std::uint64_t>(config.image.seed)};

@@ -9,7 +9,7 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Sends a resource's completed rays to shading, record after record, a link's width a cycle.
+/// Sends a resource's completed rays to shading, record after record, a link's width a cycle. A note takes a cycle.
 class CompletedPort {
  public:
   CompletedPort(const LinkConfig& link, const SidePorts& ports)
@@ -27,7 +27,8 @@ class CompletedPort {
 
   /// Sends a note behind the rays that have been sent.
   void notify(CompletedRays::Note note, Cycle now) {
-    completed_.send(std::max(free_at_, now) + latency_, {{}, {}, note});
+    free_at_ = std::max(free_at_, now) + 1;
+    completed_.send(free_at_ - 1 + latency_, {{}, {}, note});
   }
 
  private:

@@ -16,11 +16,11 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       id_(id),
       store_(*machine.stores[id.value]),
       statistics_(settings.statistics),
-      control_latency_(control_latency(settings.link)),
+      question_wire_(settings.link, control_latency(settings.link)),
       trace_(id.value, settings.trace),
       ports_(ports),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
-      shapes_(settings.memory, ports),
+      shapes_(settings.memory, settings.link, ports),
       completed_port_(settings.link, ports),
       help_(settings.link, ports),
       transforms_(settings.accuracy, machine.accel, store_.slots()),
@@ -50,10 +50,12 @@ void IndependentTile::step(Cycle now) {
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
       shapes_.release(slot, now);
-      if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0)
-        ports_.questions->send(now + control_latency_, {{slot}, times});
-      else
+      if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0) {
+        AnyHitQuestion question{{slot}, times};
+        ports_.questions->send(question_wire_.send(question.bytes(), now), std::move(question));
+      } else {
         keep_running(slot, now);
+      }
       serve(now);
     }
   } while (help_.step(now, tests_.empty()));

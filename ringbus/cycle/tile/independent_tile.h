@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ringbus/cycle/memory/shape_buffer.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/ray_walk.h"
@@ -39,6 +40,7 @@ class IndependentTile final : public ResourceAgent {
   Cycle last_event() const override { return now_; }
   void close(Cycle end) override { ledger_.close(end); }
   TileResult result() const override;
+  std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return {}; }
   const std::vector<OutPort>& out() const override { return no_links_; }
@@ -78,7 +80,7 @@ class IndependentTile final : public ResourceAgent {
   ResourceId id_;
   RayStore& store_;
   bool statistics_;
-  Cycle control_latency_;
+  SideWire question_wire_;
   StatisticsSink sink_;
   Trace trace_;
   SidePorts ports_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ringbus/cycle/fabric/ports.h"
+#include "ringbus/cycle/tile/id_census.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
@@ -23,6 +24,10 @@ class ResourceAgent : public Agent {
   virtual TileResult result() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
+  /// The IDs in its collections over time; null where there are none. After close().
+  virtual const IdCensus* census() const { return nullptr; }
+  /// Lines of shape data for which it has asked its cache.
+  virtual std::uint64_t lines_asked() const = 0;
   /// Packets of its own that were discarded because a resource had stopped.
   virtual std::uint64_t packets_discarded() const { return 0; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ringbus/cycle/messages/side_ports.h"
+#include "ringbus/cycle/messages/side_wire.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -14,7 +15,7 @@ namespace carousel::ringbus::cycle {
 class ShadeHelp {
  public:
   ShadeHelp(const LinkConfig& link, const SidePorts& ports)
-      : jobs_(ports.jobs), notes_(ports.help), latency_(control_latency(link)) {}
+      : jobs_(ports.jobs), notes_(ports.help), wire_(link, control_latency(link)) {}
 
   /// Takes a job in, starts it if no test is under way, ends it. Returns whether any of these happened.
   bool step(Cycle now, bool testers_free) {
@@ -40,7 +41,8 @@ class ShadeHelp {
   /// Sends a note at the end of a step, if there is anything to note.
   void notify(Cycle now, bool idle) {
     if (jobs_ == nullptr || stopped_ || holds() || (!shaded_ && idle == told_idle_)) return;
-    notes_->send(now + latency_, {shaded_, idle});
+    const HelpNote note{shaded_, idle};
+    notes_->send(wire_.send(note.bytes(), now), note);
     told_idle_ = idle;
     shaded_ = false;
   }
@@ -60,7 +62,8 @@ class ShadeHelp {
  private:
   Channel<ShadeJob>* jobs_;  // null: the resource does not help
   Channel<HelpNote>* notes_;
-  Cycle latency_, cycles_ = 0;  // cycles_: of the job
+  SideWire wire_;
+  Cycle cycles_ = 0;  // of the job
   Cycle done_ = kNever;
   bool waiting_ = false, shaded_ = false, stopped_ = false;
   bool told_idle_ = true;  // all resources are idle at first

@@ -18,17 +18,19 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       logic_(machine, resource_),
       ports_(std::move(ports)),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
-      shapes_(settings.memory, ports_),
+      shapes_(settings.memory, settings.link, ports_),
       completed_port_(settings.link, ports_),
       help_(settings.link, ports_),
       packet_size_(settings.resource.collections, settings.resource.packets.carry),
       link_bytes_(static_cast<Cycle>(settings.link.bytes_per_cycle)),
       ids_per_cycle_(static_cast<Cycle>(settings.resource.packets.ids_per_cycle)),
-      control_latency_(control_latency(settings.link)),
+      question_wire_(settings.link, control_latency(settings.link)),
       issue_places_(static_cast<std::size_t>(settings.memory.fetch_ahead) + 1),
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
+      partial_(settings.resource.collections.partial),
+      memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       visits_(memory, shapes_, tester_, contexts_.size(),
@@ -82,6 +84,7 @@ Cycle Tile::next_egress() const {
   for (const Context& context : contexts_)
     if (context.phase == Context::Phase::kComputing || context.phase == Context::Phase::kStarting)
       consider(context.done);
+  consider(next_partial_);
   if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
 }
@@ -110,7 +113,9 @@ void Tile::run(Cycle end) {
 
 void Tile::step(Cycle now) {
   now_ = now;
+  census_.until(now, resource_.collections().memberships());
   for (OutPort& out : ports_.out) out.take_credits(now);
+  resource_.ripen(now);
   if (stops_ && fault_is_due()) stop(now);
   shapes_.take_answers(now);
   serve(now);
@@ -140,6 +145,8 @@ void Tile::step(Cycle now) {
   const TileState state = classify();
   ledger_.enter(state, now);
   help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
+  if (const std::optional<std::uint64_t> ripe = resource_.next_ripe(); ripe && issue_.size() < issue_places_)
+    next_partial_ = std::min<Cycle>(next_partial_, *ripe);
   next_here_ = next_egress();
   may_send_ = wants_credit() ||
               std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
@@ -218,6 +225,7 @@ ResourceStatistics Tile::statistics() const {
 
 void Tile::close(Cycle end) {
   ledger_.close(end);
+  census_.until(end, resource_.collections().memberships());
   // The dispatch stage may still look through the IDs of the last packet.
   if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -8,6 +9,7 @@
 #include "ringbus/cycle/fabric/packet_size.h"
 #include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/rays_in_test.h"
@@ -55,8 +57,10 @@ class Tile final : public ResourceAgent {
   Cycle last_event() const override { return now_; }
   void close(Cycle end) override;
   TileResult result() const override;
+  std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
+  const IdCensus* census() const override { return &census_; }
   const std::vector<OutPort>& out() const override { return ports_.out; }
   std::string blocked(std::size_t port) const override;
   std::uint64_t packets_discarded() const override { return discarded_; }
@@ -105,6 +109,12 @@ class Tile final : public ResourceAgent {
   bool pass_through_dispatch(std::size_t d, Cycle now);
   bool handle_issue(Cycle now);
   bool fill_issue(Cycle now);
+  bool nothing_else_to_do(Cycle now) const;
+  /// The end of the tests under way, or of the dispatch of all packets in the issue queue, if that is later.
+  Cycle work_ahead_ends(Cycle now) const;
+  /// The time from which a collection that is not ready may go, by `collections.partial`; kNever while that waits for
+  /// another event.
+  Cycle partial_may_go(Cycle now) const;
   bool send(Cycle now);
 
   // When a resource has stopped (tile_stop.cpp).
@@ -134,6 +144,7 @@ class Tile final : public ResourceAgent {
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
+  Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
   void occupy_dispatch(Cycle now, std::size_t ids);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
   bool may_inject(const Packet& packet) const;
@@ -155,9 +166,12 @@ class Tile final : public ResourceAgent {
   CompletedPort completed_port_;
   ShadeHelp help_;
   PacketSize packet_size_;
-  Cycle link_bytes_, ids_per_cycle_, control_latency_;
+  Cycle link_bytes_, ids_per_cycle_;
+  SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, fetch_by_resource_;
+  Partial partial_;
+  Cycle memory_latency_;  // of a miss
   bool starts_later_;  // tests begin, and take units, when dispatch has read the packet; otherwise that is known before
 
   Cycle now_ = 0;
@@ -167,6 +181,7 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::deque<Issue> issue_;
+  Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::size_t issued_ = 0;
   std::vector<Context> contexts_;
   SubtreeVisits visits_;
@@ -183,6 +198,7 @@ class Tile final : public ResourceAgent {
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
+  IdCensus census_;
 };
 
 }  // namespace carousel::ringbus::cycle

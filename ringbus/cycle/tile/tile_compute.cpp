@@ -113,7 +113,8 @@ void Tile::end_test(Context& context, Cycle now) {
 
 void Tile::ask(Context& context, Cycle now) {
   if (context.question.slots.empty()) return;
-  ports_.questions->send(now + control_latency_, std::move(context.question));
+  const Cycle arrival = question_wire_.send(context.question.bytes(), now);
+  ports_.questions->send(arrival, std::move(context.question));
   ++questions_out_;
   context.question = {};
 }

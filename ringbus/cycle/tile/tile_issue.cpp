@@ -40,6 +40,34 @@ bool Tile::handle_issue(Cycle now) {
   return true;
 }
 
+bool Tile::nothing_else_to_do(Cycle now) const {
+  return issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
+         std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
+}
+
+Cycle Tile::work_ahead_ends(Cycle now) const {
+  Cycle ends = std::max(dispatch_free_, now);
+  for (const Issue& issue : issue_) ends += dispatch_cycles(machine_.packet(issue.packet).members.size());
+  for (const Context& context : contexts_)
+    if (context.phase == Context::Phase::kComputing) ends = std::max(ends, context.done);
+  return ends;
+}
+
+Cycle Tile::partial_may_go(Cycle now) const {
+  switch (partial_) {
+    case Partial::kIdle:
+      return nothing_else_to_do(now) ? now : kNever;
+    case Partial::kAhead: {
+      if (help_.holds()) return kNever;
+      const Cycle ends = work_ahead_ends(now);
+      return ends <= now + memory_latency_ ? now : ends - memory_latency_;
+    }
+    case Partial::kAfter:  // it becomes ready by itself
+      break;
+  }
+  return kNever;
+}
+
 /// Tells whether a packet waits in the issue queue for its shapes: to bring them along, or because it will be tested
 /// here.
 bool Tile::fetches_ahead(const Packet& packet) const {
@@ -49,17 +77,18 @@ bool Tile::fetches_ahead(const Packet& packet) const {
 
 bool Tile::fill_issue(Cycle now) {
   bool moved = false;
+  next_partial_ = kNever;
   while (issue_.size() < issue_places_ && !resource_.idle()) {
-    // Collections that are not full are issued only when there is nothing better to do: waiting fills them.
-    const bool nothing_else =
-        issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
-        std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
     const std::optional<PacketId> id = logic_.free.front();
     if (!id) return moved;
+    const Cycle partial_at = partial_may_go(now);
     Packet& packet = machine_.packet(*id);
-    const Resource::Offer offer = resource_.offer(nothing_else, packet);
+    const Resource::Offer offer = resource_.offer(partial_at <= now, packet);
     storage_full_ = offer == Resource::Offer::kStorage;
-    if (offer != Resource::Offer::kPacket) return moved;
+    if (offer != Resource::Offer::kPacket) {
+      next_partial_ = partial_at;
+      return moved;
+    }
     logic_.free.take();
     moved = true;
     Issue issue{*id, static_cast<ShapeBuffer::User>(contexts_.size() + issued_++ % issue_places_)};

@@ -10,8 +10,8 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   OutPort& out = out_for(packet);
   if (reserved) out.release();
   Token token{id, 0, 1, static_cast<std::uint16_t>(packet.members.size())};
-  token.link_cycles = static_cast<std::uint16_t>(
-      ceil_div(packet_size_.bytes(packet, memory_, resource_.is_treelet(packet.key)), link_bytes_));
+  token.size_bytes = packet_size_.bytes(packet, memory_, resource_.is_treelet(packet.key));
+  token.link_cycles = static_cast<std::uint16_t>(ceil_div(token.size_bytes, link_bytes_));
   token.skip = machine_.topology.skip(packet, id_);
   out.push(token, ready, !visit_all_ && token.skip > 0);
 }
@@ -24,7 +24,7 @@ void Tile::retire_at_owner(PacketId id) {
 }
 
 void Tile::occupy_dispatch(Cycle now, std::size_t ids) {
-  const Cycle cycles = std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_));
+  const Cycle cycles = dispatch_cycles(ids);
   const Cycle start = std::max(dispatch_free_, now);
   if (start != dispatch_ends_) dispatch_since_ = start;
   dispatch_ends_ = dispatch_free_ = start + cycles;

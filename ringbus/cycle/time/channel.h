@@ -17,6 +17,8 @@ namespace carousel::ringbus::cycle {
 /// thing that is sent within a window arrives after it (see windows.h), so nothing changes if the receiver sees it a
 /// little earlier.
 ///
+/// If a T has bytes(), the size of the message that it stands for, both ends count them.
+///
 /// Things stand in a chain of blocks; the block that the receiver has emptied goes back to the sender.
 template <class T>
 class Channel {
@@ -43,6 +45,7 @@ class Channel {
       tail_block_->next = block;
       tail_block_ = block;
     }
+    if constexpr (kHasBytes) bytes_sent_ += thing.bytes();
     tail_block_->items[place] = {arrival, std::move(thing)};
     tail_.store(tail + 1, std::memory_order_release);  // publishes the item, and the block's link
     if (arrival < *wake_) *wake_ = arrival;
@@ -60,6 +63,7 @@ class Channel {
   T take() {
     T thing = std::move(const_cast<Item&>(first()).thing);
     arrival_ = kNever;
+    if constexpr (kHasBytes) bytes_taken_ += thing.bytes();
     if (++head_ % kBlock == 0) emptied_ = true;
     return thing;
   }
@@ -76,9 +80,28 @@ class Channel {
     }
     return at - head_;
   }
+  /// In all, as the sender and the receiver have counted; while no agent runs. `waiting` are those that have been sent
+  /// and not taken.
+  struct Count {
+    std::uint64_t sent = 0, taken = 0, waiting = 0;
+  };
+  Count messages() const { return {tail_.load(std::memory_order_acquire), head_, size()}; }
+  Count bytes() const {
+    Count count{bytes_sent_, bytes_taken_, 0};
+    if constexpr (kHasBytes) {
+      if (size() > 0) first();  // the head block is the one that holds it
+      const Block* block = head_block_;
+      for (std::size_t at = head_, end = head_ + size(); at != end; ++at) {
+        if (at != head_ && at % kBlock == 0) block = block->next;
+        count.waiting += block->items[at % kBlock].thing.bytes();
+      }
+    }
+    return count;
+  }
   std::size_t size() const { return tail_.load(std::memory_order_acquire) - head_; }
 
  private:
+  static constexpr bool kHasBytes = requires(const T& thing) { std::uint64_t{thing.bytes()}; };
   static constexpr std::size_t kBlock = 8;
   struct Item {
     Cycle arrival = 0;
@@ -102,11 +125,13 @@ class Channel {
   // Used by the receiver.
   alignas(64) mutable Block* head_block_;
   std::size_t head_ = 0;
+  std::uint64_t bytes_taken_ = 0;
   mutable Cycle arrival_ = kNever;  // of the first thing, once it has been looked at
   mutable bool emptied_ = false;    // the head block has been read to its end, and the next one not begun
   // Used by the sender.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
+  std::uint64_t bytes_sent_ = 0;
   Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds
   Cycle unconnected_ = kNever;
   Cycle* wake_ = &unconnected_;

@@ -98,7 +98,7 @@ class WindowRun {
     Barrier::Patience patience;
     for (std::uint64_t window = 0;; ++window) {
       Cycle first = look(thread, schedule);
-      // Written within windows only, so all threads read the same here, between two of them.
+      // Written before the last barrier, so all threads read the same here.
       const bool stop = stop_.load(std::memory_order_relaxed);
       if (!alone) {
         next_[thread].cycle = first;
@@ -106,11 +106,12 @@ class WindowRun {
         for (const Next& other : next_) first = std::min(first, other.cycle);
       }
       if (first == kNever || stop) break;  // all threads come to the same conclusion
-      run_window(agents, schedule, first + lookahead_);
-      if (thread == 0) {
-        reached_ = first;
-        if (window % kPollInterval == 0 && !keep_running_(first)) stop_.store(true, std::memory_order_relaxed);
+      if (window % kPollInterval == 0) {
+        if (thread == 0 && !keep_running_(first)) stop_.store(true, std::memory_order_relaxed);
+        if (!alone) barrier_.wait(patience);
       }
+      run_window(agents, schedule, first + lookahead_);
+      if (thread == 0) reached_ = first;
       if (!alone) barrier_.wait(patience);
     }
   }
@@ -164,7 +165,7 @@ class WindowRun {
     }
   }
 
-  static constexpr std::uint64_t kPollInterval = 4096;
+  static constexpr std::uint64_t kPollInterval = 64;
 
   std::span<const std::vector<Agent*>> parts_;
   WakeupTable& wakeups_;

@@ -19,6 +19,11 @@ MemorySystem::MemorySystem(const MemoryConfig& config, const std::vector<ShapeCa
   memory_ = std::make_unique<Memory>(config, std::move(memory_clients));
 }
 
+void MemorySystem::warm(const WarmCaches& from) {
+  if (from.lines == nullptr || from.lines->size() != caches_.size()) return;
+  for (std::size_t c = 0; c < caches_.size(); ++c) caches_[c]->warm((*from.lines)[c], from.part);
+}
+
 void MemorySystem::connect(WakeupTable& wakeups) const {
   for (std::size_t c = 0; c < caches_.size(); ++c) {
     wakeups.connect(*to_memory_[c], *caches_[c], *memory_);

@@ -7,6 +7,7 @@
 #include "ringbus/cycle/memory/memory.h"
 #include "ringbus/cycle/memory/shape_cache.h"
 #include "ringbus/cycle/time/wakeup_table.h"
+#include "ringbus/results/class_use.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -20,6 +21,13 @@ class MemorySystem {
   const ShapeCache& cache_of(std::size_t resource) const { return *caches_[resource / shared_by_]; }
   Memory& memory() { return *memory_; }
   const Memory& memory() const { return *memory_; }
+  /// Before the start. A machine with other caches than those that held the lines starts cold.
+  void warm(const WarmCaches& from);
+  /// Calls `body` with the channels to memory and back, cache by cache.
+  template <class Body>
+  void for_each_channel(const Body& body) const {
+    for (std::size_t c = 0; c < caches_.size(); ++c) body(*to_memory_[c], *from_memory_[c]);
+  }
   /// Announces arrivals between caches and memory.
   void connect(WakeupTable& wakeups) const;
   /// The least latency of any channel to a cache or to memory.

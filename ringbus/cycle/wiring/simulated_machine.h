@@ -27,8 +27,11 @@ class SimulatedMachine {
   const Machine& shared() const { return shared_; }
   const Network& network() const { return network_; }
   const MemorySystem& memory() const { return *memory_; }
+  /// Before the start.
+  void warm(const WarmCaches& caches) { memory_->warm(caches); }
   const ShadingAgent& shading() const { return *shading_; }
   const std::vector<std::unique_ptr<ResourceAgent>>& resources() const { return resources_; }
+  const std::vector<std::unique_ptr<SideChannels>>& channels() const { return channels_; }  ///< by resource
 
   /// Shares the agents out over threads. Neighbours go to the same thread, and each cache to the thread of its
   /// resources; shading and memory go to the last thread.

@@ -1,6 +1,7 @@
 #include "ringbus/resource/collections/collection_store.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace carousel::ringbus {
 
@@ -23,7 +24,7 @@ void CollectionStore::enlist(std::uint32_t index, std::uint32_t bucket) {
 
 void CollectionStore::relist(std::uint32_t index, bool was_ready) {
   Collection& c = collections_[index];
-  c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready;
+  c.ready = settings_.select == Select::kStrict || c.count >= settings_.ready || c.ripe;
   const std::uint32_t bucket = this->bucket(c);
   if (c.ready == was_ready && list(c).bucket_of(index) == bucket) return;
   (was_ready ? ready_ : partial_).remove(index);
@@ -41,12 +42,38 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
     index = free_collections_.back();
     free_collections_.pop_back();
   }
-  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict};
+  const std::uint32_t waits = collections_[index].waits;
+  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict, false, waits};
+  begin_to_wait(index);
   table_.insert(key, index);
   ++statistics_.created;
   statistics_.peak = std::max<std::uint64_t>(statistics_.peak, table_.size());
   enlist(index, bucket(collections_[index]));
   return index;
+}
+
+void CollectionStore::begin_to_wait(std::uint32_t index) {
+  if (settings_.ripe_after == 0) return;
+  collections_[index].ripe = false;
+  waiting_.push_back({now_, index, ++collections_[index].waits});
+}
+
+void CollectionStore::ripen(std::uint64_t now) {
+  now_ = now;
+  for (std::optional<std::uint64_t> at; (at = next_ripe()) && *at <= now; waiting_.pop_front()) {
+    Collection& c = collections_[waiting_.front().collection];
+    c.ripe = true;
+    relist(waiting_.front().collection, c.ready);
+  }
+}
+
+std::optional<std::uint64_t> CollectionStore::next_ripe() {
+  for (; !waiting_.empty(); waiting_.pop_front()) {
+    const Waiting& first = waiting_.front();
+    const Collection& c = collections_[first.collection];
+    if (c.waits == first.waits && c.count > 0 && !c.ready) return first.since + settings_.ripe_after;
+  }
+  return std::nullopt;
 }
 
 std::uint32_t CollectionStore::new_block() {
@@ -104,7 +131,11 @@ std::optional<CollectionId> CollectionStore::deepest() const {
 }
 
 std::uint32_t CollectionStore::front_rays(CollectionId id) const {
-  return std::min(collections_[id.value].count, settings_.block_rays);
+  return std::min(collections_[id.value].count, settings_.packet_rays);
+}
+
+std::uint32_t CollectionStore::front_blocks(CollectionId id) const {
+  return (front_rays(id) + settings_.block_rays - 1) / settings_.block_rays;
 }
 
 void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
@@ -112,12 +143,15 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   // The chain is filled at the tail and takes go by whole blocks, so all blocks but the last are full. The remainder of
   // `count` in the tail relies on that.
   const std::uint32_t n = front_rays(id);
-  const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
-  rays.assign(first, first + n);
-  const std::uint32_t freed = c.head;
-  c.head = next_block_[freed];
-  free_blocks_.push_back(freed);
-  --blocks_used_;
+  rays.clear();
+  while (rays.size() < n) {
+    const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
+    rays.insert(rays.end(), first, first + std::min<std::ptrdiff_t>(settings_.block_rays, n - std::ssize(rays)));
+    const std::uint32_t freed = c.head;
+    c.head = next_block_[freed];
+    free_blocks_.push_back(freed);
+    --blocks_used_;
+  }
   c.count -= n;
   memberships_ -= n;
   if (c.count == 0) {
@@ -125,14 +159,17 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
     table_.erase(c.key);
     free_collections_.push_back(id.value);
   } else {
+    begin_to_wait(id.value);
     relist(id.value, c.ready);
   }
 }
 
 void CollectionStore::discard() {
   const Statistics kept = statistics_;
+  const std::uint64_t now = now_;
   *this = CollectionStore(settings_);
   statistics_ = kept;
+  now_ = now;
 }
 
 }  // namespace carousel::ringbus

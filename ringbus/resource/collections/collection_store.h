@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,17 +19,21 @@ namespace carousel::ringbus {
 using CollectionId = Id<struct CollectionTag>;
 
 /// A resource's collections: ray IDs in fixed blocks, a chain of blocks a collection, all but the last one full.
-/// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block.
+/// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block; or a single ID, so
+/// that storage is taken only for the IDs there are, and issuing a packet frees a block for each of its rays.
 class CollectionStore {
  public:
   struct Settings {
-    std::uint32_t block_rays = 32;  ///< packets.rays
+    std::uint32_t block_rays = 32;   ///< packets.rays, or 1
+    std::uint32_t packet_rays = 32;  ///< packets.rays
     std::uint32_t ready = 32;
     std::uint32_t capacity_blocks = 2048;
     Policy policy = Policy::kNearest;
     Select select = Select::kFullFirst;
     float scene_size = 1;
     int max_depth = 1;  ///< of the structure, in strips
+    /// A collection that has waited for so long is ready, however few rays it has; 0: it is not.
+    std::uint64_t ripe_after = 0;
   };
   using Statistics = CollectionCounts;
 
@@ -50,8 +55,16 @@ class CollectionStore {
   float entry(CollectionId id) const { return collections_[id.value].entry; }
   /// How many rays the next take() gives.
   std::uint32_t front_rays(CollectionId id) const;
-  /// Moves the first block's rays to `rays`; an empty collection ceases to exist.
+  /// How many blocks it frees.
+  std::uint32_t front_blocks(CollectionId id) const;
+  /// Moves the rays of the first packet to `rays`; an empty collection ceases to exist.
   void take(CollectionId id, std::vector<RayId>& rays);
+
+  /// The time is `now`: collections that have waited for Settings::ripe_after become ready. A collection waits from its
+  /// first ray on, or since rays were taken from it.
+  void ripen(std::uint64_t now);
+  /// The time at which the next collection will be ready for having waited; absent if none will.
+  std::optional<std::uint64_t> next_ripe();
 
   /// Forgets all collections; the statistics go on.
   void discard();
@@ -73,6 +86,12 @@ class CollectionStore {
     float entry = 0;
     std::uint16_t depth = 0;
     bool ready = false;
+    bool ripe = false;        // it has waited for long enough
+    std::uint32_t waits = 0;  // how often it has begun to wait, to tell old entries of waiting_ from its own
+  };
+  struct Waiting {
+    std::uint64_t since;
+    std::uint32_t collection, waits;
   };
 
   std::uint32_t new_collection(accel::NodeKey key, std::uint16_t depth, float entry);
@@ -81,6 +100,7 @@ class CollectionStore {
   PriorityLists& list(const Collection& c) { return c.ready ? ready_ : partial_; }
   void enlist(std::uint32_t index, std::uint32_t bucket);
   void relist(std::uint32_t index, bool was_ready);
+  void begin_to_wait(std::uint32_t index);
 
   Settings settings_;
   const IssuePolicy* policy_;
@@ -89,6 +109,8 @@ class CollectionStore {
   PriorityLists ready_, partial_;
   std::vector<Collection> collections_;
   std::vector<std::uint32_t> free_collections_;
+  std::deque<Waiting> waiting_;  // with ripe_after, oldest first; also of collections that have begun to wait anew
+  std::uint64_t now_ = 0;
   std::vector<RayId> block_rays_;          // block_rays IDs a block
   std::vector<std::uint32_t> next_block_;  // one a block
   std::vector<std::uint32_t> free_blocks_;

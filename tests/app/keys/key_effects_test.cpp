@@ -33,10 +33,7 @@ std::string result_of(Json report) {
   report.erase("host");
   if (report.contains("shading")) report["shading"].erase("workers");
   if (report.contains("links") && report["links"].is_array())
-    for (Json& link : report["links"]) {
-      link.erase("depth");
-      link.erase("occupancy");  // of native links, by wall time
-    }
+    for (Json& link : report["links"]) link.erase("depth");
   return report.dump() + host.value("simd", "") + host.value("threads", Json()).dump();
 }
 

@@ -65,6 +65,8 @@ inline std::vector<KeyRow> key_rows() {
       {"collections.traversal", kTerrain},
       {"collections.policy", kTerrain},
       {"collections.select", kTerrain},
+      {"collections.partial", kTerrain},
+      {"collections.partial_after_cycles", kTerrain, {"collections.partial=after"}, {"30"}},
       {"collections.home", kTerrain, {"collections.when_full=spill"}},
       {"collections.capacity", kTerrain, {"collections.when_full=spill"}, {"64"}},
       {"collections.when_full",

@@ -23,7 +23,7 @@ TEST(ReportTable, SaysWhatHappened) {
   EXPECT_THAT(
       table, HasSubstr("cull planes  640 planes, 42.5 bytes a node, found in 125.0 ms   300 of 790 children culled\n"));
   EXPECT_THAT(table, HasSubstr("spared: 85 nodes   180 leaves of 605 triangles   35 transforms   30 boxes\n"));
-  EXPECT_THAT(table, HasSubstr("25.0 % of them local where seen"));
+  EXPECT_THAT(table, HasSubstr("25.0 % of the rays seen are local"));
   EXPECT_THAT(table, HasSubstr("link 7   slots 0"));
   EXPECT_THAT(table, HasSubstr("occupancy 2.0 mean, 11 most   7 refused"));
   EXPECT_THAT(table, HasSubstr("verify       990 rays traced again, 1 mismatches; pixel 3\n"));

@@ -36,10 +36,10 @@ inline Report sample_report() {
   Resource a, b;
   a.resource = 0;
   a.counts.rays_completed = 400;
-  a.stalls.link = 3;
+  a.stalls.emplace().link = 3;
   b.resource = 1;
   b.counts.rays_completed = 590;
-  b.stalls.link = 4;
+  b.stalls.emplace().link = 4;
   r.resources = {a, b};
   r.links = {{0, 1, 16, 600, 1.5, 9, 7}, {1, 0, 16, 600, 2.5, 11, 0}};
   r.traffic = {1000, 1000, 4, 100, 5000, 900, 0.1, 0.09, 3.5, 16, {17.5, 16, 20, 31, 47}, {0.3, 0.6}, 12000};

@@ -97,7 +97,7 @@ TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
   SidePorts ports;
   ports.fetch = &requests;
   ports.fetched = &answers;
-  ShapeBuffer buffer(config, ports);
+  ShapeBuffer buffer(config, LinkConfig{}, ports);
   const auto node = [](std::uint64_t i) { return ShapeNeed{ShapeSpan{4096 + i * 1024, 256 + 8 * 4 * 16}, {}}; };
   for (ShapeBuffer::User user = 0; user < 6; ++user) buffer.take(user, node(user), 0);
   EXPECT_EQ(buffer.fetches(), 5u);  // of 12 places each, of 64

@@ -98,7 +98,7 @@ TEST(CycleEngine, LedgersAddUp) {
     }
     EXPECT_EQ(misses, c.memory_lines);
     EXPECT_LE(c.memory_busy, c.cycles);
-    EXPECT_LE(c.shading_busy, c.cycles * static_cast<std::uint64_t>(cell.config.shading.workers));
+    EXPECT_LE(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(cell.config)));
   }
   EXPECT_GT(transforms, 0u);
   EXPECT_GT(jobs, 0u);

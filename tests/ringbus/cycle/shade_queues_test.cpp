@@ -14,11 +14,8 @@ RayResult ray_of_path(std::uint32_t path) {
   return r;
 }
 
-ShadeQueues queues(Distribute distribute, std::int64_t workers) {
-  ShadingConfig config;
-  config.distribute = distribute;
-  config.workers = workers;
-  return ShadeQueues(config, 7);
+ShadeQueues queues(Distribute distribute, std::size_t workers) {
+  return ShadeQueues(distribute, workers, 7);
 }
 
 std::vector<std::uint32_t> paths_of(ShadeQueues& queues, std::uint32_t worker) {

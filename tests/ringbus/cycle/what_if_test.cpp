@@ -1,9 +1,14 @@
 // The verdict names the bottleneck: each is planted in turn in a machine that has plenty of everything else; and on
-// random machines the class it names, from the first rays only, is the one whose lift gains most in the whole run.
+// random machines the class it names, from a pilot only, is the one whose lift gains most in the whole run.
 #include "ringbus/cycle/what_if.h"
+
+#include <set>
 
 #include <gtest/gtest.h>
 
+#include "core/config/load.h"
+#include "core/config/write.h"
+#include "ringbus/cycle/bottleneck_search.h"
 #include "ringbus/results/run_features.h"
 #include "tests/ringbus/support/test_machine.h"
 
@@ -62,8 +67,36 @@ std::vector<Plant> plants() {
   };
 }
 
-WorkloadFactory factory(const TestScene& scene) {
-  return [&scene](const Config&) { return scene.new_workload(); };
+/// The first `paths` rays of a workload, with all rays that follow from them. The rays of the tests' scenes are drawn
+/// at random one by one, so any part of them is like the whole.
+class FirstPaths final : public Workload {
+ public:
+  FirstPaths(std::unique_ptr<Workload> whole, std::uint64_t paths) : whole_(std::move(whole)), left_(paths) {}
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
+    Generated made = whole_->generate(worker, std::min<std::uint64_t>(max_rays, left_), out);
+    left_ -= made.rays;
+    made.finished |= left_ == 0;
+    return made;
+  }
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
+    whole_->shade(worker, completed, out);
+  }
+
+ private:
+  std::unique_ptr<Workload> whole_;
+  std::uint64_t left_;
+};
+
+RunResult run_whole(TestScene& scene, const Config& config) {
+  ScatterWorkload workload = scene.workload();
+  return run_cycle(config, scene.accel(config.bvh), scene.size(), workload, on_threads(1));
+}
+
+Bottleneck search(TestScene& scene, const Config& config, std::uint64_t paths, const RunResult& run) {
+  const PilotFactory pilots = [&](const Config&, std::uint64_t some) {
+    return std::make_unique<FirstPaths>(scene.new_workload(), some);
+  };
+  return find_bottleneck(config, scene.accel(config.bvh), scene.size(), pilots, {run, paths}, on_threads(1));
 }
 
 TEST(WhatIf, NamesThePlantedBottleneck) {
@@ -71,13 +104,66 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
   for (const Plant& plant : plants()) {
     Config config = generous_machine();
     plant.make(config);
-    const Bottleneck found =
-        find_bottleneck(config, scene.accel(config.bvh), scene.size(), factory(scene), 1500, on_threads(1));
-    ASSERT_FALSE(found.gains.empty());
+    const Bottleneck found = search(scene, config, 1500, run_whole(scene, config));
+    ASSERT_FALSE(found.gains.empty()) << found.unlike;
+    EXPECT_TRUE(found.whole);
     std::string all;
     for (const Gain& gain : found.gains) all += fmt::format("\n  {} {:+.3f}", gain.name, gain.gain);
     EXPECT_EQ(found.gains.front().name, plant.name) << all;
     EXPECT_GT(found.gains.front().gain, 0.2) << plant.name;
+  }
+}
+
+// Each class has a machine that it slows down: relaxing it changes the configuration in a way that the machine notices.
+// Before issue 16 some changed nothing, and many keys that cost hardware had no class.
+TEST(WhatIf, EveryLiftIsNoticed) {
+  const std::vector<Plant> slow{
+      {"test_latency",
+       [](Config& c) {
+         c.testers.units[UnitKind::kBox].latency_cycles = 200;
+         c.testers.contexts = 1;
+       }},
+      {"contexts",
+       [](Config& c) {
+         c.testers.units[UnitKind::kBox].latency_cycles = 200;
+         c.testers.contexts = 1;
+       }},
+      {"ray_reads", [](Config& c) { c.rays.reads_per_cycle = 1; }},
+      {"bundle_builder", [](Config& c) { c.bundles.size = 4, c.bundles.builder.rays_per_cycle = 1; }},
+      {"bundles_open", [](Config& c) { c.bundles.size = 4, c.bundles.builder.open = 1; }},
+      {"bundle_tests",
+       [](Config& c) {
+         c.bundles.size = 4;
+         c.testers.units[UnitKind::kBundle] = {1, 100, 100};
+       }},
+      {"collection_storage",
+       [](Config& c) { c.collections.when_full = WhenFull::kReserve, c.collections.capacity = 3000; }},
+      {"shape_buffer",
+       [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.l2_latency_cycles = 500, c.memory.fetch_ahead = 0; }},
+      {"fetch_ahead", [](Config& c) { c.memory.fetch_ahead = 0, c.memory.l2_latency_cycles = 500; }},
+      {"l2_size", [](Config& c) { c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
+      {"l2_port", [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.line_bytes = 16; }},
+      {"rings",
+       [](Config& c) {
+         c.topology.shape = TopologyShape::kMultiRing;
+         c.topology.rings = 1;
+         c.topology.link.bytes_per_cycle = 1;
+       }},
+      {"ring_directions", [](Config& c) { c.topology.link.bytes_per_cycle = 1; }},
+      {"packets_in_flight", [](Config& c) { c.topology.link.depth = 2, c.topology.link.latency_cycles = 50; }},
+      {"link_latency", [](Config& c) { c.topology.link.latency_cycles = 200, c.rays.slots_per_resource = 16; }},
+  };
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 600, 2);
+  for (const Plant& plant : slow) {
+    Config config = generous_machine();
+    plant.make(config);
+    const accel::Accel& accel = scene.accel(config.bvh);
+    const std::vector<WhatIf> all = what_ifs(config, accel);
+    const auto lift = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == plant.name; });
+    ASSERT_NE(lift, all.end()) << plant.name;
+    const double before = static_cast<double>(run_whole(scene, config).cycle->cycles),
+                 after = static_cast<double>(run_whole(scene, lift->relaxed).cycle->cycles);
+    EXPECT_GT(before / after, 1.01) << plant.name << ": " << before << " and " << after << " cycles";
   }
 }
 
@@ -88,12 +174,31 @@ TEST(WhatIf, LiftsWhatTheMachineHas) {
   };
   Config c = generous_machine();
   c.topology.link.latency_cycles = 4;
-  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"})
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling", "contexts"})
     EXPECT_TRUE(has(c, name)) << name;
   c.topology.shape = TopologyShape::kIndependent;
-  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling"})
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling", "contexts"})
     EXPECT_FALSE(has(c, name)) << name;
   EXPECT_TRUE(has(c, "memory_latency"));
+}
+
+// A user who sets these keys runs the machine that was simulated; keys at the end of their range have no lift.
+TEST(WhatIf, SaysWhatToSet) {
+  const std::string text =
+      "scene: {builtin: cornell}\nengine: {kind: cycle}\nmemory: {dram_bytes_per_cycle: 65536}\n"
+      "topology: {overrides: [{resource: 2, testers: {box: {units: 3}}}]}\n";
+  const Config config = load_config({text, "a.yaml"}).config;
+  const std::vector<WhatIf> all = what_ifs(config, accel::Accel());
+  std::set<std::string> names;
+  for (const WhatIf& what_if : all) {
+    names.insert(what_if.name);
+    ASSERT_FALSE(what_if.sets.empty()) << what_if.name;
+    EXPECT_EQ(resolved_yaml(load_config({text, "a.yaml"}, what_if.sets).config), resolved_yaml(what_if.relaxed))
+        << what_if.name;
+  }
+  EXPECT_TRUE(names.contains("shading"));
+  EXPECT_TRUE(names.contains("box_tests"));
+  EXPECT_FALSE(names.contains("memory_bandwidth"));
 }
 
 TEST(WhatIf, DoublesTheUnitsOfEachKind) {
@@ -109,8 +214,7 @@ TEST(WhatIf, DoublesTheUnitsOfEachKind) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == row.work; });
     ASSERT_EQ(found != all.end(), features.show(row.shown)) << row.work;
     if (found == all.end()) continue;
-    Config relaxed = c;
-    found->apply(relaxed);
+    const Config& relaxed = found->relaxed;
     for (const auto [kind, units] : relaxed.testers.units) {
       const std::int64_t factor = kind == row.kind ? 2 : 1;
       EXPECT_EQ(units.units, factor * c.testers.units[kind].units) << row.work;
@@ -147,31 +251,36 @@ Config random_machine(std::uint32_t seed) {
   return c;
 }
 
-// Every class is lifted over the whole run: the class named from the first part must be best or as good as best, and
-// the gain predicted for it right within 10 % of the throughput. 30 machines with CAROUSEL_EFFORT=15.
+// Every class that gains something by the pilot is relaxed for the whole run: the class named must be best or within 3 %
+// of it, and the gain foretold within its interval. 30 machines with CAROUSEL_EFFORT=15.
 TEST(WhatIf, PredictsRandomMachines) {
-  constexpr std::uint32_t kPaths = 8000;  // more than of a pilot run
+  constexpr std::uint32_t kPaths = 24000;  // more than of a pilot
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), kPaths, 2);
   const int machines = cell_count(2);
   int right = 0;
   for (int i = 0; i < machines; ++i) {
     const std::uint32_t seed = run_seed() + static_cast<std::uint32_t>(i);
     const Config config = random_machine(seed);
-    const accel::Accel& accel = scene.accel(config.bvh);
-    const Bottleneck predicted =
-        find_bottleneck(config, accel, scene.size(), factory(scene), pilot_paths(config), on_threads(1));
-    const Bottleneck whole = find_bottleneck(config, accel, scene.size(), factory(scene), kPaths, on_threads(1));
-    const Gain& named = predicted.gains.front();
-    const auto truth =
-        std::find_if(whole.gains.begin(), whole.gains.end(), [&](const Gain& g) { return g.name == named.name; });
-    ASSERT_NE(truth, whole.gains.end());
-    const bool best = truth->gain >= whole.gains.front().gain - 0.02;
-    const bool close = std::abs(named.gain - truth->gain) <= 0.1;
-    if (best && close)
+    const RunResult run = run_whole(scene, config);
+    const Bottleneck found = search(scene, config, kPaths, run);
+    ASSERT_FALSE(found.gains.empty()) << found.unlike << ", seed " << seed;
+    EXPECT_FALSE(found.whole);
+    const std::vector<WhatIf> lifts = what_ifs(config, scene.accel(config.bvh));
+    double best = 0, named = 0;
+    for (const Gain& gain : found.gains) {
+      if (gain.high < 0.05) continue;
+      const auto lift = std::find_if(lifts.begin(), lifts.end(), [&](const auto& one) { return one.name == gain.name; });
+      const double cycles = static_cast<double>(run_whole(scene, lift->relaxed).cycle->cycles);
+      const double real = static_cast<double>(run.cycle->cycles) / cycles - 1;
+      best = std::max(best, real);
+      if (&gain == &found.gains.front()) named = real;
+    }
+    const Gain& first = found.gains.front();
+    if (named >= best - 0.03 && named >= first.low - 0.01 && named <= first.high + 0.01)
       ++right;
     else
-      std::printf("seed %u: named %s, predicted %+.3f, found %+.3f; best %s %+.3f\n", seed, named.name.c_str(),
-                  named.gain, truth->gain, whole.gains.front().name.c_str(), whole.gains.front().gain);
+      std::printf("seed %u: named %s, foretold %+.3f (%+.3f to %+.3f), real %+.3f; best %+.3f\n", seed,
+                  first.name.c_str(), first.gain, first.low, first.high, named, best);
   }
   EXPECT_GE(right * 10, machines * 9) << "of " << machines << " machines, first seed " << run_seed();
 }

@@ -11,8 +11,8 @@
 #include "accel/traverse/exact_reference.h"
 #include "accel/traverse/reference_tracer.h"
 #include "core/system/executor.h"
+#include "ringbus/cycle/bottleneck_search.h"
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/cycle/what_if.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/mesh_shapes.h"
 #include "shading/surface/alpha_test.h"
@@ -272,7 +272,6 @@ TEST(FirstHits, EnginesAgree) {
   }
 }
 
-// What-if runs stop after so many rays, with paths that have begun and rays held back.
 TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
   const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
   Config config = picture(16, 12, 2);
@@ -283,17 +282,31 @@ TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
   config.shading.cycles_per_shade = 400;
   const auto raster = shading::rasterize_first_hits(scene, config, nullptr, *make_sequential_executor());
   const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
-  const auto frame = [&](const Config& machine) {
+  const auto frame = [&](const Config& machine, std::uint64_t) {
     auto tracer = std::make_unique<shading::PathTracer>(scene, machine, 60, 1);
     tracer->set_first_hits(&raster);
     return tracer;
   };
-  for (const std::uint64_t rays : {7u, 300u}) {
-    const Bottleneck found = find_bottleneck(config, accel, 10, frame, rays, on_threads(1));
-    ASSERT_FALSE(found.gains.empty()) << rays;
-    if (rays == 300u) {
-      EXPECT_EQ(found.gains.front().name, "shading");
-    }
+  const auto tracer = frame(config, 0);
+  const RunResult run = run_cycle(config, accel, 10, *tracer, on_threads(1));
+  const Bottleneck found = find_bottleneck(config, accel, 10, frame, {run, 16 * 12 * 2}, on_threads(1));
+  ASSERT_FALSE(found.gains.empty());
+  EXPECT_EQ(found.gains.front().name, "shading");
+}
+
+// A pilot begins only some of the paths, with rays held back.
+TEST(FirstHits, APilotBeginsOnlyItsPaths) {
+  const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
+  const Config config = picture(40, 24, 2);
+  const auto raster = shading::rasterize_first_hits(scene, config, nullptr, *make_sequential_executor());
+  const shading::PathSample sample({{128, 64}, {640, 128}});
+  const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
+  for (const bool rasterised : {false, true}) {
+    shading::PathTracer tracer(scene, config, 60, 1);
+    if (rasterised) tracer.set_first_hits(&raster);
+    tracer.set_sample(&sample);
+    run_native(config, accel, 10, tracer, on_threads(1));
+    EXPECT_EQ(tracer.counts().paths, 192u);
   }
 }
 

@@ -31,7 +31,7 @@ void expect_one_picture(BuiltinScene builtin, std::uint32_t salt) {
     c.collections.capacity =
         std::max<std::int64_t>(minimum_capacity(c, accel.width, accel.max_depth), 4 * c.packets.rays);
     // Few paths at a time, many at a time.
-    shading::PathTracer tracer(scene, c, seed % 2 ? 1000 : 5, static_cast<std::size_t>(c.shading.workers));
+    shading::PathTracer tracer(scene, c, seed % 2 ? 1000 : 5, static_cast<std::size_t>(shader_workers(c)));
     run_native(c, accel, size, tracer, on_threads(cell.threads));
     EXPECT_EQ(tracer.hits_digest().hex(), reference.hits_digest().hex()) << "seed " << seed << ": " << cell.text();
     EXPECT_EQ(tracer.image_digest(), reference.image_digest()) << "seed " << seed << ": " << cell.text();

@@ -31,7 +31,7 @@ std::vector<RayId> ray_ids(std::uint32_t first, std::uint32_t count) {
 
 CollectionStore::Settings settings(Policy policy, Select select) {
   CollectionStore::Settings s;
-  s.block_rays = 4;
+  s.block_rays = s.packet_rays = 4;
   s.ready = 8;
   s.capacity_blocks = 100;
   s.policy = policy;
@@ -152,6 +152,41 @@ TEST(CollectionStore, CountsBlocksBeyondItsCapacityAsSpilled) {
   EXPECT_EQ(store.free_blocks(), 2);
 }
 
+TEST(CollectionStore, ACollectionIsReadyWhenItHasWaitedForLongEnough) {
+  CollectionStore::Settings s = settings(Policy::kOldest, Select::kFullFirst);
+  s.ripe_after = 100;
+  CollectionStore store(s);
+  const auto best = [&]() -> std::optional<std::uint32_t> {
+    const auto id = store.best(false);
+    return id ? std::optional(store.key(*id).ref.node()) : std::nullopt;
+  };
+  store.ripen(10);
+  store.add(key(1), 0, 1, ray_ids(0, 4));
+  store.ripen(30);
+  store.add(key(2), 0, 1, ray_ids(4, 1));
+  store.add(key(1), 0, 1, ray_ids(5, 1));  // it has waited since its first ray
+  EXPECT_EQ(store.next_ripe(), 110u);
+  store.ripen(109);
+  EXPECT_EQ(best(), std::nullopt);
+  store.ripen(110);
+  EXPECT_EQ(best(), 1u);
+  EXPECT_EQ(store.next_ripe(), 130u);
+  std::vector<RayId> out;
+  store.take(*store.best(false), out);
+  EXPECT_EQ(out.size(), 4u);
+  EXPECT_EQ(best(), std::nullopt);  // its last ray waits anew
+  store.ripen(150);
+  EXPECT_EQ(best(), 2u);
+  EXPECT_EQ(store.next_ripe(), 210u);
+  store.take(*store.best(false), out);
+  store.add(key(1), 0, 1, ray_ids(6, 7));  // full: it need not wait
+  EXPECT_EQ(best(), 1u);
+  EXPECT_EQ(store.next_ripe(), std::nullopt);
+  store.discard();
+  store.add(key(3), 0, 1, ray_ids(13, 1));
+  EXPECT_EQ(store.next_ripe(), 250u);
+}
+
 // Against a map of lists: the policy allows every collection that is offered, and the rays that are taken are those
 // that were added.
 TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
@@ -159,7 +194,8 @@ TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::minstd_rand random(seed);
     CollectionStore::Settings s = settings(static_cast<Policy>(seed % 5), static_cast<Select>(seed / 5 % 2));
-    s.block_rays = 1 + random() % 6;
+    s.packet_rays = 1 + random() % 6;
+    s.block_rays = seed % 3 == 0 ? 1 : s.packet_rays;
     s.ready = 1 + random() % 12;
     CollectionStore store(s);
     struct Collection {
@@ -179,7 +215,7 @@ TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
         if (c.rays.empty()) c = {{}, 1e30f, static_cast<std::uint16_t>(k % 7), i};
         const float entry = 0.01f * static_cast<float>(random() % 1000);
         c.entry = std::min(c.entry, entry);
-        const auto batch = ray_ids(next_ray, 1 + random() % s.block_rays);
+        const auto batch = ray_ids(next_ray, 1 + random() % s.packet_rays);
         next_ray += static_cast<std::uint32_t>(batch.size());
         blocks -= blocks_of(c.rays.size());
         for (const RayId r : batch) c.rays.push_back(r.bits);
@@ -219,12 +255,15 @@ TEST(CollectionStore, BehavesAsAMapOfListsUnderRandomCalls) {
           ASSERT_TRUE(s.policy != Policy::kOldest || c.born <= other.born);
           ASSERT_TRUE(s.policy != Policy::kNewest || c.born >= other.born);
         }
+        const std::uint32_t front = store.front_rays(*best), front_blocks = store.front_blocks(*best);
         std::vector<RayId> out;
         store.take(*best, out);
-        ASSERT_EQ(out.size(), std::min<std::size_t>(c.rays.size(), s.block_rays));
+        ASSERT_EQ(out.size(), std::min<std::size_t>(c.rays.size(), s.packet_rays));
+        ASSERT_EQ(out.size(), front);
         for (std::size_t r = 0; r < out.size(); ++r) ASSERT_EQ(out[r].bits, c.rays[r]);
         memberships -= out.size();
-        blocks -= 1;
+        ASSERT_EQ(front_blocks, blocks_of(out.size()));
+        blocks -= front_blocks;
         it->second.rays.erase(it->second.rays.begin(),
                               it->second.rays.begin() + static_cast<std::ptrdiff_t>(out.size()));
         if (it->second.rays.empty()) model.erase(it);

@@ -1,0 +1,53 @@
+#include "report/run/judge_gains.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace carousel::report {
+
+namespace {
+
+std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
+  if (!b.complete) return "not found out: the search was interrupted";
+  if (!b.unlike.empty()) return "not found out: the pilot is not like the run: " + b.unlike;
+  if (b.gains.empty()) return "not found out: nothing can be relaxed";
+  if (named == nullptr) {
+    const BottleneckGain& best = b.gains.front();
+    return fmt::format("no class of parts limits it alone: the best lift, {}, gains {}{}", best.action, gain_text(best),
+                       best.low <= 0 && best.gain > 0 ? ", which may be noise" : "");
+  }
+  std::string text = fmt::format("{}: {} gains {}", named->name, named->action, gain_text(*named));
+  if (!b.rivals.empty()) {
+    text += "; not to be told apart from it:";
+    for (const BottleneckGain& gain : b.gains)
+      if (std::find(b.rivals.begin(), b.rivals.end(), gain.name) != b.rivals.end())
+        text += fmt::format("{} {} with {}", text.back() == ':' ? "" : ",", gain.name, gain_text(gain));
+    return text;
+  }
+  const auto next = std::find_if(b.gains.begin(), b.gains.end(), [&](const auto& gain) { return &gain != named; });
+  if (next != b.gains.end()) text += fmt::format(", next is {} with {}", next->name, gain_text(*next));
+  return text;
+}
+
+}  // namespace
+
+std::string gain_text(const BottleneckGain& gain) {
+  if (gain.low == gain.high) return fmt::format("{:+.1f} %", 100 * gain.gain);
+  return fmt::format("{:+.1f} % ({:+.1f} to {:+.1f} %)", 100 * gain.gain, 100 * gain.low, 100 * gain.high);
+}
+
+Bottleneck judge_gains(Bottleneck found) {
+  const BottleneckGain* named = nullptr;
+  for (const BottleneckGain& gain : found.gains)
+    if (named == nullptr && gain.low > 0 && gain.gain >= kWorthIt) named = &gain;
+  found.limits = named == nullptr ? "" : named->name;
+  found.rivals.clear();
+  for (const BottleneckGain& gain : found.gains)
+    if (named != nullptr && &gain != named && gain.high > named->low && gain.high > kWorthIt)
+      found.rivals.push_back(gain.name);
+  found.verdict = verdict(found, named);
+  return found;
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,238 @@
+#include "report/run/terminal_words.h"
+
+#include <string_view>
+
+#include "core/statistics/intersection_counts.h"
+#include "core/statistics/stall_counts.h"
+#include "core/types/unit_kind.h"
+
+namespace carousel::report {
+
+namespace {
+
+/// Collects the items of one line after another.
+class Words {
+ public:
+  explicit Words(bool traffic) : traffic_(traffic) {}
+
+  Words& line(std::string_view name) {
+    line_ = name;
+    return *this;
+  }
+  Words& item(std::string_view text, std::string_view key, std::string_view meaning = "") {
+    words_.push_back({traffic_, line_, std::string(text), std::string(key), std::string(meaning)});
+    return *this;
+  }
+  std::vector<TerminalWord> take() { return std::move(words_); }
+
+ private:
+  bool traffic_;
+  std::string line_;
+  std::vector<TerminalWord> words_;
+};
+
+void machine_words(Words& w) {
+  w.line("INCOMPLETE").item("the run was interrupted; what follows is what was done", "incomplete");
+  w.line("scene")
+      .item("*: N triangles, N instances", "scene", "the scene, its triangles (each counted once) and its instances")
+      .item("N x N pixels, N samples", "config.image", "size of the picture, and paths from each pixel");
+  w.line("engine")
+      .item("native: N resources, * on N threads, N shader workers", "config.topology",
+            "the machine: its compute resources, the shape of its network, the threads of the host that play them, and "
+            "its shader workers")
+      .item("cycle: N resources, *, N shader workers", "config.topology",
+            "the machine: its compute resources, the shape of its network, and its shader workers");
+}
+
+void ray_words(Words& w) {
+  w.line("rays")
+      .item("N emitted", "rays.emitted")
+      .item("N completed", "rays.completed")
+      .item("N lost", "rays.lost")
+      .item("N restarted of N paths, N cycles after a resource stopped", "rays.restarted")
+      .item("N restarted of N paths, N after a resource stopped", "rays.restarted")
+      .item("camera N", "rays.by_kind.camera")
+      .item("bounce N", "rays.by_kind.bounce")
+      .item("shadow N", "rays.by_kind.shadow");
+  w.line("raster")
+      .item("N triangles seen N times by tiles", "raster",
+            "triangles before the camera, and tiles that each of them touches")
+      .item("N hits", "raster.hits")
+      .item("N left to rays", "raster.left_to_rays")
+      .item("N", "host.raster_seconds");
+  w.line("faults").item("cost N cycles: N without them, *", "faults.cycles_lost");
+  w.line("throughput")
+      .item("N rays/s", "host.rays_per_second",
+            "completed rays over the time of the run: the speed of the native engine")
+      .item("N for the rays, N to build the tree", "host.wall_seconds",
+            "time of the run, and time to build the acceleration structure before it")
+      .item("N memory", "host.peak_memory_bytes");
+}
+
+void cycle_words(Words& w) {
+  w.line("simulated")
+      .item("N cycles", "engine.cycles")
+      .item("N rays per kilocycle, N Mrays/s at the clock", "throughput.whole",
+            "completed rays in 1,000 cycles, and in a second at engine.clock_mhz")
+      .item("steady N", "throughput.steady.rays_per_kilocycle");
+  w.line("busy");
+  for (const UnitKindRow& row : kUnitKinds)
+    w.item(std::string(row.name) + " N", std::string("resources[].units.") + row.name + ".busy",
+           "part of the cycles of all resources in which these units worked");
+  w.item("dispatch N", "resources[].units.handler_busy",
+         "part of the cycles of all resources in which the dispatch stage looked through ray IDs")
+      .item("shading N", "shading.utilisation")
+      .item("DRAM N", "memory.dram_utilisation");
+  w.line("testers wait")
+      .item("memory N", "resources[].units.box.memory", "part of the cycles in which a packet waited for shape data")
+      .item("link N", "resources[].units.box.link", "part of the cycles in which a packet waited to leave")
+      .item("credits N", "resources[].units.box.credits",
+            "part of the cycles in which no packet was free to issue with")
+      .item("storage N", "resources[].units.box.storage",
+            "part of the cycles in which too few blocks of collections were free")
+      .item("nothing to test N", "resources[].units.box.idle",
+            "part of the cycles in which no ray waited, or collections waited to fill")
+      .item("shading N", "resources[].units.box.shading",
+            "part of the cycles in which resources helped the shader workers");
+  w.line("bottleneck").item("*", "bottleneck.verdict");
+  w.line("bound").item(
+      "N rays per kilocycle by *, reached N", "bound.rays_per_kilocycle",
+      "the rate that the tightest class of parts would allow if it were busy all the time, and the part "
+      "of it that the run reached");
+}
+
+void test_words(Words& w) {
+  using C = IntersectionCounts;
+  w.line("tests").item("per ray: box N", "tests.box.per_ray");
+  w.item("triangle N", "tests.triangle.per_ray").item("transform N", "tests.transforms.per_ray");
+  for (const Counter<C>& row : kCounters<C>)
+    if (row.member != &C::box && row.member != &C::triangle && row.member != &C::transforms)
+      w.item(std::string(row.name) + " N", std::string("tests.") + row.name + ".per_ray",
+             std::string(row.meaning) + ", for each completed ray");
+  w.line("bundles")
+      .item("N of N rays", "tests.bundles.formed", "bundles formed, and the rays of a bundle when formed")
+      .item("of their boxes N all hit, N all missed, N split", "tests.bundles.sum",
+            "parts of the bundles' tests by their outcome: all rays hit the box, none does, or the bundle splits");
+  w.line("cull planes")
+      .item("N planes, N bytes a node, found in N", "cull_planes.planes",
+            "size of the cull planes, and time to find them")
+      .item("N of N children culled", "cull_planes.sum", "children whose boxes were hit and that a plane culled")
+      .item("spared: N nodes", "cull_planes.sum.nodes")
+      .item("N leaves of N triangles", "cull_planes.sum.leaves")
+      .item("N transforms", "cull_planes.sum.transforms")
+      .item("N boxes", "cull_planes.sum.boxes");
+}
+
+void packet_words(Words& w) {
+  w.line("packets")
+      .item("N issued", "packets.issued")
+      .item("N retired", "packets.retired")
+      .item("N per ray", "throughput.packets_per_ray")
+      .item("N hops each", "packets.hops", "links that a packet crosses, on average")
+      .item("N rays each", "packets.rays_mean")
+      .item("N of the rays seen are local", "packets.local_fraction")
+      .item("N of visits find none", "packets.bubble_fraction");
+  w.line("collections")
+      .item("N made", "collections.created")
+      .item("N at once", "collections.peak")
+      .item("N full", "collections.fullness_mean")
+      .item("N ray IDs at once", "collections.memberships_peak")
+      .item("N spilled", "collections.spilled");
+  w.line("all effects")
+      .item("hits *", "shading.proof.same_hits")
+      .item("image *", "shading.proof.same_image")
+      .item("spared: N rays", "shading.proof.rays_spared")
+      .item("N tests", "shading.proof.tests_spared")
+      .item("N cycles", "shading.proof.cycles_spared");
+}
+
+void resource_words(Words& w) {
+  w.line("resources")
+      .item(
+          "N of them least mean most max/mean", "resources[]",
+          "the lines below give the least, the mean and the greatest of the resources, and the greatest over the mean: "
+          "1.00 is a balanced machine")
+      .item("rays N N N N", "resources[].rays_completed")
+      .item("rays tested N N N N", "resources[].rays_tested")
+      .item("box tests N N N N", "resources[].box_tests")
+      .item("triangle tests N N N N", "resources[].triangle_tests")
+      .item("packets issued N N N N", "resources[].packets_issued")
+      .item("packets seen N N N N", "resources[].packets_seen");
+  w.line("stalls");
+  for (const Counter<StallCounts>& row : kCounters<StallCounts>)
+    w.item(std::string(row.name) + " N", std::string("resources[].stalls.") + row.name,
+           std::string("attempts of worker threads: ") + row.meaning);
+  w.line("links")
+      .item("N of depth N", "links[].depth", "number of links, and packets that each of them holds")
+      .item("N packets", "links[].packets")
+      .item("occupancy N mean, N most", "links[].occupancy_mean", "packets that wait in a link, on average and at most")
+      .item("N refused", "links[].stalled", "sends that a full link refused")
+      .item("N cycles stalled", "links[].stalled",
+            "cycles in which a packet waited for a place in its link, all links together");
+}
+
+void last_words(Words& w) {
+  w.line("bytes").item(
+      "* N N a ray from * to *, over * of N bytes a cycle", "bytes[]",
+      "a kind of message: its bytes in all and for each completed ray, its sender and receiver, and the wires "
+      "or ports that it occupies, with the width of each");
+  w.line("host")
+      .item("N to simulate on N threads", "host.wall_seconds",
+            "time of the simulation on this host, and its threads: it says nothing about the simulated machine")
+      .item("N to build the tree", "host.build_seconds")
+      .item("N memory", "host.peak_memory_bytes");
+  w.line("verify").item("N rays traced again, N mismatches*", "verify");
+  w.line("digest").item("hits *", "digest.hits").item("image *", "digest.image");
+  w.line("files").item("*", "", "folder of report.json, of the picture and of the resolved configuration");
+}
+
+std::vector<TerminalWord> words_of_traffic() {
+  Words w(true);
+  w.line("INCOMPLETE").item("the run was interrupted; what follows is what was done", "incomplete");
+  w.line("network").item("cycle: * traffic on N resources, *", "config.topology",
+                         "pattern of the packets' destinations, size and shape of the network");
+  w.line("packets")
+      .item("N created", "traffic.packets")
+      .item("N delivered", "traffic.delivered")
+      .item("N flits each", "traffic.flits_per_packet")
+      .item("N measured, created from cycle N to N", "traffic.measured");
+  w.line("load")
+      .item("N offered", "traffic.offered")
+      .item("N accepted packets per resource and cycle", "traffic.accepted")
+      .item("N of the links' time", "traffic.accepted_of_links");
+  w.line("latency")
+      .item("N mean", "traffic.latency.mean")
+      .item("N p50", "traffic.latency.p50")
+      .item("N p95", "traffic.latency.p95")
+      .item("N p99", "traffic.latency.p99")
+      .item("N max cycles", "traffic.latency.max")
+      .item("N with nobody in the way, at N resources visited", "traffic.zero_load_latency");
+  w.line("links")
+      .item("N busy on average, N the busiest", "traffic.link_utilisation",
+            "part of the run's cycles in which links moved flits")
+      .item("N flit-hops", "traffic.flit_hops");
+  w.line("simulated").item("N cycles", "engine.cycles");
+  w.line("host")
+      .item("N to simulate on N threads", "host.wall_seconds")
+      .item("N flit-hops/s", "", "speed of the simulator");
+  w.line("files").item("*", "", "folder of report.json and of the resolved configuration");
+  return w.take();
+}
+
+}  // namespace
+
+std::vector<TerminalWord> terminal_words() {
+  Words w(false);
+  machine_words(w);
+  ray_words(w);
+  cycle_words(w);
+  test_words(w);
+  packet_words(w);
+  resource_words(w);
+  last_words(w);
+  std::vector<TerminalWord> words = w.take();
+  for (TerminalWord& word : words_of_traffic()) words.push_back(std::move(word));
+  return words;
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "core/types/workload.h"
+#include "ringbus/results/run_result.h"
+
+namespace carousel::ringbus {
+
+/// The effect of one what-if on the frame's time.
+struct Gain {
+  std::string name, action;
+  std::vector<std::string> sets;  ///< of WhatIf
+  double rays_per_kilocycle = 0;  ///< of the whole frame, foretold
+  double gain = 0;                ///< over the machine as configured, as a fraction of its throughput
+  double low = 0, high = 0;       ///< its interval of confidence
+};
+
+/// The bottleneck of a machine, found by simulating it with each class relaxed in turn.
+struct Bottleneck {
+  bool complete = true;           ///< false: interrupted; there are no gains
+  std::string unlike;             ///< how the pilot differs from the run; empty if it is like it; else there are no gains
+  double rays_per_kilocycle = 0;  ///< of the machine as configured, over the whole frame
+  std::uint64_t paths = 0;        ///< of the pilot
+  std::uint64_t rays = 0;         ///< of the pilot, simulated for each class
+  bool whole = false;             ///< the pilot is the whole frame
+  double deviation = 0;           ///< of the run's cycles from those that the pilot foretells, as a fraction
+  double uncertainty = 0;         ///< of these, from the pilot alone, as a fraction
+  std::vector<Gain> gains;        ///< greatest first
+};
+
+/// The run whose bottleneck is searched for.
+struct SearchedRun {
+  const RunResult& result;
+  std::uint64_t paths = 0;  ///< paths, or rays of a list, that the frame begins
+};
+
+/// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
+/// machine.
+using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths)>;
+
+/// How far a search has come.
+struct SearchProgress {
+  std::string name;             ///< the class that is simulated; empty for the machine as configured
+  std::size_t done = 0, of = 1;  ///< simulations
+  std::uint64_t completed = 0;  ///< rays of this one
+  std::uint64_t rays = 0;       ///< that it will have, about
+};
+using SearchObserver = std::function<void(const SearchProgress&)>;
+
+/// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
+/// frame (foretell.h). A resource that stops is left out of account. The pilots have together as many rays as the run,
+/// or as many each as the machine needs to be seen between fill and drain, if that is more; where that is most of the
+/// frame they are the frame. A pilot that is not like the run is doubled, twice at most. Throws as run_cycle.
+Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
+                           const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
+                           const SearchObserver& observe = {});
+
+/// Paths of a pilot for a frame of `paths` paths with `rays` rays, if there are so many simulations.
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::size_t simulations);
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ringbus/results/cycle_result.h"
+
+namespace carousel::ringbus {
+
+// A frame's cycles and gains, foretold from a pilot: some of its paths, simulated from start to end.
+//
+// A pilot's fill, drain and cold caches weigh more than the frame's. So its cycles T are extrapolated: the frame's
+// further rays take as long each as those of the pilot between fill and drain, m:
+//   frame = T + (frame's rays - pilot's rays) m.
+// The rays of a machine and of a relaxed one are the same, and m is taken between the same counts of completed rays in
+// both, so that the mix of rays is too. A pilot that is the whole frame needs no extrapolation.
+
+/// A machine's run over a pilot's rays, or over all of them.
+struct PilotRun {
+  const cycle::CycleResult* result = nullptr;
+  std::uint64_t rays = 0;
+};
+
+/// A value with its interval of confidence, some 95 %.
+struct Estimate {
+  double value = 0, low = 0, high = 0;
+};
+
+class Foretelling {
+ public:
+  /// `frame_rays`: rays of the whole frame. `fill`: completed rays after which every machine that is compared is full.
+  Foretelling(PilotRun base, std::uint64_t frame_rays, std::uint64_t fill);
+
+  /// The frame's cycles on the pilot's machine. The interval is that of the differences between neighbouring parts of
+  /// the pilot.
+  Estimate cycles() const;
+  /// The frame's busy cycles of each class of CycleResult::uses.
+  std::vector<double> busy() const;
+  /// The frame's gain if the machine is replaced by that of `relaxed`, as a fraction: cycles over cycles, less 1.
+  ///
+  /// The interval has two parts. The pilot is cut into blocks of equal numbers of rays. Both machines simulate the same
+  /// rays, so only the difference between the times of one block on both counts, d; neighbouring blocks are of
+  /// neighbouring strata, so the variance is that of their successive differences, (d[i+1] - d[i])^2 / 2, as for any
+  /// systematic sample (K. Wolter, Introduction to Variance Estimation, 2nd edition 2007, section 8.2, v2). Two standard
+  /// errors count. `deviation`, the fraction by which the frame is known to differ from its foretelling, is added: if
+  /// it lies in the class at question, the time that the class limits is off by as much.
+  Estimate gain(PilotRun relaxed, double deviation) const;
+
+ private:
+  struct Window {
+    std::uint64_t begin = 0, end = 0;  // completed rays
+    std::uint64_t rays() const { return end - begin; }
+  };
+  bool whole() const { return base_.rays >= frame_rays_; }
+  Window window(PilotRun other) const;
+  double frame_cycles(PilotRun run, Window window) const;
+
+  PilotRun base_;
+  std::uint64_t frame_rays_, fill_;
+};
+
+}  // namespace carousel::ringbus

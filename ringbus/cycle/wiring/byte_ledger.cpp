@@ -1,0 +1,102 @@
+#include "ringbus/cycle/wiring/byte_ledger.h"
+
+#include <fmt/format.h>
+
+#include "core/system/error.h"
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+template <class T>
+void add(ByteRow& row, const Channel<T>& channel) {
+  const auto bytes = channel.bytes();
+  row.bytes += bytes.sent;
+  row.bytes_taken += bytes.taken;
+  row.bytes_waiting += bytes.waiting;
+  row.messages += channel.messages().sent;
+}
+
+/// Of messages that are all of one size.
+template <class T>
+void add(ByteRow& row, const Channel<T>& channel, std::uint64_t bytes_each) {
+  const auto messages = channel.messages();
+  row.bytes += bytes_each * messages.sent;
+  row.bytes_taken += bytes_each * messages.taken;
+  row.bytes_waiting += bytes_each * messages.waiting;
+  row.messages += messages.sent;
+}
+
+ByteRow packets(const SimulatedMachine& machine, std::uint64_t width) {
+  ByteRow row{"packets", "resources", "neighbours", "links", width};
+  for (std::size_t i = 0; i < machine.shared().topology.wires().size(); ++i)
+    add(row, machine.network().wire(i).packets);
+  return row;
+}
+
+/// The resources count the lines for which they ask, the caches those that they look up.
+ByteRow shape_data(const SimulatedMachine& machine, const MemoryConfig& memory) {
+  const auto line = static_cast<std::uint64_t>(memory.line_bytes);
+  ByteRow row{"shape data", "L2", "resources", "L2's port",
+              line * static_cast<std::uint64_t>(memory.l2_lines_per_cycle)};
+  for (const auto& cache : machine.memory().caches()) row.bytes += cache->statistics().lines * line;
+  for (const auto& channels : machine.channels()) {
+    const SidePorts side = channels->ports();
+    row.messages += side.fetched->messages().sent;
+  }
+  for (const auto& resource : machine.resources()) row.bytes_taken += resource->lines_asked() * line;
+  return row;
+}
+
+}  // namespace
+
+std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& config) {
+  const auto width = static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle);
+  const auto line = static_cast<std::uint64_t>(config.memory.line_bytes);
+  const auto lines_per_cycle = static_cast<std::uint64_t>(config.memory.l2_lines_per_cycle);
+  constexpr std::uint64_t kAddress = 8;
+  ByteRow new_rays{"new rays", "ray control", "resources", "load ports and wires of IDs", width};
+  ByteRow completed{"completed rays", "resources", "ray control", "ports of completed rays", width};
+  ByteRow requests{"shape requests", "resources", "L2", "request wires", width};
+  ByteRow questions{"any-hit questions", "resources", "shading", "wires of questions", width};
+  ByteRow answers{"any-hit answers", "shading", "resources", "wires of answers", width};
+  ByteRow jobs{"shading jobs", "shading", "resources", "wires of jobs", width};
+  ByteRow notes{"notes and results", "resources", "shading", "wires of notes", width};
+  ByteRow addresses{"line requests", "L2", "DRAM", "address wires", kAddress * lines_per_cycle};
+  ByteRow lines{"lines", "DRAM", "L2", "DRAM's data wires",
+                static_cast<std::uint64_t>(config.memory.dram_bytes_per_cycle)};
+  for (const auto& channels : machine.channels()) {
+    const SidePorts side = channels->ports();
+    add(new_rays, *side.new_rays);
+    add(completed, *side.completed);
+    add(requests, *side.fetch);
+    if (side.questions != nullptr) add(questions, *side.questions);
+    if (side.answers != nullptr) add(answers, *side.answers);
+    if (side.jobs != nullptr) add(jobs, *side.jobs);
+    if (side.help != nullptr) add(notes, *side.help);
+  }
+  machine.memory().for_each_channel([&](const Channel<std::uint64_t>& down, const Channel<std::uint64_t>& up) {
+    add(addresses, down, kAddress);
+    add(lines, up, line);
+  });
+  return {packets(machine, width),
+          new_rays,
+          completed,
+          requests,
+          shape_data(machine, config.memory),
+          addresses,
+          lines,
+          questions,
+          answers,
+          jobs,
+          notes};
+}
+
+void check_byte_ledger(const std::vector<ByteRow>& rows) {
+  for (const ByteRow& row : rows)
+    if (row.bytes != row.bytes_taken + row.bytes_waiting)
+      throw SimulationError(fmt::format("{}: {} sent {} bytes, {} took {}, and {} are under way", row.what, row.from,
+                                        row.bytes, row.to, row.bytes_taken, row.bytes_waiting));
+}
+
+}  // namespace carousel::ringbus::cycle

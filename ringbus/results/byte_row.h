@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+namespace carousel::ringbus::cycle {
+
+/// Messages of one kind, over all wires or ports that carry it.
+struct ByteRow {
+  const char* what;
+  const char *from, *to;
+  const char* over;                 ///< the wire or port that is occupied
+  std::uint64_t width = 0;          ///< of each such wire or port, in bytes a cycle
+  std::uint64_t bytes = 0;          ///< that senders counted
+  std::uint64_t messages = 0;       ///< likewise
+  std::uint64_t bytes_taken = 0;    ///< that receivers counted
+  std::uint64_t bytes_waiting = 0;  ///< sent and not taken when the run ended
+  friend bool operator==(const ByteRow& a, const ByteRow& b) { return a.bytes == b.bytes && a.messages == b.messages; }
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shading/camera/pixel_order.h"
+
+namespace carousel::shading {
+
+/// Some of a frame's paths, in the frame's order or nearly.
+class PathSample {
+ public:
+  /// Paths whose ordinals in the frame follow one another.
+  struct Run {
+    std::uint64_t first = 0, count = 0;
+  };
+  explicit PathSample(const std::vector<Run>& runs);
+
+  std::uint64_t count() const { return begins_.back(); }
+  /// The ordinal in the frame of the sample's path `i`. Precondition: i < count().
+  std::uint64_t ordinal(std::uint64_t i) const;
+
+ private:
+  std::vector<std::uint64_t> firsts_;  // by run
+  std::vector<std::uint64_t> begins_;  // by run: the sample's paths before it; the count of all at the end
+};
+
+/// About `paths` paths, drawn over the whole picture: it is cut into equal rectangles of tiles, and of each a tile is
+/// drawn at random by `seed` and `draw`. Its first samples are taken, as many as leave 128 tiles or more, or all. Tiles
+/// follow one another rectangle by rectangle and row by row, so that neighbours stay together, and the upper part of
+/// the picture comes before the lower, as in the frame.
+PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw = 0);
+
+/// About `paths` elements of a list of `all`, drawn likewise: runs of 64, one of each of equal parts.
+PathSample draw_list(std::uint64_t all, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw = 0);
+
+}  // namespace carousel::shading

@@ -1,0 +1,64 @@
+#include "report/run/judge_gains.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace carousel::report {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+BottleneckGain gain(const std::string& name, double value, double low, double high) {
+  return {name, "twice " + name, {name + "=2"}, 100 * (1 + value), value, low, high};
+}
+
+TEST(JudgeGains, NamesTheGreatestGainWithItsInterval) {
+  const Bottleneck b = judge_gains({.gains = {gain("shading", 0.48, 0.45, 0.51), gain("boxes", 0.1, 0.08, 0.12)}});
+  EXPECT_EQ(b.limits, "shading");
+  EXPECT_THAT(b.rivals, IsEmpty());
+  EXPECT_EQ(b.verdict,
+            "shading: twice shading gains +48.0 % (+45.0 to +51.0 %), next is boxes with +10.0 % (+8.0 to +12.0 %)");
+}
+
+TEST(JudgeGains, NamesNothingInsideTheNoise) {
+  const Bottleneck b = judge_gains({.gains = {gain("shading", 0.07, -0.01, 0.15), gain("boxes", 0.01, -0.03, 0.05)}});
+  EXPECT_THAT(b.limits, IsEmpty());
+  EXPECT_THAT(b.verdict, HasSubstr("no class of parts limits it alone"));
+  EXPECT_THAT(b.verdict, HasSubstr("which may be noise"));
+}
+
+TEST(JudgeGains, SaysWhichClassesItCannotTellApart) {
+  const Bottleneck b = judge_gains({.gains = {gain("shading", 0.2, 0.15, 0.25), gain("boxes", 0.18, 0.12, 0.24),
+                                              gain("triangles", 0.11, 0.09, 0.13), gain("links", 0, -0.01, 0.01)}});
+  EXPECT_EQ(b.limits, "shading");
+  EXPECT_THAT(b.rivals, ElementsAre("boxes"));
+  EXPECT_THAT(b.verdict, HasSubstr("not to be told apart from it: boxes with +18.0 %"));
+}
+
+TEST(JudgeGains, AGainInsideTheNoiseMayStillBeARival) {
+  const Bottleneck b = judge_gains({.gains = {gain("shading", 0.2, -0.1, 0.5), gain("boxes", 0.18, 0.12, 0.24)}});
+  EXPECT_EQ(b.limits, "boxes");
+  EXPECT_THAT(b.rivals, ElementsAre("shading"));
+}
+
+TEST(JudgeGains, ExactGainsHaveNoInterval) {
+  const Bottleneck b = judge_gains({.gains = {gain("shading", 0.48, 0.48, 0.48)}});
+  EXPECT_EQ(b.verdict, "shading: twice shading gains +48.0 %");
+}
+
+TEST(JudgeGains, SaysThatItWasInterrupted) {
+  const Bottleneck b = judge_gains({.complete = false});
+  EXPECT_THAT(b.limits, IsEmpty());
+  EXPECT_EQ(b.verdict, "not found out: the search was interrupted");
+}
+
+TEST(JudgeGains, SaysThatThePilotIsNotLikeTheRun) {
+  const Bottleneck b = judge_gains({.unlike = "boxes are busy 10 % of its time, and 40 % of the run's"});
+  EXPECT_EQ(b.verdict,
+            "not found out: the pilot is not like the run: boxes are busy 10 % of its time, and 40 % of the run's");
+}
+
+}  // namespace
+}  // namespace carousel::report

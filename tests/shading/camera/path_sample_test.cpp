@@ -1,0 +1,106 @@
+#include "shading/camera/path_sample.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace carousel::shading {
+namespace {
+
+std::vector<std::uint64_t> ordinals(const PathSample& sample) {
+  std::vector<std::uint64_t> out;
+  for (std::uint64_t i = 0; i < sample.count(); ++i) out.push_back(sample.ordinal(i));
+  return out;
+}
+
+TEST(PathSample, GivesTheRunsOneAfterAnother) {
+  const PathSample sample({{10, 2}, {100, 1}, {30, 2}});
+  EXPECT_EQ(sample.count(), 5u);
+  EXPECT_EQ(ordinals(sample), (std::vector<std::uint64_t>{10, 11, 100, 30, 31}));
+}
+
+TEST(PathSample, TileBeginsAreWhereTheOrderEntersATile) {
+  for (const auto& [width, height, samples] : {std::tuple{64u, 40u, 1u}, {61u, 43u, 3u}, {5u, 3u, 2u}}) {
+    const PixelOrder order(width, height, samples);
+    std::uint64_t all = 0;
+    for (std::uint64_t row = 0; row < order.tile_rows(); ++row) {
+      for (std::uint64_t column = 0; column < order.tile_columns(); ++column) {
+        EXPECT_EQ(order.tile_begin(column, row), all);
+        const PixelSample first = order.at(order.tile_begin(column, row));
+        EXPECT_EQ(first.x, 8 * column);
+        EXPECT_EQ(first.y, 8 * row);
+        EXPECT_EQ(first.sample, 0u);
+        all += samples * order.tile_pixels(column, row);
+      }
+    }
+    EXPECT_EQ(all, order.count());
+  }
+}
+
+// Before issue 16 the pilot was the first paths: the top of the picture.
+TEST(PathSample, IsDrawnOverTheWholePicture) {
+  const PixelOrder order(320, 240, 2);
+  const PathSample sample = draw_tiles(order, 8192, 1);
+  EXPECT_NEAR(static_cast<double>(sample.count()), 8192, 0.1 * 8192);
+  const std::vector<std::uint64_t> chosen = ordinals(sample);
+  EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size()) << "no path twice";
+  int parts[4][4] = {};
+  for (const std::uint64_t ordinal : chosen) {
+    const PixelSample at = order.at(ordinal);
+    ++parts[at.y / 60][at.x / 80];
+  }
+  for (const auto& row : parts)
+    for (const int paths : row) EXPECT_NEAR(paths, 512, 256);
+  // The upper part comes first, and a whole tile's pixels at a time.
+  EXPECT_LT(order.at(chosen.front()).y, 32u);
+  EXPECT_GE(order.at(chosen.back()).y, 208u);
+  for (std::size_t i = 0; i < chosen.size(); i += 64)
+    for (std::size_t k = 1; k < 64; ++k) ASSERT_EQ(chosen[i + k], chosen[i] + k);
+}
+
+TEST(PathSample, TheSeedChoosesTheTiles) {
+  const PixelOrder order(320, 240, 1);
+  EXPECT_EQ(ordinals(draw_tiles(order, 2000, 1)), ordinals(draw_tiles(order, 2000, 1)));
+  EXPECT_NE(ordinals(draw_tiles(order, 2000, 1)), ordinals(draw_tiles(order, 2000, 2)));
+}
+
+TEST(PathSample, EveryTileIsAsLikely) {
+  const PixelOrder order(104, 72, 1);  // 13 x 9 tiles, in rectangles of unequal numbers of them
+  std::vector<double> times(13 * 9);
+  constexpr int kDraws = 4000;
+  double all = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const PathSample sample = draw_tiles(order, 30 * 64, 7, static_cast<std::uint64_t>(draw));
+    for (std::uint64_t i = 0; i < sample.count(); i += 64, ++all) {
+      const PixelSample at = order.at(sample.ordinal(i));
+      ++times[at.y / 8 * 13 + at.x / 8];
+    }
+  }
+  const double mean = all / static_cast<double>(times.size());
+  for (const double count : times) EXPECT_NEAR(count, mean, 0.12 * mean);
+}
+
+TEST(PathSample, FitsSmallPictures) {
+  for (const std::uint64_t paths : {1u, 64u, 1000u, 100000u}) {
+    const PixelOrder order(9, 17, 3);
+    const PathSample sample = draw_tiles(order, paths, 3);
+    EXPECT_GE(sample.count(), 1u);
+    const std::vector<std::uint64_t> chosen = ordinals(sample);
+    EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size());
+    EXPECT_LT(*std::max_element(chosen.begin(), chosen.end()), order.count());
+  }
+}
+
+TEST(PathSample, OfAListIsDrawnOverAllOfIt) {
+  const PathSample sample = draw_list(10000, 1024, 5);
+  EXPECT_NEAR(static_cast<double>(sample.count()), 1024, 64);
+  const std::vector<std::uint64_t> chosen = ordinals(sample);
+  EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+  EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size());
+  EXPECT_LT(chosen.front(), 640u);
+  EXPECT_GE(chosen.back(), 9300u);
+  EXPECT_LT(chosen.back(), 10000u);
+}
+
+}  // namespace
+}  // namespace carousel::shading
