@@ -71,7 +71,6 @@ TestOutcome Resource::test(Packet& packet) {
   outcome.reads = members;
   if (members > 0) traversal_->test(packet, local_, outcome);
   outcome.rays = local_.size();
-  outcome.slots = local_.slots;
   outcome.any_hit_calls = any_hit_.calls();
   record({.kind = EventKind::kTest,
           .resource = id(),

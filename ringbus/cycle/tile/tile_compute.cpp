@@ -34,7 +34,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
     context.question.slots.push_back(call.slot);
     context.question.times += call.times;
   }
-  in_test_.begin(outcome.slots, context.tested);
+  in_test_.begin(resource_.tested(), context.tested);
   context.completed.swap(resource_.completed());
   context.freed_slots.swap(resource_.freed_slots());
   context.subtree = resource_.is_treelet(packet.key);

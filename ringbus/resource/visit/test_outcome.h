@@ -18,7 +18,6 @@ struct AnyHitCall {
 struct TestOutcome {
   IntersectionCounts counts;
   std::size_t rays = 0;                   ///< tested one by one, not as members of a bundle
-  std::span<const std::uint32_t> slots;   ///< of these rays
   std::uint32_t reads = 0;                ///< records of rays and bundles that were read
   std::uint32_t bundle_passes = 0;        ///< through a bundle unit: one a test, or one an edge of a silhouette
   const BundleCounts* bundles = nullptr;  ///< what became of bundles; null when there are none

@@ -65,15 +65,19 @@ class Collections:
         c.ripe, c.since = False, (now, self.waits)
 
     def ripen(self, now):
-        """Those that have waited for long enough become ready. The cycle of the next one, or nothing."""
-        if self.ripe_after is None:
-            return None
-        for c in sorted((c for c in self.by_node.values() if not c.ready), key=lambda c: c.since):
-            if c.since[0] + self.ripe_after > now:
-                return c.since[0] + self.ripe_after
+        """Those that have waited for long enough become ready."""
+        while (at := self.next_ripe()) is not None and at <= now:
+            c = self.waits_longest()
             c.ripe = True
             self.relist(c)
-        return None
+
+    def waits_longest(self):
+        return min((c for c in self.by_node.values() if not c.ready), key=lambda c: c.since, default=None)
+
+    def next_ripe(self):
+        if self.ripe_after is None or (c := self.waits_longest()) is None:
+            return None
+        return c.since[0] + self.ripe_after
 
     def add(self, node, depth, entry, rays, now):
         if not rays:

@@ -1,5 +1,7 @@
 """Shape data: a resource's buffer, the shared caches, the memory behind them ("Memory")."""
-from .clock import Channel, ceil_div, way_back, way_there
+from .clock import Channel, SideWire, ceil_div, way_back, way_there
+REQUEST = 16  # bytes
+
 
 class LineCache:
     def __init__(self, lines, ways):
@@ -26,14 +28,14 @@ class ShapePort:
     """A resource's end of the wires to its cache."""
 
     def __init__(self, config, clock):
-        self.requests, self.answers = Channel(clock), Channel(clock)
-        self.latency = way_there(config["memory"]["l2_latency_cycles"])
+        self.wire = SideWire(clock, config, way_there(config["memory"]["l2_latency_cycles"]))
+        self.requests, self.answers = self.wire.channel, Channel(clock)
         self.line = config["memory"]["line_bytes"]
 
     def request(self, span, tag, now):
         address, size = span
         first, last = address // self.line, (address + size - 1) // self.line
-        self.requests.send(now + self.latency, (first, last - first + 1, tag))
+        self.wire.send(REQUEST, now, (first, last - first + 1, tag))
 
 
 class Request:
