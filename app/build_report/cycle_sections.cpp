@@ -68,6 +68,7 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, c.cycles)});
   out.dram_lines = c.memory_lines;
   out.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.line_bytes);
+  out.dram_lines_written = c.memory_lines_written;
   out.dram_busy_cycles = c.memory_busy;
   out.dram_utilisation = ratio(c.memory_busy, c.cycles);
   return out;
@@ -103,6 +104,13 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (r.packets && trips.count() > 0)
     r.packets->latency =
         report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
+  if (r.collections && config.collections.when_full == WhenFull::kSpill) {
+    r.collections->spill_bytes_written = r.collections->spill_bytes_read = 0;
+    for (const ringbus::cycle::TileResult& tile : c.tiles) {
+      *r.collections->spill_bytes_written += tile.spilled.written;
+      *r.collections->spill_bytes_read += tile.spilled.read;
+    }
+  }
   if (r.collections && c.ids) {
     r.collections->ids_at_once = c.ids->most;
     r.collections->ids_interval = c.ids->interval;

@@ -37,6 +37,7 @@ class NetworkRules {
     traffic_has_a_network();
     flow_that_can_deadlock();
     bubble_needs_two_places();
+    direct_wires_go_to_owners();
     overrides_name_resources();
     faults_have_a_place();
   }
@@ -86,6 +87,15 @@ class NetworkRules {
       breach_("topology.link.depth",
               fmt::format("flow: bubble keeps one place of a link free; expected at least 2, found {}",
                           c.topology.link.depth));
+  }
+
+  // A round through all resources uses the wires to neighbours alone.
+  void direct_wires_go_to_owners() {
+    if (c.topology.shape != TopologyShape::kPointToPoint || c.topology.visit != Visit::kAll) return;
+    if (c.topology.resources <= 2 || c.workload.kind == WorkloadConfig::Kind::kTraffic) return;
+    breach_("topology.visit",
+            "point_to_point sends a packet straight to the owners of its rays, and to visit all would be a ring with "
+            "idle wires; expected owners, or topology.shape: ring; found all");
   }
 
   void overrides_name_resources() {

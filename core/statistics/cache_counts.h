@@ -6,7 +6,7 @@ namespace carousel {
 
 /// Use of a cache of shape data.
 struct CacheCounts {
-  std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0, port_busy = 0;
+  std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0, written = 0, port_busy = 0;
 
   static constexpr auto counters() {
     using C = CacheCounts;
@@ -16,6 +16,7 @@ struct CacheCounts {
         Counter{"hits", &C::hits, "lines", "lines found"},
         Counter{"merged", &C::merged, "lines", "lines already on their way from memory"},
         Counter{"misses", &C::misses, "lines", "lines fetched from memory"},
+        Counter{"written", &C::written, "lines", "lines written through to memory: spilled collection entries"},
         Counter{"port_busy_cycles", &C::port_busy, "cycles", "cycles in which the port looked up lines"},
     };
   }

@@ -74,7 +74,8 @@ void cycle_words(Words& w) {
       .item("N cycles", "engine.cycles")
       .item("N rays per kilocycle, N Mrays/s at the clock", "throughput.whole",
             "completed rays in 1,000 cycles, and in a second at engine.clock_mhz")
-      .item("steady N", "throughput.steady.rays_per_kilocycle");
+      .item("steady N", "throughput.steady",
+            "rays per kilocycle in the steady part of the run, without its start and its end");
   w.line("busy");
   for (const UnitKindRow& row : kUnitKinds)
     w.item(std::string(row.name) + " N", std::string("resources[].units.") + row.name + ".busy",
@@ -94,7 +95,8 @@ void cycle_words(Words& w) {
             "part of the cycles in which no ray waited, or collections waited to fill")
       .item("shading N", "resources[].units.box.shading",
             "part of the cycles in which resources helped the shader workers");
-  w.line("bottleneck").item("*", "bottleneck.verdict");
+  w.line("bottleneck")
+      .item("*", "bottleneck.verdict", "the class of parts that limits the machine, and the gain if it were relaxed");
   w.line("bound").item(
       "N rays per kilocycle by *, reached N", "bound.rays_per_kilocycle",
       "the rate that the tightest class of parts would allow if it were busy all the time, and the part "
@@ -103,12 +105,14 @@ void cycle_words(Words& w) {
 
 void test_words(Words& w) {
   using C = IntersectionCounts;
-  w.line("tests").item("per ray: box N", "tests.box.per_ray");
-  w.item("triangle N", "tests.triangle.per_ray").item("transform N", "tests.transforms.per_ray");
+  w.line("tests")
+      .item("per ray: box N", "tests.box.per_ray", "tests of a ray against a box, for each completed ray")
+      .item("triangle N", "tests.triangle.per_ray", "tests of a ray against a triangle, likewise")
+      .item("transform N", "tests.transforms.per_ray", "transformations of a ray to model space, likewise");
   for (const Counter<C>& row : kCounters<C>)
     if (row.member != &C::box && row.member != &C::triangle && row.member != &C::transforms)
       w.item(std::string(row.name) + " N", std::string("tests.") + row.name + ".per_ray",
-             std::string(row.meaning) + ", for each completed ray");
+             std::string(row.meaning) + ", likewise");
   w.line("bundles")
       .item("N of N rays", "tests.bundles.formed", "bundles formed, and the rays of a bundle when formed")
       .item("of their boxes N all hit, N all missed, N split", "tests.bundles.sum",
@@ -116,11 +120,12 @@ void test_words(Words& w) {
   w.line("cull planes")
       .item("N planes, N bytes a node, found in N", "cull_planes.planes",
             "size of the cull planes, and time to find them")
-      .item("N of N children culled", "cull_planes.sum", "children whose boxes were hit and that a plane culled")
-      .item("spared: N nodes", "cull_planes.sum.nodes")
-      .item("N leaves of N triangles", "cull_planes.sum.leaves")
-      .item("N transforms", "cull_planes.sum.transforms")
-      .item("N boxes", "cull_planes.sum.boxes");
+      .item("N of N children culled", "cull_planes.levels[].culled",
+            "children whose boxes were hit and that a plane culled")
+      .item("spared: N nodes", "cull_planes.levels[].nodes_spared")
+      .item("N leaves of N triangles", "cull_planes.levels[].leaves_spared")
+      .item("N transforms", "cull_planes.levels[].transforms_spared")
+      .item("N boxes", "cull_planes.levels[].box_tests_spared");
 }
 
 void packet_words(Words& w) {
@@ -134,10 +139,11 @@ void packet_words(Words& w) {
       .item("N of visits find none", "packets.bubble_fraction");
   w.line("collections")
       .item("N made", "collections.created")
-      .item("N at once", "collections.peak")
       .item("N full", "collections.fullness_mean")
-      .item("N ray IDs at once", "collections.memberships_peak")
-      .item("N spilled", "collections.spilled");
+      .item("most in one resource: N, with N ray IDs", "collections.peak",
+            "most collections that any resource had at one time, and most ray IDs")
+      .item("N spilled", "collections.spilled")
+      .item("N ray IDs in all resources at once, of every N cycles", "collections.ids_at_once");
   w.line("all effects")
       .item("hits *", "shading.proof.same_hits")
       .item("image *", "shading.proof.same_image")
@@ -173,7 +179,7 @@ void resource_words(Words& w) {
 
 void last_words(Words& w) {
   w.line("bytes").item(
-      "* N N a ray from * to *, over * of N bytes a cycle", "bytes[]",
+      "* N N a ray from * to *, over *, N bytes a cycle", "bytes[]",
       "a kind of message: its bytes in all and for each completed ray, its sender and receiver, and the wires "
       "or ports that it occupies, with the width of each");
   w.line("host")

@@ -33,7 +33,7 @@ void describe(V& v, const ShapeBuffers& r) {
 struct Memory {
   ShapeBuffers shape_buffers;
   std::vector<Cache> caches;
-  std::uint64_t dram_lines = 0, dram_bytes = 0, dram_busy_cycles = 0;
+  std::uint64_t dram_lines = 0, dram_bytes = 0, dram_lines_written = 0, dram_busy_cycles = 0;
   double dram_utilisation = 0;
 };
 
@@ -43,6 +43,7 @@ void describe(V& v, const Memory& r) {
   v.section("caches", r.caches, "use of each L2 cache");
   v.field("dram_lines", r.dram_lines, "lines", "lines read from DRAM");
   v.field("dram_bytes", r.dram_bytes, "bytes", "bytes read from DRAM");
+  v.field("dram_lines_written", r.dram_lines_written, "lines", "lines of spilled collection entries written to DRAM");
   v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "cycles in which DRAM moved lines");
   v.field("dram_utilisation", r.dram_utilisation, "fraction", "fraction of the run's cycles in which DRAM moved lines");
 }

@@ -14,8 +14,8 @@ struct Resource {
   ResourceCounts counts{};
   IntersectionCounts tests{};
   CollectionCounts collections{};
-  std::optional<StallCounts> stalls{};             ///< native
-  std::optional<std::uint64_t> reserve_entered{};  ///< cycle
+  std::optional<StallCounts> stalls{};
+  std::optional<std::uint64_t> reserve_entered{};
   std::optional<Units> units{};
   std::optional<StackTraffic> stack{};
   std::optional<TransformedRayBytes> transformed_rays{};
@@ -30,8 +30,8 @@ void describe(V& v, const Resource& r) {
   v.field("transforms", r.tests.transforms, "rays", "rays transformed to model space");
   describe(v, r.collections);
   v.section("stalls", r.stalls, "attempts of worker threads that could not proceed, by reason (native)");
-  v.field("reserve_entered", r.reserve_entered, "times",
-          "the reserve of collection storage was entered: one packet at a time, deepest first (cycle)");
+  v.field("reserve_entered", r.reserve_entered, "packets",
+          "packets issued alone, deepest first, since too few collection blocks were free for others (cycle)");
   v.section("units", r.units, "cycles of the resource's units; those of each unit add up to engine.cycles");
   v.section("stack", r.stack, "traffic of the stacks of its rays, with topology.shape: independent");
   v.section("transformed_rays", r.transformed_rays,

@@ -113,6 +113,7 @@ class CycleRun {
     if (machine_.shading().stop() && machine_.shading().stop()->noticed > 0) c.stop = machine_.shading().stop();
     for (const auto& tile : machine_.resources()) out.packets_discarded += tile->packets_discarded();
     c.memory_lines = machine_.memory().memory().lines();
+    c.memory_lines_written = machine_.memory().memory().lines_written();
     c.memory_busy = machine_.memory().memory().busy();
     c.uses = uses();
     c.progress = log_.samples();

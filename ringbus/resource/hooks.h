@@ -11,6 +11,7 @@ struct ResourceHooks {
   EventSink* events = nullptr;              ///< is told of everything that happens
   SubtreeTracer* subtree_tracer = nullptr;  ///< traces treelets
   TransformAccount* transforms = nullptr;   ///< counts transforms instead of the kernels
+  bool spills_take_time = false;            ///< the engine empties CollectionStore::spills()
   bool hold_any_hit_rays = false;  ///< a ray that makes an any-hit call waits for release() before it may complete
 };
 

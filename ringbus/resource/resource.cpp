@@ -9,7 +9,8 @@ namespace carousel::ringbus {
 
 namespace {
 
-CollectionStore::Settings collection_settings(const ResourceSettings& settings, const accel::Accel& accel) {
+CollectionStore::Settings collection_settings(const ResourceSettings& settings, const accel::Accel& accel,
+                                              bool reports_spills) {
   CollectionStore::Settings s;
   s.block_rays = static_cast<std::uint32_t>(block_rays(settings.collections, settings.packets));
   s.packet_rays = static_cast<std::uint32_t>(settings.packets.rays);
@@ -19,6 +20,7 @@ CollectionStore::Settings collection_settings(const ResourceSettings& settings, 
   s.select = settings.collections.select;
   s.scene_size = settings.scene_size;
   s.max_depth = accel.max_depth;
+  s.reports_spills = reports_spills;
   if (settings.collections.partial == Partial::kAfter)
     s.ripe_after = static_cast<std::uint64_t>(settings.collections.partial_after_cycles);
   return s;
@@ -37,7 +39,7 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
       store_(store),
       root_(accel.root_key()),
       packet_rays_(static_cast<std::size_t>(settings.packets.rays)),
-      collections_(collection_settings(settings, accel)),
+      collections_(collection_settings(settings, accel, hooks.spills_take_time)),
       homes_(settings.collections.home, store.owner(), settings.resources),
       storage_(settings.collections, block_rays(settings.collections, settings.packets),
                reserve_blocks(settings.collections, settings.bundles, accel.width, accel.max_depth), collections_),

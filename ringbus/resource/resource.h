@@ -52,6 +52,8 @@ class Resource {
   /// Fills `packet` from the next collection: by policy, among the ready ones, or with `partial` among all.
   Offer offer(bool partial, Packet& packet) { return offering_.offer(partial, packet); }
 
+  /// Spilled entries that have moved, with ResourceHooks::spills_take_time.
+  SpillMoves& spills() { return collections_.spills(); }
   /// For engines with a clock: see CollectionStore.
   void ripen(std::uint64_t now) { collections_.ripen(now); }
   std::optional<std::uint64_t> next_ripe() { return collections_.next_ripe(); }

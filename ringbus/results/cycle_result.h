@@ -44,6 +44,12 @@ struct BankUse {
   friend bool operator==(const BankUse&, const BankUse&) = default;
 };
 
+/// Bytes of collection entries that a resource moved to memory and back.
+struct SpillBytes {
+  std::uint64_t written = 0, read = 0;
+  friend bool operator==(const SpillBytes&, const SpillBytes&) = default;
+};
+
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
   PerUnit<BankUse> units;
@@ -51,6 +57,7 @@ struct TileResult {
   Utilisation dispatch;
   ShapeBufferCounts shapes;
   StackTraffic stack;
+  SpillBytes spilled;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
   LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they retire
   Cycle packet_cycles = 0;               ///< packets of its own in flight, summed over the cycles
@@ -98,7 +105,7 @@ struct CycleResult {
   std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
-  std::uint64_t memory_lines = 0;
+  std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;

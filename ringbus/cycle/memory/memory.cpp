@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ringbus/cycle/messages/memory_messages.h"
+
 namespace carousel::ringbus::cycle {
 
 Cycle Memory::request_latency(const MemoryConfig& config) {
@@ -29,8 +31,13 @@ void Memory::run(Cycle end) {
     for (const Client& client : clients_) {
       while (client.requests->next() <= now) {
         moved_ = std::max(moved_, now * width_) + line_bytes_;
+        const std::uint64_t line = client.requests->take();
+        if ((line & kWriteLine) != 0) [[unlikely]] {
+          ++lines_written_;
+          continue;
+        }
         ++lines_;
-        client.answers->send(ceil_div(moved_, width_) + answer_latency_, client.requests->take());
+        client.answers->send(ceil_div(moved_, width_) + answer_latency_, line);
       }
     }
   }

@@ -14,7 +14,7 @@ namespace carousel::ringbus::cycle {
 class Memory final : public Agent {
  public:
   struct Client {
-    Channel<std::uint64_t>* requests = nullptr;  ///< line numbers
+    Channel<std::uint64_t>* requests = nullptr;  ///< line numbers, with kWriteLine for a write
     Channel<std::uint64_t>* answers = nullptr;
   };
   static Cycle request_latency(const MemoryConfig& config);
@@ -27,16 +27,17 @@ class Memory final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override { return ""; }
 
-  std::uint64_t lines() const { return lines_; }
+  std::uint64_t lines() const { return lines_; }  ///< read
+  std::uint64_t lines_written() const { return lines_written_; }
   /// Cycles that moving the lines took, the last one rounded up.
-  Cycle busy() const { return ceil_div(lines_ * line_bytes_, width_); }
+  Cycle busy() const { return ceil_div((lines_ + lines_written_) * line_bytes_, width_); }
 
  private:
   Cycle answer_latency_;
   std::uint64_t line_bytes_, width_;
   std::vector<Client> clients_;
   std::uint64_t moved_ = 0;  // the channel is taken up to this byte of time, of which a cycle has width_
-  std::uint64_t lines_ = 0;
+  std::uint64_t lines_ = 0, lines_written_ = 0;
 };
 
 }  // namespace carousel::ringbus::cycle

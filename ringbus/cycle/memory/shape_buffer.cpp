@@ -191,7 +191,12 @@ void ShapeBuffer::stop_waiting(std::uint32_t index, std::uint32_t wait) {
 void ShapeBuffer::take_answers(Cycle now) {
   bool idle = false;
   while (port_.next() <= now) {
-    Entry& entry = entries_[port_.take()];
+    const std::uint32_t tag = port_.take();
+    if ((tag & kSpillTag) != 0) [[unlikely]] {
+      spill_answers_.push_back(tag & ~kSpillTag);
+      continue;
+    }
+    Entry& entry = entries_[tag];
     --fetches_;
     entry.here = true;
     for (std::uint32_t wait = entry.first_wait; wait != kNone; wait = users_[wait / 2].next_wait[wait % 2]) {

@@ -55,6 +55,10 @@ class ShapeBuffer {
   Cycle next() const { return port_.next(); }
   /// Takes in the answers that have come.
   void take_answers(Cycle now);
+  /// The wires to the cache, by which spilled collection entries go as well.
+  ShapePort& port() { return port_; }
+  /// Tags of the reads of spilled entries that have been answered, without kSpillTag. The caller empties it.
+  std::vector<std::uint32_t>& spill_answers() { return spill_answers_; }
   /// Users who waited and need wait no longer, in the order in which their data was complete. The caller empties it.
   std::vector<User>& ready() { return ready_; }
   /// Tells whether anything changed for the issue queue since the last call.
@@ -113,6 +117,7 @@ class ShapeBuffer {
   std::deque<User> queue_;   // packets of the issue queue
   std::size_t granted_ = 0;  // the first packets of the queue, which have places
   std::vector<User> ready_;
+  std::vector<std::uint32_t> spill_answers_;
   bool queue_changed_ = false;
   std::size_t fetches_ = 0;
   ShapeBufferCounts counts_;

@@ -60,7 +60,17 @@ Cycle ShapeCache::take_port(Cycle now) {
   return end;
 }
 
+void ShapeCache::write(const FetchRequest& request, Cycle now) {
+  for (std::uint64_t line = request.first_line; line < request.first_line + request.lines; ++line) {
+    cache_.touch(line);
+    to_memory_.send(take_port(now) + memory_latency_, kWriteLine | line);
+    ++statistics_.written;
+  }
+}
+
 void ShapeCache::look_up(std::uint32_t client, const FetchRequest& request, Cycle now) {
+  if (request.writes) [[unlikely]]
+    return write(request, now);
   std::uint32_t index;
   if (free_pending_.empty()) {
     index = static_cast<std::uint32_t>(pending_.size());

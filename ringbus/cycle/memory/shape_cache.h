@@ -16,8 +16,9 @@
 namespace carousel::ringbus::cycle {
 
 /// The L2 that some resources share: looks up so many lines a cycle, in the order in which requests arrive (at one
-/// time: of the resources). A line that is on its way from memory is requested once. The cache is read only, so nothing
-/// is written back. An answer leaves when the last line of its request is there, also before those of earlier requests.
+/// time: of the resources). A line that is on its way from memory is requested once. Lines that a resource writes,
+/// spilled collection entries, go through to memory: one that is here is brought up to date, and others take no
+/// room. An answer leaves when the last line of its request is there, also before those of earlier requests.
 class ShapeCache final : public Agent {
  public:
   struct Client {
@@ -56,6 +57,7 @@ class ShapeCache final : public Agent {
     bool operator>(const Answer& o) const { return ready != o.ready ? ready > o.ready : turn > o.turn; }
   };
 
+  void write(const FetchRequest& request, Cycle now);
   void look_up(std::uint32_t client, const FetchRequest& request, Cycle now);
   void fill(std::uint64_t line, Cycle now);
   Cycle take_port(Cycle now);

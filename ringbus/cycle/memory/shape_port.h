@@ -7,6 +7,9 @@
 
 namespace carousel::ringbus::cycle {
 
+/// Set in the tag of a read of spilled collection entries; the others are of shapes.
+inline constexpr std::uint32_t kSpillTag = std::uint32_t{1} << 31;
+
 /// A resource's end of the wires to its cache.
 class ShapePort {
  public:
@@ -18,18 +21,23 @@ class ShapePort {
         line_bytes_(static_cast<std::uint64_t>(config.line_bytes)) {}
 
   /// Asks for the lines of `span`; `tag` comes back when all are there. Requests are made in order of time.
-  void request(const ShapeSpan& span, std::uint32_t tag, Cycle now) {
-    const std::uint64_t first = span.address / line_bytes_, last = (span.address + span.bytes - 1) / line_bytes_;
-    const FetchRequest message{first, static_cast<std::uint32_t>(last - first + 1), tag};
-    requests_.send(wire_.send(message.bytes(), now), message);
-    lines_ += message.lines;
-  }
+  void request(const ShapeSpan& span, std::uint32_t tag, Cycle now) { send(span, tag, false, now); }
+  /// Writes the lines of `span`.
+  void write(const ShapeSpan& span, Cycle now) { send(span, 0, true, now); }
   /// The time at which the next answer comes.
   Cycle next() const { return answers_.next(); }
   std::uint32_t take() { return answers_.take().tag; }
   std::uint64_t lines() const { return lines_; }  ///< asked for
 
  private:
+  void send(const ShapeSpan& span, std::uint32_t tag, bool writes, Cycle now) {
+    const std::uint64_t first = span.address / line_bytes_, last = (span.address + span.bytes - 1) / line_bytes_;
+    const auto lines = static_cast<std::uint32_t>(last - first + 1);
+    const FetchRequest message{first, lines, tag, writes, writes ? span.bytes : 0};
+    requests_.send(wire_.send(message.bytes(), now), message);
+    if (!writes) lines_ += lines;
+  }
+
   Channel<FetchRequest>& requests_;
   Channel<FetchAnswer>& answers_;
   SideWire wire_;

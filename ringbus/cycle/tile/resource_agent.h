@@ -24,10 +24,10 @@ class ResourceAgent : public Agent {
   virtual TileResult result() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
-  /// The IDs in its collections over time; null where there are none. After close().
-  virtual const IdCensus* census() const { return nullptr; }
   /// Lines of shape data for which it has asked its cache.
   virtual std::uint64_t lines_asked() const = 0;
+  /// The IDs in its collections over time; null where there are none. After close().
+  virtual const IdCensus* census() const { return nullptr; }
   /// Packets of its own that were discarded because a resource had stopped.
   virtual std::uint64_t packets_discarded() const { return 0; }
 

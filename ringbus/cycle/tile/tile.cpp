@@ -14,7 +14,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       transforms_(settings.accuracy, machine.accel, machine.stores[id.value]->slots()),
       walk_(machine.accel, transforms_),
       resource_(settings.resource, machine.accel, *machine.stores[id.value],
-                {settings.statistics ? &sink_ : nullptr, &walk_, &transforms_, ports.questions != nullptr}),
+                {settings.statistics ? &sink_ : nullptr, &walk_, &transforms_,
+                 settings.resource.collections.when_full == WhenFull::kSpill, ports.questions != nullptr}),
       logic_(machine, resource_),
       ports_(std::move(ports)),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
@@ -37,6 +38,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
               static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
       in_test_(machine.stores[id.value]->slots(), contexts_.size() > 1 && settings.resource.bundles.size == 0),
+      spill_memory_(id,
+                    static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_) {
   using Kind = FaultsConfig::Resource::Kind;
@@ -118,6 +121,7 @@ void Tile::step(Cycle now) {
   resource_.ripen(now);
   if (stops_ && fault_is_due()) stop(now);
   shapes_.take_answers(now);
+  take_spilled();
   serve(now);
   start_tests(now);
   take_opacities(now);
@@ -187,6 +191,7 @@ bool Tile::admit() {
   if (logic_.admission.empty()) return false;
   const bool moved =
       logic_.admission.admit(resource_, [this](std::size_t count) { trace_.note(now_, StepKind::kNewRays, 0, count); });
+  write_spilled(now_);
   storage_full_ = logic_.admission.short_of_room();
   return moved;
 }
@@ -235,6 +240,7 @@ TileResult Tile::result() const {
   ledger_.fill_in(t);
   t.dispatch.busy = dispatch_busy_;
   t.shapes = shapes_.counts();
+  t.spilled = spill_memory_.moved();
   t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();
   t.packet_cycles = trips_.packet_cycles();

@@ -16,6 +16,7 @@
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/tile/spill_memory.h"
 #include "ringbus/cycle/tile/subtree_visits.h"
 #include "ringbus/cycle/tile/subtree_walk.h"
 #include "ringbus/cycle/tile/tile_ledger.h"
@@ -86,7 +87,8 @@ class Tile final : public ResourceAgent {
   struct Issue {
     PacketId packet;
     ShapeBuffer::User user = 0;
-    bool takes_data = false;  // it waits for its shapes
+    bool takes_data = false;    // it waits for its shapes
+    std::uint32_t spilled = 0;  // reads of spilled entries that it waits for
   };
 
   std::uint64_t hops() const;
@@ -132,7 +134,12 @@ class Tile final : public ResourceAgent {
   ShapeBuffer::User user_of(const Context& context) const {
     return static_cast<ShapeBuffer::User>(&context - contexts_.data());
   }
-  bool is_ready(const Issue& issue) const { return !issue.takes_data || shapes_.is_here(issue.user); }
+  bool is_ready(const Issue& issue) const {
+    return issue.spilled == 0 && (!issue.takes_data || shapes_.is_here(issue.user));
+  }
+  void take_spilled();
+  void write_spilled(Cycle now);
+  void read_spilled(Issue& issue, Cycle now);
   void begin_test(Context& context, PacketId id, Cycle at, bool has_data);
   void start(Context& context, Cycle now);
   void compute(Context& context, Cycle at);
@@ -193,7 +200,9 @@ class Tile final : public ResourceAgent {
   std::uint64_t discarded_ = 0;
   std::size_t questions_out_ = 0;
   RaysInTest in_test_;
-  HitBatch done_;  // to be handed over
+  SpillMemory spill_memory_;
+  std::size_t spills_out_ = 0;  // reads under way
+  HitBatch done_;               // to be handed over
   std::vector<std::uint32_t> done_slots_;
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members

@@ -1,5 +1,6 @@
 // The start of a packet: from a ready collection to the issue queue, where it waits for its shapes, and to dispatch.
 #include <algorithm>
+#include <cstdlib>
 
 #include "ringbus/cycle/tile/tile.h"
 
@@ -40,6 +41,37 @@ bool Tile::handle_issue(Cycle now) {
   return true;
 }
 
+// ---- spilled entries
+
+/// Sends the entries that have been spilled to memory. Nothing waits for that.
+void Tile::write_spilled(Cycle now) {
+  std::vector<SpillMove>& written = resource_.spills().written;
+  for (const SpillMove& move : written) shapes_.port().write(spill_memory_.written(move), now);
+  written.clear();
+}
+
+/// Asks for the entries of a packet that are in memory.
+void Tile::read_spilled(Issue& issue, Cycle now) {
+  std::vector<SpillMove>& read = resource_.spills().read;
+  for (const SpillMove& move : read) {
+    shapes_.port().request(spill_memory_.read(move), kSpillTag | issue.user, now);
+    ++issue.spilled;
+    ++spills_out_;
+  }
+  read.clear();
+}
+
+void Tile::take_spilled() {
+  for (const std::uint32_t user : shapes_.spill_answers()) {
+    --spills_out_;
+    for (Issue& issue : issue_)
+      if (issue.user == user && issue.spilled > 0) --issue.spilled;
+  }
+  shapes_.spill_answers().clear();
+}
+
+// ---- from a collection to the issue queue
+
 bool Tile::nothing_else_to_do(Cycle now) const {
   return issue_.empty() && dispatch_free_ <= now && testers_free() && !help_.holds() &&
          std::none_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; });
@@ -59,6 +91,14 @@ Cycle Tile::partial_may_go(Cycle now) const {
       return nothing_else_to_do(now) ? now : kNever;
     case Partial::kAhead: {
       if (help_.holds()) return kNever;
+      static const int variant = getenv("H3V") ? atoi(getenv("H3V")) : 0;
+      const auto free_now = static_cast<std::size_t>(std::count_if(
+          contexts_.begin(), contexts_.end(), [](const Context& c) { return c.phase == Context::Phase::kFree; }));
+      if ((variant == 1 || variant == 3) && issue_.size() >= free_now) return kNever;
+      if (variant == 2 && free_now == 0) return kNever;
+      if (variant >= 3 &&
+          std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; }))
+        return kNever;
       const Cycle ends = work_ahead_ends(now);
       return ends <= now + memory_latency_ ? now : ends - memory_latency_;
     }
@@ -95,6 +135,7 @@ bool Tile::fill_issue(Cycle now) {
     issue.takes_data = fetches_ahead(packet);
     // The issuer cannot know whether all rays have their copies, so it takes the transform in any case.
     if (issue.takes_data) shapes_.take_ahead(issue.user, shape_data(packet, true), now);
+    read_spilled(issue, now);
     issue_.push_back(issue);
   }
   return moved;

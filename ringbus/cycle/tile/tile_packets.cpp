@@ -21,6 +21,7 @@ void Tile::retire_at_owner(PacketId id) {
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
   trips_.return_home(id.value, now_);
   logic_.retire(id, packet);
+  write_spilled(now_);
 }
 
 void Tile::occupy_dispatch(Cycle now, std::size_t ids) {
@@ -105,6 +106,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   }
   if (fate == PacketFate::kJoin) {
     resource_.join(packet);
+    write_spilled(now);
   } else {
     ++passed_;
     passed_rays_ += packet.members.size();

@@ -27,6 +27,7 @@ void Tile::on_order(NewRays::Order order, Cycle now) {
 /// Discards all work of this resource. Packets of others that are in test here go on as they are.
 void Tile::discard_work(Cycle now) {
   discarded_ += resource_.discard();
+  resource_.spills() = {};
   logic_.admission.clear();
   storage_full_ = false;
   for (const Issue& issue : issue_) logic_.discard(issue.packet);
@@ -58,7 +59,7 @@ void Tile::discard_at_owner(PacketId id) {
 
 /// Nothing of its own is under way. Packets of others that are here count for their owners.
 bool Tile::drained() const {
-  return logic_.all_home() && shapes_.fetches() == 0 && questions_out_ == 0;
+  return logic_.all_home() && shapes_.fetches() == 0 && spills_out_ == 0 && questions_out_ == 0;
 }
 
 }  // namespace carousel::ringbus::cycle

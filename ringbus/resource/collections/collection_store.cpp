@@ -77,16 +77,36 @@ std::optional<std::uint64_t> CollectionStore::next_ripe() {
 }
 
 std::uint32_t CollectionStore::new_block() {
+  const bool spilled = blocks_used_ - blocks_spilled_ >= settings_.capacity_blocks;
   ++blocks_used_;
+  std::uint32_t block;
   if (!free_blocks_.empty()) {
-    const std::uint32_t block = free_blocks_.back();
+    block = free_blocks_.back();
     free_blocks_.pop_back();
-    return block;
+  } else {
+    block = static_cast<std::uint32_t>(next_block_.size());
+    next_block_.push_back(0);
+    spilled_as_.push_back(kNotSpilled);
+    block_rays_.resize(block_rays_.size() + settings_.block_rays);
   }
-  const std::uint32_t block = static_cast<std::uint32_t>(next_block_.size());
-  next_block_.push_back(0);
-  block_rays_.resize(block_rays_.size() + settings_.block_rays);
+  if (!spilled) return block;
+  ++blocks_spilled_;
+  if (free_numbers_.empty()) {
+    spilled_as_[block] = numbers_++;
+  } else {
+    spilled_as_[block] = free_numbers_.back();
+    free_numbers_.pop_back();
+  }
   return block;
+}
+
+void CollectionStore::free_block(std::uint32_t block) {
+  free_blocks_.push_back(block);
+  --blocks_used_;
+  if (spilled_as_[block] == kNotSpilled) return;
+  free_numbers_.push_back(spilled_as_[block]);
+  spilled_as_[block] = kNotSpilled;
+  --blocks_spilled_;
 }
 
 void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays) {
@@ -108,7 +128,10 @@ void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, 
                 block_rays_.begin() + std::ptrdiff_t{c.tail} * b + filled);
     c.count += static_cast<std::uint32_t>(n);
     done += n;
-    if (blocks_used_ > settings_.capacity_blocks) statistics_.spilled += n;
+    if (const std::uint32_t spilled = spilled_as_[c.tail]; spilled != kNotSpilled) {
+      statistics_.spilled += n;
+      if (settings_.reports_spills) spills_.written.push_back({spilled, filled, static_cast<std::uint32_t>(n)});
+    }
   }
   memberships_ += rays.size();
   statistics_.memberships_peak = std::max<std::uint64_t>(statistics_.memberships_peak, memberships_);
@@ -146,11 +169,13 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   rays.clear();
   while (rays.size() < n) {
     const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
-    rays.insert(rays.end(), first, first + std::min<std::ptrdiff_t>(settings_.block_rays, n - std::ssize(rays)));
+    const auto ids = std::min<std::uint32_t>(settings_.block_rays, n - static_cast<std::uint32_t>(rays.size()));
+    rays.insert(rays.end(), first, first + ids);
     const std::uint32_t freed = c.head;
     c.head = next_block_[freed];
-    free_blocks_.push_back(freed);
-    --blocks_used_;
+    if (settings_.reports_spills && spilled_as_[freed] != kNotSpilled)
+      spills_.read.push_back({spilled_as_[freed], 0, ids});
+    free_block(freed);
   }
   c.count -= n;
   memberships_ -= n;

@@ -18,6 +18,16 @@ namespace carousel::ringbus {
 
 using CollectionId = Id<struct CollectionTag>;
 
+/// IDs of a spilled block that move to memory, or back from it.
+struct SpillMove {
+  std::uint32_t block = 0;           ///< number of the spilled block
+  std::uint32_t first = 0, ids = 0;  ///< places within it
+};
+/// Spilled entries that have moved since an engine last looked. It clears both.
+struct SpillMoves {
+  std::vector<SpillMove> written, read;
+};
+
 /// A resource's collections: ray IDs in fixed blocks, a chain of blocks a collection, all but the last one full.
 /// A block holds as many IDs as a packet carries, so issuing a packet frees exactly one block; or a single ID, so
 /// that storage is taken only for the IDs there are, and issuing a packet frees a block for each of its rays.
@@ -34,14 +44,16 @@ class CollectionStore {
     int max_depth = 1;  ///< of the structure, in strips
     /// A collection that has waited for so long is ready, however few rays it has; 0: it is not.
     std::uint64_t ripe_after = 0;
+    bool reports_spills = false;  ///< what is spilled is noted in spills(), for an engine that empties it
   };
   using Statistics = CollectionCounts;
 
   explicit CollectionStore(const Settings& settings);
 
   /// Adds rays to the collection of `key`, created if need be. `entry` is the nearest entry of any of them.
-  /// Takes at most one new block when at most block_rays rays are added. Blocks beyond the capacity are taken as well
-  /// and counted as spilled; the caller says whether that may happen (StorageRule).
+  /// Takes at most one new block when at most block_rays rays are added. Without a free block within the capacity it
+  /// takes one in memory, a spilled one, until that is taken away; the caller says whether that may happen
+  /// (StorageRule). Spilled blocks are numbered from 0 on, and a new one takes the number that was given up last.
   void add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays);
 
   /// The collection to issue from, by policy: among those that are ready, or with `partial` among all; with
@@ -65,6 +77,9 @@ class CollectionStore {
   void ripen(std::uint64_t now);
   /// The time at which the next collection will be ready for having waited; absent if none will.
   std::optional<std::uint64_t> next_ripe();
+
+  /// With Settings::reports_spills.
+  SpillMoves& spills() { return spills_; }
 
   /// Forgets all collections; the statistics go on.
   void discard();
@@ -96,6 +111,7 @@ class CollectionStore {
 
   std::uint32_t new_collection(accel::NodeKey key, std::uint16_t depth, float entry);
   std::uint32_t new_block();
+  void free_block(std::uint32_t block);
   std::uint32_t bucket(const Collection& c) const;
   PriorityLists& list(const Collection& c) { return c.ready ? ready_ : partial_; }
   void enlist(std::uint32_t index, std::uint32_t bucket);
@@ -114,6 +130,12 @@ class CollectionStore {
   std::vector<RayId> block_rays_;          // block_rays IDs a block
   std::vector<std::uint32_t> next_block_;  // one a block
   std::vector<std::uint32_t> free_blocks_;
+  static constexpr std::uint32_t kNotSpilled = ~0u;
+  std::vector<std::uint32_t> spilled_as_;  // one a block: its number as a spilled block
+  std::vector<std::uint32_t> free_numbers_;
+  std::uint32_t numbers_ = 0;
+  std::size_t blocks_spilled_ = 0;
+  SpillMoves spills_;
   std::size_t blocks_used_ = 0, memberships_ = 0;
   Statistics statistics_;
 };

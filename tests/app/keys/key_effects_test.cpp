@@ -34,6 +34,8 @@ std::string result_of(Json report) {
   if (report.contains("shading")) report["shading"].erase("workers");
   if (report.contains("links") && report["links"].is_array())
     for (Json& link : report["links"]) link.erase("depth");
+  if (report.contains("bytes"))
+    for (Json& row : report["bytes"]) row.erase("width_bytes_per_cycle");
   return report.dump() + host.value("simd", "") + host.value("threads", Json()).dump();
 }
 

@@ -42,7 +42,7 @@ inline std::vector<KeyRow> key_rows() {
       {"engine.simd", kTerrain, {"engine.simd=scalar"}},
       {"engine.what_if", kTerrain},
       {"topology.resources", kTerrain, {}, {"3"}},
-      {"topology.shape", kTerrain},
+      {"topology.shape", kTerrain, {"topology.visit=owners"}},
       {"topology.rings", kTerrain, {"topology.shape=multi_ring"}, {"3"}},
       {"topology.groups", kTerrain, {"topology.shape=hierarchical"}, {"2"}},
       {"topology.form", kTerrain},

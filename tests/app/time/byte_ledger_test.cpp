@@ -65,10 +65,26 @@ TEST_F(ByteLedger, ShapesFetchedAreLines) {
     }
     const std::uint64_t line_bytes = r["config"]["memory"]["line_bytes"];
     EXPECT_EQ(bytes(r, "shape data"), lines * line_bytes) << set;
-    EXPECT_EQ(bytes(r, "shape requests"), 16 * requests) << set;
+    EXPECT_EQ(bytes(r, "requests"), 16 * requests) << set;
     EXPECT_EQ(bytes(r, "lines"), r["memory"]["dram_bytes"]) << set;
     EXPECT_EQ(bytes(r, "line requests"), 8 * r["memory"]["dram_lines"].get<std::uint64_t>()) << set;
   }
+}
+
+// A spilled entry goes to memory with its request, and comes back as lines.
+TEST_F(ByteLedger, SpilledEntriesTravelBothWays) {
+  const Json r = report(kMachine, {"collections.when_full=spill", "collections.capacity=64"});
+  std::uint64_t requests = 0, written = 0;
+  for (const Json& cache : r["memory"]["caches"]) {
+    requests += cache["requests"].get<std::uint64_t>();
+    written += cache["written"].get<std::uint64_t>();
+  }
+  ASSERT_GT(written, 0u);
+  EXPECT_EQ(bytes(r, "spilled lines"), written * 64);
+  EXPECT_EQ(r["memory"]["dram_lines_written"], written);
+  EXPECT_GT(messages(r, "requests"), requests);  // writes are requests without an answer
+  EXPECT_EQ(bytes(r, "requests"),
+            16 * messages(r, "requests") + r["collections"]["spill_bytes_written"].get<std::uint64_t>());
 }
 
 TEST_F(ByteLedger, RaysAreRecordsAndIds) {

@@ -254,6 +254,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "engine: {kind: cycle}\ntopology: {shape: independent}\nworkload: {traffic: {rate: 0.5}}\n",
                   "test.yaml:2:19: topology.shape: there is no traffic on independent; expected ring, bidirectional, "
                   "multi_ring or point_to_point"},
+        BadConfig{"DirectWiresVisitingAll", SCENE "topology: {shape: point_to_point, visit: all}\n",
+                  "test.yaml:2:42: topology.visit: point_to_point sends a packet straight to the owners of its rays, "
+                  "and to visit all "
+                  "would be a ring with idle wires; expected owners, or topology.shape: ring; found all"},
         BadConfig{"FlowNone", SCENE "topology: {flow: none}\n",
                   "test.yaml:2:18: topology.flow: none lets the links fill up and stop; expected credits or "
                   "bubble, or "

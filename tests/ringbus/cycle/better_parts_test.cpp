@@ -37,7 +37,7 @@ TEST(BetterParts, CostNoTime) {
     lifts.resize(std::min<std::size_t>(lifts.size(), 5));
     for (const WhatIf& lift : lifts) {
       Cell better = cell;
-      lift.apply(better.config);
+      better.config = lift.relaxed;
       const Outcome out = run_cell(scene, better);
       ASSERT_EQ(out.fault, "") << lift.name << ": " << better.text();
       const double change =

@@ -36,7 +36,9 @@ class LoneTile {
     for (Cycle now; (now = std::min(tile_.next(), fetch_.next())) != kNever;) {
       while (fetch_.next() <= now) {
         const Cycle at = fetch_.next();
-        rounds += at != std::exchange(last_fetch_, at);
+        // What is asked for in one cycle follows one another on the wire, and the ray waits for the last.
+        memory_wait += at == last_fetch_ + 1 ? 1 : 34 / 2 + answer;
+        last_fetch_ = at;
         fetched_.send(at + answer, {fetch_.take().tag});
         ++fetches;
       }
@@ -54,7 +56,7 @@ class LoneTile {
   ResourceStatistics statistics() const { return tile_.statistics(); }
 
   std::uint64_t fetches = 0, completed = 0;
-  std::uint64_t rounds = 0;  ///< times at which anything was asked for
+  Cycle memory_wait = 0;  ///< of a lone ray for its strips and transforms
   Cycle last_completed = 0;
 
  private:
@@ -66,7 +68,7 @@ class LoneTile {
   Channel<CompletedRays> completed_;
   Channel<FetchRequest> fetch_;
   Channel<FetchAnswer> fetched_;
-  Cycle last_fetch_ = kNever;
+  Cycle last_fetch_ = 0;
   IndependentTile tile_;
 };
 
@@ -98,7 +100,7 @@ TEST(IndependentTile, OneRayTakesTheSumOfItsLatencies) {
     const TileResult tile = lone.result();
     // Units enough for a strip at once, so a bank is busy for a cycle a strip.
     // A strip and its transform are asked for together.
-    const Cycle memory = lone.rounds * (34 / 2 + 100);
+    const Cycle memory = lone.memory_wait;
     const Cycle tests = 7 * tile.units[UnitKind::kBox].busy + 11 * tile.units[UnitKind::kTriangle].busy +
                         13 * tile.units[UnitKind::kTransform].busy;
     const Cycle record = sizeof(RayRecord) / 16, wire = 5;

@@ -15,6 +15,7 @@ Config helping_machine() {
   Config c;
   c.engine.kind = EngineKind::kCycle;
   c.topology.link.latency_cycles = kLatency;
+  c.topology.link.bytes_per_cycle = 68;  // the longest message in a cycle
   c.shading.cycles_per_shade = kShade;
   c.shading.idle_resources_shade = true;
   return c;
@@ -86,7 +87,10 @@ RayResult ray(std::uint32_t path) {
 TEST(ShadeHelpers, SendsOneRayToEachThatIsIdle) {
   Wires wires[3];
   const std::vector<SidePorts> sides{wires[0].ports(), wires[1].ports(), wires[2].ports()};
-  ShadeHelpers helpers(sides, kLatency);
+  LinkConfig link;
+  link.latency_cycles = kLatency;
+  link.bytes_per_cycle = 68;  // the longest message in a cycle
+  ShadeHelpers helpers(sides, link);
   HitBatch shaded;
   wires[0].notes.send(5, {false, false});
   EXPECT_EQ(helpers.next(), 5u);

@@ -15,7 +15,7 @@
 namespace carousel::shading {
 namespace {
 
-Config small_image() {
+Config tiny_image() {
   Config config;
   config.image = {21, 21, 8, 6, 7};  // tiles cut at the right and below
   return config;
@@ -42,7 +42,7 @@ void expect_same(const Outcome& a, const Outcome& b) {
 TEST(PathTracer, DoesNotDependOnBatchesPathsInFlightOrderOrWorkers) {
   const scene::Scene scene = mixed_scene();
   const BruteForceTracer tracer(scene);
-  const Config config = small_image();
+  const Config config = tiny_image();
   PathTracer reference(scene, config, 100000, 1);
   run_frame(reference, tracer, 1u << 20);
   const Outcome expected = outcome(reference);
@@ -78,7 +78,7 @@ TEST(PathTracer, EveryRayHasItsOwnName) {
     std::set<std::tuple<std::uint32_t, std::uint32_t, int, int, int>> seen_;
   } names;
   const scene::Scene scene = mixed_scene();
-  PathTracer tracer(scene, small_image(), 64, 1);
+  PathTracer tracer(scene, tiny_image(), 64, 1);
   tracer.set_recorder(&names);
   run_frame(tracer, BruteForceTracer(scene), 50);
   const auto completed = tracer.counts().completed;
@@ -87,7 +87,7 @@ TEST(PathTracer, EveryRayHasItsOwnName) {
 
 TEST(PathTracer, GeneratesNothingButIsNotFinishedWhileNoStateIsFree) {
   const scene::Scene scene = mixed_scene();
-  PathTracer tracer(scene, small_image(), 4, 1);
+  PathTracer tracer(scene, tiny_image(), 4, 1);
   RayBatch rays;
   Workload::Generated generated = tracer.generate(WorkerId(0), 100, rays);
   EXPECT_EQ(generated.rays, 4u);
@@ -101,7 +101,7 @@ TEST(PathTracer, GeneratesNothingButIsNotFinishedWhileNoStateIsFree) {
 TEST(PathTracer, DepthLimitsTheSurfacesOfAPath) {
   const scene::Scene scene = mixed_scene();
   const BruteForceTracer tracer(scene);
-  Config config = small_image();
+  Config config = tiny_image();
   config.image.max_depth = 1;
   PathTracer direct(scene, config, 100, 1);
   run_frame(direct, tracer, 100);
@@ -113,7 +113,7 @@ TEST(PathTracer, SkyFillsWhatNothingHides) {
   scene::Scene scene = empty_scene();
   add_material(scene, matte({1, 1, 1}));
   scene.sky.radiance = {0.25f, 0.5f, 2.0f};
-  PathTracer tracer(scene, small_image(), 64, 1);
+  PathTracer tracer(scene, tiny_image(), 64, 1);
   run_frame(tracer, BruteForceTracer(scene), 32);
   const std::vector<float> rgb = tracer.linear_rgb();
   for (std::size_t i = 0; i < rgb.size(); i += 3) {
@@ -154,7 +154,7 @@ TEST(PathTracer, UnlitSurfacesShowTheirColourAndEndThePath) {
   add_quad(scene, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, m);
   scene.sky.radiance = Vec3{7};
   scene.cameras[0] = looking_down(5, 1);
-  PathTracer tracer(scene, small_image(), 64, 1);
+  PathTracer tracer(scene, tiny_image(), 64, 1);
   run_frame(tracer, BruteForceTracer(scene), 32);
   const std::vector<float> rgb = tracer.linear_rgb();
   EXPECT_EQ(rgb[0], 0.5f);

@@ -24,7 +24,7 @@ struct VisitBench {
     SidePorts ports;
     ports.fetch = &requests;
     ports.fetched = &answers;
-    buffer = std::make_unique<ShapeBuffer>(config, ports);
+    buffer = std::make_unique<ShapeBuffer>(config, LinkConfig{}, ports);
     tester = std::make_unique<Tester>(testers);
     visits = std::make_unique<SubtreeVisits>(memory, *buffer, *tester, 1, 1);
   }

@@ -20,7 +20,7 @@ struct BufferBench {
     SidePorts ports;
     ports.fetch = &requests;
     ports.fetched = &answers;
-    buffer = std::make_unique<ShapeBuffer>(config, ports);
+    buffer = std::make_unique<ShapeBuffer>(config, LinkConfig{}, ports);
   }
   static ShapeSpan strip(std::uint64_t i) { return {256 * i, 256}; }
   static ShapeNeed need(std::uint64_t i) { return {strip(i), {}}; }
