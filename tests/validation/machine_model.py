@@ -79,7 +79,7 @@ def main():
     parser.add_argument("--keep")
     arguments = parser.parse_args()
     indices = [arguments.only] if arguments.only is not None else range(arguments.machines)
-    failed = refused = rays = 0
+    failed = refused = compared = rays = 0
     agree = []
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(arguments.keep or folder)
@@ -96,18 +96,23 @@ def main():
                 print(f"machine {index} is refused: {facts['error'].strip()}")
                 continue
             difference = compare(facts)
+            compared += 1
             rays += len(facts["rays"])
             if not difference and len(agree) < 20:
                 agree.append(facts)
             if difference:
                 failed += 1
                 print(f"machine {index} of seed {arguments.seed}: {difference}")
+    answered = refused + compared
+    if answered < len(files) or run.wait() != 0:
+        print(f"{arguments.machine_facts} ended after {answered} of {len(files)} machines")
+        return 1
     for lie in LIES if len(files) >= 20 and not failed else ():
         if not notices(lie, agree):
             failed += 1
             print(f"the comparison does not notice another {lie}")
-    print(f"{len(files) - refused} machines, {rays} rays, {failed} disagree, {refused} refused")
-    return 1 if failed or refused > len(files) // 4 or run.wait() != 0 else 0
+    print(f"{compared} machines, {rays} rays, {failed} disagree, {refused} refused")
+    return 1 if failed or refused > len(files) // 4 else 0
 
 
 if __name__ == "__main__":

@@ -106,8 +106,9 @@ void Tile::run(Cycle end) {
       now = event;
     } else {
       if (now >= end) return;
-      // Not with the bubble rule, under which a packet that waits to be injected must see every credit.
-      if (now < rest && !machine_.flow.bubble() && cut_through(now, true)) continue;
+      // Not with the bubble rule, under which a packet that waits to be injected must see every credit. Where a ray's
+      // test ends in this cycle, it comes first, as in every step.
+      if (now < rest && now < visits_.next() && !machine_.flow.bubble() && cut_through(now, true)) continue;
     }
     step(now);
     rest = next_beside_ring();

@@ -21,9 +21,8 @@ class Collections:
         self.block = 1 if c["traversal"] == "ordered" else self.packet
         self.ready, self.policy = c["ready"], c["policy"]
         self.strict = c["select"] == "strict"
-        self.ripe_after = c["partial_after_cycles"] if c.get("partial") == "after" else None
+        self.ripe_after = c["partial_after_cycles"] if c["partial"] == "after" else None
         self.capacity = c["capacity"] // self.block
-        self.charged = "partial" in c
         self.scene_size, self.max_depth = facts["scene_size"], facts["max_depth"]
         self.by_node = {}
         self.turns = self.waits = 0
@@ -108,7 +107,7 @@ class Collections:
 
     def new_block(self):
         """The number of a spilled block; nothing for one that is not."""
-        full = self.used - self.spilled >= self.capacity and self.charged
+        full = self.used - self.spilled >= self.capacity
         self.used += 1
         if not full:
             return None

@@ -33,9 +33,10 @@ class ShapePort:
         self.line = config["memory"]["line_bytes"]
 
     def request(self, span, tag, now):
+        """Reads the lines of `span`; `tag` comes back. Without a tag it writes them."""
         address, size = span
         first, last = address // self.line, (address + size - 1) // self.line
-        self.wire.send(REQUEST, now, (first, last - first + 1, tag))
+        self.wire.send(REQUEST + (size if tag is None else 0), now, (first, last - first + 1, tag))
 
 
 class Request:

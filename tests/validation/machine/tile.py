@@ -43,7 +43,7 @@ class Tile(Issues, Tests):
         self.issue_places = config["memory"]["fetch_ahead"] + 1
         self.fetch_by_resource = config["memory"]["fetch"] == "resource"
         self.starts_later = self.fetch_by_resource or config["collections"]["traversal"] == "treelet"
-        self.partial = config["collections"].get("partial", "idle")
+        self.partial = config["collections"]["partial"]
         self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
         self.bubble = config["topology"]["flow"] == "bubble"
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
