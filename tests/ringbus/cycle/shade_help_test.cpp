@@ -15,7 +15,6 @@ Config helping_machine() {
   Config c;
   c.engine.kind = EngineKind::kCycle;
   c.topology.link.latency_cycles = kLatency;
-  c.topology.link.bytes_per_cycle = 68;  // the longest message in a cycle
   c.shading.cycles_per_shade = kShade;
   c.shading.idle_resources_shade = true;
   return c;
@@ -65,7 +64,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   EXPECT_TRUE(help.step(15 + kShade, true));
   EXPECT_FALSE(help.holds());
   help.notify(15 + kShade, true);
-  expect_note(wires, 15 + kShade + kLatency, true, true);
+  expect_note(wires, 15 + kShade + kLatency + 2, true, true);  // 68 bytes over a wire of 32
   EXPECT_EQ(help.next(), kNever);
 }
 
@@ -87,19 +86,16 @@ RayResult ray(std::uint32_t path) {
 TEST(ShadeHelpers, SendsOneRayToEachThatIsIdle) {
   Wires wires[3];
   const std::vector<SidePorts> sides{wires[0].ports(), wires[1].ports(), wires[2].ports()};
-  LinkConfig link;
-  link.latency_cycles = kLatency;
-  link.bytes_per_cycle = 68;  // the longest message in a cycle
-  ShadeHelpers helpers(sides, link);
+  ShadeHelpers helpers(sides, helping_machine().topology.link);
   HitBatch shaded;
   wires[0].notes.send(5, {false, false});
   EXPECT_EQ(helpers.next(), 5u);
   helpers.take_notes(5, shaded);
   helpers.give(ray(10), 33, 5);
-  EXPECT_EQ(wires[1].jobs.next(), 5 + kLatency);
+  EXPECT_EQ(wires[1].jobs.next(), 5 + kLatency + 1);  // a record of 64 bytes over a wire of 32
   EXPECT_EQ(wires[1].jobs.front().cycles, 33u);
   helpers.give(ray(11), kShade, 7);
-  EXPECT_EQ(wires[2].jobs.next(), 7 + kLatency);
+  EXPECT_EQ(wires[2].jobs.next(), 7 + kLatency + 1);
   EXPECT_FALSE(helpers.any());
   EXPECT_EQ(helpers.out(), 2u);
 
