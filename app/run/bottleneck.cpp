@@ -50,7 +50,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
     if (!line) return;
     const double part = std::min(1.0, report::ratio(at.completed, at.rays));
     line->update((static_cast<double>(at.done) + part) / static_cast<double>(at.of), at.completed,
-                 fmt::format("bottleneck, {} of {}: {}", std::min(at.done + 1, at.of), at.of,
+                 fmt::format("bottleneck, {}, {} of {}: {}", at.stage, std::min(at.done + 1, at.of), at.of,
                              at.name.empty() ? "as configured" : at.name));
   };
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
@@ -68,8 +68,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                          .paths = found.paths,
                          .rays = found.rays};
   for (const ringbus::Gain& gain : found.gains)
-    out.gains.push_back(
-        {gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high});
+    out.gains.push_back({gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high});
   return report::judge_gains(std::move(out));
 }
 

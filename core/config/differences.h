@@ -7,8 +7,8 @@
 
 namespace carousel {
 
-/// The assignments `key.path=value` that make `to` of `from`, in the order of the keys, as `--set` takes them. A list is
-/// assigned whole.
+/// The assignments `key.path=value` that make `to` of `from`, in the order of the keys, as `--set` takes them. A list
+/// is assigned whole.
 std::vector<std::string> config_differences(const Config& from, const Config& to);
 
 }  // namespace carousel

@@ -58,7 +58,9 @@ struct Report {
 template <class V>
 void describe(V& v, const Report& r) {
   v.field("schema_version", r.schema_version, "", "version of these keys");
-  v.field("incomplete", r.incomplete, "", "true if the run was interrupted, with counts that are then partial, or a search, comparison or verification after it");
+  v.field("incomplete", r.incomplete, "",
+          "true if the run was interrupted, with counts that are then partial, or a search, comparison or verification "
+          "after it");
   v.section("carousel", r.carousel, "program that wrote the report");
   v.any("config", r.config, "resolved configuration; see carousel schema config");
   v.section("scene", r.scene, "scene that was rendered");

@@ -64,8 +64,9 @@ struct Bottleneck {
 template <class V>
 void describe(V& v, const Bottleneck& r) {
   v.field("complete", r.complete, "", "false if the search was interrupted; nothing is then found out");
-  v.field("limits", r.limits, "",
-          "class that gains most when relaxed; empty when none surely gains, or none gains 5 %, or nothing is found out");
+  v.field(
+      "limits", r.limits, "",
+      "class that gains most when relaxed; empty when none surely gains, or none gains 5 %, or nothing is found out");
   v.field("rivals", r.rivals, "", "further classes that may gain as much, as their intervals overlap");
   v.field("verdict", r.verdict, "", "the same in words");
   v.field("unlike", r.unlike, "", "difference between pilot and run for which nothing is found out; empty if none");

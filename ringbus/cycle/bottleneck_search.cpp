@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -36,29 +38,53 @@ class Search {
     // The bottleneck is that of the whole machine, before a resource stops.
     stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
     if (stops_) config_.faults.resource = {};
-    what_ifs_ = what_ifs(config_, accel_);
-    state_.of = what_ifs_.size() + 1;
+    lifts_ = what_ifs(config_, accel_);
+    out_.gains.resize(lifts_.size());
   }
 
   Bottleneck search() {
     const std::uint64_t frame = run_.result.rays_completed;
-    out_.paths = pilot_paths(config_, run_.paths, frame, what_ifs_.size() + 1);
-    for (int doubled = 0;; ++doubled) {
+    std::vector<std::size_t> all(lifts_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const std::uint64_t first = frame / kScreening;
+    out_.paths = pilot_paths(config_, run_.paths, frame, first / (all.size() + 1));
+    begin("first pilot", all.size());
+    simulate_base();
+    lift(all, 0);
+    const std::vector<std::size_t> worth = worth_a_second_look();
+    const std::uint64_t larger =
+        pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
+    if (!out_.whole && larger > out_.paths + out_.paths / 2) {
+      out_.paths = larger;
+      begin("second pilot", worth.size());
       simulate_base();
-      if (!out_.complete) return out_;
-      const Foretelling foretelling({&*base_.cycle, base_.rays_completed}, frame, 2 * fill_rays(slots_of(config_)));
-      judge(foretelling);
-      if (out_.unlike.empty()) {
-        lift_all(foretelling);
-        return out_;
-      }
-      if (doubled == kDoublings) return out_;
-      out_.paths = std::min(run_.paths, 2 * out_.paths);
     }
+    for (int doubled = 0; out_.complete && !judge(); ++doubled) {
+      if (doubled == kDoublings) return without_gains();
+      out_.paths = std::min(run_.paths, 2 * out_.paths);
+      begin("larger pilot", worth.size());
+      simulate_base();
+    }
+    lift(worth, out_.deviation);
+    if (!out_.complete) return without_gains();
+    std::stable_sort(out_.gains.begin(), out_.gains.end(),
+                     [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
+    return out_;
   }
 
  private:
   static constexpr int kDoublings = 2;
+  static constexpr std::uint64_t kScreening = 3;  // a third of the rays go to the first pilot
+
+  Bottleneck without_gains() {
+    out_.gains.clear();
+    return out_;
+  }
+
+  void begin(const char* stage, std::size_t lifts) {
+    state_ = {stage,     "", 0,
+              lifts + 1, 0,  run_.result.rays_completed * out_.paths / std::max<std::uint64_t>(1, run_.paths)};
+  }
 
   RunResult simulate(const Config& machine) {
     const std::unique_ptr<Workload> pilot = make_pilot_(machine, out_.paths);
@@ -80,27 +106,59 @@ class Search {
   /// The run itself is the pilot if that is the whole frame.
   void simulate_base() {
     out_.whole = out_.paths >= run_.paths;
-    state_.done = 0;
-    state_.rays = run_.result.rays_completed * out_.paths / std::max<std::uint64_t>(1, run_.paths);
     if (out_.whole && !stops_) {
       base_ = run_.result;
       ++state_.done;
-    } else {
+    } else if (out_.complete) {
       base_ = simulate(config_);
     }
     out_.rays = base_.rays_completed;
   }
 
-  /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run.
-  void judge(const Foretelling& foretelling) {
+  Foretelling foretelling() const {
+    return {{&*base_.cycle, base_.rays_completed}, run_.result.rays_completed, 2 * fill_rays(slots_of(config_))};
+  }
+
+  /// Relaxes each of these classes, unless that was done with this pilot before.
+  void lift(const std::vector<std::size_t>& which, double deviation) {
+    const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
+    for (const std::size_t i : which) {
+      if (!out_.complete) return;
+      state_.name = lifts_[i].name;
+      Relaxed& relaxed = relaxed_[i];
+      if (relaxed.paths != out_.paths) relaxed = {simulate(lifts_[i].relaxed), out_.paths};
+      if (!out_.complete) return;
+      const Estimate gain = foretelling().gain({&*relaxed.result.cycle, relaxed.result.rays_completed}, deviation);
+      out_.gains[i] = {lifts_[i].name, lifts_[i].action, lifts_[i].sets, rate * (1 + gain.value),
+                       gain.value,     gain.low,         gain.high};
+    }
+  }
+
+  /// The classes that the larger pilot simulates: those that might gain enough to be named, but not many.
+  std::vector<std::size_t> worth_a_second_look() const {
+    constexpr double kEnough = 0.03;
+    constexpr std::size_t kMost = 6;
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < out_.gains.size(); ++i)
+      if (out_.whole || out_.gains[i].high >= kEnough) out.push_back(i);
+    std::stable_sort(out.begin(), out.end(),
+                     [&](std::size_t a, std::size_t b) { return out_.gains[a].gain > out_.gains[b].gain; });
+    if (!out_.whole && out.size() > kMost) out.resize(kMost);
+    return out;
+  }
+
+  /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
+  /// are alike.
+  bool judge() {
     // Schedules differ by so much for no reason that the pilot could know.
     constexpr double kTolerance = 0.02, kBusyTolerance = 0.05;
-    const Estimate cycles = foretelling.cycles();
+    const Foretelling foretold = foretelling();
+    const Estimate cycles = foretold.cycles();
     out_.uncertainty = (cycles.high - cycles.value) / cycles.value;
     out_.unlike.clear();
     if (stops_) {
       out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, cycles.value);
-      return;
+      return true;
     }
     const double ran = static_cast<double>(run_.result.cycle->cycles), allowed = out_.uncertainty + kTolerance;
     out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, ran);
@@ -108,34 +166,25 @@ class Search {
     if (std::abs(out_.deviation) > allowed) {
       out_.unlike = fmt::format("it foretells {:.0f} cycles for the frame, {:+.1f} % of the run's", cycles.value,
                                 100 * (cycles.value / ran - 1));
-      return;
+      return false;
     }
-    const std::vector<double> busy = foretelling.busy();
+    const std::vector<double> busy = foretold.busy();
     for (std::size_t i = 0; i < busy.size(); ++i) {
       const cycle::ClassUse& use = run_.result.cycle->uses[i];
       if (use.parts <= 0) continue;
       const double here = busy[i] / use.parts / cycles.value, there = static_cast<double>(use.busy) / use.parts / ran;
       if (std::abs(here - there) <= std::max(here, there) * out_.uncertainty + kBusyTolerance) continue;
-      out_.unlike = fmt::format("{} are busy {:.0f} % of its time, and {:.0f} % of the run's", use.name, 100 * here,
-                                100 * there);
-      return;
+      out_.unlike = fmt::format("its {} is {:.0f} % busy, and the run's {:.0f} %", use.name, 100 * here, 100 * there);
+      return false;
     }
+    return true;
   }
 
-  void lift_all(const Foretelling& foretelling) {
-    for (const WhatIf& what_if : what_ifs_) {
-      state_.name = what_if.name;
-      const RunResult result = simulate(what_if.relaxed);
-      if (!out_.complete) {
-        out_.gains.clear();
-        return;
-      }
-      const Estimate gain = foretelling.gain({&*result.cycle, result.rays_completed}, out_.deviation);
-      out_.gains.push_back({what_if.name, what_if.action, what_if.sets, out_.rays_per_kilocycle * (1 + gain.value),
-                            gain.value, gain.low, gain.high});
-    }
-    std::stable_sort(out_.gains.begin(), out_.gains.end(), [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
-  }
+  /// A relaxed machine's run, and the pilot that it was.
+  struct Relaxed {
+    RunResult result;
+    std::uint64_t paths = 0;
+  };
 
   Config config_;
   const accel::Accel& accel_;
@@ -145,7 +194,8 @@ class Search {
   const RunOptions& options_;
   const SearchObserver& observe_;
   bool stops_ = false;
-  std::vector<WhatIf> what_ifs_;
+  std::vector<WhatIf> lifts_;
+  std::map<std::size_t, Relaxed> relaxed_;  // by index of lifts_
   RunResult base_;
   SearchProgress state_;
   Bottleneck out_;
@@ -153,15 +203,15 @@ class Search {
 
 }  // namespace
 
-std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::size_t simulations) {
-  // Four times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain,
-  // and caches are warm for most of it.
-  constexpr std::uint64_t kFills = 4, kLeastRays = 4000, kMostFills = 4 * kFills;
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
+  // Four times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.
+  constexpr std::uint64_t kFills = 4, kLeastRays = 4000, kMostFills = 8 * kFills;
   const std::uint64_t fill = 2 * fill_rays(slots_of(config));
-  const double rays_each = static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
-  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(10 * kLeastRays, kMostFills * fill);
-  const std::uint64_t wanted = std::clamp(rays / simulations, least, most);
-  const auto pilot = static_cast<std::uint64_t>(std::ceil(static_cast<double>(wanted) / rays_each));
+  const double rays_each =
+      static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
+  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(20 * kLeastRays, kMostFills * fill);
+  const auto pilot =
+      static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
   // A pilot of most of the frame spares little, and the frame leaves no question.
   return 3 * pilot >= 2 * paths ? paths : pilot;
 }

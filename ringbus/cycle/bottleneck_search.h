@@ -24,8 +24,8 @@ struct Gain {
 
 /// The bottleneck of a machine, found by simulating it with each class relaxed in turn.
 struct Bottleneck {
-  bool complete = true;           ///< false: interrupted; there are no gains
-  std::string unlike;             ///< how the pilot differs from the run; empty if it is like it; else there are no gains
+  bool complete = true;  ///< false: interrupted; there are no gains
+  std::string unlike;    ///< how the pilot differs from the run; empty if it is like it; else there are no gains
   double rays_per_kilocycle = 0;  ///< of the machine as configured, over the whole frame
   std::uint64_t paths = 0;        ///< of the pilot
   std::uint64_t rays = 0;         ///< of the pilot, simulated for each class
@@ -47,22 +47,26 @@ using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std:
 
 /// How far a search has come.
 struct SearchProgress {
-  std::string name;             ///< the class that is simulated; empty for the machine as configured
-  std::size_t done = 0, of = 1;  ///< simulations
-  std::uint64_t completed = 0;  ///< rays of this one
-  std::uint64_t rays = 0;       ///< that it will have, about
+  std::string stage, name;       ///< the pilot; the class that is simulated, empty for the machine as configured
+  std::size_t done = 0, of = 1;  ///< simulations of this stage
+  std::uint64_t completed = 0;   ///< rays of this one
+  std::uint64_t rays = 0;        ///< that it will have, about
 };
 using SearchObserver = std::function<void(const SearchProgress&)>;
 
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
-/// frame (foretell.h). A resource that stops is left out of account. The pilots have together as many rays as the run,
-/// or as many each as the machine needs to be seen between fill and drain, if that is more; where that is most of the
-/// frame they are the frame. A pilot that is not like the run is doubled, twice at most. Throws as run_cycle.
+/// frame (foretell.h). A resource that stops is left out of account.
+///
+/// All classes are relaxed for a first, small pilot; those that may be worth naming, at most six, for a second, larger
+/// one. All pilots have together about as many rays as the run, but each has as many as the machine needs to be seen
+/// between fill and drain; where that is most of the frame, the pilot is the frame. The last pilot is compared with the
+/// run. If it is not like it, it is doubled, twice at most; after that nothing is found out. Throws as run_cycle.
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe = {});
 
-/// Paths of a pilot for a frame of `paths` paths with `rays` rays, if there are so many simulations.
-std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::size_t simulations);
+/// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; all of them if that
+/// is most of the frame.
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted);
 
 }  // namespace carousel::ringbus

@@ -19,8 +19,7 @@ std::optional<SteadyState> steady_state(const cycle::CycleResult& result, std::u
   for (std::size_t i = 0; i < result.uses.size(); ++i) {
     const cycle::ClassUse& use = result.uses[i];
     if (2 * static_cast<double>(use.busy) / use.parts < busiest) continue;
-    out.share = std::min(
-        out.share, static_cast<double>(end.busy[i] - begin->busy[i]) / static_cast<double>(use.busy));
+    out.share = std::min(out.share, static_cast<double>(end.busy[i] - begin->busy[i]) / static_cast<double>(use.busy));
   }
   if (out.share < kSameMix * of_rays) return std::nullopt;
   return out;

@@ -28,11 +28,6 @@ bool uses_links(const Config& c) {
 bool has_bundles(const Config& c) {
   return c.bundles.size > 0;
 }
-/// Shapes are fetched before their packet is tested.
-bool fetches_ahead(const Config& c) {
-  return passes_packets(c) && c.memory.fetch == MemoryConfig::Fetch::kPacket &&
-         c.collections.traversal != Traversal::kTreelet;
-}
 constexpr bool every_machine(const Config&) {
   return true;
 }
@@ -67,13 +62,17 @@ constexpr PartClass kPartClasses[] = {
     {"handling", "twice packets.ids_per_cycle", passes_packets, [](Config& c) { c.packets.ids_per_cycle *= 2; }},
     {"collection_storage", "twice collections.capacity", passes_packets,
      [](Config& c) { c.collections.capacity *= 2; }},
-    {"shape_buffer", "twice memory.shape_buffer_kib", every_machine,
-     [](Config& c) { c.memory.shape_buffer_kib *= 2; }},
-    {"fetch_ahead", "twice memory.fetch_ahead", fetches_ahead,
+    {"issue_rule", "collections.partial: ahead",
+     [](const Config& c) { return passes_packets(c) && c.collections.partial != Partial::kAhead; },
+     [](Config& c) { c.collections.partial = Partial::kAhead; }},
+    {"issue_rule", "collections.partial: idle",
+     [](const Config& c) { return passes_packets(c) && c.collections.partial == Partial::kAhead; },
+     [](Config& c) { c.collections.partial = Partial::kIdle; }},
+    {"shape_buffer", "twice memory.shape_buffer_kib", every_machine, [](Config& c) { c.memory.shape_buffer_kib *= 2; }},
+    {"fetch_ahead", "twice memory.fetch_ahead", passes_packets,
      [](Config& c) { c.memory.fetch_ahead = std::max<std::int64_t>(1, 2 * c.memory.fetch_ahead); }},
     {"l2_size", "twice memory.l2_kib", every_machine, [](Config& c) { c.memory.l2_kib *= 2; }},
-    {"l2_port", "twice memory.l2_lines_per_cycle", every_machine,
-     [](Config& c) { c.memory.l2_lines_per_cycle *= 2; }},
+    {"l2_port", "twice memory.l2_lines_per_cycle", every_machine, [](Config& c) { c.memory.l2_lines_per_cycle *= 2; }},
     {"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", every_machine,
      [](Config& c) {
        c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);

@@ -24,8 +24,8 @@ struct ProgressSample {
   friend bool operator==(const ProgressSample&, const ProgressSample&) = default;
 };
 
-/// Lines that a machine's caches hold before it starts, so that a pilot has the frame's share of first misses: a part of
-/// those that they held at the end of the frame's run, drawn line by line.
+/// Lines that a machine's caches hold before it starts, so that a pilot has the frame's share of first misses: a part
+/// of those that they held at the end of the frame's run, drawn line by line.
 struct WarmCaches {
   const std::vector<std::vector<std::uint64_t>>* lines = nullptr;  ///< by cache; null: the caches are cold
   double part = 0;

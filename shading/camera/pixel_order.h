@@ -36,9 +36,7 @@ class PixelOrder {
   PixelSample at(std::uint64_t ordinal) const;
 
  private:
-  std::uint64_t tile_height(std::uint64_t row) const {
-    return std::min<std::uint64_t>(kTile, height_ - row * kTile);
-  }
+  std::uint64_t tile_height(std::uint64_t row) const { return std::min<std::uint64_t>(kTile, height_ - row * kTile); }
 
   std::uint32_t width_, height_, samples_;
 };

@@ -40,9 +40,10 @@ void describe(V& v, EngineConfig& c) {
                   "The number of worker threads. With auto there are as many as the machine has cores.");
   v.field("clock_mhz", c.clock_mhz, IntRange{1, 100'000}, "MHz", "The clock of the simulated machine.");
   v.choice("simd", c.simd, "The instruction set of the test kernels. With auto it is the best that this machine has.");
-  v.field("what_if", c.what_if, "",
-          "The cycle engine finds the bottleneck: it simulates the first rays again, each time with one class of parts "
-          "relaxed.");
+  v.field(
+      "what_if", c.what_if, "",
+      "The cycle engine finds the bottleneck: it simulates a part of the rays again, each time with one class of parts "
+      "relaxed.");
 }
 
 }  // namespace config

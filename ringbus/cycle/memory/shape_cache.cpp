@@ -29,7 +29,8 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, 
 
 void ShapeCache::warm(std::span<const std::uint64_t> lines, double part) {
   for (const std::uint64_t line : lines) {
-    const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull, drawn = (mixed ^ (mixed >> 31)) * 0xbf58476d1ce4e5b9ull;
+    const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull,
+                        drawn = (mixed ^ (mixed >> 31)) * 0xbf58476d1ce4e5b9ull;
     if (static_cast<double>(drawn >> 11) * 0x1p-53 < part) cache_.insert(line);
   }
 }
@@ -69,7 +70,7 @@ void ShapeCache::write(const FetchRequest& request, Cycle now) {
 }
 
 void ShapeCache::look_up(std::uint32_t client, const FetchRequest& request, Cycle now) {
-  if (request.writes) [[unlikely]]
+  if (request.written > 0) [[unlikely]]
     return write(request, now);
   std::uint32_t index;
   if (free_pending_.empty()) {

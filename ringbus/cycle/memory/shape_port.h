@@ -21,21 +21,27 @@ class ShapePort {
         line_bytes_(static_cast<std::uint64_t>(config.line_bytes)) {}
 
   /// Asks for the lines of `span`; `tag` comes back when all are there. Requests are made in order of time.
-  void request(const ShapeSpan& span, std::uint32_t tag, Cycle now) { send(span, tag, false, now); }
-  /// Writes the lines of `span`.
-  void write(const ShapeSpan& span, Cycle now) { send(span, 0, true, now); }
+  void request(const ShapeSpan& span, std::uint32_t tag, Cycle now) {
+    FetchRequest message = lines_of(span);
+    message.tag = tag;
+    requests_.send(wire_.send(message.bytes(), now), message);
+    lines_ += message.lines;
+  }
+  /// Writes `span`, likewise in order of time.
+  void write(const ShapeSpan& span, Cycle now) {
+    FetchRequest message = lines_of(span);
+    message.written = span.bytes;
+    requests_.send(wire_.send(message.bytes(), now), message);
+  }
   /// The time at which the next answer comes.
   Cycle next() const { return answers_.next(); }
   std::uint32_t take() { return answers_.take().tag; }
   std::uint64_t lines() const { return lines_; }  ///< asked for
 
  private:
-  void send(const ShapeSpan& span, std::uint32_t tag, bool writes, Cycle now) {
+  FetchRequest lines_of(const ShapeSpan& span) const {
     const std::uint64_t first = span.address / line_bytes_, last = (span.address + span.bytes - 1) / line_bytes_;
-    const auto lines = static_cast<std::uint32_t>(last - first + 1);
-    const FetchRequest message{first, lines, tag, writes, writes ? span.bytes : 0};
-    requests_.send(wire_.send(message.bytes(), now), message);
-    if (!writes) lines_ += lines;
+    return {first, static_cast<std::uint32_t>(last - first + 1)};
   }
 
   Channel<FetchRequest>& requests_;

@@ -9,11 +9,10 @@ struct FetchRequest {
   std::uint64_t first_line = 0;
   std::uint32_t lines = 0;
   std::uint32_t tag = 0;
-  bool writes = false;
-  std::uint32_t data_bytes = 0;  ///< to be written
+  std::uint32_t written = 0;  ///< bytes that it writes; 0 when it asks
 
-  /// Address 8, number of lines 4, tag 4; and the data.
-  std::uint64_t bytes() const { return 16 + std::uint64_t{data_bytes}; }
+  /// Address 8, number of lines 4, tag 4, and what is written.
+  std::uint64_t bytes() const { return 16 + std::uint64_t{written}; }
 };
 /// Set in the line number of a request to memory that writes the line, which has no answer.
 inline constexpr std::uint64_t kWriteLine = std::uint64_t{1} << 63;

@@ -30,6 +30,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
+      contexts_fetch_(!machine.stays &&
+                      (fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet)),
       partial_(settings.resource.collections.partial),
       memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),

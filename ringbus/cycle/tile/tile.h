@@ -130,6 +130,7 @@ class Tile final : public ResourceAgent {
   bool drained() const;
 
   Context* free_context();
+  std::size_t free_contexts() const;
   bool testers_free() const;
   ShapeBuffer::User user_of(const Context& context) const {
     return static_cast<ShapeBuffer::User>(&context - contexts_.data());
@@ -177,6 +178,7 @@ class Tile final : public ResourceAgent {
   SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, fetch_by_resource_;
+  bool contexts_fetch_;  // packets travel, and wait in the contexts of others for shapes
   Partial partial_;
   Cycle memory_latency_;  // of a miss
   bool starts_later_;  // tests begin, and take units, when dispatch has read the packet; otherwise that is known before

@@ -17,6 +17,11 @@ Tile::Context* Tile::free_context() {
   return nullptr;
 }
 
+std::size_t Tile::free_contexts() const {
+  return static_cast<std::size_t>(std::count_if(contexts_.begin(), contexts_.end(),
+                                                [](const Context& c) { return c.phase == Context::Phase::kFree; }));
+}
+
 /// The shapes of a packet's tests, and what is stored of their instance's transform.
 ShapeNeed Tile::shape_data(const Packet& packet, bool transform) const {
   return {resource_.is_treelet(packet.key) ? memory_.strip(packet.key) : memory_.shapes(packet.key, packet.lanes),

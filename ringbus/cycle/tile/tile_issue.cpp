@@ -1,6 +1,5 @@
 // The start of a packet: from a ready collection to the issue queue, where it waits for its shapes, and to dispatch.
 #include <algorithm>
-#include <cstdlib>
 
 #include "ringbus/cycle/tile/tile.h"
 
@@ -91,14 +90,9 @@ Cycle Tile::partial_may_go(Cycle now) const {
       return nothing_else_to_do(now) ? now : kNever;
     case Partial::kAhead: {
       if (help_.holds()) return kNever;
-      static const int variant = getenv("H3V") ? atoi(getenv("H3V")) : 0;
-      const auto free_now = static_cast<std::size_t>(std::count_if(
-          contexts_.begin(), contexts_.end(), [](const Context& c) { return c.phase == Context::Phase::kFree; }));
-      if ((variant == 1 || variant == 3) && issue_.size() >= free_now) return kNever;
-      if (variant == 2 && free_now == 0) return kNever;
-      if (variant >= 3 &&
-          std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now; }))
-        return kNever;
+      // Where a packet waits in contexts for its shapes, more packets than free contexts only wait in line, and fewer
+      // rays share a wait.
+      if (contexts_fetch_ && issue_.size() >= free_contexts()) return kNever;
       const Cycle ends = work_ahead_ends(now);
       return ends <= now + memory_latency_ ? now : ends - memory_latency_;
     }

@@ -14,9 +14,9 @@ namespace carousel::ringbus::cycle {
 /// The result is the same for any number of threads.
 ///
 /// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `keep_running` is called there before
-/// every 64th window with its first cycle, while no agent runs, so that it may look at all of them; when it answers false
-/// the run ends early. Exceptions of agents pass through.
-/// Returns the last window's first cycle, the time reached.
+/// every 64th window with its first cycle, while no agent runs, so that it may look at all of them; when it answers
+/// false the run ends early. Exceptions of agents pass through. Returns the last window's first cycle, the time
+/// reached.
 ///
 /// Agents that are not polled() must have all their channels connected to `wakeups`, which was made for `parts`.
 Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,

@@ -57,14 +57,12 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
   constexpr std::uint64_t kAddress = 8;
   ByteRow new_rays{"new rays", "ray control", "resources", "load ports and wires of IDs", width};
   ByteRow completed{"completed rays", "resources", "ray control", "ports of completed rays", width};
-  ByteRow requests{"requests", "resources", "L2", "request wires", width};
+  ByteRow requests{"shape requests", "resources", "L2", "request wires", width};
   ByteRow questions{"any-hit questions", "resources", "shading", "wires of questions", width};
   ByteRow answers{"any-hit answers", "shading", "resources", "wires of answers", width};
   ByteRow jobs{"shading jobs", "shading", "resources", "wires of jobs", width};
   ByteRow notes{"notes and results", "resources", "shading", "wires of notes", width};
   ByteRow addresses{"line requests", "L2", "DRAM", "address wires", kAddress * lines_per_cycle};
-  ByteRow written{"spilled lines", "L2", "DRAM", "DRAM's data wires",
-                  static_cast<std::uint64_t>(config.memory.dram_bytes_per_cycle)};
   ByteRow lines{"lines", "DRAM", "L2", "DRAM's data wires",
                 static_cast<std::uint64_t>(config.memory.dram_bytes_per_cycle)};
   for (const auto& channels : machine.channels()) {
@@ -81,9 +79,11 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
     add(addresses, down, kAddress);
     add(lines, up, line);
   });
-  for (const auto& cache : machine.memory().caches()) written.messages += cache->statistics().written;
-  written.bytes = written.messages * line;
-  written.bytes_taken = machine.memory().memory().lines_written() * line;
+  // Entries that do not fit collection storage: to L2 with their requests, and on to DRAM in whole lines.
+  ByteRow spilled{"lines of spilled entries", "L2", "DRAM", "DRAM's data wires", lines.width};
+  for (const auto& cache : machine.memory().caches()) spilled.bytes += cache->statistics().written * line;
+  spilled.bytes_taken = machine.memory().memory().lines_written() * line;
+  spilled.messages = spilled.bytes / line;  // "line requests" has counted these messages
   return {packets(machine, width),
           new_rays,
           completed,
@@ -91,7 +91,7 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
           shape_data(machine, config.memory),
           addresses,
           lines,
-          written,
+          spilled,
           questions,
           answers,
           jobs,

@@ -94,16 +94,16 @@ TEST_F(InterruptedRun, DuringTheSearchForTheBottleneckNothingIsFoundOut) {
 }
 
 TEST_F(InterruptedRun, DuringTheSecondRunOfVerifyEffectsNothingIsProved) {
-  const auto found = interrupt_behind_the_rays(
-      {"verify=effects"}, [](const Json& report) { return !report["shading"].contains("proof"); });
+  const auto found = interrupt_behind_the_rays({"verify=effects"},
+                                               [](const Json& report) { return !report["shading"].contains("proof"); });
   ASSERT_TRUE(found);
   EXPECT_THAT(found->outcome.out, HasSubstr("INCOMPLETE"));
 }
 
 TEST_F(InterruptedRun, DuringTheRunWithoutFaultsNothingIsCompared) {
-  const auto found = interrupt_behind_the_rays({"faults.compare=true", "faults.links.drop=0.001"}, [](const Json& report) {
-    return !report.contains("faults") || !report["faults"].contains("cycles_without");
-  });
+  const auto found = interrupt_behind_the_rays(
+      {"faults.compare=true", "faults.links.drop=0.001"},
+      [](const Json& report) { return !report.contains("faults") || !report["faults"].contains("cycles_without"); });
   ASSERT_TRUE(found);
   EXPECT_THAT(found->outcome.out, HasSubstr("INCOMPLETE"));
 }

@@ -137,12 +137,14 @@ TEST(WhatIf, EveryLiftIsNoticed) {
          c.testers.units[UnitKind::kBundle] = {1, 100, 100};
        }},
       {"collection_storage",
-       [](Config& c) { c.collections.when_full = WhenFull::kReserve, c.collections.capacity = 3000; }},
+       [](Config& c) { c.collections.when_full = WhenFull::kReserve, c.collections.capacity = 0; }},
       {"shape_buffer",
        [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.l2_latency_cycles = 500, c.memory.fetch_ahead = 0; }},
       {"fetch_ahead", [](Config& c) { c.memory.fetch_ahead = 0, c.memory.l2_latency_cycles = 500; }},
       {"l2_size", [](Config& c) { c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
       {"l2_port", [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.line_bytes = 16; }},
+      {"issue_rule",
+       [](Config& c) { c.collections.partial = Partial::kAfter, c.collections.partial_after_cycles = 20000; }},
       {"rings",
        [](Config& c) {
          c.topology.shape = TopologyShape::kMultiRing;
@@ -158,6 +160,8 @@ TEST(WhatIf, EveryLiftIsNoticed) {
     Config config = generous_machine();
     plant.make(config);
     const accel::Accel& accel = scene.accel(config.bvh);
+    if (config.collections.capacity == 0)  // as little as there may be
+      config.collections.capacity = minimum_capacity(config, accel.width, accel.max_depth);
     const std::vector<WhatIf> all = what_ifs(config, accel);
     const auto lift = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == plant.name; });
     ASSERT_NE(lift, all.end()) << plant.name;
@@ -251,8 +255,8 @@ Config random_machine(std::uint32_t seed) {
   return c;
 }
 
-// Every class that gains something by the pilot is relaxed for the whole run: the class named must be best or within 3 %
-// of it, and the gain foretold within its interval. 30 machines with CAROUSEL_EFFORT=15.
+// Every class that gains something by the pilot is relaxed for the whole run: the class named must be best or within 3
+// % of it, and the gain foretold within its interval. 30 machines with CAROUSEL_EFFORT=15.
 TEST(WhatIf, PredictsRandomMachines) {
   constexpr std::uint32_t kPaths = 24000;  // more than of a pilot
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), kPaths, 2);
@@ -269,7 +273,8 @@ TEST(WhatIf, PredictsRandomMachines) {
     double best = 0, named = 0;
     for (const Gain& gain : found.gains) {
       if (gain.high < 0.05) continue;
-      const auto lift = std::find_if(lifts.begin(), lifts.end(), [&](const auto& one) { return one.name == gain.name; });
+      const auto lift =
+          std::find_if(lifts.begin(), lifts.end(), [&](const auto& one) { return one.name == gain.name; });
       const double cycles = static_cast<double>(run_whole(scene, lift->relaxed).cycle->cycles);
       const double real = static_cast<double>(run.cycle->cycles) / cycles - 1;
       best = std::max(best, real);

@@ -1,0 +1,80 @@
+// The verdict of `carousel run`, tried as its user would: on whole frames larger than the pilot, half sky and half
+// ground.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "report/run/report_json.h"
+#include "tests/app/support/program.h"
+#include "tests/support/json_schema_check.h"
+
+namespace carousel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class VerdictRun : public testing::Test {
+ protected:
+  Json run(const std::string& config, const std::vector<std::string>& sets) const {
+    program_.write("a.yaml", config);
+    std::vector<std::string> words{"run", "a.yaml", "--quiet", "--out", "out"};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const Outcome outcome = program_.run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(program_.read("out/report.json"));
+  }
+
+  const Program program_;
+};
+
+// The upper half is sky, which costs shading alone; the ground costs triangle tests. The first paths would name
+// shading.
+constexpr const char* kTerrain =
+    "scene: {builtin: terrain, triangles: 5000}\n"
+    "image: {width: 160, height: 120, samples: 2, max_depth: 2}\n"
+    "engine: {kind: cycle, threads: 1, what_if: false}\n"
+    "topology: {resources: 4}\n"
+    "rays: {slots_per_resource: 32}\n"
+    "testers: {triangle: {units: 1, interval_cycles: 16}, contexts: 4}\n"
+    "memory: {l2_latency_cycles: 8, dram_latency_cycles: 40, shape_buffer_kib: 64}\n"
+    "shading: {workers: 16}\n";
+
+TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
+  const Json report = run(kTerrain, {"engine.what_if=true"});
+  EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
+  const Json& bottleneck = report["bottleneck"];
+  ASSERT_EQ(bottleneck["limits"], "triangle_tests") << bottleneck.dump(1);
+  EXPECT_FALSE(bottleneck["whole_frame"]);
+  EXPECT_LT(bottleneck["rays"], report["rays"]["completed"]);
+  const Json& named = bottleneck["gains"][0];
+  std::vector<std::string> sets;
+  for (const Json& set : named["sets"]) sets.push_back(set);
+  const Json doubled = run(kTerrain, sets);
+  const double real = report["engine"]["cycles"].get<double>() / doubled["engine"]["cycles"].get<double>() - 1;
+  EXPECT_GE(real, named["low"].get<double>() - 0.01);
+  EXPECT_LE(real, named["high"].get<double>() + 0.01);
+  EXPECT_LT(named["low"], named["gain"]);
+  EXPECT_LT(named["gain"], named["high"]);
+}
+
+TEST_F(VerdictRun, TheSteadyRateIsNeverAboveTheBound) {
+  for (const char* shading : {"shading.workers=16", "shading.workers=1"}) {
+    const Json report = run(kTerrain, {shading});
+    ASSERT_TRUE(report["throughput"].contains("steady"));
+    EXPECT_LE(report["throughput"]["steady"]["rays_per_kilocycle"], report["bound"]["rays_per_kilocycle"]);
+    EXPECT_GE(report["throughput"]["steady"]["rays_per_kilocycle"].get<double>(),
+              0.9 * report["throughput"]["whole"]["rays_per_kilocycle"].get<double>());
+  }
+}
+
+// A bus is one medium: one so narrow that nothing else counts is nearly always busy. Before issue 16 its bound was that
+// of all its half-links side by side, 16 times too high with eight resources.
+TEST_F(VerdictRun, TheBoundOfABusIsThatOfOneMedium) {
+  const Json report = run(
+      kTerrain, {"topology.shape=bus", "topology.resources=8", "topology.link.bytes_per_cycle=1", "image.samples=1"});
+  EXPECT_EQ(report["bound"]["classes"][0]["name"], "link_bandwidth");
+  EXPECT_GT(report["bound"]["reached"], 0.7);
+  EXPECT_LE(report["bound"]["reached"], 1.0);
+}
+
+}  // namespace
+}  // namespace carousel
