@@ -9,8 +9,7 @@ The engine is run by the test program machine_facts, which also dumps what the m
 triangles each ray meets, and which rays shading a ray causes.
 
 That the comparison can fail is tried in every run: each of LIES gives the model a part that is a little slower than the
-engine's, and some machine must then disagree. With a box unit of the engine itself a cycle slower (unit_bank.h), every
-machine did.
+engine's, and some machine must then disagree.
 
 Left out, as in the page: any-hit calls, cull planes, bundles, bounding spheres, leaves held in nodes, faults,
 idle_resources_shade, distribute: random, bus, hierarchical, point_to_point, raster, traffic.

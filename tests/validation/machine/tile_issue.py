@@ -41,6 +41,9 @@ class Issues:
                     not any(port.ready(now) for port in self.in_ports))
         if self.partial == "after":
             return False
+        free = sum(context.phase == FREE for context in self.contexts)
+        if self.starts_later and not self.stays and len(self.issue) >= free:
+            return False
         ends = max(self.dispatch_free, now) + sum(self.reading(len(issue.packet.rays)) for issue in self.issue)
         ends = max([ends] + [c.at for c in self.contexts if c.phase == COMPUTING])
         if ends > now + self.memory_latency:
