@@ -45,7 +45,7 @@ TEST(EffectsRun, AProofRunsItAgainWithAllAndSaysWhatWasSpared) {
   const Program program;
   program.write("small.yaml",
                 "scene: {builtin: cornell}\nimage: {width: 16, height: 12, samples: 1}\n"
-                "engine: {kind: cycle, what_if: false}\nverify: effects\n");
+                "engine: {kind: cycle, what_if: false}\nverify: effects\nshading: {workers: 2}\n");
   const Outcome outcome = program.run({"run", "small.yaml"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("all effects  hits the same   image the same"));
