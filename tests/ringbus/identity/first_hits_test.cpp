@@ -302,7 +302,7 @@ TEST(FirstHits, APilotBeginsOnlyItsPaths) {
   const shading::PathSample sample({{128, 64}, {640, 128}});
   const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
   for (const bool rasterised : {false, true}) {
-    shading::PathTracer tracer(scene, config, 60, 1);
+    shading::PathTracer tracer(scene, config, 60, static_cast<std::size_t>(shader_workers(config)));
     if (rasterised) tracer.set_first_hits(&raster);
     tracer.set_sample(&sample);
     run_native(config, accel, 10, tracer, on_threads(1));
