@@ -39,6 +39,12 @@ TestersConfig read_base_testers(const config::Node& root) {
   return testers;
 }
 
+/// A shape may imply a value where the file says nothing: point_to_point has no other visits than those of owners.
+void imply(const config::Node& root, Config& config) {
+  if (config.topology.shape != TopologyShape::kPointToPoint) return;
+  if (root.find("topology")->find("visit") == nullptr) config.topology.visit = Visit::kOwners;
+}
+
 LocatedConfig read_fields(const ConfigText& source, std::span<const std::string> sets,
                           std::vector<ConfigIssue>& issues) {
   config::Node root = config::parse_tree(source.text, source.name, issues);
@@ -47,6 +53,7 @@ LocatedConfig read_fields(const ConfigText& source, std::span<const std::string>
     for (const std::string& set : sets) config::apply_set(root, set, issues);
   LocatedConfig out{{}, KeyPositions(root, source.name)};
   config::Reader(issues, read_base_testers(root)).read(root, out.config);
+  imply(root, out.config);
   return out;
 }
 

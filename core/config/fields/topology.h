@@ -138,7 +138,8 @@ void describe(V& v, TopologyConfig& c) {
   v.field("rings", c.rings, IntRange{1, 64}, "rings", "The number of rings of a multi_ring.");
   v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "The number of groups of a hierarchical network.");
   v.choice("form", c.form, "The form of a central network.");
-  v.choice("visit", c.visit, "A packet is handled by all resources, or only by the owners of its rays.");
+  v.choice("visit", c.visit,
+           "A packet is handled by all resources, or only by the owners of its rays, which point_to_point implies.");
   v.choice("flow", c.flow, "The rule that keeps the links from filling up. The value none needs --force.");
   v.section("link", c.link, "Properties of every link.");
   v.list("overrides", c.overrides, "Resources that differ from the rest.");

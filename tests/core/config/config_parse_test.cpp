@@ -44,6 +44,7 @@ vary: {packets.rays: [8, 16], topology.resources: 1..64*2}
   EXPECT_EQ(config.engine.threads, 3);
   EXPECT_EQ(config.engine.simd, SimdTarget::kAvx2);
   EXPECT_EQ(config.topology.shape, TopologyShape::kPointToPoint);
+  EXPECT_EQ(config.topology.visit, Visit::kOwners) << "point_to_point implies it";
   EXPECT_EQ(config.testers.units[UnitKind::kTriangle].units, 7);
   EXPECT_EQ(config.testers.simd.map, TestersConfig::Simd::Map::kRays);
   ASSERT_EQ(config.topology.overrides.size(), 1u);

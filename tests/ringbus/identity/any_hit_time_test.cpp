@@ -25,6 +25,7 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
   accel::add_instance(blended, accel::add_mesh(blended, mesh));
   Config config;
   config.topology.resources = 1;
+  config.topology.link.bytes_per_cycle = 64;  // the question, of 52 bytes, leaves in a cycle
   config.engine.kind = EngineKind::kCycle;
   accel::Accel accel = accel::build(blended, config.bvh, *make_sequential_executor());
   accel.any_hit = &never;
@@ -58,7 +59,6 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
   EXPECT_EQ(at_once - cycles(), 2u);
 
   config.testers.any_hit = TestersConfig::AnyHit::kShader;
-  config.topology.link.bytes_per_cycle = 64;  // the question, of 52 bytes, leaves in a cycle
   config.shading.cycles_per_any_hit = 0;
   const cycle::Cycle trip = cycles();
   const auto hop = static_cast<cycle::Cycle>(config.topology.link.latency_cycles);
