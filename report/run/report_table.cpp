@@ -92,7 +92,7 @@ void byte_lines(Table& table, const std::vector<Bytes>& rows, std::uint64_t rays
   std::string_view name = "bytes";
   for (const Bytes& row : rows) {
     if (row.bytes == 0) continue;
-    table.line(name, "{:<18} {:>10} {:>10} a ray   from {} to {}, over {}, {} bytes a cycle", row.what,
+    table.line(name, "{:<24} {:>10} {:>10} a ray   from {} to {}, over {}, {} bytes a cycle", row.what,
                bytes_text(row.bytes), fmt::format("{:.1f}", ratio(row.bytes, rays)), row.from, row.to, row.over,
                row.width_bytes_per_cycle);
     name = "";

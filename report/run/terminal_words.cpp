@@ -32,7 +32,7 @@ class Words {
 };
 
 void machine_words(Words& w) {
-  w.line("INCOMPLETE").item("the run was interrupted; what follows is what was done", "incomplete");
+  w.line("INCOMPLETE").item("the work was interrupted; this is the part that was done", "incomplete");
   w.line("scene")
       .item("*: N triangles, N instances", "scene", "the scene, its triangles (each counted once) and its instances")
       .item("N x N pixels, N samples", "config.image", "size of the picture, and paths from each pixel");
@@ -96,7 +96,10 @@ void cycle_words(Words& w) {
       .item("shading N", "resources[].units.box.shading",
             "part of the cycles in which resources helped the shader workers");
   w.line("bottleneck")
-      .item("*", "bottleneck.verdict", "the class of parts that limits the machine, and the gain if it were relaxed");
+      .item("*", "bottleneck.verdict", "the class of parts that limits the machine, and the gain if it were relaxed")
+      .item(
+          "by N of the frame's rays, which foretell its cycles to N", "bottleneck.rays",
+          "rays of the pilot, which the search simulates, and by how much the cycles that it foretells miss the run's");
   w.line("bound").item(
       "N rays per kilocycle by *, reached N", "bound.rays_per_kilocycle",
       "the rate that the tightest class of parts would allow if it were busy all the time, and the part "
@@ -194,7 +197,7 @@ void last_words(Words& w) {
 
 std::vector<TerminalWord> words_of_traffic() {
   Words w(true);
-  w.line("INCOMPLETE").item("the run was interrupted; what follows is what was done", "incomplete");
+  w.line("INCOMPLETE").item("the work was interrupted; this is the part that was done", "incomplete");
   w.line("network").item("cycle: * traffic on N resources, *", "config.topology",
                          "pattern of the packets' destinations, size and shape of the network");
   w.line("packets")

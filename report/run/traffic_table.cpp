@@ -26,7 +26,7 @@ std::string traffic_table(const Report& report) {
   const auto line = [&](std::string_view name, const std::string& text) {
     out += fmt::format("{:<13}{}\n", name, text);
   };
-  if (report.incomplete) line("INCOMPLETE", "the run was interrupted; what follows is what was done");
+  if (report.incomplete) line("INCOMPLETE", "the work was interrupted; this is the part that was done");
   line("network", report.engine.kind + network_text(report.config));
   line("packets", fmt::format("{} created   {} delivered   {} flits each   {} measured, created from cycle {} to {}",
                               grouped(t.packets), grouped(t.delivered), t.flits_per_packet, grouped(t.measured),

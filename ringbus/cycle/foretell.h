@@ -39,11 +39,11 @@ class Foretelling {
   /// The frame's gain if the machine is replaced by that of `relaxed`, as a fraction: cycles over cycles, less 1.
   ///
   /// The interval has two parts. The pilot is cut into blocks of equal numbers of rays. Both machines simulate the same
-  /// rays, so only the difference between the times of one block on both counts, d; neighbouring blocks are of
-  /// neighbouring strata, so the variance is that of their successive differences, (d[i+1] - d[i])^2 / 2, as for any
-  /// systematic sample (K. Wolter, Introduction to Variance Estimation, 2nd edition 2007, section 8.2, v2). Two
-  /// standard errors count. `deviation`, the fraction by which the frame is known to differ from its foretelling, is
-  /// added: if it lies in the class at question, the time that the class limits is off by as much.
+  /// rays, so only the difference between both times from one block's mean completion to the next one's counts, d;
+  /// neighbouring blocks are of neighbouring strata, so the variance is that of their successive differences, (d[i+1] -
+  /// d[i])^2 / 2, as for any systematic sample (K. Wolter, Introduction to Variance Estimation, 2nd edition 2007,
+  /// section 8.2, v2). Two standard errors count. `deviation`, the fraction by which the frame is known to differ from
+  /// its foretelling, is added: if it lies in the class at question, the time that the class limits is off by as much.
   Estimate gain(PilotRun relaxed, double deviation) const;
 
  private:
@@ -53,6 +53,7 @@ class Foretelling {
   };
   bool whole() const { return base_.rays >= frame_rays_; }
   Window window(PilotRun other) const;
+  static double per_ray(const cycle::CycleResult& result, Window window);
   double frame_cycles(PilotRun run, Window window) const;
 
   PilotRun base_;

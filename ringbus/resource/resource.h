@@ -60,6 +60,8 @@ class Resource {
 
   /// Tests the packet's members that live here and writes the answers into it.
   TestOutcome test(Packet& packet);
+  /// The slots of the rays that the last test() tested one by one.
+  std::span<const std::uint32_t> tested() const { return local_.slots; }
   /// An any-hit call of the ray in `slot` has been answered: the ray may complete.
   void release(std::uint32_t slot) { completion_.add_pending(slot, -1); }
   /// Takes back a packet of its own: members that hit join the children's collections.

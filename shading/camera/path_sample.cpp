@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 
 namespace carousel::shading {
@@ -40,28 +39,28 @@ std::uint64_t PathSample::ordinal(std::uint64_t i) const {
 }
 
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw) {
-  constexpr double kEnoughTiles = 128;
-  const std::uint64_t together = getenv("CLUSTER") ? atoi(getenv("CLUSTER")) : 4;
-  const std::uint64_t columns = (order.tile_columns() + together - 1) / together, rows = order.tile_rows(),
-                      samples = order.samples();
-  const double pixels = PixelOrder::kTile * PixelOrder::kTile,
-               wanted = static_cast<double>(paths) / pixels / static_cast<double>(together);
-  const auto each = std::clamp<std::uint64_t>(
-      static_cast<std::uint64_t>(wanted * static_cast<double>(together) / kEnoughTiles), 1, samples);
-  const double tiles = std::max(1.0, wanted / static_cast<double>(each));
-  // Rectangles of about the shape of a tile.
+  constexpr std::uint64_t kEnoughTiles = 128, kPlaces = 16;
   const auto parts = [](double count, std::uint64_t most) {
     return std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::lround(count)), 1, most);
   };
-  const std::uint64_t down = parts(std::sqrt(tiles * static_cast<double>(rows) / static_cast<double>(columns)), rows);
-  const std::uint64_t across = parts(tiles / static_cast<double>(down), columns);
+  const std::uint64_t pixels = PixelOrder::kTile * PixelOrder::kTile, rows = order.tile_rows();
+  const std::uint64_t each = std::clamp<std::uint64_t>(paths / pixels / kEnoughTiles, 1, order.samples());
+  const std::uint64_t tiles = std::max<std::uint64_t>(1, paths / pixels / each);
+  const std::uint64_t in_a_row = order.tile_columns();
+  // A row is cut into places of nearly equal numbers of tiles, which stay together.
+  const std::uint64_t columns = in_a_row / std::clamp<std::uint64_t>(tiles / kPlaces, 1, in_a_row);
+  const double wanted = static_cast<double>(tiles * columns) / static_cast<double>(in_a_row);
+  // Rectangles of about the shape of a square.
+  const double wide = static_cast<double>(in_a_row) / static_cast<double>(rows);
+  const std::uint64_t across = parts(std::sqrt(wanted * wide), columns);
+  const std::uint64_t down = parts(wanted / static_cast<double>(across), rows);
   Uniform uniform(seed, draw);
   std::vector<PathSample::Run> runs;
   std::vector<bool> taken(columns * rows);
   for (std::uint64_t y = 0; y < down; ++y) {
     for (std::uint64_t x = 0; x < across; ++x) {
       std::uint64_t column = 0, row = 0;
-      // A tile that lies in two rectangles may be drawn by both.
+      // A place that lies in two rectangles may be drawn by both.
       for (int tries = 0; tries < 8; ++tries) {
         column = draw_within(columns, x, across, uniform);
         row = draw_within(rows, y, down, uniform);
@@ -69,9 +68,8 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
       }
       if (taken[row * columns + column]) continue;
       taken[row * columns + column] = true;
-      for (std::uint64_t i = column * together;
-           i < std::min<std::uint64_t>(order.tile_columns(), (column + 1) * together); ++i)
-        runs.push_back({order.tile_begin(i, row), each * order.tile_pixels(i, row)});
+      for (std::uint64_t tile = column * in_a_row / columns; tile < (column + 1) * in_a_row / columns; ++tile)
+        runs.push_back({order.tile_begin(tile, row), each * order.tile_pixels(tile, row)});
     }
   }
   return PathSample(runs);

@@ -39,6 +39,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visits_(memory, shapes_, tester_, contexts_.size(),
               static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
+      in_test_(machine.stores[id.value]->slots(), contexts_.size() > 1 && settings.resource.bundles.size == 0),
       spill_memory_(id,
                     static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
@@ -107,8 +108,9 @@ void Tile::run(Cycle end) {
       now = event;
     } else {
       if (now >= end) return;
-      // Not with the bubble rule, under which a packet that waits to be injected must see every credit.
-      if (now < rest && !machine_.flow.bubble() && cut_through(now, true)) continue;
+      // Not with the bubble rule, under which a packet that waits to be injected must see every credit. Where a ray's
+      // test ends in this cycle, it comes first, as in every step.
+      if (now < rest && now < visits_.next() && !machine_.flow.bubble() && cut_through(now, true)) continue;
     }
     step(now);
     rest = next_beside_ring();

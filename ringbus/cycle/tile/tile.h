@@ -12,6 +12,7 @@
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
+#include "ringbus/cycle/tile/rays_in_test.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
@@ -76,8 +77,9 @@ class Tile final : public ResourceAgent {
     IntersectionCounts counts;  // of tests that begin when the shapes are there
     std::uint32_t reads = 0;    // records read for them
     std::uint32_t bundle_passes = 0;
-    AnyHitQuestion question;  // asked when the tests are done
-    HitBatch completed;       // rays handed over then, with the slots they leave
+    AnyHitQuestion question;            // asked when the tests are done
+    std::vector<std::uint32_t> tested;  // slots of its rays, for RaysInTest
+    HitBatch completed;                 // rays handed over then, with the slots they leave
     std::vector<std::uint32_t> freed_slots;
     bool subtree = false;
     bool has_data = false;  // it came from the issue queue with its shapes
@@ -199,6 +201,7 @@ class Tile final : public ResourceAgent {
   bool told_drained_ = false;
   std::uint64_t discarded_ = 0;
   std::size_t questions_out_ = 0;
+  RaysInTest in_test_;
   SpillMemory spill_memory_;
   std::size_t spills_out_ = 0;  // reads under way
   HitBatch done_;               // to be handed over

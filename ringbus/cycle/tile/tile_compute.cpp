@@ -39,6 +39,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
     context.question.slots.push_back(call.slot);
     context.question.times += call.times;
   }
+  in_test_.begin(resource_.tested(), context.tested);
   context.completed.swap(resource_.completed());
   context.freed_slots.swap(resource_.freed_slots());
   context.subtree = resource_.is_treelet(packet.key);
@@ -105,6 +106,7 @@ void Tile::end_test(Context& context, Cycle now) {
   context.phase = Context::Phase::kFree;
   context.subtree = false;
   ask(context, now);
+  in_test_.end(context.tested);
   take_completed(context.completed, context.freed_slots);
   if (packet.owner == id_ && !logic_.travels(packet)) {
     occupy_dispatch(now, packet.members.size());
@@ -135,10 +137,7 @@ void Tile::take_opacities(Cycle now) {
 
 /// Both are empty afterwards.
 void Tile::take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots) {
-  done_.insert(done_.end(), rays.begin(), rays.end());
-  done_slots_.insert(done_slots_.end(), slots.begin(), slots.end());
-  rays.clear();
-  slots.clear();
+  in_test_.hand_over(rays, slots, done_, done_slots_);
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -47,6 +47,7 @@ void Tile::discard_work(Cycle now) {
     }
     context = Context{};
   }
+  in_test_.clear();
   shapes_.ready().clear();  // their packets are gone
   visits_.others().clear();
 }

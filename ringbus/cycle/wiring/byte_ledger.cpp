@@ -83,8 +83,7 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
   ByteRow spilled{"lines of spilled entries", "L2", "DRAM", "DRAM's data wires", lines.width};
   for (const auto& cache : machine.memory().caches()) spilled.bytes += cache->statistics().written * line;
   spilled.bytes_taken = machine.memory().memory().lines_written() * line;
-  spilled.bytes_waiting = spilled.bytes - spilled.bytes_taken;  // "line requests" has counted these messages
-  spilled.messages = spilled.bytes / line;
+  spilled.messages = spilled.bytes / line;  // "line requests" has counted these messages
   return {packets(machine, width),
           new_rays,
           completed,

@@ -62,7 +62,7 @@ TEST_F(VerdictRun, TheSteadyRateIsNeverAboveTheBound) {
     ASSERT_TRUE(report["throughput"].contains("steady"));
     EXPECT_LE(report["throughput"]["steady"]["rays_per_kilocycle"], report["bound"]["rays_per_kilocycle"]);
     EXPECT_GE(report["throughput"]["steady"]["rays_per_kilocycle"].get<double>(),
-              0.95 * report["throughput"]["whole"]["rays_per_kilocycle"].get<double>());
+              0.9 * report["throughput"]["whole"]["rays_per_kilocycle"].get<double>());
   }
 }
 

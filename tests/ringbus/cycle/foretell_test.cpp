@@ -24,7 +24,8 @@ CycleResult machine(std::uint64_t rays, double fill, const Each& each, double dr
   for (std::uint64_t i = 0; i < rays; ++i) {
     at += i + in_flight < rays ? each(i) : drain / static_cast<double>(in_flight);
     if (i % 8 == 0) out.progress.push_back({static_cast<cycle::Cycle>(at), i + 1, {static_cast<cycle::Cycle>(at)}});
-    if (i + in_flight + 1 == rays) out.all_begun = {static_cast<cycle::Cycle>(at), i + 1, {}};
+    if (i + in_flight + 1 == rays)
+      out.all_begun = {static_cast<cycle::Cycle>(at), i + 1, {static_cast<cycle::Cycle>(at)}};
   }
   out.cycles = static_cast<cycle::Cycle>(at);
   out.uses = {{"shading", 1, out.cycles}};
@@ -114,8 +115,11 @@ TEST(Foretell, AKnownDeviationWidensTheInterval) {
 }
 
 TEST(SteadyState, LeavesFillAndDrainOut) {
-  const CycleResult run = machine(
+  CycleResult run = machine(
       10000, 5000, [](std::uint64_t) { return 10.0; }, 30000, 500);
+  for (auto& sample : run.progress) sample.busy = {8 * sample.completed};  // the same work for each ray
+  run.all_begun->busy = {8 * run.all_begun->completed};
+  run.uses[0].busy = 80000;
   const auto steady = steady_state(run, 10000, 400);
   ASSERT_TRUE(steady);
   EXPECT_NEAR(10000 * steady->share / static_cast<double>(steady->cycles), 0.1, 0.003);

@@ -57,6 +57,18 @@ def way_back(latency):
     return 1 if latency < 2 else latency - way_there(latency)
 
 
+class SideWire:
+    """A wire beside the links, as wide as one."""
+
+    def __init__(self, clock, config, latency):
+        self.channel, self.latency = Channel(clock), latency
+        self.width, self.free_at = config["topology"]["link"]["bytes_per_cycle"], 0
+
+    def send(self, size, now, thing):
+        self.free_at = max(self.free_at, now) + ceil_div(size, self.width)
+        self.channel.send(self.free_at - 1 + self.latency, thing)
+
+
 class Trace:
     """The steps of all parts, to be compared with the engine's."""
 

@@ -1,5 +1,7 @@
 """Shape data: a resource's buffer, the shared caches, the memory behind them ("Memory")."""
-from .clock import Channel, ceil_div, way_back, way_there
+from .clock import Channel, SideWire, ceil_div, way_back, way_there
+REQUEST = 16  # bytes
+
 
 class LineCache:
     def __init__(self, lines, ways):
@@ -26,14 +28,15 @@ class ShapePort:
     """A resource's end of the wires to its cache."""
 
     def __init__(self, config, clock):
-        self.requests, self.answers = Channel(clock), Channel(clock)
-        self.latency = way_there(config["memory"]["l2_latency_cycles"])
+        self.wire = SideWire(clock, config, way_there(config["memory"]["l2_latency_cycles"]))
+        self.requests, self.answers = self.wire.channel, Channel(clock)
         self.line = config["memory"]["line_bytes"]
 
     def request(self, span, tag, now):
+        """Reads the lines of `span`; `tag` comes back. Without a tag it writes them."""
         address, size = span
         first, last = address // self.line, (address + size - 1) // self.line
-        self.requests.send(now + self.latency, (first, last - first + 1, tag))
+        self.wire.send(REQUEST + (size if tag is None else 0), now, (first, last - first + 1, tag))
 
 
 class Request:
@@ -67,18 +70,22 @@ class Cache:
             self.ports[request.client].answers.send(now + self.back, request.tag)
 
     def look_up(self, request, asked, now):
-        first, lines, _ = asked
+        first, lines, tag = asked
         for line in range(first, first + lines):
             self.looked_up = max(self.looked_up, now * self.lines_a_cycle) + 1
             request.ready = ceil_div(self.looked_up, self.lines_a_cycle)
-            if self.lines.touch(line):
+            there = self.lines.touch(line)
+            if tag is None:  # a write, which goes through
+                self.to_memory.send(request.ready + self.memory_latency, None)
+            if there or tag is None:
                 continue
             request.missing += 1
             if line not in self.waiting:
                 self.waiting[line] = []
                 self.to_memory.send(request.ready + self.memory_latency, line)
             self.waiting[line].append(request)
-        self.complete_if_all_there(request)
+        if tag is not None:
+            self.complete_if_all_there(request)
 
     def fill(self, line, now):
         self.lines.insert(line)
@@ -107,4 +114,6 @@ class Memory:
         for cache in self.caches:
             while cache.to_memory.ready(now):
                 self.moved = max(self.moved, now * self.width) + self.line
-                cache.from_memory.send(ceil_div(self.moved, self.width) + self.back, cache.to_memory.take())
+                line = cache.to_memory.take()
+                if line is not None:  # a line that is written gets no answer
+                    cache.from_memory.send(ceil_div(self.moved, self.width) + self.back, line)

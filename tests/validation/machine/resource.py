@@ -28,24 +28,25 @@ class Resource:
             return self.number
         return ((self.nodes[node].key * 0x9e3779b97f4a7c15 & (1 << 64) - 1) >> 33) % self.resources
 
-    def admit(self, rays):
+    def admit(self, rays, now):
         for first in range(0, len(rays), self.block):
-            self.collections.add(0, 0, 0.0, rays[first:first + self.block])
+            self.collections.add(0, 0, 0.0, rays[first:first + self.block], now)
         self.storage.held += len(rays)
 
-    def offer(self, partial, packet):
+    def offer(self, partial, packet, now):
         """Fills `packet` from the next collection: among the ready ones, or with `partial` among all."""
         t = self.traversal
         if self.rest is None:
             c = self.collections.best(partial)
             if c is None:
                 return NOTHING
-            if not self.storage.fits(t.blocks_needed(c.node, min(len(c.rays), self.block)), 1):
+            if not self.storage.fits(t.blocks_needed(c.node, min(len(c.rays), self.block)),
+                                     self.collections.front_blocks(c)):
                 if self.in_flight > 0:
                     return STORAGE
                 c = self.collections.deepest()
             node, depth, entry = c.node, c.depth, c.entry
-            rays = self.collections.take(c)
+            rays = self.collections.take(c, now)
             packets = t.tests_at(node) if self.home_of(node) == self.number else 1
             self.rest = (rays, node, depth, entry, 0, packets)
         elif self.in_flight > 0 and not self.storage.fits(t.blocks_needed(self.rest[1], 0), 0):
@@ -74,13 +75,13 @@ class Resource:
     def test(self, packet, members):
         return self.traversal.test(packet, members, self.completed.append)
 
-    def retire(self, packet):
+    def retire(self, packet, now):
         before = self.collections.memberships()
         if not packet.memberships:
-            self.traversal.retire(packet, self.collections)
+            self.traversal.retire(packet, self.collections, now)
         self.storage.retire(packet.blocks, len(packet.rays), self.collections.memberships() - before)
         self.in_flight -= 1
 
-    def join(self, packet):
-        self.collections.add(packet.node, packet.depth, packet.entry, packet.rays)
+    def join(self, packet, now):
+        self.collections.add(packet.node, packet.depth, packet.entry, packet.rays, now)
         packet.rays, packet.masks, packet.next = [], [], []

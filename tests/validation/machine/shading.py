@@ -126,14 +126,14 @@ class Shading:
         self.controls, self.node = controls, config["topology"]["resources"]
         self.control = RayControl(config, machine.initial_tests)
         self.shade, self.effect = s["cycles_per_shade"], s["cycles_per_effect"]
-        self.latency, self.record = link["latency_cycles"], ceil_div(64, link["bytes_per_cycle"])
+        self.record = ceil_div(64, link["bytes_per_cycle"])
         self.slots = config["rays"]["slots_per_resource"] * self.node
         self.group = config["packets"]["rays"]
         self.queues = Queues(config)
         self.idle = list(range(s["workers"] - 1, -1, -1))  # the next one last
         self.jobs = []  # (end, worker, ray or nothing, names of the camera rays that it makes)
         self.gathered = []
-        self.load_free, self.last_sent = [0] * self.node, [0] * self.node
+        self.load_free = [0] * self.node
         self.made = self.making = self.outstanding = 0
         self.shaded = {}
         self.clock.wake(0)
@@ -216,5 +216,4 @@ class Shading:
                     self.load_free[ray.owner] = max(self.load_free[ray.owner], now) + self.record
                     loaded = max(loaded, self.load_free[ray.owner])
                 self.trace.note(now, self.node, "place", 0, len(rays))
-                self.last_sent[r] = max(self.last_sent[r], loaded + self.latency)
-                self.controls[r].new_rays.send(self.last_sent[r], rays)
+                self.controls[r].ids.send(4 * len(rays), loaded, rays)

@@ -124,6 +124,9 @@ class ShapeBuffer:
         given_up = False
         while self.port.answers.ready(now):
             entry = self.port.answers.take()
+            if not isinstance(entry, Entry):  # a spilled block of a packet in the issue queue
+                entry.spilled -= 1
+                continue
             entry.here = True
             for user in entry.waits:
                 user.missing -= 1

@@ -13,36 +13,45 @@ def draw(seed, index):
     units = lambda: {"units": pick([1, 2, 3, 8]), "interval_cycles": pick([1, 1, 2, 3]), "latency_cycles": pick([1, 4, 9])}
     rays = pick([1, 2, 5, 8, 16])
     flow = pick(["credits", "credits", "bubble"])
-    traversal = pick(["spread", "spread", "ordered"])
+    traversal = pick(["spread", "spread", "ordered", "treelet"])
     home = pick(["issuer", "issuer", "issuer", "hash", "local"])
     full = "spill" if home == "hash" else pick(["reserve", "spill"])
-    fetch = pick(["packet", "resource"])
-    return {
+    fetch = pick(["packet", "resource", "resource"])
+    local = resources == 1 or home == "local"
+    config = {
         "schema_version": 1,
         "scene": scene,
         "image": {"width": side, "height": side, "samples": 1, "max_depth": pick([1, 2, 3]), "seed": r.randrange(1000)},
         "engine": {"kind": "cycle", "what_if": False},
-        "bvh": {"width": pick([2, 4, 8]), "leaf_triangles": pick([1, 4, 8])},
+        "bvh": {"width": pick([2, 4, 8]), "leaf_triangles": pick([1, 4, 8]),
+                "treelet_triangles": pick([8, 30, 2048])},
         "topology": {"resources": resources, "shape": pick(["ring", "ring", "bidirectional", "multi_ring"]),
-                     "rings": pick([2, 3]), "visit": pick(["all", "owners"]), "flow": flow,
+                     "rings": min(resources, pick([2, 3])), "visit": pick(["all", "owners"]), "flow": flow,
                      "link": {"depth": pick([2, 3, 8] if flow == "bubble" else [1, 2, 4, 16]), "latency_cycles": pick([1, 2, 4, 9]),
                               "bytes_per_cycle": pick([4, 16, 32, 64, 256])}},
         "packets": {"rays": rays, "ids_per_cycle": pick([1, 3, 16]),
-                    "shapes": pick(["strip", "strip", "single"]) if traversal == "spread" else "strip",
-                    "carry": "reference" if fetch == "resource" else pick(["reference", "data"])},
+                    "shapes": pick(["strip", "strip", "single"]) if traversal != "ordered" else "strip",
+                    "carry": "reference" if fetch == "resource" else pick(["reference", "data"]) if local else "data"},
         "collections": {"ready": pick([1, rays, 8, 32]), "traversal": traversal,
                         "policy": pick(["nearest", "fullest", "oldest", "newest", "deepest"]),
-                        "select": pick(["full_first", "strict"]), "home": home, "when_full": full,
-                        "capacity": pick([rays * 40, rays * 300, 65536])},
+                        "partial": pick(["idle", "ahead", "ahead", "after"]),
+                        "partial_after_cycles": pick([1, 20, 300]), "select": pick(["full_first", "strict"]), "home": home, "when_full": full,
+                        "capacity": pick([1, rays * 3, rays * 20, 65536] if full == "spill" else [rays * 140, rays * 400, 65536])},
         "rays": {"slots_per_resource": pick([8, 16, 64, 256]), "placement": pick(["balanced", "round_robin"]),
                  "reads_per_cycle": pick([0, 0, 1, 3])},
         "accuracy": {"transformed_ray": pick(["recompute", "store"])},
         "testers": {"box": units(), "triangle": units(), "contexts": pick([1, 2, 4])},
-        "memory": {"l2_kib": pick([1, 3, 16, 1024]), "ways": pick([1, 2, 8]), "line_bytes": pick([32, 64, 256]),
+        "memory": {"l2_kib": pick([2, 3, 16, 1024]), "ways": pick([1, 2, 8]), "line_bytes": pick([32, 64, 256]),
                    "l2_lines_per_cycle": pick([1, 1, 2, 4]),
                    "shared_by": pick([1, 2, 4]), "l2_latency_cycles": pick([1, 2, 3, 30]),
                    "dram_latency_cycles": pick([1, 3, 200]), "dram_bytes_per_cycle": pick([1, 16, 64, 512]),
-                   "fetch": fetch, "fetch_ahead": pick([0, 2, 5]), "shape_buffer_kib": pick([1, 3, 4, 256])},
+                   "fetch": fetch, "fetch_ahead": pick([0, 2, 5]), "shape_buffer_kib": pick([1, 2, 4, 256])},
         "shading": {"workers": pick([1, 2, 5]), "cycles_per_shade": pick([0, 1, 7, 20]),
                     "cycles_per_effect": pick([0, 5]), "distribute": pick(["fifo_fill", "load", "round_robin"])},
     }
+    if r.random() < 0.15:  # independent resources read few of these keys
+        config["topology"]["shape"] = "independent"
+        config["packets"].update(shapes="strip", carry="reference")
+        config["collections"].update(traversal="spread", home="issuer")
+        config["memory"]["fetch"] = "resource"
+    return config

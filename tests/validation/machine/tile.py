@@ -1,30 +1,14 @@
 """A resource with a clock ("A resource in a cycle")."""
 from collections import deque
 
-from .clock import Channel, ceil_div
+from .clock import Channel, SideWire, ceil_div
 from .network import Packet, PacketSize, Token
-from .resource import PACKET, Resource
-from .shape_buffer import ShapeBuffer, User
+from .resource import Resource
+from .shape_buffer import ShapeBuffer
 from .testers import Testers
-from .walk import Visit, Visits
-
-FREE, STARTING, FETCHING, COMPUTING, WALKING = "free", "starting", "fetching", "computing", "walking"
-
-
-class Context:
-    """A packet in test."""
-
-    def __init__(self):
-        self.phase, self.packet, self.at, self.tests, self.reads = FREE, None, 0, None, 0
-        self.completed, self.visit = [], None
-        self.user, self.has_data = User(self), False
-
-
-class Issue:
-    """A packet of the resource's own that waits for its shapes and for dispatch."""
-
-    def __init__(self, packet):
-        self.packet, self.user = packet, None
+from .tile_issue import Issues
+from .tile_tests import STARTING, Context, Tests
+from .walk import Visits
 
 
 class Control:
@@ -34,7 +18,8 @@ class Control:
         link = config["topology"]["link"]
         self.latency = link["latency_cycles"]
         self.record = ceil_div(64, link["bytes_per_cycle"])
-        self.new_rays, self.completed = Channel(clock), Channel(clock)
+        self.ids = SideWire(clock, config, self.latency)
+        self.new_rays, self.completed = self.ids.channel, Channel(clock)
         self.free_at = 0
 
     def complete(self, rays, now):
@@ -42,7 +27,7 @@ class Control:
         self.completed.send(self.free_at + self.latency, rays)
 
 
-class Tile:
+class Tile(Issues, Tests):
     def __init__(self, number, machine, ports, shapes, control):
         config = machine.config
         self.number, self.machine, self.clock, self.trace = number, machine, machine.clock, machine.trace
@@ -57,6 +42,9 @@ class Tile:
         self.ids_per_cycle = config["packets"]["ids_per_cycle"]
         self.issue_places = config["memory"]["fetch_ahead"] + 1
         self.fetch_by_resource = config["memory"]["fetch"] == "resource"
+        self.starts_later = self.fetch_by_resource or config["collections"]["traversal"] == "treelet"
+        self.partial = config["collections"]["partial"]
+        self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
         self.bubble = config["topology"]["flow"] == "bubble"
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
         self.contexts = [Context() for _ in range(config["testers"]["contexts"])]
@@ -69,13 +57,14 @@ class Tile:
         self.issue = deque()
         self.admission = deque()
         self.dispatch_free = self.next_in = 0
-        self.done = []
+        self.done, self.late = [], []
 
     # ---- a cycle
 
     def step(self, now):
         for out in self.out_ports:
             out.take_credits(now)
+        self.resource.collections.ripen(now)
         self.shapes.take_answers(now)
         self.serve(now)
         for context in self.contexts:
@@ -96,9 +85,14 @@ class Tile:
             self.trace.note(now, self.number, "complete", 0, len(self.done))
             self.control.complete(self.done, now)
             self.done = []
+        if (ripe := self.resource.collections.next_ripe()) is not None:
+            self.clock.wake(ripe)
+
+    def reading(self, ids):
+        return max(1, ceil_div(ids, self.ids_per_cycle))
 
     def dispatch(self, now, ids):
-        self.dispatch_free = max(self.dispatch_free, now) + max(1, ceil_div(ids, self.ids_per_cycle))
+        self.dispatch_free = max(self.dispatch_free, now) + self.reading(ids)
         self.clock.wake(self.dispatch_free)
 
     def travels(self, packet):
@@ -113,13 +107,14 @@ class Tile:
             count = min(len(rays), self.resource.storage.admissible())
             if count == 0:
                 break
-            self.resource.admit(rays[:count])
+            self.resource.admit(rays[:count], now)
             self.trace.note(now, self.number, "new_rays", 0, count)
             moved = True
             if count < len(rays):
                 self.admission[0] = rays[count:]
             else:
                 self.admission.popleft()
+        self.write_spilled(now)
         return moved
 
     # ---- packets on their way
@@ -178,7 +173,8 @@ class Tile:
             self.begin_test(context, packet, self.dispatch_free, False)
             return True
         if packet.memberships and packet.home == self.number:
-            self.resource.join(packet)
+            self.resource.join(packet, now)
+            self.write_spilled(now)
         self.depart(packet, self.dispatch_free)
         return True
 
@@ -190,132 +186,6 @@ class Tile:
 
     def retire(self, packet, now):
         self.trace.note(now, self.number, "retire", packet.number, len(packet.rays))
-        self.resource.retire(packet)
+        self.resource.retire(packet, now)
         self.free[packet.direction].append(packet)
-
-    # ---- packets of its own
-
-    def next_free(self):
-        for i in range(len(self.free)):
-            d = (self.turn + i) % len(self.free)
-            if self.free[d]:
-                return d
-        return None
-
-    def fill_issue(self, now):
-        moved = False
-        while len(self.issue) < self.issue_places and not self.resource.idle():
-            nothing_else = (not self.issue and self.dispatch_free <= now and
-                            all(c.phase == FREE for c in self.contexts) and
-                            not any(port.ready(now) for port in self.in_ports))
-            d = self.next_free()
-            if d is None:
-                return moved
-            packet = self.free[d][-1]
-            if self.resource.offer(nothing_else, packet) != PACKET:
-                return moved
-            self.free[d].pop()
-            self.turn = (d + 1) % len(self.free)
-            moved = True
-            issue = Issue(packet)
-            brings = not self.fetch_by_resource and not self.resource.traversal.is_treelet(packet.node)
-            if not packet.memberships and (brings or self.number in packet.owners):
-                issue.user = User(issue)
-                self.shapes.take_ahead(issue.user, self.shape_data(packet, True), now)
-            self.issue.append(issue)
-        return moved
-
-    def handle_issue(self, now):
-        if not self.issue or (self.issue[0].user is not None and not self.issue[0].user.here()):
-            return False
-        packet, user = self.issue[0].packet, self.issue[0].user
-        travels = self.travels(packet)
-        if travels:
-            out = self.out_ports[packet.direction]
-            if not out.has_place() or (self.bubble and out.spare_places() < 2):
-                return False
-        tested = not packet.memberships and self.number in packet.owners
-        context = self.free_context() if tested else None
-        if tested and context is None:
-            return False
-        self.issue.popleft()
-        if user is not None:
-            self.shapes.leave_queue()
-        self.trace.note(now, self.number, "issue", packet.number, len(packet.rays))
-        self.dispatch(now, len(packet.rays))
-        if tested:
-            if travels:
-                self.out_ports[packet.direction].reserved += 1
-            if user is not None:
-                self.shapes.hand_over(user, context.user)
-            self.begin_test(context, packet, self.dispatch_free, user is not None)
-        else:
-            if user is not None:
-                self.shapes.release(user, now)
-            self.depart(packet, self.dispatch_free)
-        return True
-
-    # ---- tests
-
-    def free_context(self):
-        return next((c for c in self.contexts if c.phase == FREE), None)
-
-    def begin_test(self, context, packet, at, has_data):
-        members = self.resource.local_members(packet)
-        context.packet, context.reads, context.has_data = packet, len(members), has_data
-        context.tests = self.resource.test(packet, members)
-        context.completed, self.resource.completed[:] = list(self.resource.completed), []
-        context.phase, context.at = STARTING, at
-        self.clock.wake(at)
-
-    def start(self, context, now):
-        """The dispatch stage has read the packet."""
-        if self.resource.traversal.is_treelet(context.packet.node):
-            context.phase, context.visit = WALKING, Visit(context.tests)
-            self.visits.begin(context.visit, now)
-            if context.has_data:
-                self.shapes.release(context.user, now)
-        elif (context.has_data or not self.fetch_by_resource or
-              self.shapes.take(context.user, self.shape_data(context.packet, context.tests.transforms > 0), now)):
-            self.compute(context, now)
-        else:
-            context.phase = FETCHING
-
-    def compute(self, context, now):
-        context.phase, context.at = COMPUTING, self.testers.strip(now, context.tests, context.reads)
-        self.clock.wake(context.at)
-
-    def serve(self, now):
-        """Rays in treelets go on, then packets whose data has come take units."""
-        ready = []
-        self.visits.run(now, ready)
-        for context in ready:
-            self.compute(context, now)
-
-    def finish_tests(self, now):
-        self.serve(now)
-        moved = False
-        for context in self.contexts:
-            ended = (context.visit.left == 0 if context.phase == WALKING
-                     else context.phase == COMPUTING and context.at <= now)
-            if not ended:
-                continue
-            moved = True
-            packet = context.packet
-            self.trace.note(now, self.number, "tested", packet.number, len(packet.rays))
-            if context.phase == COMPUTING:
-                self.shapes.release(context.user, now)
-            context.phase = FREE
-            self.done.extend(context.completed)
-            if packet.owner == self.number and not self.travels(packet):
-                self.dispatch(now, len(packet.rays))
-                self.retire(packet, now)
-            else:
-                self.out_ports[packet.direction].reserved -= 1
-                self.depart(packet, now)
-        return moved
-
-    def shape_data(self, packet, transform):
-        """What the tests of a packet need: its shapes, and what is stored of their instance's transform."""
-        node = self.nodes[packet.node]
-        return [node.shapes_of(packet.lane)] + ([node.transform] if transform else [])
+        self.write_spilled(now)

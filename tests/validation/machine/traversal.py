@@ -103,13 +103,13 @@ class Spread:
                 complete(packet.rays[i])
         return ways
 
-    def retire(self, packet, collections):
+    def retire(self, packet, collections, now):
         node = self.nodes[packet.node]
         if self.is_treelet(packet.node):
             return
         for lane, child in enumerate(node.children):
             rays = [ray for ray, mask in zip(packet.rays, packet.masks) if lane in mask]
-            collections.add(child, packet.depth + 1, packet.nearest[lane], rays)
+            collections.add(child, packet.depth + 1, packet.nearest[lane], rays, now)
 
 
 class Ordered(Spread):
@@ -153,8 +153,8 @@ class Ordered(Spread):
         ray.stack.clear()
         return None
 
-    def retire(self, packet, collections):
+    def retire(self, packet, collections, now):
         for ray, following in zip(packet.rays, packet.next):
             if following is not None:
                 node, entry, depth = following
-                collections.add(node, depth, entry, [ray])
+                collections.add(node, depth, entry, [ray], now)

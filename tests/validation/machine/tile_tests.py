@@ -1,0 +1,91 @@
+"""The tests of a packet at a resource ("Shapes", "Finish tests")."""
+from .shape_buffer import User
+from .walk import Visit
+
+FREE, STARTING, FETCHING, COMPUTING, WALKING = "free", "starting", "fetching", "computing", "walking"
+
+
+class Context:
+    """A packet in test."""
+
+    def __init__(self):
+        self.phase, self.packet, self.at, self.tests, self.reads = FREE, None, 0, None, 0
+        self.completed, self.visit = [], None
+        self.user, self.has_data = User(self), False
+
+
+class Tests:
+    """The part of a Tile that tests."""
+
+    def free_context(self):
+        return next((c for c in self.contexts if c.phase == FREE), None)
+
+    def begin_test(self, context, packet, at, has_data):
+        members = self.resource.local_members(packet)
+        context.packet, context.reads, context.has_data = packet, len(members), has_data
+        context.rays = [packet.rays[i] for i in members]
+        context.tests = self.resource.test(packet, members)
+        context.completed, self.resource.completed[:] = list(self.resource.completed), []
+        if not self.starts_later:
+            return self.compute(context, at)
+        context.phase, context.at = STARTING, at
+        self.clock.wake(at)
+
+    def start(self, context, now):
+        """The dispatch stage has read the packet."""
+        if self.resource.traversal.is_treelet(context.packet.node):
+            context.phase, context.visit = WALKING, Visit(context.tests)
+            self.visits.begin(context.visit, now)
+            if context.has_data:
+                self.shapes.release(context.user, now)
+        elif (context.has_data or not self.fetch_by_resource or
+              self.shapes.take(context.user, self.shape_data(context.packet, context.tests.transforms > 0), now)):
+            self.compute(context, now)
+        else:
+            context.phase = FETCHING
+
+    def compute(self, context, now):
+        context.phase, context.at = COMPUTING, self.testers.strip(now, context.tests, context.reads)
+        self.clock.wake(context.at)
+
+    def serve(self, now):
+        """Rays in treelets go on, then packets whose data has come take units."""
+        ready = []
+        self.visits.run(now, ready)
+        for context in ready:
+            self.compute(context, now)
+
+    def finish_tests(self, now):
+        self.serve(now)
+        moved = False
+        for context in self.contexts:
+            ended = (context.visit.left == 0 if context.phase == WALKING
+                     else context.phase == COMPUTING and context.at <= now)
+            if not ended:
+                continue
+            moved = True
+            packet = context.packet
+            self.trace.note(now, self.number, "tested", packet.number, len(packet.rays))
+            if context.phase == COMPUTING:
+                self.shapes.release(context.user, now)
+            context.phase = FREE
+            self.hand_over(context.completed)
+            if packet.owner == self.number and not self.travels(packet):
+                self.dispatch(now, len(packet.rays))
+                self.retire(packet, now)
+            else:
+                self.out_ports[packet.direction].reserved -= 1
+                self.depart(packet, now)
+        return moved
+
+    def hand_over(self, completed):
+        """Those that another visit still tests are kept back."""
+        tested = {ray for context in self.contexts if context.phase != FREE for ray in context.rays}
+        completed = self.late + completed
+        self.done.extend(ray for ray in completed if ray not in tested)
+        self.late = [ray for ray in completed if ray in tested]
+
+    def shape_data(self, packet, transform):
+        """What the tests of a packet need: its shapes, and what is stored of their instance's transform."""
+        node = self.nodes[packet.node]
+        return [node.shapes_of(packet.lane)] + ([node.transform] if transform else [])
