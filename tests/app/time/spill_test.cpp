@@ -64,12 +64,13 @@ TEST_F(Spill, APacketWaitsForItsEntries) {
   EXPECT_EQ(near["collections"]["spilled"], near["rays"]["completed"]);
   EXPECT_EQ(near["collections"]["spill_bytes_read"], 16 * near["rays"]["completed"].get<std::uint64_t>());
   EXPECT_EQ(near["collections"]["spill_bytes_written"], near["collections"]["spill_bytes_read"]);
-  // The second ray finds the shapes in the cache, and waits for its own entries alone.
   const std::uint64_t rays = near["rays"]["completed"];
   ASSERT_EQ(rays, 2u);
   const std::uint64_t least = 2000 * rays;
   EXPECT_GE(cycles(far) - cycles(near), least);
-  EXPECT_LT(cycles(with(65536, 3000)), cycles(far) - 1000);
+  // The first ray's entries come beside its shapes. The second ray finds its shapes in the buffer, and its entries,
+  // which take the places of the first, in the L2 of 30 cycles and one of its port.
+  EXPECT_GE(cycles(far), cycles(with(65536, 3000)) + 31);
 }
 
 }  // namespace
