@@ -87,7 +87,7 @@ void link_line(Table& table, const std::vector<Link>& links) {
              cycles ? "cycles stalled" : "refused");
 }
 
-/// Who sends how much to whom, and over what. Kinds of message of which there were none are left out.
+/// A line for each kind of message: its bytes, sender, receiver and wire. Kinds that were not sent are left out.
 void byte_lines(Table& table, const std::vector<Bytes>& rows, std::uint64_t rays) {
   std::string_view name = "bytes";
   for (const Bytes& row : rows) {

@@ -209,7 +209,7 @@ void ShapeBuffer::take_answers(Cycle now) {
     }
     entry.first_wait = entry.last_wait = kNone;
     if (entry.holders > 0) continue;
-    // Those who asked for it have given it up meanwhile.
+    // The users that asked for it have given it up meanwhile.
     ++entry.holders;
     let_go(static_cast<std::uint32_t>(&entry - entries_.data()));
     idle = true;
