@@ -120,9 +120,9 @@ TEST(CacheSize, SetsNeedNoPowerOfTwo) {
 TEST(CacheSize, EveryKibibyteOfTheL2Counts) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 400, 1);
   const auto misses = [&](const std::string& kib) {
+    const Outcome outcome = run_text(scene, kStarved, {"memory.l2_kib=" + kib});
     std::uint64_t sum = 0;
-    for (const CacheCounts& cache : run_text(scene, kStarved, {"memory.l2_kib=" + kib}).result.cycle->caches)
-      sum += cache.misses;
+    for (const CacheCounts& cache : outcome.result.cycle->caches) sum += cache.misses;
     return sum;
   };
   const std::uint64_t four = misses("4"), six = misses("6"), seven = misses("7");
