@@ -106,7 +106,7 @@ void prove_effects(const ConfigArguments& arguments, const Prepared& by_demand, 
   report::EffectsProof proof;
   proof.same_hits = job.hits_digest() == report.digest.hits;
   proof.same_image = job.image_digest() == report.digest.image;
-  const shading::PathSample sample = job.draw(std::min(kTimedPaths, job.first_rays()));
+  const shading::PathSample sample = job.draw(std::min(kTimedPaths, job.first_rays()), 1);
   proof.paths = sample.count();
   proof.by_demand = use_of(by_demand, sample, report.engine.cycles);
   proof.all = use_of(p, sample, result.cycle ? std::optional(result.cycle->cycles) : std::nullopt);
