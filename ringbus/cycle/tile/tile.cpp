@@ -72,8 +72,15 @@ Cycle Tile::next_beside_ring() const {
   consider(shapes_.next());
   consider(help_.next());
   if (ports_.answers != nullptr) consider(ports_.answers->next());
-  if (may_send_)
-    for (const OutPort& out : ports_.out) consider(out.next(wants_credit()));
+  return may_send_ ? std::min(first, next_credit()) : first;
+}
+
+// The time at which a packet can leave, as far as that is known, or at which a credit comes that is waited for.
+Cycle Tile::next_credit() const {
+  const bool wanted = wants_credit();
+  Cycle first = kNever;
+  for (const OutPort& out : ports_.out)
+    if (const Cycle at = out.next(wanted); at > now_ && at < first) first = at;
   return first;
 }
 
@@ -107,7 +114,10 @@ void Tile::run(Cycle end) {
     if (const Cycle event = visits_.run_before(std::min(now, end)); event != kNever) {
       now = event;
     } else {
-      if (now >= end) return;
+      if (now >= end) {
+        next_ = std::min(now, visits_.next());
+        return;
+      }
       // Not with the bubble rule, under which a packet that waits to be injected must see every credit. Where a ray's
       // test ends in this cycle, it comes first, as in every step.
       if (now < rest && now < visits_.next() && !machine_.flow.bubble() && cut_through(now, true)) continue;
@@ -126,17 +136,19 @@ void Tile::step(Cycle now) {
   shapes_.take_answers(now);
   take_spilled();
   serve(now);
-  start_tests(now);
+  if (starts_later_) start_tests(now);
   take_opacities(now);
   take_new_rays(now);
-  bool again = true;
-  while (again) {
+  served_ = true;
+  for (bool again = true; again;) {
     again = finish_tests(now);
     again |= help_.step(now, testers_free());
     again |= cut_through(now, false);
     again |= handle(now);
     again |= admit();
-    again |= fill_issue(now);
+    // The issue queue takes no more than before if only packets have been sent since.
+    if (again || served_ || !logic_.admission.empty()) again |= fill_issue(now);
+    served_ = false;
     again |= send(now);
   }
   hand_over(now);
@@ -152,8 +164,8 @@ void Tile::step(Cycle now) {
   const TileState state = classify();
   ledger_.enter(state, now);
   help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
-  if (const std::optional<std::uint64_t> ripe = resource_.next_ripe(); ripe && issue_.size() < issue_places_)
-    next_partial_ = std::min<Cycle>(next_partial_, *ripe);
+  if (partial_ == Partial::kAfter && issue_.size() < issue_places_)
+    next_partial_ = std::min(next_partial_, resource_.next_ripe().value_or(kNever));
   next_here_ = next_egress();
   may_send_ = wants_credit() ||
               std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });

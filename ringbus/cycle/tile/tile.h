@@ -52,7 +52,9 @@ class Tile final : public ResourceAgent {
 
   Cycle next() const override;
   bool polled() const override { return may_send_; }  // no wakeup tells of credits
+  Cycle unannounced() const override { return next_credit(); }
   void run(Cycle end) override;
+  Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
   Cycle last_event() const override { return now_; }
@@ -94,6 +96,7 @@ class Tile final : public ResourceAgent {
   std::uint64_t hops() const;
   Cycle next_arrival() const;
   Cycle next_beside_ring() const;
+  Cycle next_credit() const;
   Cycle next_egress() const;
   bool wants_credit() const;
   bool at_rest() const;
@@ -184,7 +187,9 @@ class Tile final : public ResourceAgent {
   bool starts_later_;  // tests begin, and take units, when dispatch has read the packet; otherwise that is known before
 
   Cycle now_ = 0;
+  Cycle next_ = 0;            // next(), at the end of the last run()
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
+  bool served_ = false;       // a test has begun since the issue queue was filled
   bool may_send_ = false;     // likewise: a packet waits to leave, or for credits
   Cycle dispatch_free_ = 0;   // later than dispatch_ends_ when it pauses
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work

@@ -80,6 +80,8 @@ void Tile::compute(Context& context, Cycle at) {
 void Tile::serve(Cycle now) {
   visits_.serve(now);
   visits_.run(now);
+  if (visits_.others().empty()) return;
+  served_ = true;
   for (const ShapeBuffer::User context : visits_.others()) compute(contexts_[context], now);
   visits_.others().clear();
 }
