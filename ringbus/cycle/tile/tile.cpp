@@ -29,6 +29,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       issue_places_(static_cast<std::size_t>(settings.memory.fetch_ahead) + 1),
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
+      broadcasts_(machine.topology.broadcasts()),
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
       contexts_fetch_(!machine.stays &&
                       (fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet)),
@@ -42,6 +43,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       in_test_(machine.stores[id.value]->slots(), contexts_.size() > 1 && settings.resource.bundles.size == 0),
       spill_memory_(id,
                     static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
+      answers_due_(broadcasts_ ? machine.packets_per_direction : 0),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_) {
   using Kind = FaultsConfig::Resource::Kind;

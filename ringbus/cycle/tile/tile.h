@@ -22,6 +22,7 @@
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
 #include "ringbus/packets/statistics_sink.h"
+#include "ringbus/protocol/answers.h"
 #include "ringbus/protocol/port_logic.h"
 #include "ringbus/resource/resource.h"
 #include "ringbus/results/trace.h"
@@ -152,6 +153,7 @@ class Tile final : public ResourceAgent {
   void end_test(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
+  void take_answer(std::size_t d, Cycle now);
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
@@ -180,7 +182,7 @@ class Tile final : public ResourceAgent {
   Cycle link_bytes_, ids_per_cycle_;
   SideWire question_wire_;
   std::size_t issue_places_;
-  bool visit_all_, cuts_through_, fetch_by_resource_;
+  bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;
   bool contexts_fetch_;  // packets travel, and wait in the contexts of others for shapes
   Partial partial_;
   Cycle memory_latency_;  // of a miss
@@ -211,6 +213,7 @@ class Tile final : public ResourceAgent {
   std::size_t spills_out_ = 0;  // reads under way
   HitBatch done_;               // to be handed over
   std::vector<std::uint32_t> done_slots_;
+  std::vector<std::uint32_t> answers_due_;  // with a bus: of each packet of its own
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;

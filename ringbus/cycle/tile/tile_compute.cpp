@@ -30,7 +30,8 @@ ShapeNeed Tile::shape_data(const Packet& packet, bool transform) const {
 
 void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   Packet& packet = machine_.packet(id);
-  const TestOutcome outcome = resource_.test(packet);
+  const bool answers = broadcasts_ && packet.owner != id_;
+  const TestOutcome outcome = resource_.test(answers ? begin_answer(machine_, id_, id) : packet);
   context.packet = id;
   context.counts = outcome.counts;
   context.reads = outcome.reads;
