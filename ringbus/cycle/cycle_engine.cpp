@@ -166,10 +166,10 @@ class CycleRun {
     PerUnit<Cycle> units{};
     Cycle reads = 0, dispatch = 0;
     for (const auto& tile : machine_.resources()) {
-      const TileResult result = tile->result();
-      for (const auto [kind, busy] : units) busy += result.units[kind].busy;
-      reads += result.ray_reads.busy;
-      dispatch += result.dispatch.busy;
+      const ResourceAgent::Busy own = tile->busy();
+      for (const auto [kind, busy] : units) busy += own.units[kind];
+      reads += own.ray_reads;
+      dispatch += own.dispatch;
     }
     const double tiles = static_cast<double>(machine_.resources().size());
     std::vector<ClassUse> out;

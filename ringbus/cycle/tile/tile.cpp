@@ -169,8 +169,11 @@ void Tile::step(Cycle now) {
   if (partial_ == Partial::kAfter && issue_.size() < issue_places_)
     next_partial_ = std::min(next_partial_, resource_.next_ripe().value_or(kNever));
   next_here_ = next_egress();
-  may_send_ = wants_credit() ||
-              std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
+  may_send_ = awaits_credit_ = wants_credit();
+  for (const OutPort& out : ports_.out) {
+    may_send_ |= !out.empty();
+    awaits_credit_ |= out.awaits_credit();
+  }
 }
 
 TileState Tile::classify() const {
@@ -262,6 +265,10 @@ TileResult Tile::result() const {
   t.round_trips = trips_.latency();
   t.packet_cycles = trips_.packet_cycles();
   return t;
+}
+
+ResourceAgent::Busy Tile::busy() const {
+  return {tester_.busy_units(), tester_.busy_reads(), dispatch_busy_};
 }
 
 bool Tile::at_rest() const {

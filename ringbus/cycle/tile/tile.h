@@ -52,7 +52,7 @@ class Tile final : public ResourceAgent {
   Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings, Ports ports);
 
   Cycle next() const override;
-  bool polled() const override { return may_send_; }  // no wakeup tells of credits
+  bool polled() const override { return awaits_credit_; }  // no wakeup tells of credits
   Cycle unannounced() const override { return next_credit(); }
   void run(Cycle end) override;
   Cycle next_after_run() const override { return next_; }
@@ -61,6 +61,7 @@ class Tile final : public ResourceAgent {
   Cycle last_event() const override { return now_; }
   void close(Cycle end) override;
   TileResult result() const override;
+  Busy busy() const override;
   std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
@@ -193,7 +194,8 @@ class Tile final : public ResourceAgent {
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
   bool served_ = false;       // a test has begun since the issue queue was filled
   bool may_send_ = false;     // likewise: a packet waits to leave, or for credits
-  Cycle dispatch_free_ = 0;   // later than dispatch_ends_ when it pauses
+  bool awaits_credit_ = false;
+  Cycle dispatch_free_ = 0;                                           // later than dispatch_ends_ when it pauses
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::deque<Issue> issue_;

@@ -22,8 +22,9 @@ class Agent {
   virtual Cycle unannounced() const { return next(); }
   /// Does everything there is to do before `end`, in the order of time.
   virtual void run(Cycle end) = 0;
-  /// next(), as run() has left it. What has arrived since then is announced.
-  virtual Cycle next_after_run() const { return next(); }
+  /// next(), as run() has left it. What has arrived since then is announced, and what unannounced() will tell may be
+  /// left out by one that is polled().
+  virtual Cycle next_after_run() const { return polled() ? kNever : next(); }
   /// One line that says what it holds and waits for, for the report of a machine that got stuck; empty when it is at
   /// rest.
   virtual std::string describe() const = 0;

@@ -6,7 +6,7 @@
 namespace carousel {
 namespace {
 
-class BusBroadcast : public TimedRun {
+class BusCrossings : public TimedRun {
  protected:
   Json run(std::vector<std::string> sets) {
     return report(
@@ -34,7 +34,7 @@ class BusBroadcast : public TimedRun {
   }
 };
 
-TEST_F(BusBroadcast, APacketCrossesTheMediumOnceAndIsAnswered) {
+TEST_F(BusCrossings, APacketCrossesTheMediumOnceAndIsAnswered) {
   for (const char* visit : {"owners", "all"}) {
     SCOPED_TRACE(visit);
     const Json bus = run({fmt::format("topology.visit={}", visit)});
@@ -58,7 +58,7 @@ TEST_F(BusBroadcast, APacketCrossesTheMediumOnceAndIsAnswered) {
 }
 
 // The shapes that packets carry cross the medium with the broadcast alone.
-TEST_F(BusBroadcast, AnswersCarryNoShapes) {
+TEST_F(BusCrossings, AnswersCarryNoShapes) {
   const std::vector<std::string> carry{"packets.carry=data", "memory.fetch=packet", "topology.visit=owners",
                                        "topology.link.bytes_per_cycle=1"};
   const Json bus = run(carry);
