@@ -79,6 +79,14 @@ class Tester {
     result.ray_reads = ray_reads_.use;
   }
 
+  /// Its busy cycles alone.
+  PerUnit<Cycle> busy_units() const {
+    PerUnit<Cycle> busy{};
+    for (const auto [kind, ledger] : units_) busy[kind] = ledger.use.busy;
+    return busy;
+  }
+  Cycle busy_reads() const { return ray_reads_.use.busy; }
+
   const UnitBank& bank(UnitKind kind) const { return banks_[kind]; }
   const UnitBank& store() const { return store_; }  ///< the port of the ray store
 

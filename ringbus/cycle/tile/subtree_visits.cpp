@@ -106,6 +106,7 @@ Cycle SubtreeVisits::run_before(Cycle limit) {
 }
 
 void SubtreeVisits::serve(Cycle now) {
+  if (shapes_.ready().empty()) return;
   for (const ShapeBuffer::User user : shapes_.ready()) {
     if (user >= first_user_)
       test(user - first_user_, now);
