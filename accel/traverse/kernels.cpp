@@ -225,6 +225,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <algorithm>
 
+#include "accel/exact/exact_triangle.h"
 #include "core/system/error.h"
 
 namespace carousel::accel {
@@ -233,16 +234,35 @@ HWY_EXPORT(TestStrip);
 HWY_EXPORT(TraceSubtree);
 HWY_EXPORT(TraceInterleaved);
 
+namespace {
+
+/// Adds the exact volumes computed in this thread during its life.
+class ExactVolumeCount {
+ public:
+  explicit ExactVolumeCount(IntersectionCounts& counts) : counts_(counts), before_(exact_volumes()) {}
+  ~ExactVolumeCount() { counts_.exact_volumes += exact_volumes() - before_; }
+  ExactVolumeCount(const ExactVolumeCount&) = delete;
+
+ private:
+  IntersectionCounts& counts_;
+  std::uint64_t before_;
+};
+
+}  // namespace
+
 void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
                 IntersectionCounts& counts) {
+  const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TestStrip)(accel, key, lanes, members, hits, counts);
 }
 
 void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
+  const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TraceSubtree)(accel, key, members, counts);
 }
 
 void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
+  const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TraceInterleaved)(accel, key, members, counts);
 }
 

@@ -88,14 +88,16 @@ class RecordedWorkload final : public Workload {
     }
     return made;
   }
-  std::uint32_t extra_effects(const RayResult& result) const override { return inner_.extra_effects(result); }
+  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     std::vector<Name>& batch = shaded_.emplace_back();
     for (const RayResult& result : completed) {
       const Name own = name(result.tag);
       batch.push_back(own);
       Json& ray = rays_.at(own);
-      ray["effects"] = inner_.extra_effects(result);
+      const ShadeWork work = inner_.extra_work(result);
+      ray["lookups"] = work.lookups;
+      ray["products"] = work.products;
       ray["children"] = Json::array();
       const std::size_t before = out.size();
       inner_.shade(worker, {result}, out);

@@ -56,6 +56,8 @@ class Tester {
     Cycle met = moved;
     for (const UnitKindRow& row : kUnitKinds)
       if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, moved));
+    if (ray.exact_volumes > 0)  // behind the tests that called for them
+      met = std::max(met, banks_[UnitKind::kTriangle].reserve(moved, kExactVolumeTests * ray.exact_volumes).last);
     return std::max(boxed, inline_ ? beside(UnitKind::kAnyHit, met) : met);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
@@ -118,7 +120,7 @@ class Tester {
     UnitBank::Reservation met = moved;
     for (const UnitKindRow& row : kUnitKinds) {
       if (row.stage != Stage::kPrimitive || counts.*row.tests == 0) continue;
-      const UnitBank::Reservation own = tested(banks_[row.kind], moved, counts.*row.tests);
+      const UnitBank::Reservation own = tested(banks_[row.kind], moved, passes_of(row.kind, counts));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
     return tested(banks_[UnitKind::kAnyHit], met, lookups(counts)).last;

@@ -62,7 +62,8 @@ void SubtreeVisits::test(std::uint32_t index, Cycle now) {
   const WalkStep& step = visit.ways.steps[ray.step++];
   Cycle at = now;
   RayTests tests = step.tests;
-  if (std::exchange(tests.inversions, 0) > 0) [[unlikely]] {
+  tests.inversions = 0;
+  if (step.tests.inversions > 0) [[unlikely]] {
     // The first ray that needs a matrix inverted has it done for all of the visit.
     const auto done = std::find_if(visit.inverted.begin(), visit.inverted.end(),
                                    [&](const Inverted& one) { return one.instance == step.key.instance; });

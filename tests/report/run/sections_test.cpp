@@ -54,7 +54,7 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
     EXPECT_EQ(without.contains(row.name), row.shown == Shown::kAlways) << row.name;
   }
   EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "plane", "triangle", "bundle", "transforms", "inversions",
-                                                  "culled", "procedural", "any_hit", "ray_reads"}));
+                                                  "exact_volumes", "culled", "procedural", "any_hit", "ray_reads"}));
 }
 
 TEST(ReportSections, DerivedNumbersAreOfTheCounters) {

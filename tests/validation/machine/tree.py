@@ -28,7 +28,7 @@ class Ray:
         self.name = tuple(fact["name"])
         self.shadow = fact["shadow"]
         self.boxes, self.triangles = fact["boxes"], fact["triangles"]
-        self.effects = fact.get("effects", 0)
+        self.lookups, self.products = fact.get("lookups", 0), fact.get("products", 0)
         self.t = float("inf") if fact["range"] is None else fact["range"]
         self.done = False
         self.pending = 0
