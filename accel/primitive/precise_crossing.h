@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 
 #include "accel/primitive/watertight.h"
-#include "core/types/vec.h"
+#include "accel/structure/node.h"
 
 namespace carousel::accel {
 
@@ -20,14 +20,17 @@ struct PreciseCrossing {
 /// triangle, also if the line passes it by as little as the float cannot tell. docs/accuracy.md derives the bound of
 /// the error. Nothing overflows or underflows, whatever the floats. False if the triangle is seen so exactly edge-on
 /// that double cannot tell its area from none: the answer in float has to do.
-[[gnu::always_inline]] inline bool precise_crossing(const WatertightRay<float>& ray, const Vec3& direction,
-                                                    const std::array<Vec3, 3>& p, PreciseCrossing& out) {
-  const double dz = direction[ray.kz], sx = direction[ray.kx] / dz, sy = direction[ray.ky] / dz, sz = 1.0 / dz;
+[[gnu::always_inline]] inline bool precise_crossing(const WatertightRay<float>& ray, const TriangleBlock& block,
+                                                    std::size_t lane, PreciseCrossing& out) {
+  const double dz = ray.direction[2], sx = ray.direction[0] / dz, sy = ray.direction[1] / dz, sz = 1.0 / dz;
+  const double origin_x = ray.origin[ray.kx], origin_y = ray.origin[ray.ky], origin_z = ray.origin[ray.kz];
   double x[3], y[3], t[3];
+#pragma GCC unroll 3
   for (std::size_t k = 0; k < 3; ++k) {
-    const double z = double{p[k][ray.kz]} - ray.origin[ray.kz];
-    x[k] = (double{p[k][ray.kx]} - ray.origin[ray.kx]) - sx * z;
-    y[k] = (double{p[k][ray.ky]} - ray.origin[ray.ky]) - sy * z;
+    const auto& p = block.vertex[k];
+    const double z = double{p[ray.kz][lane]} - origin_z;
+    x[k] = (double{p[ray.kx][lane]} - origin_x) - sx * z;
+    y[k] = (double{p[ray.ky][lane]} - origin_y) - sy * z;
     t[k] = sz * z;
   }
   const double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];

@@ -102,7 +102,7 @@ HWY_NOINLINE bool lower_precisely(const Accel& accel, const TriangleBlock& block
   ++ray.counts->refined;
   Hit found{rounded, crossings.second[l], crossings.third[l], 0, 0};
   PreciseCrossing precise;
-  if (precise_crossing(ray.triangle.watertight, ray.direction, p, precise))
+  if (precise_crossing(ray.triangle.watertight, block, static_cast<std::size_t>(l), precise))
     found = {static_cast<float>(precise.t), static_cast<float>(precise.second), static_cast<float>(precise.third), 0,
              0};
   if (found.t < ray.slab.tmin && in_range(rounded, ray, kInfinity)) found.t = ray.slab.tmin;
