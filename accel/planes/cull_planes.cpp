@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "accel/planes/oriented_box.h"
 #include "accel/planes/plane_candidates.h"
 #include "accel/planes/top_planes.h"
 #include "accel/structure/sphere.h"
@@ -26,6 +27,7 @@ class PlaneBuilder {
     using Levels = CullPlanesConfig::Levels;
     const auto first_of_top =
         std::find_if(accel_.nodes.begin(), accel_.nodes.end(), [](const Node& n) { return n.above_instances; });
+    set_depths();
     const std::size_t below = static_cast<std::size_t>(first_of_top - accel_.nodes.begin());
     if (config_.levels != Levels::kTlas) find(0, below);
     if (config_.levels != Levels::kBlas) {
@@ -33,7 +35,6 @@ class PlaneBuilder {
       find(below, found_.size());
     }
     store();
-    set_depths();
   }
 
  private:
@@ -71,6 +72,11 @@ class PlaneBuilder {
       const NodeRef ref = node.child[lane];
       if (ref.is_inner()) continue;
       const BoxedShape child = below(node, lane);
+      std::vector<CullPlane>& found = found_[index][static_cast<std::size_t>(lane)];
+      if (oriented_boxes()) {
+        found = oriented_leaf(ref, child);
+        continue;
+      }
       PlaneChoice choice(child);
       if (ref.kind() == NodeRef::Kind::kInstance) {
         top_->offer(ref, choice);
@@ -80,9 +86,21 @@ class PlaneBuilder {
         offer_triangles(corners.points, choice);
       }
       choice.offer_octants();
-      found_[index][static_cast<std::size_t>(lane)] = choice.best(most_);
+      found = choice.best(most_);
     }
   }
+  std::vector<CullPlane> oriented_leaf(NodeRef ref, const BoxedShape& child) const {
+    OrientedBoxChoice choice(child);
+    if (ref.kind() == NodeRef::Kind::kInstance) {
+      choice.offer(top_->axes(ref));
+    } else {
+      Corners corners;
+      append_corners(ref, corners);
+      choice.offer_triangles(corners.points);
+    }
+    return choice.best();
+  }
+  bool oriented_boxes() const { return config_.object == CullPlanesConfig::Object::kOrientedBox; }
   static void offer_triangles(const std::vector<Vec3>& points, PlaneChoice& choice) {
     for (std::size_t i = 0; i < points.size(); i += 3) {
       const std::array<DVec3, 3> p{DVec3(points[i]), DVec3(points[i + 1]), DVec3(points[i + 2])};
@@ -99,6 +117,13 @@ class PlaneBuilder {
     for (int lane = 0; lane < node.count; ++lane) {
       if (!node.child[lane].is_inner()) continue;
       const BoxedShape child = below(node, lane);
+      if (oriented_boxes()) {
+        OrientedBoxChoice choice(child);
+        for (const std::vector<CullPlane>& planes : found_[node.child[lane].node()])
+          if (!planes.empty()) choice.offer(axes_of(planes));
+        found_[index][static_cast<std::size_t>(lane)] = choice.best();
+        continue;
+      }
       PlaneChoice choice(child);
       for (const std::vector<CullPlane>& planes : found_[node.child[lane].node()])
         for (const CullPlane& plane : planes) choice.offer({plane.normal[0], plane.normal[1], plane.normal[2]});
@@ -167,6 +192,7 @@ class PlaneBuilder {
     using Nodes = CullPlanesConfig::Nodes;
     const NodeRef child = node.child[lane];
     if (node.direct >> lane & 1) return false;
+    if (node.depth < config_.depth.first || node.depth > config_.depth.last) return false;
     if (node.above_instances && !(top_ && top_->margin(child))) return false;
     return config_.nodes == Nodes::kAll || child.is_inner() == (config_.nodes == Nodes::kInner);
   }

@@ -13,14 +13,6 @@ namespace {
 /// Less than this is not worth a test.
 constexpr double kLeastEmptyPart = 1.0 / 256;
 
-/// A direction as a plane's normal: the sum of its entries' magnitudes just below 1. False when it has none.
-bool set_normal(const DVec3& direction, CullPlane& plane) {
-  const double sum = std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z);
-  if (!(sum > 0) || !std::isfinite(sum)) return false;
-  for (int axis = 0; axis < 3; ++axis) plane.normal[axis] = static_cast<float>(direction[axis] / sum * (1 - 0x1p-22));
-  return true;
-}
-
 bool in_octant(const CullPlane& plane, std::size_t octant) {
   for (int axis = 0; axis < 3; ++axis)
     if ((octant >> axis & 1u) != 0 ? plane.normal[axis] > 0 : plane.normal[axis] < 0) return false;
@@ -28,6 +20,13 @@ bool in_octant(const CullPlane& plane, std::size_t octant) {
 }
 
 }  // namespace
+
+bool set_normal(const DVec3& direction, CullPlane& plane) {
+  const double sum = std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z);
+  if (!(sum > 0) || !std::isfinite(sum)) return false;
+  for (int axis = 0; axis < 3; ++axis) plane.normal[axis] = static_cast<float>(direction[axis] / sum * (1 - 0x1p-22));
+  return true;
+}
 
 float rounded_up(double x) {
   const float nearest = static_cast<float>(x);

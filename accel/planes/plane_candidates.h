@@ -16,6 +16,10 @@ struct BoxedShape {
   std::function<float(const CullPlane&)> distance;  ///< rounded up
 };
 
+/// Sets a plane's normal to a direction of any length: the sum of the entries' magnitudes is just below 1. False if the
+/// direction has no length.
+bool set_normal(const DVec3& direction, CullPlane& plane);
+
 /// The least float that is not below `x`.
 float rounded_up(double x);
 

@@ -87,6 +87,12 @@ double TopPlanes::farthest(NodeRef child, const DVec3& normal, const DVec3& cent
   return most;
 }
 
+BoxAxes TopPlanes::axes(NodeRef child) const {
+  const DMat3 linear(placement(child.instance_index()).linear);
+  const DVec3 up = glm::cross(linear[0], linear[1]);
+  return {linear[0], glm::cross(up, linear[0]), up};
+}
+
 // Candidates for an instance that stands rotated in its box: the faces of its own box, planes through an edge of it and
 // along an axis, planes that cut off its corners, and the planes and triangles at its root. Normals are transformed by
 // the transpose of the inverse.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "accel/planes/line_margin.h"
+#include "accel/planes/oriented_box.h"
 #include "accel/planes/plane_candidates.h"
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
@@ -24,6 +25,8 @@ class TopPlanes {
 
   /// The contents of a child of a node of the top level.
   BoxedShape shape(const Node& node, int lane) const;
+  /// The axes of an instance's own box in the world, made upright where the instance is sheared.
+  BoxAxes axes(NodeRef instance) const;
   /// Offers normals of planes for an instance.
   void offer(NodeRef instance, PlaneChoice& choice) const;
   /// Bound of a hit's distance from the ray's line in the child; empty: the bound is too large for planes to be useful.

@@ -33,8 +33,8 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
   }
 }
 
-shading::PathSample RenderJob::draw(std::uint64_t paths) const {
-  return tracer_ ? shading::draw_tiles(order_, paths, seed_) : shading::draw_list(first_rays_, paths, seed_);
+shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together) const {
+  return tracer_ ? shading::draw_tiles(order_, paths, together, seed_) : shading::draw_list(first_rays_, paths, seed_);
 }
 
 void RenderJob::set_sample(const shading::PathSample* sample) {

@@ -24,8 +24,9 @@ class RenderJob {
   /// pass, and must outlive the job.
   RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
-  /// Draws about `paths` of the first rays, over all of them, for a pilot: tiles of the picture or runs of the list.
-  shading::PathSample draw(std::uint64_t paths) const;
+  /// Draws about `paths` of the first rays, over all of them, for a pilot: tiles of the picture, places of at least
+  /// `together` paths if they are many, or runs of the list.
+  shading::PathSample draw(std::uint64_t paths, std::uint64_t together) const;
   /// Only these of the first rays are traced; `sample` must outlive the job. Before the first ray.
   void set_sample(const shading::PathSample* sample);
 

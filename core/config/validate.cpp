@@ -174,6 +174,19 @@ class Rules {
             fmt::format("cull planes above the instances could lose hits of {}; expected two_step, "
                         "two_step_double or transpose_if_rotation, or cull_planes.levels: blas",
                         enum_name(c.accuracy.transform)));
+    if (c.cull_planes.object == CullPlanesConfig::Object::kOrientedBox) {
+      if (c.cull_planes.count < 6)
+        issue("cull_planes.count",
+              fmt::format("an oriented box has six faces; expected 6 or more, found {}, or cull_planes.object: planes",
+                          c.cull_planes.count));
+      if (c.cull_planes.shared_normals)
+        issue("cull_planes.shared_normals",
+              "each oriented box has axes of its own; expected false, found true, or cull_planes.object: planes");
+    }
+    if (c.cull_planes.depth.first > c.cull_planes.depth.last)
+      issue("cull_planes.depth.first",
+            fmt::format("no node has such a depth; expected at most cull_planes.depth.last = {}, found {}",
+                        c.cull_planes.depth.last, c.cull_planes.depth.first));
   }
 
   void effects_are_known() {

@@ -51,7 +51,7 @@ class Search {
     begin("first pilot", all.size());
     simulate_base();
     lift(all, 0);
-    const std::vector<std::size_t> worth = worth_a_second_look();
+    std::vector<std::size_t> worth = worth_a_second_look();
     const std::uint64_t larger =
         pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
     if (!out_.whole && larger > out_.paths + out_.paths / 2) {
@@ -62,6 +62,8 @@ class Search {
     for (int doubled = 0; out_.complete && !judge(); ++doubled) {
       if (doubled == kDoublings) return without_gains();
       out_.paths = std::min(run_.paths, 2 * out_.paths);
+      // Half as many classes, so that a larger pilot takes no longer.
+      if (out_.paths < run_.paths) worth.resize(std::min(worth.size(), std::max(kFewest, worth.size() / 2)));
       begin("larger pilot", worth.size());
       simulate_base();
     }
@@ -74,6 +76,7 @@ class Search {
 
  private:
   static constexpr int kDoublings = 2;
+  static constexpr std::size_t kFewest = 2;
   static constexpr std::uint64_t kScreening = 3;  // a third of the rays go to the first pilot
 
   Bottleneck without_gains() {

@@ -60,7 +60,8 @@ using SearchObserver = std::function<void(const SearchProgress&)>;
 /// All classes are relaxed for a first, small pilot; those that may be worth naming, at most six, for a second, larger
 /// one. All pilots have together about as many rays as the run, but each has as many as the machine needs to be seen
 /// between fill and drain; where that is most of the frame, the pilot is the frame. The last pilot is compared with the
-/// run. If it is not like it, it is doubled, twice at most; after that nothing is found out. Throws as run_cycle.
+/// run. If it is not like it, it is doubled, twice at most, for half of the classes; after that nothing is found out.
+/// Throws as run_cycle.
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe = {});

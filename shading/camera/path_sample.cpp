@@ -38,8 +38,10 @@ std::uint64_t PathSample::ordinal(std::uint64_t i) const {
   return firsts_[static_cast<std::size_t>(run)] + (i - begins_[static_cast<std::size_t>(run)]);
 }
 
-PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw) {
-  constexpr std::uint64_t kEnoughTiles = 128, kPlaces = 16;
+PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t together, std::uint64_t seed,
+                      std::uint64_t draw) {
+  constexpr std::uint64_t kEnoughTiles = 128, kLeastPlaces = 16;
+  const std::uint64_t places = std::max(kLeastPlaces, paths / std::max<std::uint64_t>(1, together));
   const auto parts = [](double count, std::uint64_t most) {
     return std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::lround(count)), 1, most);
   };
@@ -48,7 +50,7 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
   const std::uint64_t tiles = std::max<std::uint64_t>(1, paths / pixels / each);
   const std::uint64_t in_a_row = order.tile_columns();
   // A row is cut into places of nearly equal numbers of tiles, which stay together.
-  const std::uint64_t columns = in_a_row / std::clamp<std::uint64_t>(tiles / kPlaces, 1, in_a_row);
+  const std::uint64_t columns = in_a_row / std::clamp<std::uint64_t>(tiles / places, 1, in_a_row);
   const double wanted = static_cast<double>(tiles * columns) / static_cast<double>(in_a_row);
   // Rectangles of about the shape of a square.
   const double wide = static_cast<double>(in_a_row) / static_cast<double>(rows);

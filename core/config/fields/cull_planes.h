@@ -8,12 +8,22 @@ namespace carousel {
 
 struct CullPlanesConfig {
   std::int64_t count = 0;
+  enum class Object { kPlanes, kOrientedBox } object = Object::kPlanes;
   enum class Nodes { kLeaves, kInner, kAll } nodes = Nodes::kLeaves;
   bool shared_normals = false;
   enum class Fit { kVertices, kBoxes } fit = Fit::kVertices;
   enum class Order { kBoxFirst, kPlanesFirst } order = Order::kBoxFirst;
   enum class Levels { kBlas, kTlas, kAll } levels = Levels::kBlas;
+  struct Depth {
+    std::int64_t first = 0, last = 255;
+  } depth;
 };
+
+template <>
+inline constexpr auto kEnumNames<CullPlanesConfig::Object> = [] {
+  using enum CullPlanesConfig::Object;
+  return names<CullPlanesConfig::Object>({{kPlanes, "planes"}, {kOrientedBox, "oriented_box"}});
+}();
 
 template <>
 inline constexpr auto kEnumNames<CullPlanesConfig::Nodes> = [] {
@@ -42,9 +52,17 @@ inline constexpr auto kEnumNames<CullPlanesConfig::Levels> = [] {
 namespace config {
 
 template <class V>
+void describe(V& v, CullPlanesConfig::Depth& c) {
+  v.field("first", c.first, IntRange{0, 255}, "nodes", "The least depth of a node whose children have planes.");
+  v.field("last", c.last, IntRange{0, 255}, "nodes", "The greatest depth of a node whose children have planes.");
+}
+
+template <class V>
 void describe(V& v, CullPlanesConfig& c) {
   v.field("count", c.count, IntRange{0, 8}, "planes per child",
           "The largest number of cull planes of a child. With 0 there are none.");
+  v.choice("object", c.object,
+           "The planes are chosen singly, or are the six faces of a box that is turned against the axes.");
   v.choice("nodes", c.nodes, "The children that have planes.");
   v.field("shared_normals", c.shared_normals, "", "Siblings share the normals of their planes.");
   v.choice("fit", c.fit,
@@ -53,6 +71,7 @@ void describe(V& v, CullPlanesConfig& c) {
   v.choice("levels", c.levels,
            "The nodes that have planes lie below the instances (blas), above them, where the leaves are instances "
            "(tlas), or both.");
+  v.section("depth", c.depth, "The depths of the nodes whose children have planes. The root of a tree has depth 0.");
   v.choice("order", c.order,
            "The planes of a child are tested after its box has been hit, or before its box, which then may need no "
            "test.");

@@ -7,10 +7,10 @@
 namespace carousel {
 
 struct MemoryConfig {
-  std::int64_t l2_kib = 1024, line_bytes = 64, ways = 8, shared_by = 4;
-  std::int64_t l2_lines_per_cycle = 1, l2_latency_cycles = 30, dram_latency_cycles = 200, dram_bytes_per_cycle = 32;
+  std::int64_t l2_kib = 512, line_bytes = 64, ways = 16, shared_by = 8;
+  std::int64_t l2_lines_per_cycle = 4, l2_latency_cycles = 160, dram_latency_cycles = 200, dram_bytes_per_cycle = 64;
   enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kResource;
-  std::int64_t fetch_ahead = 2, shape_buffer_kib = 4;
+  std::int64_t fetch_ahead = 2, shape_buffer_kib = 32;
 };
 
 template <>

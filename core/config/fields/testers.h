@@ -26,7 +26,7 @@ struct TestersConfig {
     std::int64_t lanes = 8;
     enum class Map { kRays, kShapes } map = Map::kRays;
   } simd;
-  std::int64_t contexts = 1;
+  std::int64_t contexts = 16;
   enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
 };
 

@@ -201,6 +201,60 @@ TEST(CullPlanes, StandOnlyWhereTheyAreWanted) {
   }
 }
 
+TEST(CullPlanes, StandAtTheDepthsAskedFor) {
+  const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 2000);
+  CullPlanesConfig planes;
+  planes.count = 2;
+  planes.nodes = Nodes::kAll;
+  planes.depth = {1, 2};
+  const Accel accel = build(scene, {}, *make_sequential_executor(), {}, planes);
+  std::array<std::size_t, 4> with_planes{};  // nodes, by depth
+  for (const Node& node : accel.nodes) with_planes[std::min<std::size_t>(node.depth, 3)] += node.plane_counts != 0;
+  EXPECT_EQ(with_planes[0], 0u);
+  EXPECT_GT(with_planes[1], 0u);
+  EXPECT_GT(with_planes[2], 0u);
+  EXPECT_EQ(with_planes[3], 0u);
+}
+
+// Six faces in opposite pairs that are at right angles. None of them cuts a vertex off, and no ray loses its hit.
+TEST(CullPlanes, MayBeTheFacesOfAnOrientedBox) {
+  CullPlanesConfig config;
+  config.count = 6;
+  config.nodes = Nodes::kAll;
+  config.object = CullPlanesConfig::Object::kOrientedBox;
+  std::size_t planes = 0, lost = 0;
+  IntersectionCounts counts;
+  for (const HardMesh& mesh : hard_meshes()) {
+    const Accel plain = build_sequential(mesh.scene, 8, 2), accel = [&] {
+      BvhConfig bvh;
+      bvh.leaf_triangles = 2;
+      return build(mesh.scene, bvh, *make_sequential_executor(), {}, config);
+    }();
+    EXPECT_EQ(cut_off(accel, planes), 0u) << mesh.name;
+    for (const Node& node : accel.nodes) {
+      const CullPlane* plane = accel.planes.data() + node.first_plane;
+      for (int lane = 0; lane < kMaxWidth; plane += plane_count(node, lane++)) {
+        if (plane_count(node, lane) == 0) continue;
+        ASSERT_EQ(plane_count(node, lane), 6);
+        const auto normal = [&](int i) { return Vec3(plane[i].normal[0], plane[i].normal[1], plane[i].normal[2]); };
+        for (int i = 0; i < 6; i += 2) {
+          EXPECT_EQ(normal(i), -normal(i + 1));
+          EXPECT_NEAR(glm::dot(normal(i), normal((i + 2) % 6)), 0, 1e-6);
+        }
+      }
+    }
+    const RayBatch rays = plane_grazing_rays(mesh.scene, 5000, run_seed());
+    HitBatch without, with;
+    IntersectionCounts of_plain;
+    trace_depth_first(plain, rays, without, of_plain);
+    trace_depth_first(accel, rays, with, counts);
+    for (std::size_t i = 0; i < rays.size(); ++i) lost += !same_bits(without[i].hit, with[i].hit);
+  }
+  EXPECT_GT(planes, 5000u);
+  EXPECT_GT(counts.culled, 1000u);
+  EXPECT_EQ(lost, 0u);
+}
+
 TEST(CullPlanes, ShareTheirNormalsAmongSiblings) {
   const scene::Scene scene = small_builtin(BuiltinScene::kTerrain, 2000);
   const Accel accel = with_planes(scene, 4, Nodes::kAll, 4, Fit::kVertices, {}, true);

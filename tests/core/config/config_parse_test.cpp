@@ -16,7 +16,7 @@ TEST(ConfigParse, GivesTheDefaultsOfTheDesignForASmallFile) {
   EXPECT_FALSE(config.engine.threads.has_value());
   EXPECT_FALSE(config.scene.sky.has_value());
   EXPECT_EQ(config.topology.link.queue, QueueKind::kSpscRing);
-  EXPECT_EQ(config.testers.units[UnitKind::kBox].units, 8);
+  EXPECT_EQ(config.testers.units[UnitKind::kBox].units, 4);
 }
 
 TEST(ConfigParse, ReadsEveryFormOfTheContract) {

@@ -51,7 +51,7 @@ TEST(PlaneUnits, ComeBeforeTheBoxesThatAreLeft) {
   EXPECT_EQ(tester.strip(300, {.plane = 2}), 305);
   EXPECT_EQ(tester.ray(400, {.box = 8, .plane = 2}), 405 + 4);
   EXPECT_EQ(tester.ray(500, {.plane = 2}), 505);
-  EXPECT_EQ(tester.strip(600, {.triangle = 4}), 600 + TestersConfig{}.units[UnitKind::kTriangle].latency_cycles);
+  EXPECT_EQ(tester.strip(600, {.triangle = 4}), 600 + 3 + TestersConfig{}.units[UnitKind::kTriangle].latency_cycles);
 }
 
 TEST(PlaneUnits, ServeSingleRays) {

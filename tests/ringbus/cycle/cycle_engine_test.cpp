@@ -183,6 +183,7 @@ TEST(CycleEngine, StuckRingNamesTheCircle) {
   c.packets.rays = c.collections.ready = 4;
   c.collections.when_full = WhenFull::kSpill;
   c.memory.fetch_ahead = 16;
+  c.testers.contexts = 1;
   const std::string fault = run_cell(scene, cell).fault;
   EXPECT_NE(fault.find("nothing moves any more"), std::string::npos) << fault;
   EXPECT_NE(fault.find("a circle of waits: resource "), std::string::npos) << fault;

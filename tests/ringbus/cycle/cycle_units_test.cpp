@@ -75,6 +75,7 @@ MemoryConfig memory_config() {
   c.l2_kib = 1;
   c.ways = 4;
   c.l2_latency_cycles = 31;
+  c.l2_lines_per_cycle = 1;
   return c;
 }
 

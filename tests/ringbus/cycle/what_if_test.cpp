@@ -29,6 +29,8 @@ Config generous_machine() {
   c.memory.l2_latency_cycles = c.memory.dram_latency_cycles = 2;
   c.memory.dram_bytes_per_cycle = 65536;
   c.memory.fetch_ahead = 8;
+  c.memory.shape_buffer_kib = 1024;
+  c.memory.l2_lines_per_cycle = 64;
   c.shading.workers = 64;
   c.shading.cycles_per_shade = 1;
   return c;
@@ -142,7 +144,8 @@ TEST(WhatIf, EveryLiftIsNoticed) {
        [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.l2_latency_cycles = 500, c.memory.fetch_ahead = 0; }},
       {"fetch_ahead", [](Config& c) { c.memory.fetch_ahead = 0, c.memory.l2_latency_cycles = 500; }},
       {"l2_size", [](Config& c) { c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
-      {"l2_port", [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.line_bytes = 16; }},
+      {"l2_port",
+       [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.line_bytes = 16, c.memory.l2_lines_per_cycle = 1; }},
       {"issue_rule",
        [](Config& c) { c.collections.partial = Partial::kAfter, c.collections.partial_after_cycles = 20000; }},
       {"rings",

@@ -40,7 +40,7 @@ TEST(PathSample, TileBeginsAreWhereTheOrderEntersATile) {
 // Before issue 16 the pilot was the first paths: the top of the picture.
 TEST(PathSample, IsDrawnOverTheWholePicture) {
   const PixelOrder order(320, 240, 2);
-  const PathSample sample = draw_tiles(order, 8192, 1);
+  const PathSample sample = draw_tiles(order, 8192, 512, 1);
   EXPECT_NEAR(static_cast<double>(sample.count()), 8192, 0.1 * 8192);
   const std::vector<std::uint64_t> chosen = ordinals(sample);
   EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size()) << "no path twice";
@@ -59,10 +59,27 @@ TEST(PathSample, IsDrawnOverTheWholePicture) {
     for (std::size_t k = 1; k < 64; ++k) ASSERT_EQ(chosen[i + k], chosen[i] + k);
 }
 
+// Sixteen places are few for a large sample: their mix is not the picture's.
+TEST(PathSample, HasMorePlacesTheMorePathsThereAre) {
+  const PixelOrder order(640, 480, 1);
+  const auto places = [&](std::uint64_t paths, std::uint64_t together) {
+    const std::vector<std::uint64_t> chosen = ordinals(draw_tiles(order, paths, together, 1));
+    int found = 0;
+    std::uint64_t before = order.count();
+    for (const std::uint64_t ordinal : chosen) {
+      found += ordinal != before + 1;
+      before = ordinal;
+    }
+    return found;
+  };
+  EXPECT_NEAR(places(16384, 16384), 16, 8);
+  EXPECT_NEAR(places(65536, 512), 128, 40);
+}
+
 TEST(PathSample, TheSeedChoosesTheTiles) {
   const PixelOrder order(320, 240, 1);
-  EXPECT_EQ(ordinals(draw_tiles(order, 2000, 1)), ordinals(draw_tiles(order, 2000, 1)));
-  EXPECT_NE(ordinals(draw_tiles(order, 2000, 1)), ordinals(draw_tiles(order, 2000, 2)));
+  EXPECT_EQ(ordinals(draw_tiles(order, 2000, 512, 1)), ordinals(draw_tiles(order, 2000, 512, 1)));
+  EXPECT_NE(ordinals(draw_tiles(order, 2000, 512, 1)), ordinals(draw_tiles(order, 2000, 512, 2)));
 }
 
 TEST(PathSample, EveryTileIsAsLikely) {
@@ -71,7 +88,7 @@ TEST(PathSample, EveryTileIsAsLikely) {
   constexpr int kDraws = 4000;
   double all = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const PathSample sample = draw_tiles(order, 30 * 64, 7, static_cast<std::uint64_t>(draw));
+    const PathSample sample = draw_tiles(order, 30 * 64, 512, 7, static_cast<std::uint64_t>(draw));
     for (std::uint64_t i = 0; i < sample.count(); i += 64, ++all) {
       const PixelSample at = order.at(sample.ordinal(i));
       ++times[at.y / 8 * 13 + at.x / 8];
@@ -84,7 +101,7 @@ TEST(PathSample, EveryTileIsAsLikely) {
 TEST(PathSample, FitsSmallPictures) {
   for (const std::uint64_t paths : {1u, 64u, 1000u, 100000u}) {
     const PixelOrder order(9, 17, 3);
-    const PathSample sample = draw_tiles(order, paths, 3);
+    const PathSample sample = draw_tiles(order, paths, 512, 3);
     EXPECT_GE(sample.count(), 1u);
     const std::vector<std::uint64_t> chosen = ordinals(sample);
     EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size());

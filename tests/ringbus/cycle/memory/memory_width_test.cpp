@@ -96,8 +96,8 @@ TEST(L2Port, IsCountedAndTwiceItsLinesGain) {
   const std::string shared =
       "topology: {resources: 16}\nrays: {slots_per_resource: 64}\npackets: {rays: 8}\ncollections: {ready: 8}\n"
       "testers: {contexts: 8}\nshading: {workers: 8, cycles_per_shade: 1}\n"
-      "memory: {fetch: resource, shared_by: 16, l2_latency_cycles: 2, dram_bytes_per_cycle: 512, shape_buffer_kib: "
-      "1}\n";
+      "memory: {fetch: resource, shared_by: 16, l2_kib: 1024, l2_latency_cycles: 2, l2_lines_per_cycle: 1, "
+      "dram_bytes_per_cycle: 512, shape_buffer_kib: 1}\n";
   const Outcome one = run_text(scene, shared), two = run_text(scene, shared, {"memory.l2_lines_per_cycle=2"});
   const std::vector<CacheCounts>& caches = one.result.cycle->caches;
   ASSERT_EQ(caches.size(), 1u);
