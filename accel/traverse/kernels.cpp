@@ -48,7 +48,7 @@ HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key,
   IntersectionCounts own;
   FrameStorage<Slab> frame;
   enter_frame(accel, key.instance, record, &frame.ray, own);
-  own.transforms = 0;  // counted with the boxes
+  own.transforms = own.transforms_in_double = 0;  // counted with the boxes
   test_direct(accel, node, lanes, frame.ray, record.hit, own);
   settle(record);
   if (any_hit_calls != nullptr)
@@ -78,6 +78,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
     const Ray model = move ? transform->to_model(record.ray) : record.ray;
     const Slab ray(model, widening);
     counts.transforms += move;
+    counts.transforms_in_double += move && transform->promoted;
     counts.box += boxes;
     alignas(64) float entry[kMaxWidth];
     std::uint32_t mask;

@@ -17,7 +17,7 @@ struct Operations {
 constexpr Operations kBox{6, 6}, kPlane{6 + 4, 6}, kTransform{18, 15};
 constexpr Operations kFast{27 + 4, 23}, kWatertight{21 + 4, 22};
 /// Of a volume in exact arithmetic: 84 products of doubles with their rounding errors (ringbus/cycle/testers/
-/// level_cycles.h), each with about as many sums.
+/// unit_passes.h), each with about as many sums.
 constexpr Operations kExactVolume{168, 168};
 
 constexpr double kProductPj = 3.7, kSumPj = 0.9, kProductMm2 = 7700e-6, kSumMm2 = 4184e-6;
@@ -35,11 +35,12 @@ double energy(Operations o, bool wide) {
 struct Level {
   Operations triangle;
   bool wide_triangle, wide_box, wide_transform;
+  bool refines = false;  ///< the unit makes tests in 32 bits, and again in 64 for what a ray meets
 };
 Level level_of(const AccuracyConfig& a) {
   return {a.triangle == TriangleLevel::kFast ? kFast : kWatertight,
           a.triangle == TriangleLevel::kDouble || a.triangle == TriangleLevel::kExact, a.box == BoxLevel::kDouble,
-          a.transform == TransformLevel::kTwoStepDouble};
+          a.transform == TransformLevel::kTwoStepDouble, a.triangle == TriangleLevel::kWatertight};
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ double unit_area_mm2(const TestersConfig& testers, const AccuracyConfig& accurac
   const Level level = level_of(accuracy);
   const auto units = [&](UnitKind kind) { return static_cast<double>(testers.units[kind].units); };
   return units(UnitKind::kBox) * area(kBox, level.wide_box) +
-         units(UnitKind::kTriangle) * area(level.triangle, level.wide_triangle) +
+         units(UnitKind::kTriangle) * area(level.triangle, level.wide_triangle || level.refines) +
          units(UnitKind::kTransform) * area(kTransform, level.wide_transform);
 }
 
@@ -58,7 +59,10 @@ double test_energy_pj(const IntersectionCounts& counts, const AccuracyConfig& ac
          static_cast<double>(counts.plane) * energy(kPlane, false) +
          static_cast<double>(counts.triangle) * energy(level.triangle, level.wide_triangle) +
          static_cast<double>(counts.exact_volumes) * energy(kExactVolume, true) +
-         static_cast<double>(counts.transforms) * energy(kTransform, level.wide_transform);
+         static_cast<double>(counts.refined) * energy(level.triangle, true) +
+         static_cast<double>(counts.transforms - counts.transforms_in_double) *
+             energy(kTransform, level.wide_transform) +
+         static_cast<double>(counts.transforms_in_double) * energy(kTransform, true);
 }
 
 }  // namespace carousel::app

@@ -166,10 +166,10 @@ class CycleRun {
     PerUnit<Cycle> units{};
     Cycle reads = 0, dispatch = 0;
     for (const auto& tile : machine_.resources()) {
-      const TileResult result = tile->result();
-      for (const auto [kind, busy] : units) busy += result.units[kind].busy;
-      reads += result.ray_reads.busy;
-      dispatch += result.dispatch.busy;
+      const ResourceAgent::Busy own = tile->busy();
+      for (const auto [kind, busy] : units) busy += own.units[kind];
+      reads += own.ray_reads;
+      dispatch += own.dispatch;
     }
     const double tiles = static_cast<double>(machine_.resources().size());
     std::vector<ClassUse> out;
@@ -185,12 +185,13 @@ class CycleRun {
     return out;
   }
 
-  /// The links are as many media side by side; a bus is one, which its hub's links leave.
+  /// The links are as many media side by side; a bus is one, to which the links of the resources lead: what one of them
+  /// brings crosses it once, whoever hears it.
   ClassUse link_use() const {
     const bool bus = config_.topology.shape == TopologyShape::kBus;
     ClassUse out{"link_bandwidth", bus ? 1.0 : static_cast<double>(machine_.shared().topology.wires().size()), 0};
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
-      if (!bus || wire.from.value >= machine_.resources().size()) out.busy += machine_.out_of(wire.from)[port].busy();
+      if (!bus || wire.from.value < machine_.resources().size()) out.busy += machine_.out_of(wire.from)[port].busy();
     });
     return out;
   }

@@ -29,6 +29,7 @@ Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
                                                             : topology.packets_in_flight()),
       packets(make_packets(topology, packets_per_direction, static_cast<std::size_t>(config.packets.rays),
                            one_collection_a_ray(config.collections.traversal))),
+      answers(topology.broadcasts() && !stays ? topology.resources() : 0, std::vector<Packet>(packets.size())),
       stores(make_ray_stores(config.topology.resources, config.rays.slots_per_resource, config.bundles)),
       control(control_settings(config, accel, scene_size, topology), stores) {}
 

@@ -25,6 +25,9 @@ struct Machine {
 
   Packet& packet(PacketId id) { return packets[id.value]; }
   const Packet& packet(PacketId id) const { return packets[id.value]; }
+  /// With Topology::broadcasts(), the answer of resource `from` to a packet of another: its own rays of the packet. It
+  /// writes the answer, and the packet's owner reads it when it has come.
+  Packet& answer(ResourceId from, PacketId id) { return answers[from.value][id.value]; }
   /// The first of a resource's packets; they stand one after another, by direction.
   PacketId first_packet(ResourceId owner) const {
     return PacketId(owner.value * static_cast<std::uint32_t>(topology.directions()) * packets_per_direction);
@@ -37,6 +40,7 @@ struct Machine {
   bool stays;                                     ///< packets are tested where they are issued and never travel
   std::uint32_t packets_per_direction;            ///< of one resource
   std::vector<Packet> packets;                    ///< by owner, then direction
+  std::vector<std::vector<Packet>> answers;       ///< by resource, then packet
   std::vector<std::unique_ptr<RayStore>> stores;  ///< by resource
   RayControl control;
 };

@@ -38,7 +38,8 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   if (ordered) blocks = std::min(blocks, resources * slots);
   e.collections = resources * blocks * (block * sizeof(RayId) + 128);
   const std::uint64_t packets = resources * topology.directions() * topology.packets_in_flight() + resources;
-  e.packets = packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));
+  const std::uint64_t copies = topology.broadcasts() ? 1 + resources : 1;  // with those that are answers
+  e.packets = copies * packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));
   return e;
 }
 

@@ -5,8 +5,8 @@
 
 namespace carousel::ringbus {
 
-/// One medium that all resources share. A packet visits them in the order of their numbers. The way to the bus takes
-/// half of the link's latency, the way from it the other half, each at least a cycle.
+/// One medium that all resources share and hear. The way to the bus takes half of the link's latency, the way from it
+/// the other half, each at least a cycle.
 TopologyPlan plan_bus(const TopologyConfig& config) {
   const ResourceId bus(static_cast<std::uint32_t>(config.resources));
   const std::int64_t there = std::max<std::int64_t>(1, config.link.latency_cycles / 2);

@@ -81,7 +81,8 @@ bool Topology::group_wants(const Packet& packet, std::uint32_t group) const {
 
 std::uint32_t Topology::hops(const Packet& packet) const {
   if (resources_ == 1) return 0;
-  if (visit_all_ || packet.kind == PacketKind::kRays) return resources_;
+  // All hear a broadcast at once, so it is not made if no other resource has rays of it.
+  if ((visit_all_ && !broadcasts()) || packet.kind == PacketKind::kRays) return resources_;
   if (packet.kind == PacketKind::kMemberships) return packet.home == packet.owner ? 0 : resources_;
   for (std::size_t i = 0; i < packet.owners.size(); ++i) {
     std::uint64_t others = packet.owners[i];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -46,6 +47,8 @@ class Topology {
   std::uint32_t group_of(ResourceId r) const { return group_of_[r.value]; }
 
   bool direct() const { return plan_.direct; }
+  /// All resources hear what one sends. A packet goes to all of them at once, and each that has rays of it answers.
+  bool broadcasts() const { return !plan_.hubs.empty() && plan_.hubs.front() == Hub::kBus; }
   bool visits_all() const { return visit_all_; }
   bool has_packets() const { return properties_.has_packets; }
   bool carries_traffic() const { return properties_.carries_traffic; }
@@ -60,7 +63,7 @@ class Topology {
   ResourceId next(const Packet& packet, ResourceId here) const {
     const ResourceId* round = round_of(packet.direction);
     ResourceId at = round[here.value];
-    if (!plan_.direct || visit_all_) return at;
+    if (!plan_.direct || (visit_all_ && !broadcasts())) return at;
     while (at != packet.owner && !wanted(packet, at)) at = round[at.value];
     return at;
   }
@@ -87,6 +90,12 @@ class Topology {
   /// Tells whether the packet has to be looked into at `here`; otherwise it passes.
   bool handles(const Packet& packet, ResourceId here) const {
     return visit_all_ ? packet.kind != PacketKind::kMemberships || here == packet.home : wanted(packet, here);
+  }
+  /// Resources other than its owner that have rays of a test packet.
+  std::uint32_t other_owners(const Packet& packet) const {
+    std::uint32_t others = 0;
+    for (const std::uint64_t word : packet.owners) others += static_cast<std::uint32_t>(std::popcount(word));
+    return others - (wanted(packet, packet.owner) ? 1 : 0);
   }
   /// Tells whether the packet has anything to do at `r`, leaving aside that `r` may be its owner.
   bool wanted(const Packet& packet, ResourceId r) const {

@@ -12,7 +12,7 @@ That the comparison can fail is tried in every run: each of LIES gives the model
 engine's, and some machine must then disagree.
 
 Left out, as in the page: any-hit calls, cull planes, bundles, bounding spheres, leaves held in nodes, faults,
-idle_resources_shade, distribute: random, bus, hierarchical, point_to_point, raster, traffic.
+idle_resources_shade, distribute: random, hierarchical, point_to_point, raster, traffic.
 """
 import argparse
 import copy

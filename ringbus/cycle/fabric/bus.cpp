@@ -36,16 +36,36 @@ void Bus::run(Cycle end) {
   }
 }
 
+void Bus::find_listeners(const Token& token, ResourceId from) {
+  const Packet& packet = packets_[token.packet.value];
+  listeners_.clear();
+  if (token.answers) {
+    listeners_.push_back(packet.owner.value);
+  } else if (packet.kind != PacketKind::kTest) {
+    listeners_.push_back(topology_.next(packet, from).value);
+  } else {
+    for (std::uint32_t r = 0; r < topology_.resources(); ++r)
+      if (r != from.value && (topology_.visits_all() || topology_.wanted(packet, ResourceId(r))))
+        listeners_.push_back(r);
+  }
+}
+
 void Bus::move_one(Cycle now) {
   for (std::size_t i = 0; i < in_.size(); ++i) {
     const std::size_t from = (turn_ + i) % in_.size();
     if (in_[from].next() > now) continue;
-    const Packet& packet = packets_[in_[from].front().packet.value];
-    OutPort& out = out_[topology_.next(packet, ResourceId(static_cast<std::uint32_t>(from))).value];
-    if (out.spare_places() <= 0) continue;
-    const Token token = in_[from].take(now);
-    out.push(token, now, false);
-    out.send(now);
+    find_listeners(in_[from].front(), ResourceId(static_cast<std::uint32_t>(from)));
+    if (std::any_of(listeners_.begin(), listeners_.end(),
+                    [&](std::uint32_t to) { return out_[to].spare_places() <= 0; }))
+      continue;
+    Token token = in_[from].take(now);
+    const Packet& packet = packets_[token.packet.value];
+    const bool heard = packet.kind == PacketKind::kTest && !token.answers;
+    for (const std::uint32_t to : listeners_) {
+      token.passes = heard && !topology_.wanted(packet, ResourceId(to));
+      out_[to].push(token, now, false);
+      out_[to].send(now);
+    }
     free_at_ = now + token.link_cycles;
     turn_ = from + 1;
     return;

@@ -8,8 +8,9 @@
 
 namespace carousel::ringbus::cycle {
 
-/// One medium for all: moves one packet at a time from any resource to any other. Resources take turns; a resource
-/// whose packet would find no place at its next stop is passed over.
+/// One medium for all: moves one packet at a time. A test packet goes from its owner to all resources that look at it
+/// at once, and an answer to the owner. Resources take turns; a resource whose packet would not find a place wherever
+/// it goes is passed over.
 class Bus final : public Hub {
  public:
   /// Ports by resource.
@@ -21,9 +22,12 @@ class Bus final : public Hub {
 
  private:
   void move_one(Cycle now);
+  /// Fills in listeners_ for a packet that comes from a resource.
+  void find_listeners(const Token& token, ResourceId from);
 
   const Topology& topology_;
   std::span<const Packet> packets_;
+  std::vector<std::uint32_t> listeners_;  // resources to which a packet goes
   std::size_t turn_ = 0;
   Cycle now_ = 0, free_at_ = 0;
 };

@@ -25,15 +25,19 @@ class PacketSize {
         data_(carry == PacketCarry::kData) {}
 
   std::uint32_t bytes(const Packet& packet, const ShapeMemory& memory, bool treelet) const {
-    const std::uint32_t rays = static_cast<std::uint32_t>(packet.members.size());
+    std::uint32_t bytes = answer_bytes(packet, static_cast<std::uint32_t>(packet.members.size()), treelet);
+    if (packet.kind == PacketKind::kTest && data_ && !treelet)
+      bytes += memory.shapes(packet.key, packet.lanes).bytes + memory.transform(packet.key.instance).bytes;
+    return bytes;
+  }
+  /// Bytes of an answer with `rays` of the packet's rays: without the shapes.
+  std::uint32_t answer_bytes(const Packet& packet, std::uint32_t rays, bool treelet) const {
     std::uint32_t bytes = 16 + 4 * rays;
     if (packet.kind != PacketKind::kTest) return bytes;
     if (ordered_)
       bytes += 12 * rays;
     else if (packet.key.ref.is_inner() && !treelet)
       bytes += rays + (entries_ ? 4 * accel::kMaxWidth : 0);
-    if (data_ && !treelet)
-      bytes += memory.shapes(packet.key, packet.lanes).bytes + memory.transform(packet.key.instance).bytes;
     return bytes;
   }
 

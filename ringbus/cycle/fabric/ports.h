@@ -120,6 +120,9 @@ class OutPortOf {
     return std::min(credit, std::max(free_at_, queue_.front().ready));
   }
 
+  /// Nothing can be sent until a credit comes.
+  bool awaits_credit() const { return credits_ == 0 && !queue_.empty(); }
+
   bool empty() const { return queue_.empty(); }
   std::size_t egress() const { return queue_.size(); }
   PacketId front() const { return queue_.front().token.packet; }  ///< of Tokens

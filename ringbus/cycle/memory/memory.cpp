@@ -27,7 +27,9 @@ Cycle Memory::next() const {
 }
 
 void Memory::run(Cycle end) {
-  for (Cycle now; (now = next()) < end;) {
+  for (next_ = next(); next_ < end;) {
+    const Cycle now = next_;
+    next_ = kNever;
     for (const Client& client : clients_) {
       while (client.requests->next() <= now) {
         moved_ = std::max(moved_, now * width_) + line_bytes_;
@@ -39,6 +41,7 @@ void Memory::run(Cycle end) {
         ++lines_;
         client.answers->send(ceil_div(moved_, width_) + answer_latency_, line);
       }
+      next_ = std::min(next_, client.requests->next());
     }
   }
 }

@@ -25,6 +25,7 @@ class Memory final : public Agent {
   Cycle next() const override;
   bool polled() const override { return false; }
   void run(Cycle end) override;
+  Cycle next_after_run() const override { return next_; }
   std::string describe() const override { return ""; }
 
   std::uint64_t lines() const { return lines_; }  ///< read
@@ -38,6 +39,7 @@ class Memory final : public Agent {
   std::vector<Client> clients_;
   std::uint64_t moved_ = 0;  // the channel is taken up to this byte of time, of which a cycle has width_
   std::uint64_t lines_ = 0, lines_written_ = 0;
+  Cycle next_ = 0;  // next(), at the end of the last run()
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -43,12 +43,18 @@ Cycle ShapeCache::next() const {
 }
 
 void ShapeCache::run(Cycle end) {
-  for (Cycle now; (now = next()) < end;) {
+  for (next_ = next(); next_ < end;) {
+    const Cycle now = next_;
     while (from_memory_.next() <= now) fill(from_memory_.take(), now);
-    for (std::uint32_t c = 0; c < clients_.size(); ++c)
-      while (clients_[c].requests->next() <= now) look_up(c, clients_[c].requests->take(), now);
+    next_ = from_memory_.next();
+    for (std::uint32_t c = 0; c < clients_.size(); ++c) {
+      Channel<FetchRequest>& requests = *clients_[c].requests;
+      while (requests.next() <= now) look_up(c, requests.take(), now);
+      next_ = std::min(next_, requests.next());
+    }
     for (; !answers_.empty() && answers_.top().ready <= now; answers_.pop())
       clients_[answers_.top().client].answers->send(now + answer_latency_, {answers_.top().tag});
+    if (!answers_.empty()) next_ = std::min(next_, answers_.top().ready);
   }
 }
 
@@ -90,27 +96,23 @@ void ShapeCache::look_up(std::uint32_t client, const FetchRequest& request, Cycl
       continue;
     }
     ++pending_[index].lines_missing;
-    std::vector<std::uint32_t>& waiting = missing_[line];
-    if (waiting.empty()) {
+    if (missing_.wait(line, index)) {
       to_memory_.send(looked_up + memory_latency_, line);
       ++statistics_.misses;
     } else {
       ++statistics_.merged;
     }
-    waiting.push_back(index);
   }
   if (pending_[index].lines_missing == 0) complete(index);
 }
 
 void ShapeCache::fill(std::uint64_t line, Cycle now) {
   cache_.insert(line);
-  const auto found = missing_.find(line);
-  for (const std::uint32_t index : found->second) {
+  missing_.come(line, [&](std::uint32_t index) {
     Pending& pending = pending_[index];
     pending.ready = std::max(pending.ready, now);
     if (--pending.lines_missing == 0) complete(index);
-  }
-  missing_.erase(found);
+  });
 }
 
 void ShapeCache::complete(std::uint32_t index) {
@@ -120,7 +122,7 @@ void ShapeCache::complete(std::uint32_t index) {
 }
 
 std::string ShapeCache::describe() const {
-  if (missing_.empty()) return "";
+  if (missing_.size() == 0) return "";
   return fmt::format("cache: {} lines on their way from memory", missing_.size());
 }
 

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <queue>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "core/config/config.h"
 #include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/memory/line_cache.h"
+#include "ringbus/cycle/memory/missing_lines.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/cycle/time/channel.h"
@@ -39,6 +39,7 @@ class ShapeCache final : public Agent {
   Cycle next() const override;
   bool polled() const override { return false; }
   void run(Cycle end) override;
+  Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
   using Statistics = CacheCounts;
@@ -74,7 +75,8 @@ class ShapeCache final : public Agent {
   std::uint64_t next_turn_ = 0;
   std::vector<Pending> pending_;
   std::vector<std::uint32_t> free_pending_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> missing_;  // line to pending requests
+  MissingLines missing_;  // with pending requests
+  Cycle next_ = 0;        // next(), at the end of the last run()
   Statistics statistics_;
 };
 

@@ -29,6 +29,7 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
       queues_(settings.shading.distribute, settings.workers, settings.seed),
       helpers_(clients_, settings.link),
+      jobs_(settings.workers),
       made_(settings.workers),
       load_free_(clients_.size()),
       id_wires_(clients_.size(), SideWire(settings.link, latency_)),
@@ -41,7 +42,7 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
 
 Cycle ShadingAgent::next() const {
   if (!started_) return 0;
-  Cycle first = jobs_.empty() ? kNever : jobs_.top().done;
+  Cycle first = ends_.empty() ? kNever : ends_.top().done;
   // When all is done nothing of importance comes, and a resource that stops then is not waited for.
   if (!done()) first = std::min(first, give_up_at_);
   for (const SidePorts& client : clients_) {
@@ -52,7 +53,7 @@ Cycle ShadingAgent::next() const {
 }
 
 void ShadingAgent::run(Cycle end) {
-  for (Cycle now; (now = next()) < end;) step(now);
+  while ((next_ = next()) < end) step(next_);
 }
 
 void ShadingAgent::step(Cycle now) {
@@ -91,16 +92,18 @@ bool ShadingAgent::finish_jobs(Cycle now) {
   shaded_.clear();
   helpers_.take_notes(now, shaded_);
   bool any = false;
-  for (; !jobs_.empty() && jobs_.top().done <= now; jobs_.pop()) {
-    const Job& job = jobs_.top();
+  for (; !ends_.empty() && ends_.top().done <= now; ends_.pop()) {
+    const auto [done, worker] = ends_.top();
+    Job& job = jobs_[worker];
     any = true;
-    busy_ += job.done - job.began;
-    idle_.push_back(job.worker);
-    queues_.set_in_work(job.worker, 0);
+    busy_ += done - job.began;
+    idle_.push_back(worker);
+    queues_.set_in_work(worker, 0);
     if (job.question) {
-      AnyHitAnswer answer{job.question->rays.slots};
+      AnyHitAnswer answer{std::move(job.question->rays.slots)};
       const Cycle arrival = answer_wires_[job.question->from].send(answer.bytes(), now);
       clients_[job.question->from].answers->send(arrival, std::move(answer));
+      job.question.reset();
       continue;
     }
     if (job.made == 0) {
@@ -110,8 +113,8 @@ bool ShadingAgent::finish_jobs(Cycle now) {
     making_ -= job.made;
     outstanding_ += job.made;
     emitted_ += job.made;
-    gathered_.insert(gathered_.end(), made_[job.worker].begin(), made_[job.worker].end());
-    made_[job.worker].clear();
+    gathered_.insert(gathered_.end(), made_[worker].begin(), made_[worker].end());
+    made_[worker].clear();
   }
   if (shaded_.empty()) return any;
   const std::size_t before = gathered_.size();
@@ -134,7 +137,10 @@ bool ShadingAgent::start_jobs(Cycle now) {
   bool any = false;
   // The worker that fell idle last comes first.
   for (std::size_t i = idle_.size(); i-- > 0;) {
-    if (!start_job(idle_[i], now)) continue;
+    if (!start_job(idle_[i], now)) {
+      if (queues_.empty()) break;  // there is nothing for the others either
+      continue;
+    }
     idle_.erase(idle_.begin() + static_cast<std::ptrdiff_t>(i));
     any = true;
   }
@@ -164,29 +170,30 @@ std::size_t ShadingAgent::take_camera_rays(std::uint32_t worker) {
 }
 
 bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
-  Job job;
+  Job& job = jobs_[worker];
   job.began = now;
-  job.worker = worker;
+  job.made = 0;
+  Cycle done = now;
   if (!questions_.empty()) {
     job.question = std::move(questions_.front());
     questions_.pop_front();
-    job.done = now + any_hit_cycles_ * job.question->rays.times;
+    done += any_hit_cycles_ * job.question->rays.times;
   } else if (const std::optional<RayResult> ray = queues_.take(worker)) {
     job.ray = *ray;
-    job.done = now + cycles_for(*ray);
+    done += cycles_for(*ray);
   } else if (job.made = take_camera_rays(worker); job.made > 0) {
-    job.done = now + shade_cycles_ * job.made;
+    done += shade_cycles_ * job.made;
   } else {
     return false;
   }
   queues_.set_in_work(worker, std::max<std::size_t>(1, job.made));
-  jobs_.push(job);
+  ends_.push({done, worker});
   return true;
 }
 
 void ShadingAgent::place(Cycle now) {
   if (draining_ > 0) return;
-  const bool full = gathered_.size() >= gather_, last = queues_.empty() && jobs_.empty() && helpers_.out() == 0;
+  const bool full = gathered_.size() >= gather_, last = queues_.empty() && ends_.empty() && helpers_.out() == 0;
   bool placed = machine_.control.place_waiting();
   if (full || (last && !gathered_.empty())) {
     if (bundled_) builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);

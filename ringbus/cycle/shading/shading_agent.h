@@ -47,6 +47,7 @@ class ShadingAgent final : public Agent {
   Cycle next() const override;
   bool polled() const override { return false; }
   void run(Cycle end) override;
+  Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
   /// No further ray comes that no other ray causes.
@@ -73,12 +74,16 @@ class ShadingAgent final : public Agent {
   };
   /// The present work of a shader worker.
   struct Job {
-    Cycle began = 0, done = 0;
-    std::uint32_t worker = 0;
+    Cycle began = 0;
     std::size_t made = 0;  // camera rays, in made_; 0: it shades `ray`, or answers `question`
     RayResult ray;
     std::optional<Question> question{};
-    bool operator>(const Job& o) const { return done != o.done ? done > o.done : worker > o.worker; }
+  };
+  /// Its end. Of jobs that end at one time that of the first worker goes first.
+  struct JobEnd {
+    Cycle done = 0;
+    std::uint32_t worker = 0;
+    bool operator>(const JobEnd& o) const { return done != o.done ? done > o.done : worker > o.worker; }
   };
 
   void step(Cycle now);
@@ -113,7 +118,8 @@ class ShadingAgent final : public Agent {
   std::deque<Question> questions_;  // go before any ray: their rays keep slots that could be free
   ShadeQueues queues_;
   ShadeHelpers helpers_;
-  std::priority_queue<Job, std::vector<Job>, std::greater<>> jobs_;
+  std::vector<Job> jobs_;  // by worker
+  std::priority_queue<JobEnd, std::vector<JobEnd>, std::greater<>> ends_;
   std::vector<std::uint32_t> idle_;  // workers, the next one last
   RayBatch gathered_;
   std::vector<RayBatch> made_;  // by worker: the camera rays of its job
@@ -130,6 +136,7 @@ class ShadingAgent final : public Agent {
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;
+  Cycle next_ = 0;  // next(), at the end of the last run()
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -129,7 +129,7 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   stack_held_ += held;
   stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);
   stack_.ray_peak_bytes = std::max(stack_.ray_peak_bytes, held);
-  tests_.push({tester_.ray(now, counts), next_turn_++, slot});
+  tests_.push({tester_.ray(tester_.read(now, 1), counts), next_turn_++, slot});
   const PacketMember member{thread.ray, 0};
   record({.kind = EventKind::kTest,
           .resource = id_,

@@ -22,6 +22,12 @@ class ResourceAgent : public Agent {
   virtual void close(Cycle end) = 0;
   /// After close().
   virtual TileResult result() const = 0;
+  /// How long its parts have been busy so far, as in result().
+  struct Busy {
+    PerUnit<Cycle> units{};
+    Cycle ray_reads = 0, dispatch = 0;
+  };
+  virtual Busy busy() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
   /// Lines of shape data for which it has asked its cache.

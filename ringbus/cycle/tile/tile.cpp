@@ -29,6 +29,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       issue_places_(static_cast<std::size_t>(settings.memory.fetch_ahead) + 1),
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
+      broadcasts_(machine.topology.broadcasts()),
       fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
       contexts_fetch_(!machine.stays &&
                       (fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet)),
@@ -42,6 +43,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       in_test_(machine.stores[id.value]->slots(), contexts_.size() > 1 && settings.resource.bundles.size == 0),
       spill_memory_(id,
                     static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
+      answers_due_(broadcasts_ ? machine.packets_per_direction : 0),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_) {
   using Kind = FaultsConfig::Resource::Kind;
@@ -72,8 +74,15 @@ Cycle Tile::next_beside_ring() const {
   consider(shapes_.next());
   consider(help_.next());
   if (ports_.answers != nullptr) consider(ports_.answers->next());
-  if (may_send_)
-    for (const OutPort& out : ports_.out) consider(out.next(wants_credit()));
+  return may_send_ ? std::min(first, next_credit()) : first;
+}
+
+// The time at which a packet can leave, as far as that is known, or at which a credit comes that is waited for.
+Cycle Tile::next_credit() const {
+  const bool wanted = wants_credit();
+  Cycle first = kNever;
+  for (const OutPort& out : ports_.out)
+    if (const Cycle at = out.next(wanted); at > now_ && at < first) first = at;
   return first;
 }
 
@@ -107,7 +116,10 @@ void Tile::run(Cycle end) {
     if (const Cycle event = visits_.run_before(std::min(now, end)); event != kNever) {
       now = event;
     } else {
-      if (now >= end) return;
+      if (now >= end) {
+        next_ = std::min(now, visits_.next());
+        return;
+      }
       // Not with the bubble rule, under which a packet that waits to be injected must see every credit. Where a ray's
       // test ends in this cycle, it comes first, as in every step.
       if (now < rest && now < visits_.next() && !machine_.flow.bubble() && cut_through(now, true)) continue;
@@ -126,17 +138,19 @@ void Tile::step(Cycle now) {
   shapes_.take_answers(now);
   take_spilled();
   serve(now);
-  start_tests(now);
+  if (starts_later_) start_tests(now);
   take_opacities(now);
   take_new_rays(now);
-  bool again = true;
-  while (again) {
+  served_ = true;
+  for (bool again = true; again;) {
     again = finish_tests(now);
     again |= help_.step(now, testers_free());
     again |= cut_through(now, false);
     again |= handle(now);
     again |= admit();
-    again |= fill_issue(now);
+    // The issue queue takes no more than before if only packets have been sent since.
+    if (again || served_ || !logic_.admission.empty()) again |= fill_issue(now);
+    served_ = false;
     again |= send(now);
   }
   hand_over(now);
@@ -152,11 +166,14 @@ void Tile::step(Cycle now) {
   const TileState state = classify();
   ledger_.enter(state, now);
   help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
-  if (const std::optional<std::uint64_t> ripe = resource_.next_ripe(); ripe && issue_.size() < issue_places_)
-    next_partial_ = std::min<Cycle>(next_partial_, *ripe);
+  if (partial_ == Partial::kAfter && issue_.size() < issue_places_)
+    next_partial_ = std::min(next_partial_, resource_.next_ripe().value_or(kNever));
   next_here_ = next_egress();
-  may_send_ = wants_credit() ||
-              std::any_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return !out.empty(); });
+  may_send_ = awaits_credit_ = wants_credit();
+  for (const OutPort& out : ports_.out) {
+    may_send_ |= !out.empty();
+    awaits_credit_ |= out.awaits_credit();
+  }
 }
 
 TileState Tile::classify() const {
@@ -248,6 +265,10 @@ TileResult Tile::result() const {
   t.round_trips = trips_.latency();
   t.packet_cycles = trips_.packet_cycles();
   return t;
+}
+
+ResourceAgent::Busy Tile::busy() const {
+  return {tester_.busy_units(), tester_.busy_reads(), dispatch_busy_};
 }
 
 bool Tile::at_rest() const {

@@ -22,6 +22,7 @@
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
 #include "ringbus/packets/statistics_sink.h"
+#include "ringbus/protocol/answers.h"
 #include "ringbus/protocol/port_logic.h"
 #include "ringbus/resource/resource.h"
 #include "ringbus/results/trace.h"
@@ -51,13 +52,16 @@ class Tile final : public ResourceAgent {
   Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings, Ports ports);
 
   Cycle next() const override;
-  bool polled() const override { return may_send_; }  // no wakeup tells of credits
+  bool polled() const override { return awaits_credit_; }  // no wakeup tells of credits
+  Cycle unannounced() const override { return next_credit(); }
   void run(Cycle end) override;
+  Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
   Cycle last_event() const override { return now_; }
   void close(Cycle end) override;
   TileResult result() const override;
+  Busy busy() const override;
   std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
@@ -94,6 +98,7 @@ class Tile final : public ResourceAgent {
   std::uint64_t hops() const;
   Cycle next_arrival() const;
   Cycle next_beside_ring() const;
+  Cycle next_credit() const;
   Cycle next_egress() const;
   bool wants_credit() const;
   bool at_rest() const;
@@ -149,6 +154,7 @@ class Tile final : public ResourceAgent {
   void end_test(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
+  void take_answer(std::size_t d, Cycle now);
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
@@ -177,16 +183,19 @@ class Tile final : public ResourceAgent {
   Cycle link_bytes_, ids_per_cycle_;
   SideWire question_wire_;
   std::size_t issue_places_;
-  bool visit_all_, cuts_through_, fetch_by_resource_;
+  bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;
   bool contexts_fetch_;  // packets travel, and wait in the contexts of others for shapes
   Partial partial_;
   Cycle memory_latency_;  // of a miss
   bool starts_later_;  // tests begin, and take units, when dispatch has read the packet; otherwise that is known before
 
   Cycle now_ = 0;
+  Cycle next_ = 0;            // next(), at the end of the last run()
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
+  bool served_ = false;       // a test has begun since the issue queue was filled
   bool may_send_ = false;     // likewise: a packet waits to leave, or for credits
-  Cycle dispatch_free_ = 0;   // later than dispatch_ends_ when it pauses
+  bool awaits_credit_ = false;
+  Cycle dispatch_free_ = 0;                                           // later than dispatch_ends_ when it pauses
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::deque<Issue> issue_;
@@ -206,6 +215,7 @@ class Tile final : public ResourceAgent {
   std::size_t spills_out_ = 0;  // reads under way
   HitBatch done_;               // to be handed over
   std::vector<std::uint32_t> done_slots_;
+  std::vector<std::uint32_t> answers_due_;  // with a bus: of each packet of its own
   RoundTrips trips_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;

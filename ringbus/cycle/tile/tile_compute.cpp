@@ -30,7 +30,8 @@ ShapeNeed Tile::shape_data(const Packet& packet, bool transform) const {
 
 void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   Packet& packet = machine_.packet(id);
-  const TestOutcome outcome = resource_.test(packet);
+  const bool answers = broadcasts_ && packet.owner != id_;
+  const TestOutcome outcome = resource_.test(answers ? begin_answer(machine_, id_, id) : packet);
   context.packet = id;
   context.counts = outcome.counts;
   context.reads = outcome.reads;
@@ -80,6 +81,8 @@ void Tile::compute(Context& context, Cycle at) {
 void Tile::serve(Cycle now) {
   visits_.serve(now);
   visits_.run(now);
+  if (visits_.others().empty()) return;
+  served_ = true;
   for (const ShapeBuffer::User context : visits_.others()) compute(contexts_[context], now);
   visits_.others().clear();
 }

@@ -61,6 +61,7 @@ void Tile::read_spilled(Issue& issue, Cycle now) {
 }
 
 void Tile::take_spilled() {
+  if (shapes_.spill_answers().empty()) return;
   for (const std::uint32_t user : shapes_.spill_answers()) {
     --spills_out_;
     for (Issue& issue : issue_)

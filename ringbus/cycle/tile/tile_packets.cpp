@@ -9,11 +9,28 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const Packet& packet = machine_.packet(id);
   OutPort& out = out_for(packet);
   if (reserved) out.release();
-  Token token{id, 0, 1, static_cast<std::uint16_t>(packet.members.size())};
-  token.size_bytes = packet_size_.bytes(packet, memory_, resource_.is_treelet(packet.key));
+  const bool test = packet.kind == PacketKind::kTest, treelet = resource_.is_treelet(packet.key);
+  const bool answers = broadcasts_ && test && packet.owner != id_;
+  const std::size_t rays = answers ? rays_in_answer(machine_, id_, id) : packet.members.size();
+  Token token{id, 0, 1, static_cast<std::uint16_t>(rays)};
+  token.answers = answers;
+  token.size_bytes = answers ? packet_size_.answer_bytes(packet, static_cast<std::uint32_t>(rays), treelet)
+                             : packet_size_.bytes(packet, memory_, treelet);
   token.link_cycles = static_cast<std::uint16_t>(ceil_div(token.size_bytes, link_bytes_));
+  if (broadcasts_ && test && !answers)
+    answers_due_[id.value - machine_.first_packet(id_).value] = machine_.topology.other_owners(packet);
   token.skip = machine_.topology.skip(packet, id_);
   out.push(token, ready, !visit_all_ && token.skip > 0);
+}
+
+/// One of the resources that have heard a packet of this one has answered.
+void Tile::take_answer(std::size_t d, Cycle now) {
+  const Token token = ports_.in[d].take(now);
+  occupy_dispatch(now, token.rays);
+  if (--answers_due_[token.packet.value - machine_.first_packet(id_).value] > 0) return;
+  if (logic_.only_forwards()) return discard_at_owner(token.packet);
+  collect_answers(machine_, token.packet);
+  retire_at_owner(token.packet);
 }
 
 void Tile::retire_at_owner(PacketId id) {
@@ -76,6 +93,18 @@ bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
 bool Tile::handle_arrival(std::size_t d, Cycle now) {
   InPort& in = ports_.in[d];
   if (in.front().skip > 0) return pass_through_dispatch(d, now);
+  if (in.front().answers) {
+    take_answer(d, now);
+    return true;
+  }
+  if (in.front().passes) {
+    // Its owner does not wait for this resource, and may have issued it anew.
+    const Token token = in.take(now);
+    ++passed_;
+    passed_rays_ += token.rays;
+    occupy_dispatch(now, token.rays);
+    return true;
+  }
   const PacketId id = in.front().packet;
   Packet& packet = machine_.packet(id);
   const PacketFate fate = logic_.fate(packet);
@@ -88,9 +117,12 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   }
   OutPort& out = out_for(packet);
   if (!out.has_place()) return false;
+  // With a bus, others hear the packet at the same time, and its owner waits for the answers of those with rays of it.
+  const bool heard = broadcasts_ && packet.kind == PacketKind::kTest;
   if (logic_.only_forwards()) {
     in.take(now);
     occupy_dispatch(now, 0);
+    if (heard) begin_answer(machine_, id_, id);
     depart(id, dispatch_free_, false);
     return true;
   }

@@ -18,8 +18,13 @@ class Agent {
   /// Tells whether next() may change without an announcement in the WakeupTable; false if its last answer holds until
   /// something is sent on a connected channel.
   virtual bool polled() const { return true; }
+  /// The same as next() where only what is not announced has changed since the last run.
+  virtual Cycle unannounced() const { return next(); }
   /// Does everything there is to do before `end`, in the order of time.
   virtual void run(Cycle end) = 0;
+  /// next(), as run() has left it. What has arrived since then is announced, and what unannounced() will tell may be
+  /// left out by one that is polled().
+  virtual Cycle next_after_run() const { return polled() ? kNever : next(); }
   /// One line that says what it holds and waits for, for the report of a machine that got stuck; empty when it is at
   /// rest.
   virtual std::string describe() const = 0;

@@ -141,7 +141,7 @@ class WindowRun {
     }
     Cycle first = kNever;
     for (std::size_t i = 0; i < wake.size(); ++i) {
-      if (schedule.polled[i]) wake[i] = parts_[thread][i]->next();
+      if (schedule.polled[i]) wake[i] = std::min(wake[i], parts_[thread][i]->unannounced());
       first = std::min(first, wake[i]);
     }
     return first;
@@ -155,7 +155,7 @@ class WindowRun {
           continue;
         }
         agents[i]->run(end);
-        schedule.wake[i] = agents[i]->next();
+        schedule.wake[i] = agents[i]->next_after_run();
         schedule.polled[i] = agents[i]->polled();
       }
     } catch (...) {

@@ -59,6 +59,7 @@ void CollectionStore::begin_to_wait(std::uint32_t index) {
 }
 
 void CollectionStore::ripen(std::uint64_t now) {
+  if (settings_.ripe_after == 0) return;
   now_ = now;
   for (std::optional<std::uint64_t> at; (at = next_ripe()) && *at <= now; waiting_.pop_front()) {
     Collection& c = collections_[waiting_.front().collection];

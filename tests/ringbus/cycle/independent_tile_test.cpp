@@ -115,6 +115,27 @@ TEST(IndependentTile, OneRayTakesTheSumOfItsLatencies) {
   EXPECT_GT(transforms, 0u);
 }
 
+// Every strip that a ray is tested against costs a read of its record, a cycle if the port reads one a cycle.
+TEST(IndependentTile, RayReadsTakeTime) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 50, 1);
+  for (std::size_t ray = 0; ray < 20; ++ray) {
+    Config config = independent_machine();
+    LoneTile at_once(scene, config);
+    config.rays.reads_per_cycle = 1;
+    LoneTile one_a_cycle(scene, config);
+    for (LoneTile* lone : {&at_once, &one_a_cycle}) {
+      lone->load(ray, 1);
+      lone->run(100);
+    }
+    // Units enough for a strip at once: a bank is busy for a cycle a strip, and each strip is of boxes or triangles.
+    const TileResult tile = at_once.result();
+    const Cycle strips = tile.units[UnitKind::kBox].busy + tile.units[UnitKind::kTriangle].busy;
+    EXPECT_EQ(tile.ray_reads.busy, 0u);
+    EXPECT_EQ(one_a_cycle.result().ray_reads.busy, strips);
+    EXPECT_EQ(one_a_cycle.last_completed, at_once.last_completed + strips);
+  }
+}
+
 TEST(IndependentTile, AsksForAStripOnceHoweverManyWantIt) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 50, 1);
   LoneTile one(scene, independent_machine()), ten(scene, independent_machine());

@@ -116,8 +116,8 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
   }
 }
 
-// Each class has a machine in which it is scarce: relaxing it changes the configuration in a way that the machine
-// notices. Before issue 16 some changed nothing, and many keys that cost hardware had no class.
+// Each class has a machine that it limits: relaxing it makes the run shorter. Before issue 16 some lifts changed
+// nothing, and many keys that cost hardware had no class.
 TEST(WhatIf, EveryLiftIsNoticed) {
   const std::vector<Plant> slow{
       {"test_latency",
@@ -170,7 +170,7 @@ TEST(WhatIf, EveryLiftIsNoticed) {
     ASSERT_NE(lift, all.end()) << plant.name;
     const cycle::Cycle before = run_whole(scene, config).cycle->cycles,
                        after = run_whole(scene, lift->relaxed).cycle->cycles;
-    EXPECT_NE(before, after) << plant.name;
+    EXPECT_LT(after, before) << plant.name;
   }
 }
 

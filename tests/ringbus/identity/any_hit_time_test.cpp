@@ -27,7 +27,8 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
   config.topology.resources = 1;
   config.topology.link.bytes_per_cycle = 64;  // the question, of 52 bytes, leaves in a cycle
   config.engine.kind = EngineKind::kCycle;
-  config.testers.units[UnitKind::kTriangle].units = 4;  // all three answers come at once
+  // All three answers come at once: three tests, and four passes each for their distances in 64 bits.
+  config.testers.units[UnitKind::kTriangle].units = 15;
   accel::Accel accel = accel::build(blended, config.bvh, *make_sequential_executor());
   accel.any_hit = &never;
   ASSERT_TRUE(accel.calls_any_hit());

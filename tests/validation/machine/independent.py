@@ -58,7 +58,7 @@ class IndependentTile:
 
     def test(self, thread, now):
         counts = thread.walk.test(thread.node)
-        end = self.testers.ray(now, counts, counts.inversions)
+        end = self.testers.ray(self.testers.read(now, 1), counts, counts.inversions)
         self.turn += 1
         heapq.heappush(self.tests, (end, self.turn, thread))
         self.clock.wake(end)

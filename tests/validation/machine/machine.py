@@ -27,7 +27,7 @@ class Machine:
         shared = config["memory"]["shared_by"]
         caches = [Cache(config, self.clock, shapes[first:first + shared]) for first in range(0, resources, shared)]
         self.shading = Shading(self, controls)
-        self.parts = [*self.tiles, *caches, Memory(config, caches), self.shading]
+        self.parts = [*self.tiles, *ends[resources:], *caches, Memory(config, caches), self.shading]
 
     def run(self):
         """The cycle at which each ray has been shaded, by its name."""

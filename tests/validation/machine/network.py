@@ -1,7 +1,7 @@
 """Links, and who is linked to whom ("Links")."""
 from collections import deque
 
-from .clock import Channel, ceil_div
+from .clock import Channel, ceil_div, way_back, way_there
 
 
 class Packet:
@@ -17,13 +17,17 @@ class Packet:
         self.next = []            # ordered traversal: one a ray
         self.owners = set()
         self.blocks = 0           # of collection storage that its retirement may take
+        self.due = 0              # on a bus: answers that have not come
 
 
 class Token:
     """A packet on a link, with the number of resources to pass before one that has work with it."""
 
-    def __init__(self, packet, skip, cycles):
+    def __init__(self, packet, skip, cycles, rays=0, answers=False, passes=False):
         self.packet, self.skip, self.cycles = packet, skip, cycles
+        self.rays = rays        # on a bus: that it has for those who hear it
+        self.answers = answers  # on a bus, an answer on its way to the packet's owner
+        self.passes = passes    # on a bus, heard by a resource that has none of its rays
 
 
 class InPort:
@@ -81,8 +85,9 @@ class Topology:
         self.resources, self.shape = t["resources"], t["shape"]
         self.visit_all = t["visit"] == "all"
         forward, backward = 1, self.resources - 1
+        self.bus = self.shape == "bus"
         self.steps = {"ring": [forward], "bidirectional": [forward, backward], "independent": [forward],
-                      "multi_ring": [forward] * t["rings"]}[self.shape]
+                      "bus": [forward], "multi_ring": [forward] * t["rings"]}[self.shape]
         self.directions = len(self.steps)
         depth = t["link"]["depth"]
         self.in_flight = depth if t["flow"] == "credits" else min(depth * self.resources, 256)
@@ -96,13 +101,15 @@ class Topology:
     def travels(self, packet):
         if self.resources == 1:
             return False
-        if self.visit_all:
+        if self.visit_all and not self.bus:
             return True
         if packet.memberships:
             return packet.home != packet.owner
         return any(owner != packet.owner for owner in packet.owners)
 
     def skip(self, packet, here):
+        if self.bus:
+            return 0
         at, skip = self.next(here, packet.direction), 0
         while at != packet.owner and not self.wanted(packet, at):
             at, skip = self.next(at, packet.direction), skip + 1
@@ -117,8 +124,9 @@ class PacketSize:
         self.data = config["packets"]["carry"] == "data"
         self.width = config["topology"]["link"]["bytes_per_cycle"]
 
-    def cycles(self, packet, treelet):
-        n = len(packet.rays)
+    def cycles(self, packet, treelet, answered=None):
+        """`answered`: rays of an answer on a bus, which brings no shapes."""
+        n = len(packet.rays) if answered is None else answered
         size = 16 + 4 * n
         if not packet.memberships:
             node = self.nodes[packet.node]
@@ -126,7 +134,7 @@ class PacketSize:
                 size += 12 * n
             elif node.inner and not treelet:
                 size += n + (32 if self.entries else 0)
-            if self.data and not treelet:
+            if self.data and not treelet and answered is None:
                 size += node.shapes_of(packet.lane)[1] + node.transform[1]
         return ceil_div(size, self.width)
 
@@ -134,6 +142,8 @@ class PacketSize:
 def connect(clock, topology, link, places):
     """The ports of each resource, by direction: [(in ports, out ports)]."""
     ends = [([None] * topology.directions, [None] * topology.directions) for _ in range(topology.resources)]
+    if topology.bus and topology.resources > 1:
+        return connect_bus(clock, topology, link, ends)
     if topology.resources == 1 or topology.shape == "independent":
         return [([], []) for _ in range(topology.resources)]
     for r in range(topology.resources):
@@ -142,3 +152,56 @@ def connect(clock, topology, link, places):
             ends[r][1][d] = OutPort(clock, packets, credits, link["latency_cycles"], link["depth"], places)
             ends[topology.next(r, d)][0][d] = InPort(packets, credits, link["latency_cycles"])
     return ends
+
+
+def connect_bus(clock, topology, link, ends):
+    """Likewise; and the bus, behind them."""
+    there, back = way_there(link["latency_cycles"]), way_back(link["latency_cycles"])
+    hub_in, hub_out = [], []
+    for r in range(topology.resources):
+        up, up_credits, down, down_credits = (Channel(clock) for _ in range(4))
+        ends[r][1][0] = OutPort(clock, up, up_credits, there, link["depth"], float("inf"))
+        hub_in.append(InPort(up, up_credits, there))
+        hub_out.append(OutPort(clock, down, down_credits, back, link["depth"], float("inf")))
+        ends[r][0][0] = InPort(down, down_credits, back)
+    return [*ends, Bus(clock, topology, hub_in, hub_out)]
+
+
+class Bus:
+    """One medium that all resources hear ("A bus")."""
+
+    def __init__(self, clock, topology, in_ports, out_ports):
+        self.clock, self.topology, self.in_ports, self.out_ports = clock, topology, in_ports, out_ports
+        self.turn = self.free_at = 0
+
+    def step(self, now):
+        for out in self.out_ports:
+            out.take_credits(now)
+        if self.free_at > now:
+            return
+        count = len(self.in_ports)
+        for i in range(count):
+            here = (self.turn + i) % count
+            if not self.in_ports[here].ready(now):
+                continue
+            token = self.in_ports[here].front()
+            listeners = self.listeners(token, here)
+            if any(self.out_ports[r].spare_places() <= 0 for r in listeners):
+                continue
+            self.in_ports[here].take(now)
+            packet = token.packet
+            for r in listeners:
+                passes = not token.answers and not packet.memberships and r not in packet.owners
+                self.out_ports[r].push(Token(packet, 0, token.cycles, token.rays, token.answers, passes), now, False)
+                assert self.out_ports[r].send(now)
+            self.free_at, self.turn = now + token.cycles, here + 1
+            self.clock.wake(self.free_at)
+            return
+
+    def listeners(self, token, here):
+        packet, t = token.packet, self.topology
+        if token.answers:
+            return [packet.owner]
+        if packet.memberships:
+            return [packet.home if here == packet.owner else packet.owner]
+        return [r for r in range(t.resources) if r != here and (t.visit_all or r in packet.owners)]

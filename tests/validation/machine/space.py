@@ -55,4 +55,6 @@ def draw(seed, index):
         config["packets"].update(shapes="strip", carry="reference")
         config["collections"].update(traversal="spread", home="issuer")
         config["memory"]["fetch"] = "resource"
+    elif r.random() < 0.15:
+        config["topology"]["shape"] = "bus"
     return config

@@ -45,7 +45,7 @@ class Tile(Issues, Tests):
         self.starts_later = self.fetch_by_resource or config["collections"]["traversal"] == "treelet"
         self.partial = config["collections"]["partial"]
         self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
-        self.bubble = config["topology"]["flow"] == "bubble"
+        self.bubble = config["topology"]["flow"] == "bubble" and not self.topology.bus
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
         self.contexts = [Context() for _ in range(config["testers"]["contexts"])]
         each = (config["testers"]["contexts"] + 1 + config["memory"]["fetch_ahead"] if self.stays
@@ -121,7 +121,7 @@ class Tile(Issues, Tests):
 
     def cut_through(self, now):
         moved = False
-        if self.topology.visit_all:
+        if self.topology.visit_all or self.topology.bus:
             return moved
         for port, out in zip(self.in_ports, self.out_ports):
             while port.ready(now) and port.front().skip > 0 and out.has_place():
@@ -154,6 +154,17 @@ class Tile(Issues, Tests):
             self.dispatch(now, len(packet.rays))
             out.push(token, self.dispatch_free, False)
             return True
+        if token.passes:
+            port.take(now)
+            self.dispatch(now, token.rays)
+            return True
+        if token.answers:
+            port.take(now)
+            self.dispatch(now, token.rays)
+            packet.due -= 1
+            if packet.due == 0:
+                self.retire(packet, now)
+            return True
         if packet.owner == self.number:
             port.take(now)
             self.dispatch(now, len(packet.rays))
@@ -179,10 +190,22 @@ class Tile(Issues, Tests):
         return True
 
     def depart(self, packet, ready):
+        if self.topology.bus:
+            return self.say(packet, ready)
         skip = self.topology.skip(packet, self.number)
         cycles = self.size.cycles(packet, self.resource.traversal.is_treelet(packet.node))
         self.out_ports[packet.direction].push(Token(packet, skip, cycles), ready,
                                               not self.topology.visit_all and skip > 0)
+
+    def say(self, packet, ready):
+        """To all who hear it, or to the packet's owner the answer for the rays that live here."""
+        treelet, tests = self.resource.traversal.is_treelet(packet.node), not packet.memberships
+        answers = tests and packet.owner != self.number
+        rays = len(self.resource.local_members(packet)) if answers else len(packet.rays)
+        if tests and not answers:
+            packet.due = len(packet.owners - {self.number})
+        cycles = self.size.cycles(packet, treelet, rays if answers else None)
+        self.out_ports[0].push(Token(packet, 0, cycles, rays, answers), ready, False)
 
     def retire(self, packet, now):
         self.trace.note(now, self.number, "retire", packet.number, len(packet.rays))
