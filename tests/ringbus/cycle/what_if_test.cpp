@@ -39,6 +39,7 @@ Config generous_machine() {
 struct Plant {
   std::string name;
   std::function<void(Config&)> make;
+  double longer = 0;  ///< by how much the lift may make the run longer, where the class does not limit the machine
 };
 
 std::vector<Plant> plants() {
