@@ -82,6 +82,7 @@ class AccelBuilder {
           sources_.push_back(&mesh);
         }
         blas_of_[i] = *shared;
+        accel_.promoted_instances += accel_.instances[i].transform.promoted;
       } else {
         if (!mesh.spheres.empty())
           throw SceneError(scene_.name, "",

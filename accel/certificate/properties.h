@@ -13,8 +13,12 @@ Property box_property();
 Property nested_boxes_property();
 /// One triangle: crossed or not, t, u and v.
 Property triangle_property();
+/// The distance of a triangle that is met is off by no more than the level's bound.
+Property distance_property();
 /// From inside a closed mesh, aimed at its edges and vertices, something is hit.
 Property closed_mesh_property();
+/// The same of a mesh in an instance, up to the condition at which the promise ends.
+Property placed_mesh_property();
 /// Points and directions brought to an instance's space are off by no more than the level's bound.
 Property transform_property();
 /// An instance's world box holds all points of the model's box.

@@ -68,14 +68,16 @@ void judge_transform(const CaseValues& values, std::span<const AccuracyConfig> l
   const double origin_terms = QuadInverse::norm(of_points.terms(point)),
                along_terms = QuadInverse::norm(of_directions.terms(direction));
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    const TransformLevel level = levels[i].transform;
-    if (!make_transform(m, transform, level)) continue;
+    if (!make_transform(m, transform, levels[i].transform)) continue;
+    const TransformLevel level = level_for(m.linear, levels[i].transform);
     const Ray model = transform.to_model({point, 0, direction, kInfinity});
     const double off = QuadInverse::distance(model.origin, origin),
                  turned = QuadInverse::distance(model.direction, along);
     out[i].applies = true;
-    out[i].broken =
-        !(off <= allowed(level, 5, size, origin_terms)) || !(turned <= allowed(level, 4, length, along_terms));
+    // A position that is no ray's origin, such as a light's, is the same point.
+    out[i].broken = !(off <= allowed(level, 5, size, origin_terms)) ||
+                    !(turned <= allowed(level, 4, length, along_terms)) ||
+                    transform.position_to_model(point) != model.origin;
     if (size > 0) out[i].error = off / size;
     if (story != nullptr)
       *story = {fmt::format("origin {}, direction {}", text(model.origin), text(model.direction)),
@@ -139,7 +141,7 @@ void judge_world_box(const CaseValues& values, std::span<const AccuracyConfig> l
 Property transform_property() {
   return {"transform",
           5,
-          "origin and direction in model space are off by no more than the level's bound",
+          "origin, any position and direction in model space are off by no more than the level's bound",
           "of the origin's length",
           {AccuracyKey::kTransform},
           {{"linear", 9}, {"translation", 3}, {"point", 3}, {"direction", 3}},

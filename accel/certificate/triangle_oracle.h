@@ -21,10 +21,10 @@ class TriangleOracle {
   using Int = boost::multiprecision::cpp_int;
 
   TriangleOracle(const Ray& ray, const std::array<Vec3, 3>& p) {
-    int least = 1000;
+    int& least = least_;
     for (const Vec3* v : {&ray.origin, &ray.direction, &p[0], &p[1], &p[2]})
       for (int a = 0; a < 3; ++a) least = std::min(least, lowest_bit((*v)[a]));
-    const auto vector = [least](const Vec3& v) {
+    const auto vector = [&least](const Vec3& v) {
       return IVec{integer(v.x, least), integer(v.y, least), integer(v.z, least)};
     };
     const IVec corner = vector(p[0]), e1 = sub(vector(p[1]), corner), e2 = sub(vector(p[2]), corner);
@@ -51,6 +51,8 @@ class TriangleOracle {
   double t() const { return facing_ == 0 ? kInfinity : big_quotient(depth_, facing_); }
   double u() const { return whole_ == 0 ? kInfinity : big_quotient(second_, whole_); }
   double v() const { return whole_ == 0 ? kInfinity : big_quotient(third_, whole_); }
+  /// Direction times the cross product of the edges, rounded: how much of its area the triangle shows.
+  double facing() const { return std::ldexp(facing_.convert_to<double>(), 3 * least_); }
   /// Sign of the exact t - x.
   int compare_t(float x) const { return Int((depth_ << 200) - integer(x, -200) * facing_).sign() * facing_.sign(); }
 
@@ -97,6 +99,7 @@ class TriangleOracle {
   }
 
   Int depth_, facing_, whole_, second_, third_;
+  int least_ = 1000;  // everything is a multiple of 2 to this power
   bool hit_ = false;
 };
 

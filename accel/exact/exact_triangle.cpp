@@ -97,6 +97,8 @@ float nearest_quotient(const Expansion& n, const Expansion& d) {
   return (side > 0 || (side == 0 && !low_is_even) ? high : low) + 0.0f;
 }
 
+thread_local std::uint64_t volumes = 0;
+
 bool finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
@@ -124,6 +126,7 @@ bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, NearestCrossin
   const auto settle = [&](int k) {
     if (is_exact[k]) return;
     is_exact[k] = true;
+    ++volumes;
     add_volume(d, nullptr, corner[(k + 2) % 3], corner[(k + 1) % 3], exact[k]);
   };
   for (int k = 0; k < 3; ++k) {
@@ -149,10 +152,15 @@ bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, NearestCrossin
   Expansion exact_sum = exact[0], exact_depth;
   exact_sum.add(exact[1]);
   exact_sum.add(exact[2]);
+  ++volumes;
   add_volume(corner[0].nearest, corner[0].rest, corner[2], corner[1], exact_depth);
   out = {nearest_quotient(exact_depth, exact_sum), nearest_quotient(exact[1], exact_sum),
          nearest_quotient(exact[2], exact_sum)};
   return true;
+}
+
+std::uint64_t exact_volumes() {
+  return volumes;
 }
 
 int exact_facing(const Vec3& direction, const std::array<Vec3, 3>& p) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "core/types/ray.h"
 
@@ -20,6 +21,10 @@ struct NearestCrossing {
 /// that exactly lies in a range of floats is lost.
 /// The function is ten to a hundred times slower for a ray that meets an edge exactly.
 bool exact_triangle(const Ray& ray, const std::array<Vec3, 3>& p, NearestCrossing& out);
+
+/// The volumes that exact_triangle() has computed by exact arithmetic in this thread, because doubles did not decide a
+/// sign or a nearest float: the hardware's fall-back, which the caller counts by difference.
+std::uint64_t exact_volumes();
 
 /// The side that the triangle shows to rays of that direction: 1 for the front, where its corners run
 /// counter-clockwise, -1 for the back; 0 for a triangle seen edge-on or without area, and for anything not finite.

@@ -77,6 +77,7 @@ template <class Slab>
   float entry;
   slab(Slab(ray, far_widening(accel.accuracy.box)), node.world, kInfinity, entry);
   ++counts.transforms;
+  counts.transforms_in_double += node.transform.promoted;
   new (frame) LocalRay<Slab>(accel.accuracy, node.transform.to_model(ray), instance, entry, record, counts);
 }
 

@@ -17,6 +17,7 @@
 #include "accel/primitive/has_non_opaque.h"
 #include "accel/primitive/local_ray.h"
 #include "accel/primitive/moller_trumbore-inl.h"
+#include "accel/primitive/precise_crossing.h"
 #include "accel/primitive/sphere_hit.h"
 #include "accel/primitive/watertight-inl.h"
 #include "accel/structure/node.h"
@@ -44,46 +45,97 @@ HWY_INLINE Aabb box_of(const std::array<Vec3, 3>& p) {
   return box;
 }
 
-/// Lowers `hit` to the smallest (t', instance, primitive) of the triangles of `block` that are crossed, where t' also
-/// counts the entries of the triangle's own box and of the instance's world box. True when the hit changed.
+/// Lowers `hit` to a crossing of the triangle `p` in lane `l`, if its (t', instance, primitive) is smaller and nothing
+/// lets the ray pass: t' also counts the entries of the triangle's own box and of the instance's world box.
+template <class Slab>
+HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, int l, const std::array<Vec3, 3>& p,
+                      const Hit& crossing, float entry, const LocalRay<Slab>& ray, Hit& hit) {
+  Hit found = crossing;
+  found.t = entry > found.t ? entry : found.t;
+  found.t = ray.instance_entry > found.t ? ray.instance_entry : found.t;
+  found.instance = ray.instance;
+  found.primitive = block.primitive[l] & kPrimitiveMask;
+  if (!closer(found.t, found.instance, found.primitive, hit)) return false;
+  const std::uint32_t calls_any_hit = block.primitive[l] & kNonOpaqueBit;
+  if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
+      !triangle_accepts(accel, calls_any_hit != 0, p, ray, found))
+    return false;
+  hit = found;
+  return true;
+}
+
+/// True if a crossing at `t` is a hit of the ray no farther than `farthest`. Negated comparisons also turn NaN away.
+template <class Slab>
+HWY_INLINE bool in_range(float t, const LocalRay<Slab>& ray, float farthest) {
+  return t >= ray.slab.tmin && t <= std::numeric_limits<float>::max() && t <= farthest;
+}
+
+/// lower() for all triangles of `block` that are crossed. True when the hit changed.
 template <class T, class Slab>
 HWY_INLINE bool update_closest(const Accel& accel, const TriangleBlock& block, const Crossings<T>& crossings,
                                const LocalRay<Slab>& ray, Hit& hit) {
   bool changed = false;
   for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
     const int l = std::countr_zero(inside);
-    const float t = static_cast<float>(crossings.t[l]);
-    // Negated comparisons also turn NaN away.
-    if (!(t >= ray.slab.tmin && t <= std::numeric_limits<float>::max() && t <= hit.t)) continue;
+    const Hit found{static_cast<float>(crossings.t[l]), static_cast<float>(crossings.second[l]),
+                    static_cast<float>(crossings.third[l]), 0, 0};
+    if (!in_range(found.t, ray, hit.t)) continue;
     float entry;
-    if (!slab(ray.slab, box_of(corners(block, l)), hit.t, entry)) continue;
-    float distance = entry > t ? entry : t;
-    distance = ray.instance_entry > distance ? ray.instance_entry : distance;
-    const std::uint32_t primitive = block.primitive[l] & kPrimitiveMask;
-    if (!closer(distance, ray.instance, primitive, hit)) continue;
-    const Hit found{distance, static_cast<float>(crossings.second[l]), static_cast<float>(crossings.third[l]),
-                    ray.instance, primitive};
-    const std::uint32_t calls_any_hit = block.primitive[l] & kNonOpaqueBit;
-    if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
-        !triangle_accepts(accel, calls_any_hit != 0, corners(block, l), ray, found))
-      continue;
-    hit = found;
-    changed = true;
+    const std::array<Vec3, 3> p = corners(block, l);
+    if (slab(ray.slab, box_of(p), hit.t, entry)) changed |= lower(accel, block, l, p, found, entry, ray, hit);
   }
   return changed;
 }
 
-// Each tests the triangles of `block` that `lanes` selects: update_closest() of what its kernel says.
+/// The same for crossings that have been decided in float, one of them in lane `l`: if its box may hold the closest
+/// hit, its distance and weights are computed in double, and these compete. A hit that the float puts ahead of the
+/// ray's start stays a hit, at the start if need be: the rounding that moved it there has moved the surface that the
+/// exact ray meets instead.
+template <class Slab>
+HWY_NOINLINE bool lower_precisely(const Accel& accel, const TriangleBlock& block, const Crossings<float>& crossings,
+                                  int l, const LocalRay<Slab>& ray, Hit& hit) {
+  const float rounded = crossings.t[l];
+  if (rounded != rounded) return false;
+  float entry;
+  const std::array<Vec3, 3> p = corners(block, l);
+  if (!slab(ray.slab, box_of(p), hit.t, entry)) return false;
+  ++ray.counts->refined;
+  Hit found{rounded, crossings.second[l], crossings.third[l], 0, 0};
+  PreciseCrossing precise;
+  if (precise_crossing(ray.triangle.watertight, block, static_cast<std::size_t>(l), precise))
+    found = {static_cast<float>(precise.t), static_cast<float>(precise.second), static_cast<float>(precise.third), 0,
+             0};
+  if (found.t < ray.slab.tmin && in_range(rounded, ray, kInfinity)) found.t = ray.slab.tmin;
+  return in_range(found.t, ray, hit.t) && lower(accel, block, l, p, found, entry, ray, hit);
+}
 
-template <class T, class Slab>
-HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, const WatertightRay<T>& watertight,
-                                 std::uint32_t lanes, const LocalRay<Slab>& ray, Hit& hit) {
+// Each tests the triangles of `block` that `lanes` selects.
+
+template <class T>
+HWY_INLINE Crossings<T> watertight_crossings(const TriangleBlock& block, const WatertightRay<T>& ray,
+                                             std::uint32_t lanes) {
   const hn::CappedTag<T, kBlockTriangles> d;
   Crossings<T> c;
   for (std::size_t i = 0; i < kBlockTriangles; i += hn::MaxLanes(d))
-    c.inside |= watertight_lanes(d, block, i, watertight, c.t + i, c.second + i, c.third + i) << i;
+    c.inside |= watertight_lanes(d, block, i, ray, c.t + i, c.second + i, c.third + i) << i;
   c.inside &= lanes & ((1u << kBlockTriangles) - 1);
-  return update_closest(accel, block, c, ray, hit);
+  return c;
+}
+
+template <class Slab>
+HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
+                                 const LocalRay<Slab>& ray, Hit& hit) {
+  const Crossings<float> c = watertight_crossings(block, ray.triangle.watertight, lanes);
+  bool changed = false;
+  for (std::uint32_t inside = c.inside; inside != 0; inside &= inside - 1)
+    changed |= lower_precisely(accel, block, c, std::countr_zero(inside), ray, hit);
+  return changed;
+}
+
+template <class Slab>
+HWY_INLINE bool double_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
+                             const LocalRay<Slab>& ray, Hit& hit) {
+  return update_closest(accel, block, watertight_crossings(block, ray.triangle.watertight_double, lanes), ray, hit);
 }
 
 template <class Slab>
@@ -147,9 +199,8 @@ HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uin
       return each([&](const TriangleBlock& block, std::uint32_t some)
                       HWY_ATTR { return moller_trumbore_block(accel, block, some, ray, hit); });
     case TriangleLevel::kDouble:
-      return each([&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-        return watertight_block(accel, block, ray.triangle.watertight_double, some, ray, hit);
-      });
+      return each([&](const TriangleBlock& block, std::uint32_t some)
+                      HWY_ATTR { return double_block(accel, block, some, ray, hit); });
     case TriangleLevel::kExact:
       return each([&](const TriangleBlock& block, std::uint32_t some)
                       HWY_ATTR { return exact_block(accel, block, some, ray, hit); });
@@ -167,7 +218,7 @@ HWY_NOINLINE bool test_leaf(const Accel& accel, NodeRef leaf, std::uint32_t lane
   if (HWY_UNLIKELY(accel.accuracy.triangle != TriangleLevel::kWatertight || leaf.is_procedural()))
     return test_leaf_otherwise(accel, leaf, lanes, ray, hit);
   return each_block(accel, leaf, lanes, [&](const TriangleBlock& block, std::uint32_t some) HWY_ATTR {
-    return watertight_block(accel, block, ray.triangle.watertight, some, ray, hit);
+    return watertight_block(accel, block, some, ray, hit);
   });
 }
 

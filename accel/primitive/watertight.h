@@ -13,6 +13,7 @@ template <class T>
 struct WatertightRay {
   T origin[3];
   int kx, ky, kz;
+  float direction[3];  ///< along kx, ky and kz
   T sx, sy, sz;
 
   [[gnu::always_inline]] explicit WatertightRay(const Ray& ray) : origin{ray.origin.x, ray.origin.y, ray.origin.z} {
@@ -25,9 +26,10 @@ struct WatertightRay {
     const int* const after = kAfter[d[kz] < 0.0f][kz];  // swapped when the ray runs backwards: keeps the winding
     kx = after[0];
     ky = after[1];
+    direction[0] = d[kx], direction[1] = d[ky], direction[2] = d[kz];
     // One division for all three.
     typedef T T4 __attribute__((vector_size(4 * sizeof(T))));
-    const T4 shear = T4{T{d[kx]}, T{d[ky]}, T{1}, T{1}} / T{d[kz]};
+    const T4 shear = T4{T{direction[0]}, T{direction[1]}, T{1}, T{1}} / T{direction[2]};
     sx = shear[0];
     sy = shear[1];
     sz = shear[2];

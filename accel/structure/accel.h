@@ -42,6 +42,7 @@ struct Accel {
   int width = kMaxWidth;                ///< children a node at most
   int max_depth = 0;                    ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
   std::size_t baked_instances = 0;      ///< singular transforms, stored as world-space triangles
+  std::size_t promoted_instances = 0;   ///< nearly singular ones, whose rays are transformed in double
 
   bool calls_any_hit() const { return has_non_opaque && any_hit != nullptr; }
   std::size_t size_bytes() const {

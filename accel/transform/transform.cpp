@@ -5,6 +5,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "core/numeric/condition.h"
 #include "core/numeric/rounding.h"
 
 namespace carousel::accel {
@@ -52,6 +53,11 @@ bool is_rotation(const Mat3& linear) {
   return true;
 }
 
+TransformLevel level_for(const Mat3& linear, TransformLevel level) {
+  if (level == TransformLevel::kInverseMatrix) return level;
+  return skeel_condition(DMat3(linear)) > kConditionForFloat ? TransformLevel::kTwoStepDouble : level;
+}
+
 bool make_transform(const scene::Affine& m, InstanceTransform& out, TransformLevel level) {
   out = InstanceTransform{};
   out.translation = m.translation;
@@ -64,7 +70,9 @@ bool make_transform(const scene::Affine& m, InstanceTransform& out, TransformLev
   const Mat3 inverse(exact);
   if (!finite(inverse)) return false;
   out.inverse_linear = inverse;
-  switch (level) {
+  const TransformLevel held = level_for(m.linear, level);
+  out.promoted = held != level;
+  switch (held) {
     case TransformLevel::kTwoStep:
       return true;
     case TransformLevel::kTransposeIfRotation:
@@ -87,7 +95,7 @@ Aabb world_box(const scene::Affine& m, const Aabb& model, TransformLevel level) 
   if (model.empty()) return {};
   if (m.linear == Mat3(1.0f) && m.translation == Vec3(0.0f)) return model;
   const DVec3 size = glm::max(glm::abs(DVec3(model.lo)), glm::abs(DVec3(model.hi)));
-  const DVec3 error = transform_error(m, size, level);
+  const DVec3 error = transform_error(m, size, level_for(m.linear, level));
   Aabb box;
   for (int row = 0; row < 3; ++row) {
     double lo = m.translation[row], hi = lo, magnitude = std::fabs(lo);

@@ -23,28 +23,40 @@ struct InstanceTransform {
   bool identity = true;       ///< no arithmetic at all
   Form form = Form::kTwoStep;
   bool transposed = false;  ///< inverse_linear is a transpose
+  bool promoted = false;    ///< in double because R is nearly singular, at a level that is not: level_for()
   Mat3 inverse_rest{0.0f};  ///< kTwoStepDouble: what rounding took from inverse_linear
 
-  [[gnu::always_inline]] Ray to_model(const Ray& world) const {
+  /// A position: a ray's origin, or any other that is needed in the model's space, such as a light's (US 12394134,
+  /// claim 11).
+  [[gnu::always_inline]] Vec3 position_to_model(const Vec3& world) const {
     if (identity) return world;
-    Ray model = world;
     switch (form) {
       case Form::kTwoStep:
-        model.origin = two_step(inverse_linear, translation, world.origin);
-        model.direction = linear_step(inverse_linear, world.direction);
-        break;
+        return two_step(inverse_linear, translation, world);
       case Form::kTwoStepDouble:
-        model.origin = two_step_double(inverse_linear, inverse_rest, translation, world.origin);
-        model.direction = linear_step_double(inverse_linear, inverse_rest, DVec3(world.direction));
-        break;
+        return two_step_double(inverse_linear, inverse_rest, translation, world);
       case Form::kInverseMatrix:
-        model.origin = inverse_matrix(inverse_linear, translation, world.origin);
-        model.direction = linear_step(inverse_linear, world.direction);
         break;
     }
+    return inverse_matrix(inverse_linear, translation, world);
+  }
+  [[gnu::always_inline]] Vec3 direction_to_model(const Vec3& world) const {
+    if (identity) return world;
+    return form == Form::kTwoStepDouble ? linear_step_double(inverse_linear, inverse_rest, DVec3(world))
+                                        : linear_step(inverse_linear, world);
+  }
+  [[gnu::always_inline]] Ray to_model(const Ray& world) const {
+    Ray model = world;
+    model.origin = position_to_model(world.origin);
+    model.direction = direction_to_model(world.direction);
     return model;
   }
 };
+
+/// The level at which rays are brought to an instance placed so, where `level` is configured: a matrix that the
+/// two-step levels in float cannot hold (kConditionForFloat) is left to `two_step_double`. Not with `inverse_matrix`,
+/// which promises nothing.
+TransformLevel level_for(const Mat3& linear, TransformLevel level);
 
 /// False when the mapping has no usable inverse in float: the instance must then be baked into world space.
 bool make_transform(const scene::Affine& world_from_model, InstanceTransform& out,

@@ -26,35 +26,66 @@ using Corners = std::array<Vec3, 3>;
 
 // Woop, Benthin, Wald 2013, appendix A, written from the paper for one triangle; T is the arithmetic.
 template <class T>
+struct Sheared {
+  T x[3], y[3], z[3];  ///< corners seen from the origin along the ray; z times the shear is t
+  T u, v, w;           ///< the edges' values
+
+  Sheared(const Ray& ray, const Corners& p) {
+    const Vec3 d = ray.direction;
+    int kz = 0;
+    if (std::fabs(d.y) >= std::fabs(d[kz])) kz = 1;
+    if (std::fabs(d.z) >= std::fabs(d[kz])) kz = 2;
+    int kx = (kz + 1) % 3, ky = (kx + 1) % 3;
+    if (d[kz] < 0) std::swap(kx, ky);
+    const T sx = T{d[kx]} / T{d[kz]}, sy = T{d[ky]} / T{d[kz]}, sz = T{1} / T{d[kz]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const T a[3] = {T{p[i].x} - ray.origin.x, T{p[i].y} - ray.origin.y, T{p[i].z} - ray.origin.z};
+      x[i] = a[kx] - sx * a[kz];
+      y[i] = a[ky] - sy * a[kz];
+      z[i] = sz * a[kz];
+    }
+    u = x[2] * y[1] - y[2] * x[1];
+    v = x[0] * y[2] - y[0] * x[2];
+    w = x[1] * y[0] - y[1] * x[0];
+  }
+
+  T t_times_det() const { return u * z[0] + (v * z[1] + w * z[2]); }
+};
+
+template <class T>
 bool watertight_scalar(const Ray& ray, const Corners& p, Crossing& out) {
-  const Vec3 d = ray.direction;
-  int kz = 0;
-  if (std::fabs(d.y) >= std::fabs(d[kz])) kz = 1;
-  if (std::fabs(d.z) >= std::fabs(d[kz])) kz = 2;
-  int kx = (kz + 1) % 3, ky = (kx + 1) % 3;
-  if (d[kz] < 0) std::swap(kx, ky);
-  const T sx = T{d[kx]} / T{d[kz]}, sy = T{d[ky]} / T{d[kz]}, sz = T{1} / T{d[kz]};
-  T x[3], y[3], z[3];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const T a[3] = {T{p[i].x} - ray.origin.x, T{p[i].y} - ray.origin.y, T{p[i].z} - ray.origin.z};
-    x[i] = a[kx] - sx * a[kz];
-    y[i] = a[ky] - sy * a[kz];
-    z[i] = sz * a[kz];
+  Sheared<T> s(ray, p);
+  if (std::is_same_v<T, float> && (s.u == 0 || s.v == 0 || s.w == 0)) {
+    const auto &x = s.x, &y = s.y;
+    s.u = T(double(x[2]) * y[1] - double(y[2]) * x[1]);
+    s.v = T(double(x[0]) * y[2] - double(y[0]) * x[2]);
+    s.w = T(double(x[1]) * y[0] - double(y[1]) * x[0]);
   }
-  T u = x[2] * y[1] - y[2] * x[1];
-  T v = x[0] * y[2] - y[0] * x[2];
-  T w = x[1] * y[0] - y[1] * x[0];
-  if (std::is_same_v<T, float> && (u == 0 || v == 0 || w == 0)) {
-    u = T(double(x[2]) * y[1] - double(y[2]) * x[1]);
-    v = T(double(x[0]) * y[2] - double(y[0]) * x[2]);
-    w = T(double(x[1]) * y[0] - double(y[1]) * x[0]);
-  }
-  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
-  const T det = u + (v + w);
+  if ((s.u < 0 || s.v < 0 || s.w < 0) && (s.u > 0 || s.v > 0 || s.w > 0)) return false;
+  const T det = s.u + (s.v + s.w);
   if (det == 0) return false;
   const T inverse = T{1} / det;
-  out = {float((u * z[0] + (v * z[1] + w * z[2])) * inverse), float(v * inverse), float(w * inverse)};
+  out = {float(s.t_times_det() * inverse), float(s.v * inverse), float(s.w * inverse)};
   return true;
+}
+
+// The distance and the weights in double of a triangle that the float meets.
+void refine(const Ray& ray, const Corners& p, Crossing& out) {
+  const Sheared<double> s(ray, p);
+  const double det = s.u + (s.v + s.w), inverse = 1 / det;
+  const bool ahead = out.t >= ray.tmin && out.t <= std::numeric_limits<float>::max();
+  if (det != 0) {
+    const auto [least, most] = std::minmax({s.z[0], s.z[1], s.z[2]});
+    const double t = s.t_times_det() * inverse;
+    double weight[3] = {s.u * inverse, s.v * inverse, s.w * inverse};
+    if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) {
+      for (double& part : weight) part = std::max(part, 0.0);
+      const double sum = weight[0] + (weight[1] + weight[2]);
+      for (double& part : weight) part /= sum;
+    }
+    out = {float(t < least ? least : t > most ? most : t), float(weight[1]), float(weight[2])};
+  }
+  if (ahead) out.t = std::max(out.t, ray.tmin);
 }
 
 // Möller, Trumbore 1997, section 2.
@@ -75,7 +106,9 @@ bool crosses(TriangleLevel level, const Ray& ray, const Corners& p, Crossing& ou
     case TriangleLevel::kFast:
       return moller_trumbore_scalar(ray, p, out);
     case TriangleLevel::kWatertight:
-      return watertight_scalar<float>(ray, p, out);
+      if (!watertight_scalar<float>(ray, p, out) || std::isnan(out.t)) return false;
+      refine(ray, p, out);
+      return true;
     case TriangleLevel::kDouble:
       return watertight_scalar<double>(ray, p, out);
     case TriangleLevel::kExact:

@@ -48,7 +48,7 @@ HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key,
   IntersectionCounts own;
   FrameStorage<Slab> frame;
   enter_frame(accel, key.instance, record, &frame.ray, own);
-  own.transforms = 0;  // counted with the boxes
+  own.transforms = own.transforms_in_double = 0;  // counted with the boxes
   test_direct(accel, node, lanes, frame.ray, record.hit, own);
   settle(record);
   if (any_hit_calls != nullptr)
@@ -78,6 +78,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
     const Ray model = move ? transform->to_model(record.ray) : record.ray;
     const Slab ray(model, widening);
     counts.transforms += move;
+    counts.transforms_in_double += move && transform->promoted;
     counts.box += boxes;
     alignas(64) float entry[kMaxWidth];
     std::uint32_t mask;
@@ -225,6 +226,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <algorithm>
 
+#include "accel/exact/exact_triangle.h"
 #include "core/system/error.h"
 
 namespace carousel::accel {
@@ -233,16 +235,35 @@ HWY_EXPORT(TestStrip);
 HWY_EXPORT(TraceSubtree);
 HWY_EXPORT(TraceInterleaved);
 
+namespace {
+
+/// Adds the exact volumes computed in this thread during its life.
+class ExactVolumeCount {
+ public:
+  explicit ExactVolumeCount(IntersectionCounts& counts) : counts_(counts), before_(exact_volumes()) {}
+  ~ExactVolumeCount() { counts_.exact_volumes += exact_volumes() - before_; }
+  ExactVolumeCount(const ExactVolumeCount&) = delete;
+
+ private:
+  IntersectionCounts& counts_;
+  std::uint64_t before_;
+};
+
+}  // namespace
+
 void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
                 IntersectionCounts& counts) {
+  const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TestStrip)(accel, key, lanes, members, hits, counts);
 }
 
 void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
+  const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TraceSubtree)(accel, key, members, counts);
 }
 
 void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
+  const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TraceInterleaved)(accel, key, members, counts);
 }
 

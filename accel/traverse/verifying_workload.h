@@ -20,7 +20,7 @@ class VerifyingWorkload final : public Workload {
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return inner_.generate(worker, max_rays, out);
   }
-  std::uint32_t extra_effects(const RayResult& result) const override { return inner_.extra_effects(result); }
+  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
   struct Mismatch {

@@ -52,13 +52,10 @@ void try_cases(PropertyResult& result, std::uint64_t seed, std::uint64_t first, 
 }  // namespace
 
 const std::vector<accel::Property>& certified_properties() {
-  static const std::vector<accel::Property> properties{accel::box_property(),
-                                                       accel::nested_boxes_property(),
-                                                       accel::triangle_property(),
-                                                       accel::closed_mesh_property(),
-                                                       accel::transform_property(),
-                                                       accel::world_box_property(),
-                                                       spawn_property()};
+  static const std::vector<accel::Property> properties{
+      accel::box_property(),       accel::nested_boxes_property(), accel::triangle_property(),
+      accel::distance_property(),  accel::closed_mesh_property(),  accel::placed_mesh_property(),
+      accel::transform_property(), accel::world_box_property(),    spawn_property()};
   return properties;
 }
 

@@ -124,20 +124,20 @@ std::vector<HardScene> hard_scenes(std::size_t rays, std::uint64_t seed) {
   Numbers random(seed);
   std::vector<HardScene> out;
   const auto add_ball = [&](const char* name, const char* what, const scene::Affine& placement) {
-    HardScene& hard = out.emplace_back(HardScene{{name, what, true}, one_mesh(ball(), placement), {}});
+    HardScene& hard = out.emplace_back(HardScene{{name, what, true, false}, one_mesh(ball(), placement), {}});
     hard.rays = at_edges_from_inside(hard.scene, rays, random);
   };
   add_ball("edges", "edges and vertices of a closed ball, from inside", {});
   add_ball("squashed", "the same, scaled by 0.001 in one axis and turned",
            {turned(40, {1, 2, 3}) * Mat3(1, 0, 0, 0, 1e-3f, 0, 0, 0, 1), {}});
   add_ball("far ball", "the same, turned, 100,000 from the origin", {turned(70, {3, -1, 2}), {1e5f, -2e4f, 3e4f}});
-  HardScene& thin = out.emplace_back(
-      HardScene{{"slivers", "triangles a million times as long as wide", false}, one_mesh(slivers(random), {}), {}});
+  HardScene& thin = out.emplace_back(HardScene{
+      {"slivers", "triangles a million times as long as wide", false, true}, one_mesh(slivers(random), {}), {}});
   thin.rays = at_triangles(thin.scene, 1, rays, random);
-  HardScene& far =
-      out.emplace_back(HardScene{{"far mesh", "a ball of radius 1, a million from the origin, at its triangles", false},
-                                 one_mesh(ball(), {turned(25, {-1, 1, 4}), {1e6f, 5e5f, -2e5f}}),
-                                 {}});
+  HardScene& far = out.emplace_back(
+      HardScene{{"far mesh", "a ball of radius 1, a million from the origin, at its triangles", false, false},
+                one_mesh(ball(), {turned(25, {-1, 1, 4}), {1e6f, 5e5f, -2e5f}}),
+                {}});
   far.rays = at_triangles(far.scene, 4, rays, random);
   return out;
 }

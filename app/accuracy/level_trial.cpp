@@ -1,33 +1,74 @@
 #include "app/accuracy/level_trial.h"
 
 #include <algorithm>
-#include <ctime>
 
 #include "accel/build/build.h"
+#include "accel/planes/cull_planes.h"
 #include "app/accuracy/exact_answers.h"
+#include "app/accuracy/unit_cost.h"
+#include "app/host/cpu_time.h"
 #include "app/run/ray_list_workload.h"
 #include "core/config/validate.h"
 #include "core/system/executor.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/cycle/memory/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
 
 namespace carousel::app {
 
 namespace {
 
-/// CPU time of this thread: wall time, without the time that other programs took.
-double thread_nanoseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+/// The box, triangle and other test units of all resources, as the simulated machine used them.
+struct UnitUse {
+  std::uint64_t busy = 0;  ///< cycles of all banks
+  UnitKind busiest = UnitKind::kBox;
+  double busiest_fraction = 0;  ///< of all cycles, the mean of the resources
+};
+UnitUse unit_use(const ringbus::cycle::CycleResult& result) {
+  PerUnit<std::uint64_t> busy;
+  for (const ringbus::cycle::TileResult& tile : result.tiles)
+    for (const UnitKindRow& row : kUnitKinds) busy[row.kind] += tile.units[row.kind].busy;
+  UnitUse use;
+  for (const auto [kind, cycles] : busy) {
+    use.busy += cycles;
+    if (cycles > busy[use.busiest]) use.busiest = kind;
+  }
+  use.busiest_fraction = report::ratio(busy[use.busiest], result.cycles * result.tiles.size());
+  return use;
+}
+
+/// Empty if the cycle engine cannot run the machine.
+std::optional<ringbus::RunResult> simulate(Config machine, const accel::Accel& accel, float scene_size,
+                                           const RayBatch& rays) {
+  machine.engine.kind = EngineKind::kCycle;
+  machine.accuracy = accel.accuracy;
+  if (accel::is_plain(accel)) machine.cull_planes.count = 0;
+  if (!validate_config(machine, {}, {}).empty() || !ringbus::check_storage(machine, accel).empty() ||
+      !ringbus::cycle::check_shape_buffer(machine, accel).empty())
+    return std::nullopt;
+  RayListWorkload workload(rays, static_cast<std::size_t>(shader_workers(machine)));
+  return ringbus::run_cycle(machine, accel, scene_size, workload, {});
 }
 
 }  // namespace
 
+bool planes_fit(const Config& config, const AccuracyConfig& levels) {
+  if (config.cull_planes.count == 0) return false;
+  Config level = config;
+  level.accuracy = levels;
+  return validate_config(level, {}, {.force = true}).empty();
+}
+
 const accel::Accel& LevelledAccel::at(const AccuracyConfig& levels) {
-  const auto [place, missing] = built_.try_emplace(levels.transform);
-  if (missing) place->second = accel::build(scene_, bvh_, *make_sequential_executor(), levels);
+  const bool planes = planes_fit(config_, levels);
+  const auto [place, missing] = built_.try_emplace({levels.transform, planes});
+  if (missing) {
+    const auto executor = make_sequential_executor();
+    place->second = accel::build(scene_, bvh_, *executor, levels);
+    if (place->second.has_non_opaque) place->second.any_hit = any_hit_;
+    if (planes) accel::add_cull_planes(place->second, scene_, config_.cull_planes, *executor);
+  }
   place->second.accuracy = levels;
   return place->second;
 }
@@ -39,9 +80,9 @@ std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<
     for (std::size_t i = 0; i < levels.size(); ++i) {
       const std::size_t level = (i + round) % levels.size();
       const accel::Accel& structure = accel.at(levels[level]);
-      const double start = thread_nanoseconds();
+      const double start = thread_cpu_seconds();
       trace(structure, rays);
-      times[level].push_back(report::ratio(thread_nanoseconds() - start, static_cast<double>(rays.size())));
+      times[level].push_back(report::ratio(1e9 * (thread_cpu_seconds() - start), static_cast<double>(rays.size())));
     }
   }
   std::vector<report::Spread> out;
@@ -52,19 +93,27 @@ std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<
   return out;
 }
 
-std::optional<report::ModelledCost> modelled_cost(const Config& config, const accel::Accel& accel, float scene_size,
-                                                  const RayBatch& rays) {
-  Config machine = config;
-  machine.engine.kind = EngineKind::kCycle;
-  machine.accuracy = accel.accuracy;
-  if (!validate_config(machine, {}, {}).empty() || !ringbus::check_storage(machine, accel).empty()) return std::nullopt;
-  RayListWorkload workload(rays, static_cast<std::size_t>(shader_workers(machine)));
-  const ringbus::RunResult result = ringbus::run_cycle(machine, accel, scene_size, workload, {});
-  std::uint64_t busy = 0;
-  for (const ringbus::cycle::TileResult& tile : result.cycle->tiles)
-    for (const UnitKind kind : {UnitKind::kBox, UnitKind::kTriangle, UnitKind::kTransform})
-      busy += tile.units[kind].busy;
-  return report::ModelledCost{report::ratio(result.cycle->cycles, rays.size()), report::ratio(busy, rays.size())};
+std::optional<report::ModelledCost> modelled_cost(const Config& machine, const Config& lifted,
+                                                  const accel::Accel& accel, float scene_size, const RayBatch& rays) {
+  const std::optional<ringbus::RunResult> configured = simulate(machine, accel, scene_size, rays);
+  if (!configured) return std::nullopt;
+  report::ModelledCost cost;
+  const UnitUse use = unit_use(*configured->cycle);
+  cost.cycles_per_ray = report::ratio(configured->cycle->cycles, rays.size());
+  cost.tester_cycles_per_ray = report::ratio(use.busy, rays.size());
+  IntersectionCounts tests;
+  for (const ringbus::ResourceStatistics& resource : configured->resources) tests += resource.tests;
+  const double count = static_cast<double>(rays.size());
+  cost.energy_pj_per_ray = report::ratio(test_energy_pj(tests, accel.accuracy), count);
+  cost.exact_volumes_per_ray = report::ratio(tests.exact_volumes, rays.size());
+  cost.bundle_tests_per_ray = report::ratio(tests.bundle, rays.size());
+  cost.plane_tests_per_ray = report::ratio(tests.plane, rays.size());
+  if (const std::optional<ringbus::RunResult> limited = simulate(lifted, accel, scene_size, rays)) {
+    const UnitUse limit = unit_use(*limited->cycle);
+    cost.tester_limited = {report::ratio(limited->cycle->cycles, rays.size()), unit_row(limit.busiest).name,
+                           limit.busiest_fraction};
+  }
+  return cost;
 }
 
 }  // namespace carousel::app

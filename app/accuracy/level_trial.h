@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "accel/structure/accel.h"
@@ -12,16 +13,26 @@
 
 namespace carousel::app {
 
-/// A scene's structures for all levels, built once for each transform level; the other levels change only the tests.
+/// True if the configured cull planes go with the level; with others they could lose hits (core/config/validate.cpp),
+/// so these are tried without planes.
+bool planes_fit(const Config& config, const AccuracyConfig& levels);
+
+/// A scene's structures for all levels, built once for each transform level with and without planes; the other levels
+/// change only the tests.
 class LevelledAccel {
  public:
-  LevelledAccel(const scene::Scene& scene, const BvhConfig& bvh) : scene_(scene), bvh_(bvh) {}
+  /// `any_hit` answers any-hit calls; null where every material is opaque.
+  LevelledAccel(const scene::Scene& scene, const Config& config, const BvhConfig& bvh,
+                const decltype(accel::Accel::any_hit)& any_hit)
+      : scene_(scene), config_(config), bvh_(bvh), any_hit_(any_hit) {}
   const accel::Accel& at(const AccuracyConfig& levels);
 
  private:
   const scene::Scene& scene_;
+  const Config& config_;
   BvhConfig bvh_;
-  std::map<TransformLevel, accel::Accel> built_;
+  decltype(accel::Accel::any_hit) any_hit_;
+  std::map<std::pair<TransformLevel, bool>, accel::Accel> built_;  // true: with planes
 };
 
 /// CPU time a ray, nanoseconds on one thread, of each of `levels`: all of them in turn, `repetitions` times. Each round
@@ -29,8 +40,9 @@ class LevelledAccel {
 std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels,
                                         const RayBatch& rays, int repetitions, const std::function<bool()>& stopped);
 
-/// Empty if the cycle engine does not support the configured machine.
-std::optional<report::ModelledCost> modelled_cost(const Config& config, const accel::Accel& accel, float scene_size,
-                                                  const RayBatch& rays);
+/// Simulates `machine` and the machine `lifted` from it (ringbus/cycle/what_if.h, tester_limited()) at the levels of
+/// `accel`. Empty if the cycle engine does not support the configured machine.
+std::optional<report::ModelledCost> modelled_cost(const Config& machine, const Config& lifted,
+                                                  const accel::Accel& accel, float scene_size, const RayBatch& rays);
 
 }  // namespace carousel::app

@@ -10,6 +10,7 @@
 #include "app/host/program_info.h"
 #include "core/config/config.h"
 #include "core/config/write.h"
+#include "core/numeric/condition.h"
 #include "core/types/enum_names.h"
 #include "report/text/ratio.h"
 
@@ -27,6 +28,10 @@ report::SceneSummary summary(const Prepared& p) {
   out.instanced_triangles = s.instanced_triangle_count();
   out.meshes = s.meshes.size();
   out.instances = s.instances.size();
+  out.instances_in_double = p.accel.promoted_instances;
+  for (std::size_t i = 0; i < s.instances.size(); ++i)
+    out.instances_not_held += !p.accel.instances[i].transform.identity &&
+                              skeel_condition(DMat3(s.instances[i].world_from_model.linear)) > kConditionForDouble;
   out.materials = s.materials.size();
   out.textures = s.textures.size();
   out.lights = s.lights.size();

@@ -29,8 +29,8 @@ std::vector<report::Effect> effects_of(const shading::EffectsPlan& plan) {
                    e.called_for,
                    e.callers,
                    e.why,
-                   {e.cost.rays_per_path, e.cost.texture_reads, e.cost.path_state_bytes, e.cost.cycles_per_hit,
-                    e.cost.cycles_per_path}});
+                   {e.cost.rays_per_path, e.cost.texture_reads, e.cost.products, e.cost.path_state_bytes,
+                    e.cost.cycles_per_hit, e.cost.cycles_per_path}});
   }
   return out;
 }

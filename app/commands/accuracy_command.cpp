@@ -1,7 +1,6 @@
 #include "app/commands/accuracy_command.h"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <optional>
 
@@ -11,6 +10,8 @@
 #include "app/accuracy/level_trial.h"
 #include "app/accuracy/pictures.h"
 #include "app/accuracy/sensible_levels.h"
+#include "app/accuracy/unit_cost.h"
+#include "app/host/cpu_time.h"
 #include "app/host/exit_status.h"
 #include "app/host/interrupt.h"
 #include "app/host/machine_info.h"
@@ -21,6 +22,7 @@
 #include "report/accuracy/accuracy_plot.h"
 #include "report/accuracy/accuracy_table.h"
 #include "report/text/progress_line.h"
+#include "ringbus/cycle/what_if.h"
 
 namespace carousel::app {
 
@@ -28,7 +30,7 @@ namespace {
 
 /// The number of camera rays that a picture may take; larger pictures are shrunk.
 constexpr std::int64_t kCameraRays = 20000, kSampledPixels = 48 * 48;
-constexpr std::size_t kModelledRays = 20000;
+constexpr std::size_t kModelledRays = 50000;
 constexpr int kSamplingSeeds = 4;
 
 /// Shrinks the picture to at most `pixels`, with its shape unchanged.
@@ -59,7 +61,8 @@ class Trial {
         arguments_(arguments),
         interrupt_(interrupt),
         small_(prepared.config()),
-        accel_(p_.scene, small_.bvh),
+        accel_(p_.scene, p_.config(), small_.bvh, p_.accel.any_hit),
+        lifted_(ringbus::tester_limited(p_.config())),
         exact_(p_.scene, p_.accel) {
     if (!arguments.quiet) progress_.emplace(stderr);
     small_.image.samples = std::min<std::int64_t>(small_.image.samples, 4);
@@ -73,6 +76,8 @@ class Trial {
     out_.height = static_cast<std::uint64_t>(small_.image.height);
     out_.samples = static_cast<std::uint64_t>(small_.image.samples);
     out_.machine = machine_info().cpu;
+    out_.planes = p_.config().cull_planes.count > 0;
+    out_.bundles = p_.config().bundles.size > 0;
   }
 
   report::Accuracy run() {
@@ -90,6 +95,8 @@ class Trial {
     try_spawn(exact_picture);
     try_samples();
     report::mark_frontier(out_.rows);
+    for (const report::Clock clock : report::kClocks)
+      out_.recommended[static_cast<std::size_t>(clock)] = report::recommended(out_.rows, clock);
     out_.verdict = report::accuracy_verdict(out_.rows);
     out_.incomplete = stopped();
     progress_.reset();
@@ -107,7 +114,7 @@ class Trial {
     hard_ = hard_scenes(arguments_.hard_rays, arguments_.seed);
     for (const HardScene& scene : hard_) {
       out_.hard.push_back(scene.about);
-      LevelledAccel& structures = hard_accels_.emplace_back(scene.scene, BvhConfig{});
+      LevelledAccel& structures = hard_accels_.emplace_back(scene.scene, p_.config(), BvhConfig{}, nullptr);
       const accel::ExactReference reference(scene.scene, structures.at({}));
       hard_exact_.push_back(exact_answers(reference, scene.rays));
     }
@@ -131,12 +138,15 @@ class Trial {
       row.scene = compare(rays_, trace(accel, rays_), exact);
       row.picture = compare(render(p_.scene, small_, accel), exact_picture);
       done();
-      row.modelled = modelled_cost(p_.config(), accel, p_.scene_size(), modelled);
+      row.modelled = modelled_cost(p_.config(), lifted_, accel, p_.scene_size(), modelled);
+      row.cull_planes = planes_fit(p_.config(), levels);
+      row.unit_area_mm2 = unit_area_mm2(p_.config().testers, levels);
+      row.relative_area = row.unit_area_mm2 / unit_area_mm2(p_.config().testers, {});
       for (std::size_t h = 0; h < hard_.size(); ++h) {
         row.hard.push_back(compare(hard_[h].rays, trace(hard_accels_[h].at(levels), hard_[h].rays), hard_exact_[h]));
         if (hard_[h].about.closed) row.leaks += row.hard.back().missed;
       }
-      row.safe = row.leaks == 0 && row.scene.wrong() == 0;
+      report::judge_safety(row, out_.hard);
       done();
     }
   }
@@ -171,11 +181,10 @@ class Trial {
           out_.sampling.emplace_back(report::SamplingRow{static_cast<std::uint64_t>(samples), 0, 0});
       for (int seed = 0; seed < kSamplingSeeds; ++seed) {
         config.image.seed = small_.image.seed + seed;
-        const auto start = std::chrono::steady_clock::now();
+        const double start = thread_cpu_seconds();
         const Picture picture = render(p_.scene, config, accel);
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        row.seconds += (thread_cpu_seconds() - start) / kSamplingSeeds;
         row.rmse += noise(picture, truth) / kSamplingSeeds;
-        row.seconds += seconds.count() / kSamplingSeeds;
       }
     }
     out_.sampling_slope = report::log_log_slope(out_.sampling);
@@ -187,6 +196,7 @@ class Trial {
   const InterruptScope& interrupt_;
   Config small_;
   LevelledAccel accel_;
+  Config lifted_;  ///< the machine in which the testers limit
   accel::ExactReference exact_;
   std::vector<AccuracyConfig> levels_;
   RayBatch rays_;

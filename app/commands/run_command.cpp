@@ -138,7 +138,7 @@ int run_command(const RunArguments& arguments) {
     }
   }
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
-  if (p.config().verify == Verify::kEffects) prove_effects(arguments, interrupt, report);
+  if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, report);
   const std::filesystem::path folder = out_folder(arguments);
   write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr);
 

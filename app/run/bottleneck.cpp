@@ -26,7 +26,7 @@ class PilotWorkload final : public Workload {
       : job_(prepared, config, first_hits) {
     if (paths < job_.first_rays()) job_.set_sample(&sample_.emplace(job_.draw(paths, slots_of(prepared.config()))));
   }
-  std::uint32_t extra_effects(const RayResult& result) const override { return job_.workload().extra_effects(result); }
+  ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return job_.workload().generate(worker, max_rays, out);
   }

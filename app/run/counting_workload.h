@@ -18,7 +18,7 @@ class CountingWorkload final : public Workload {
     generated_.fetch_add(made.rays, std::memory_order_relaxed);
     return made;
   }
-  std::uint32_t extra_effects(const RayResult& result) const override { return inner_.extra_effects(result); }
+  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     inner_.shade(worker, completed, out);
   }

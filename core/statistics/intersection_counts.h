@@ -8,7 +8,7 @@ namespace carousel {
 /// bundle of rays). Meanings stand in counters(); core/statistics/counters.h says how to add a counter.
 struct IntersectionCounts {
   std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
-  std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0;
+  std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0, exact_volumes = 0, refined = 0, transforms_in_double = 0;
 
   static constexpr auto counters() {
     using C = IntersectionCounts;
@@ -16,10 +16,19 @@ struct IntersectionCounts {
         Counter{"box", &C::box, "tests", "tests of a ray against a box"},
         Counter{"plane", &C::plane, "tests", "tests of a ray against a cull plane"},
         Counter{"triangle", &C::triangle, "tests", "tests of a ray against a triangle"},
+        Counter{"refined", &C::refined, "tests",
+                "triangles that a ray met in 32 bits and whose distance was computed in 64, with accuracy.triangle: "
+                "watertight"},
         Counter{"bundle", &C::bundle, "tests", "tests of a bundle of rays against a box"},
         Counter{"transforms", &C::transforms, "tests", "transformations of a ray from world to model space"},
+        Counter{"transforms_in_double", &C::transforms_in_double, "tests",
+                "those of the transformations that are made in 64 bits because the instance's matrix is nearly "
+                "singular"},
         Counter{"inversions", &C::inversions, "tests",
                 "inversions of an instance's matrix at a visit, with accuracy.invert: visit"},
+        Counter{"exact_volumes", &C::exact_volumes, "volumes",
+                "volumes that accuracy.triangle: exact computed in exact arithmetic, as doubles did not decide: four a "
+                "triangle test at most"},
         Counter{"culled", &C::culled, "tests",
                 "children whose box the ray hits and which a cull plane showed to be missed"},
         Counter{"procedural", &C::procedural, "tests",

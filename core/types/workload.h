@@ -22,6 +22,13 @@ struct RayResult {
   RayTag tag;
 };
 
+/// What shading a hit takes beyond a plain surface's shading.
+struct ShadeWork {
+  std::uint32_t lookups = 0;   ///< filtered texture lookups
+  std::uint32_t products = 0;  ///< products, divisions and roots
+  friend bool operator==(const ShadeWork&, const ShadeWork&) = default;
+};
+
 using RayBatch = std::vector<RayRequest>;
 using HitBatch = std::vector<RayResult>;
 
@@ -42,9 +49,9 @@ class Workload {
   /// (e.g. no path state is free); the caller then tries again after shade() calls.
   virtual Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) = 0;
 
-  /// Effects of the surface that a completed ray has hit beyond a plain one's: what a simulated shader worker is
-  /// charged for besides. Call before the ray is given to shade().
-  virtual std::uint32_t extra_effects(const RayResult& /*result*/) const { return 0; }
+  /// The work of the effects of the surface that a completed ray has hit, for which a simulated shader worker is
+  /// charged besides. Call before the ray is given to shade().
+  virtual ShadeWork extra_work(const RayResult& /*result*/) const { return {}; }
 
   /// Takes completed rays, in any order and mix, each ray exactly once; appends the rays they give rise to.
   virtual void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) = 0;

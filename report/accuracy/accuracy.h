@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -34,13 +36,31 @@ struct PictureErrors {
 struct HardCase {
   std::string name, what;
   bool closed = false;  ///< every ray starts inside a closed surface: a miss is a leak
+  bool slivers =
+      false;  ///< its triangles are so thin that a rounded test may lose them, though their mesh stays closed
 };
 
-/// The cost on the configured machine, by the cycle engine.
-struct ModelledCost {
+/// The configured machine with all but its test units lifted.
+struct TesterLimited {
   double cycles_per_ray = 0;
-  double tester_cycles_per_ray = 0;  ///< cycles in which a resource's box, triangle or transform units were busy
+  std::string busiest;       ///< the kind of units that was busy most
+  double busy_fraction = 0;  ///< of the cycles, in the mean of the resources
 };
+
+/// The cost on simulated machines, by the cycle engine.
+struct ModelledCost {
+  double cycles_per_ray = 0;         ///< as configured
+  double tester_cycles_per_ray = 0;  ///< of these, cycles in which a resource's test units of a kind were busy
+  double energy_pj_per_ray = 0;      ///< of the tests' products and sums
+  double exact_volumes_per_ray = 0, bundle_tests_per_ray = 0, plane_tests_per_ray = 0;
+  std::optional<TesterLimited> tester_limited{};
+};
+
+/// The two clocks by which a level has its cost: time of this host, cycles of the machine in which the testers limit.
+enum class Clock : std::uint8_t { kHost, kHardware };
+inline constexpr std::array<Clock, 2> kClocks{Clock::kHost, Clock::kHardware};
+template <class T>
+using PerClock = std::array<T, 2>;
 
 /// One combination of levels of the tests.
 struct AccuracyRow {
@@ -50,9 +70,16 @@ struct AccuracyRow {
   HitErrors scene;
   std::vector<HitErrors> hard;  ///< by Accuracy::hard
   PictureErrors picture;
-  std::uint64_t leaks = 0;  ///< misses in all closed cases
-  bool frontier = false;    ///< no other row is both faster and less often wrong
-  bool safe = false;        ///< no leak, and nothing missed or added in the scene
+  std::uint64_t leaks = 0;                      ///< misses in all closed cases
+  double unit_area_mm2 = 0, relative_area = 0;  ///< of a resource's units; over those of the default levels
+  bool cull_planes = false;                     ///< the configured cull planes were tested
+  PerClock<bool> frontier{};                    ///< no other row is both cheaper and less often wrong
+  bool safe = false;                            ///< nothing missed or added, in the scene and in all hard cases
+  bool safe_but_slivers = false;                ///< the same but in the hard cases of slivers
+
+  bool on_frontier(Clock clock) const { return frontier[static_cast<std::size_t>(clock)]; }
+  /// The cost by a clock, with its range; empty if it was not measured.
+  std::optional<Spread> cost(Clock clock) const;
 
   std::uint64_t wrong() const {
     std::uint64_t sum = scene.wrong();
@@ -87,13 +114,25 @@ struct Accuracy {
   double sampling_slope = 0;  ///< of log RMSE over log samples; Monte Carlo has -1/2
   std::string verdict;        ///< the cheapest safe level, in a sentence
   std::string machine;
-  bool incomplete = false;  ///< it was interrupted
+  bool incomplete = false;                             ///< it was interrupted
+  bool planes = false, bundles = false;                ///< the configuration has them
+  PerClock<std::optional<std::size_t>> recommended{};  ///< index of the row, by clock
 };
 
-/// Marks the frontier: rows than which no other is faster (by the median) and not more often wrong, or less often
-/// wrong and not slower.
+/// Sets `safe` and `safe_but_slivers` by the row's errors.
+void judge_safety(AccuracyRow& row, const std::vector<HardCase>& hard);
+
+// Costs whose ranges overlap are equal. The range of a host's time is that of its repetitions. That of simulated cycles
+// is 1 % to either side: other samples of the rays differ by as much.
+
+/// Marks the frontiers: rows than which no other is cheaper and not more often wrong, or less often wrong and not
+/// dearer.
 void mark_frontier(std::vector<AccuracyRow>& rows);
-/// The sentence for `verdict`: which safe row is the fastest, and what the fastest of all gets wrong.
+/// The cheapest safe row; of those that cost the same, the one whose t is most accurate (99th percentile, in ulp), then
+/// the one with the smallest units, then the first.
+std::optional<std::size_t> recommended(const std::vector<AccuracyRow>& rows, Clock clock);
+/// The sentences for `verdict`, for the host and for hardware: the recommended row, the price over the cheapest of all,
+/// and what that one and the cheapest that loses nothing but slivers get wrong.
 std::string accuracy_verdict(const std::vector<AccuracyRow>& rows);
 /// Least-squares slope of log(rmse) over log(samples); rows with an RMSE of 0 do not count. 0 for fewer than two.
 double log_log_slope(const std::vector<SamplingRow>& rows);

@@ -9,8 +9,21 @@ namespace carousel::report {
 namespace {
 
 std::string cycles_text(const AccuracyRow& row) {
-  if (!row.modelled) return "-";
-  return fmt::format("{:.1f}/{:.1f}", row.modelled->cycles_per_ray, row.modelled->tester_cycles_per_ray);
+  return row.modelled ? fmt::format("{:.1f}", row.modelled->cycles_per_ray) : "-";
+}
+
+std::string limited_text(const AccuracyRow& row) {
+  const std::optional<Spread> cost = row.cost(Clock::kHardware);
+  return cost ? fmt::format("{:.3g}", cost->median) : "-";
+}
+
+std::string energy_text(const AccuracyRow& row) {
+  return row.modelled ? fmt::format("{:.0f}", row.modelled->energy_pj_per_ray) : "-";
+}
+
+/// One of the two frontiers' marks each.
+std::string marks(const AccuracyRow& row) {
+  return std::string(row.on_frontier(Clock::kHost) ? "*" : " ") + (row.on_frontier(Clock::kHardware) ? "+" : " ");
 }
 
 std::string ulp_text(const HitErrors& e) {
@@ -21,37 +34,64 @@ std::uint64_t hard_wrong(const AccuracyRow& row) {
   return row.wrong() - row.scene.wrong();
 }
 
+/// The units that limit the machine of `testers`, and how far they do.
+void limit_lines(const Accuracy& a, std::string& out) {
+  double least = 1;
+  const AccuracyRow* worst = nullptr;
+  for (const AccuracyRow& row : a.rows) {
+    if (!row.modelled || !row.modelled->tester_limited) continue;
+    if (const TesterLimited& t = *row.modelled->tester_limited; worst == nullptr || t.busy_fraction < least)
+      least = t.busy_fraction, worst = &row;
+  }
+  if (worst != nullptr)
+    out +=
+        fmt::format("In the machine of the column testers one kind of units is busy {} of the time or more ({}: {}).\n",
+                    percent(least), worst->triangle, worst->modelled->tester_limited->busiest);
+  if (a.bundles) out += "The simulated machines trace bundles as configured; the host's times are of single rays.\n";
+}
+
 void level_lines(const Accuracy& a, std::string& out) {
-  out += fmt::format("{:<2}{:<11}{:<13}{:<22}{:>8}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10}{:>10}\n", "",
-                     "triangle", "box", "transform", "ns/ray", "least-most", "cycles/ray", "missed", "extra", "other",
-                     "t error in ulp", "leaks", "hard", "pixels", "RMSE", "worst");
+  out += fmt::format(
+      "{:<3}{:<11}{:<13}{:<22}{:>7}{:>11}{:>9}{:>9}{:>6}{:>8}{:>8}{:>7}{:>7}  {:<20}{:>7}{:>8}{:>8}{:>9}{:>8}\n", "",
+      "triangle", "box", "transform", "ns/ray", "least-most", "testers", "machine", "area", "pJ/ray", "missed", "extra",
+      "other", "t error in ulp", "leaks", "hard", "pixels", "RMSE", "worst");
   for (const AccuracyRow& row : a.rows) {
     out += fmt::format(
-        "{:<2}{:<11}{:<13}{:<22}{:>8.0f}{:>14}{:>13}{:>8}{:>8}{:>8}  {:<20}{:>8}{:>9}{:>9}{:>10.2g}{:>10.2g}{}\n",
-        row.frontier ? "*" : "", row.triangle, row.box, row.transform, row.ns_per_ray.median,
-        fmt::format("{:.0f}-{:.0f}", row.ns_per_ray.least, row.ns_per_ray.most), cycles_text(row),
-        grouped(row.scene.missed), grouped(row.scene.extra), grouped(row.scene.other), ulp_text(row.scene),
-        grouped(row.leaks), grouped(hard_wrong(row)), grouped(row.picture.differ), row.picture.rmse, row.picture.worst,
-        row.safe ? "  safe" : "");
+        "{:<3}{:<11}{:<13}{:<22}{:>7.0f}{:>11}{:>9}{:>9}{:>6.2f}{:>8}{:>8}{:>7}{:>7}  "
+        "{:<20}{:>7}{:>8}{:>8}{:>9.2g}{:>8.2g}{}{}\n",
+        marks(row), row.triangle, row.box, row.transform, row.ns_per_ray.median,
+        fmt::format("{:.0f}-{:.0f}", row.ns_per_ray.least, row.ns_per_ray.most), limited_text(row), cycles_text(row),
+        row.relative_area, energy_text(row), grouped(row.scene.missed), grouped(row.scene.extra),
+        grouped(row.scene.other), ulp_text(row.scene), grouped(row.leaks), grouped(hard_wrong(row)),
+        grouped(row.picture.differ), row.picture.rmse, row.picture.worst,
+        row.safe               ? "  safe"
+        : row.safe_but_slivers ? "  safe but for slivers"
+                               : "",
+        a.planes && !row.cull_planes ? "  (without cull planes)" : "");
   }
   out +=
-      "* on the frontier: nothing is both faster and less often wrong. cycles/ray: modelled, and of these units at "
-      "work (summed\n"
-      "over the resources). missed, extra, other: rays of the scene that miss where exact arithmetic hits, hit where "
-      "it misses,\n"
-      "hit another triangle; t error: median/p99/max; leaks: rays that get out of closed surfaces; hard: missed and "
-      "extra hits\n"
-      "of the hard cases; pixels that differ from the exact picture.\n";
+      "* on the frontier of the host's time, + of the testers' cycles: nothing is both cheaper and less often wrong;\n"
+      "costs whose ranges overlap are equal (cycles: within 1 %). ns/ray: CPU time of one thread, depth first, single\n"
+      "rays. testers: cycles a ray of the configured machine with all but its test units lifted; machine: as it is\n"
+      "configured. area: box, triangle and transform units of a resource over those of the default levels; pJ/ray: "
+      "energy\n"
+      "of the tests' products and sums (45 nm). missed, extra, other: rays of the scene that miss where exact "
+      "arithmetic\n"
+      "hits, hit where it misses, hit another triangle; t error: median/p99/max; leaks: rays that get out of closed\n"
+      "surfaces; hard: missed and extra hits of the hard cases; pixels that differ from the exact picture. safe: "
+      "nothing\n"
+      "missed or extra, in the scene and in the hard cases.\n";
+  limit_lines(a, out);
 }
 
 void hard_lines(const Accuracy& a, std::string& out) {
   out += "\nhard cases: rays missed / extra / other\n";
   for (std::size_t h = 0; h < a.hard.size(); ++h) out += fmt::format("  {:<14}{}\n", a.hard[h].name, a.hard[h].what);
-  out += fmt::format("{:<48}", "");
+  out += fmt::format("{:<49}", "");
   for (const HardCase& c : a.hard) out += fmt::format("{:>18}", c.name);
   out += '\n';
   for (const AccuracyRow& row : a.rows) {
-    out += fmt::format("{:<2}{:<11}{:<13}{:<22}", "", row.triangle, row.box, row.transform);
+    out += fmt::format("{:<3}{:<11}{:<13}{:<22}", "", row.triangle, row.box, row.transform);
     for (const HitErrors& e : row.hard)
       out += fmt::format("{:>18}", fmt::format("{} / {} / {}", e.missed, e.extra, e.other));
     out += '\n';
@@ -95,13 +135,25 @@ nlohmann::ordered_json row_json(const AccuracyRow& row, const std::vector<HardCa
   if (row.modelled) {
     j["modelled_cycles_per_ray"] = row.modelled->cycles_per_ray;
     j["modelled_tester_cycles_per_ray"] = row.modelled->tester_cycles_per_ray;
+    if (const auto& limited = row.modelled->tester_limited) {
+      j["tester_limited_cycles_per_ray"] = limited->cycles_per_ray;
+      j["tester_limited_by"] = {{"units", limited->busiest}, {"busy_fraction", limited->busy_fraction}};
+    }
+    j["energy_pj_per_ray"] = row.modelled->energy_pj_per_ray;
+    j["exact_volumes_per_ray"] = row.modelled->exact_volumes_per_ray;
+    j["bundle_tests_per_ray"] = row.modelled->bundle_tests_per_ray;
+    j["plane_tests_per_ray"] = row.modelled->plane_tests_per_ray;
   }
+  j["unit_area_mm2"] = row.unit_area_mm2;
+  j["unit_area_over_default"] = row.relative_area;
+  j["cull_planes"] = row.cull_planes;
   j["scene"] = errors_json(row.scene);
   for (std::size_t h = 0; h < cases.size(); ++h) j["hard"][cases[h].name] = errors_json(row.hard[h]);
   j["leaks"] = row.leaks;
   j["picture"] = picture_json(row.picture);
-  j["frontier"] = row.frontier;
+  j["frontier"] = {{"host", row.on_frontier(Clock::kHost)}, {"hardware", row.on_frontier(Clock::kHardware)}};
   j["safe"] = row.safe;
+  j["safe_but_slivers"] = row.safe_but_slivers;
   return j;
 }
 
@@ -137,6 +189,12 @@ nlohmann::ordered_json accuracy_json(const Accuracy& a) {
   j["sampling"] = {{"slope", a.sampling_slope}, {"rows", nlohmann::ordered_json::array()}};
   for (const SamplingRow& row : a.sampling)
     j["sampling"]["rows"].push_back({{"samples", row.samples}, {"rmse", row.rmse}, {"seconds", row.seconds}});
+  const auto chosen = [&](Clock clock) -> nlohmann::ordered_json {
+    const std::optional<std::size_t> row = a.recommended[static_cast<std::size_t>(clock)];
+    if (!row) return nullptr;
+    return {{"triangle", a.rows[*row].triangle}, {"box", a.rows[*row].box}, {"transform", a.rows[*row].transform}};
+  };
+  j["recommended"] = {{"host", chosen(Clock::kHost)}, {"hardware", chosen(Clock::kHardware)}};
   j["verdict"] = a.verdict;
   j["host"] = {{"machine", a.machine}};
   return j;

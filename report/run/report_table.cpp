@@ -131,12 +131,23 @@ void cull_plane_lines(Table& table, const Report& report) {
              grouped(sum.leaves), grouped(sum.triangles), grouped(sum.transforms), grouped(sum.boxes));
 }
 
+/// The difference of two counts, with its sign if it is negative.
+std::string more(std::uint64_t all, std::uint64_t least) {
+  return all >= least ? grouped(all - least) : "-" + grouped(least - all);
+}
+
 void proof_line(Table& table, const EffectsProof& proof) {
+  const PairedRatio& r = proof.time_ratio;
+  table.line("all effects", "hits {}   image {}   time x {:.2f} ({:.2f} to {:.2f} in {} pairs of {} paths)",
+             proof.same_hits ? "the same" : "DIFFER", proof.same_image ? "the same" : "DIFFERS", r.median, r.least,
+             r.most, proof.repetitions, grouped(proof.paths));
   std::string cycles;
-  if (proof.cycles_spared) cycles = fmt::format("   {} cycles", *proof.cycles_spared);
-  table.line("all effects", "hits {}   image {}   spared: {} rays   {} tests{}",
-             proof.same_hits ? "the same" : "DIFFER", proof.same_image ? "the same" : "DIFFERS", proof.rays_spared,
-             proof.tests_spared, cycles);
+  if (proof.all.cycles && proof.by_demand.cycles)
+    cycles = fmt::format("   {} cycles", more(*proof.all.cycles, *proof.by_demand.cycles));
+  table.line("", "more: {:.1f} products a ray   {} bytes of path state   {} texture bytes{}",
+             proof.all.products_per_ray - proof.by_demand.products_per_ray,
+             more(proof.all.path_state_bytes, proof.by_demand.path_state_bytes),
+             more(proof.all.texture_bytes, proof.by_demand.texture_bytes), cycles);
 }
 
 void packet_lines(Table& table, const Report& report) {

@@ -150,9 +150,14 @@ void packet_words(Words& w) {
   w.line("all effects")
       .item("hits *", "shading.proof.same_hits")
       .item("image *", "shading.proof.same_image")
-      .item("spared: N rays", "shading.proof.rays_spared")
-      .item("N tests", "shading.proof.tests_spared")
-      .item("N cycles", "shading.proof.cycles_spared");
+      .item("time x N (N to N in N pairs of N paths)", "shading.proof.time_ratio",
+            "CPU time of a sample of the frame with all effects over that with auto: median, least and greatest of the "
+            "pairs of repetitions")
+      .item("more: N products a ray", "shading.proof.all.products_per_ray",
+            "what the run with all effects takes more than the run with auto; in report.json stand both")
+      .item("N bytes of path state", "shading.proof.all.path_state_bytes")
+      .item("N texture bytes", "shading.proof.all.texture_bytes")
+      .item("N cycles", "shading.proof.all.cycles");
 }
 
 void resource_words(Words& w) {

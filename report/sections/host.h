@@ -49,7 +49,7 @@ struct Host {
   std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
   std::string simd;
   Machine machine;
-  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{}, all_effects_seconds{};
+  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{};
   std::optional<std::vector<HostLink>> links{};
 };
 
@@ -63,8 +63,6 @@ void describe(V& v, const Host& r) {
   v.field("build_seconds", r.build_seconds, "s", "time to build the acceleration structure, without cull planes");
   v.field("plane_seconds", r.plane_seconds, "s", "time to find the cull planes");
   v.field("raster_seconds", r.raster_seconds, "s", "time to rasterise the first hits of camera rays");
-  v.field("all_effects_seconds", r.all_effects_seconds, "s",
-          "time of the run with all effects; wall_seconds is of the run without");
   v.field("recovery_seconds", r.recovery_seconds, "s",
           "time from the last sign of life of a resource that stopped until its rays were restarted");
   v.field("accel_bytes", r.accel_bytes, "bytes", "size of the acceleration structure");

@@ -19,6 +19,7 @@ void describe(V& v, const Bounds& r) {
 struct SceneSummary {
   std::string name;
   std::uint64_t triangles = 0, instanced_triangles = 0, meshes = 0, instances = 0, materials = 0, textures = 0;
+  std::uint64_t instances_in_double = 0, instances_not_held = 0;
   std::uint64_t lights = 0, cameras = 0;
   Bounds bounds;
   std::vector<std::string> warnings;
@@ -31,6 +32,10 @@ void describe(V& v, const SceneSummary& r) {
   v.field("instanced_triangles", r.instanced_triangles, "triangles", "triangles of all instances");
   v.field("meshes", r.meshes, "meshes", "meshes");
   v.field("instances", r.instances, "instances", "placements of meshes");
+  v.field("instances_in_double", r.instances_in_double, "instances",
+          "those of the instances that are nearly singular, so that rays are brought to their space in 64 bits");
+  v.field("instances_not_held", r.instances_not_held, "instances",
+          "those of the instances that are so nearly singular that 64 bits do not keep a closed mesh closed either");
   v.field("materials", r.materials, "materials", "materials");
   v.field("textures", r.textures, "textures", "textures");
   v.field("lights", r.lights, "lights", "point, spot and directional lights");

@@ -5,13 +5,15 @@
 namespace carousel::report {
 
 struct EffectCost {
-  std::uint64_t rays = 0, texture_reads = 0, path_state_bytes = 0, cycles_per_hit = 0, cycles_per_path = 0;
+  std::uint64_t rays = 0, texture_reads = 0, products = 0, path_state_bytes = 0, cycles_per_hit = 0,
+                cycles_per_path = 0;
 };
 
 template <class V>
 void describe(V& v, const EffectCost& r) {
   v.field("rays", r.rays, "rays", "most rays that the effect adds to a path");
   v.field("texture_reads", r.texture_reads, "lookups", "most filtered texture lookups at a hit");
+  v.field("products", r.products, "products", "most products of the shader at a hit, beyond those of a plain surface");
   v.field("path_state_bytes", r.path_state_bytes, "bytes", "state of a path in flight");
   v.field("cycles_per_hit", r.cycles_per_hit, "cycles",
           "modelled cycles of a shader worker or opacity unit at a surface with the effect");
@@ -59,21 +61,66 @@ void describe(V& v, const EffectsSaved& r) {
   v.field("images_not_decoded", r.images_not_decoded, "images", "images that no enabled effect reads");
 }
 
+/// A measurement over paired repetitions.
+struct PairedTimes {
+  double median = 0, least = 0, most = 0;
+};
+
+template <class V>
+void describe(V& v, const PairedTimes& r) {
+  v.field("median", r.median, "s", "median of the repetitions");
+  v.field("least", r.least, "s", "least of them");
+  v.field("most", r.most, "s", "greatest of them");
+}
+
+/// all over auto, in each pair of repetitions.
+struct PairedRatio {
+  double median = 0, least = 0, most = 0;
+};
+
+template <class V>
+void describe(V& v, const PairedRatio& r) {
+  v.field("median", r.median, "ratio", "median of the pairs");
+  v.field("least", r.least, "ratio", "least of them");
+  v.field("most", r.most, "ratio", "greatest of them");
+}
+
+/// What the frame takes with effects by demand and with all of them.
+struct EffectsUse {
+  PairedTimes seconds{};
+  double products_per_ray = 0;
+  std::uint64_t path_state_bytes = 0, texture_bytes = 0;
+  std::optional<std::uint64_t> cycles{};
+};
+
+template <class V>
+void describe(V& v, const EffectsUse& r) {
+  v.section("seconds", r.seconds,
+            "CPU time of the sample of paths, traced depth first and shaded on one thread; repeated in turn");
+  v.field("products_per_ray", r.products_per_ray, "products",
+          "products of the shader for effects, beyond those of plain surfaces, a completed ray of the sample");
+  v.field("path_state_bytes", r.path_state_bytes, "bytes", "state of all paths in flight");
+  v.field("texture_bytes", r.texture_bytes, "bytes", "decoded images");
+  v.field("cycles", r.cycles, "cycles", "cycles of the simulated machine for the frame");
+}
+
 /// The outcome of `verify: effects`.
 struct EffectsProof {
   bool same_hits = false, same_image = false;
-  std::int64_t rays_spared = 0, tests_spared = 0;
-  std::optional<std::int64_t> cycles_spared{};
+  std::uint64_t paths = 0, repetitions = 0;
+  EffectsUse by_demand{}, all{};
+  PairedRatio time_ratio{};
 };
 
 template <class V>
 void describe(V& v, const EffectsProof& r) {
   v.field("same_hits", r.same_hits, "", "true if digest.hits is the same");
   v.field("same_image", r.same_image, "", "true if digest.image is the same");
-  v.field("rays_spared", r.rays_spared, "rays", "additional rays of the run with all effects");
-  v.field("tests_spared", r.tests_spared, "tests",
-          "additional box, triangle, procedural, plane and bundle tests of that run; they vary in the native engine");
-  v.field("cycles_spared", r.cycles_spared, "cycles", "additional cycles of the simulated machine in that run");
+  v.field("paths", r.paths, "paths", "sample of the frame's paths that is timed");
+  v.field("repetitions", r.repetitions, "repetitions", "timed repetitions of each, in turn");
+  v.section("auto", r.by_demand, "effects by demand: shading.effects: auto");
+  v.section("all", r.all, "shading.effects: all");
+  v.section("time_ratio", r.time_ratio, "time with all over time with auto, in each pair of repetitions");
 }
 
 struct Shading {

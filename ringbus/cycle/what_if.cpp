@@ -44,14 +44,17 @@ struct PartClass {
   const char *name, *action;
   bool (*present)(const Config&);
   void (*relax)(Config&);
+  int lifts = 6;  ///< how often tester_limited() relaxes it; 0: it is part of the test, or a choice
 };
+constexpr int kStorageLifts = 2;  // the host has to store it too
 constexpr PartClass kPartClasses[] = {
     {"test_latency", "half testers.*.latency_cycles", every_machine,
      [](Config& c) {
        for_all_testers(c, [](TestersConfig& testers) {
          for (auto [kind, units] : testers.units) units.latency_cycles = halved(units.latency_cycles);
        });
-     }},
+     },
+     0},
     {"contexts", "twice testers.contexts", passes_packets,
      [](Config& c) { for_all_testers(c, [](TestersConfig& testers) { testers.contexts *= 2; }); }},
     {"ray_reads", "twice rays.reads_per_cycle", [](const Config& c) { return c.rays.reads_per_cycle > 0; },
@@ -60,14 +63,14 @@ constexpr PartClass kPartClasses[] = {
      [](Config& c) { c.bundles.builder.rays_per_cycle *= 2; }},
     {"bundles_open", "twice bundles.builder.open", has_bundles, [](Config& c) { c.bundles.builder.open *= 2; }},
     {"handling", "twice packets.ids_per_cycle", passes_packets, [](Config& c) { c.packets.ids_per_cycle *= 2; }},
-    {"collection_storage", "twice collections.capacity", passes_packets,
-     [](Config& c) { c.collections.capacity *= 2; }},
+    {"collection_storage", "twice collections.capacity", passes_packets, [](Config& c) { c.collections.capacity *= 2; },
+     kStorageLifts},
     {"issue_rule", "collections.partial: ahead",
      [](const Config& c) { return passes_packets(c) && c.collections.partial != Partial::kAhead; },
-     [](Config& c) { c.collections.partial = Partial::kAhead; }},
+     [](Config& c) { c.collections.partial = Partial::kAhead; }, 0},
     {"issue_rule", "collections.partial: idle",
      [](const Config& c) { return passes_packets(c) && c.collections.partial == Partial::kAhead; },
-     [](Config& c) { c.collections.partial = Partial::kIdle; }},
+     [](Config& c) { c.collections.partial = Partial::kIdle; }, 0},
     {"shape_buffer", "twice memory.shape_buffer_kib", every_machine, [](Config& c) { c.memory.shape_buffer_kib *= 2; }},
     {"fetch_ahead", "twice memory.fetch_ahead", passes_packets,
      [](Config& c) { c.memory.fetch_ahead = std::max<std::int64_t>(1, 2 * c.memory.fetch_ahead); }},
@@ -80,7 +83,8 @@ constexpr PartClass kPartClasses[] = {
      }},
     {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", every_machine,
      [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }},
-    {"ray_slots", "twice rays.slots_per_resource", every_machine, [](Config& c) { c.rays.slots_per_resource *= 2; }},
+    {"ray_slots", "twice rays.slots_per_resource", every_machine, [](Config& c) { c.rays.slots_per_resource *= 2; },
+     kStorageLifts},
     {"shading", "twice shading.workers", every_machine, [](Config& c) { c.shading.workers = 2 * shader_workers(c); }},
     {"link_bandwidth", "twice topology.link.bytes_per_cycle", uses_links,
      [](Config& c) { c.topology.link.bytes_per_cycle *= 2; }},
@@ -90,10 +94,10 @@ constexpr PartClass kPartClasses[] = {
     {"packets_in_flight", "twice topology.link.depth", uses_links, [](Config& c) { c.topology.link.depth *= 2; }},
     {"rings", "twice topology.rings",
      [](const Config& c) { return uses_links(c) && c.topology.shape == TopologyShape::kMultiRing; },
-     [](Config& c) { c.topology.rings *= 2; }},
+     [](Config& c) { c.topology.rings *= 2; }, 0},
     {"ring_directions", "topology.shape: bidirectional",
      [](const Config& c) { return uses_links(c) && c.topology.shape == TopologyShape::kRing; },
-     [](Config& c) { c.topology.shape = TopologyShape::kBidirectional; }},
+     [](Config& c) { c.topology.shape = TopologyShape::kBidirectional; }, 0},
 };
 
 /// Reads the configuration as a user's who tries the lift. Returns whether it may be run.
@@ -107,6 +111,21 @@ bool may_be_set(const std::string& resolved, const std::vector<std::string>& set
 }
 
 }  // namespace
+
+Config tester_limited(const Config& config) {
+  Config machine = config;
+  const bool valid = may_be_set(resolved_yaml(config), {});
+  for (const PartClass& part : kPartClasses) {
+    for (int i = 0; i < part.lifts && part.present(machine); ++i) {
+      Config next = machine;
+      part.relax(next);
+      const std::vector<std::string> sets = config_differences(machine, next);
+      if (sets.empty() || (valid && !may_be_set(resolved_yaml(machine), sets))) break;
+      machine = std::move(next);
+    }
+  }
+  return machine;
+}
 
 std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   std::vector<WhatIf> all;

@@ -21,4 +21,8 @@ struct WhatIf {
 /// whose keys are at the end of their range are left out.
 std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel);
 
+/// The configured machine with every class of parts but its test units lifted, by the same table: doubled, or its
+/// latency halved, six times (storage less often), as far as the keys' ranges allow. Topology and order of issue stay.
+Config tester_limited(const Config& config);
+
 }  // namespace carousel::ringbus

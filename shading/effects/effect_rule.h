@@ -62,9 +62,14 @@ struct EffectRule {
   void (*textures)(const scene::Material&, std::vector<scene::TextureUse>&) = nullptr;
 
   /// The costs where the effect occurs. `depth` is the number of surfaces of a path.
-  std::uint32_t texture_reads = 0;                             ///< filtered lookups at a hit, at most
-  bool extra = false;                                          ///< takes `shading.cycles_per_effect` at a hit
-  std::uint32_t (*cycles_per_hit)(const Config&) = nullptr;    ///< replaces `extra`
+  std::uint32_t texture_reads = 0;  ///< filtered lookups at a hit, at most
+  /// Products, divisions and roots of the shading code at a hit beyond a plain surface's (set-up, one sample, two
+  /// evaluations, every branch taken); a sine, exponential or power counts as the 8 or 16 of its polynomial. 0: the
+  /// effect is part of a plain hit, or is no work of the shader.
+  std::uint32_t products = 0;
+  bool evaluated_without =
+      false;  ///< with `effects: all` also at surfaces that do not have it; others are only checked
+  std::uint32_t (*cycles_per_hit)(const Config&) = nullptr;    ///< replaces lookups and products: not a shader's work
   std::uint32_t (*rays_per_path)(std::uint32_t) = nullptr;     ///< by depth, at most
   std::uint32_t (*path_state_bytes)(std::uint32_t) = nullptr;  ///< by depth, of a path in flight
 };
@@ -77,6 +82,9 @@ const EffectRule& rule_of(Effect effect);
 bool has_effect(const EffectRule& rule, const scene::Material& material);
 /// True if the material calls for the effect.
 bool requires_effect(const EffectRule& rule, const scene::Material& material);
+
+/// With `effects: all`, a check for an effect that the surface does not have takes as long as a product.
+inline constexpr std::uint32_t kCheckProducts = 1;
 
 /// Code that the material needs, without that of its meshes.
 ShaderParts shader_parts(const scene::Material& material);

@@ -80,14 +80,14 @@ constexpr std::array<EffectRule, kEffects> kRules{{
      .shader = kTextures,
      .textures = [](const Material& m, Reads& reads) { add(reads, {&m.base_color_texture}); },
      .texture_reads = 1,
-     .extra = true},
+     .products = 3},
     {.effect = Effect::kMetallicRoughnessTexture,
      .material = [](const Material& m) { return m.metallic_roughness_texture.has_value(); },
      .disable_in_material = [](Material& m) { m.metallic_roughness_texture.reset(); },
      .shader = kTextures,
      .textures = [](const Material& m, Reads& reads) { add(reads, {&m.metallic_roughness_texture}); },
      .texture_reads = 1,
-     .extra = true},
+     .products = 2},
     {.effect = Effect::kNormalMap,
      .material = [](const Material& m) { return m.normal_texture || (has_clearcoat(m) && m.clearcoat.normal_texture); },
      .disable_in_material =
@@ -102,14 +102,15 @@ constexpr std::array<EffectRule, kEffects> kRules{{
            if (has_clearcoat(m)) add(reads, {&m.clearcoat.normal_texture});
          },
      .texture_reads = 1,
-     .extra = true},
+     .products = 80},
     {.effect = Effect::kVertexColor,
      .mesh = [](const Mesh& mesh) { return !mesh.colors.empty(); },
      .disable_in_scene =
          [](Scene& scene) {
            for (Mesh& mesh : scene.meshes) mesh.colors.clear();
          },
-     .shader = kTextures},
+     .shader = kTextures,
+     .products = 15},
     {.effect = Effect::kReflection,
      .material = reflects,
      .disable_in_material =
@@ -142,22 +143,22 @@ constexpr std::array<EffectRule, kEffects> kRules{{
            if (m.transmission.weight > 0) add(reads, {&m.transmission.texture});
          },
      .texture_reads = 1,
-     .extra = true},
+     .products = 54},
     {.effect = Effect::kRefraction,
      .material = refracts,
      .disable_in_material = [](Material& m) { m.volume.thickness = 0; },
-     .extra = true},
+     .products = 130},
     {.effect = Effect::kVolume,
      .material = absorbs,
      .disable_in_material = [](Material& m) { m.volume.attenuation_distance = INFINITY; },
-     .extra = true,
+     .products = 30,
      .path_state_bytes = [](std::uint32_t) { return u32(sizeof(std::uint32_t)); }},
     {.effect = Effect::kIor,
      .material = [](const Material& m) { return m.ior != 1.5f; },
      .dielectric_only = true,
      .disable_in_material = [](Material& m) { m.ior = 1.5f; },
      .shader = kBoundary,
-     .extra = true},
+     .products = 10},
     {.effect = Effect::kSpecular,
      .material =
          [](const Material& m) {
@@ -172,7 +173,7 @@ constexpr std::array<EffectRule, kEffects> kRules{{
            add(reads, {&m.specular.texture, &m.specular.color_texture});
          },
      .texture_reads = 2,
-     .extra = true},
+     .products = 40},
     {.effect = Effect::kClearcoat,
      .material = has_clearcoat,
      .disable_in_material = [](Material& m) { m.clearcoat = {}; },
@@ -182,7 +183,8 @@ constexpr std::array<EffectRule, kEffects> kRules{{
            if (has_clearcoat(m)) add(reads, {&m.clearcoat.texture, &m.clearcoat.roughness_texture});
          },
      .texture_reads = 2,
-     .extra = true},
+     .products = 214,
+     .evaluated_without = true},
     {.effect = Effect::kSheen,
      .material = has_sheen,
      .disable_in_material = [](Material& m) { m.sheen = {}; },
@@ -192,7 +194,8 @@ constexpr std::array<EffectRule, kEffects> kRules{{
            if (has_sheen(m)) add(reads, {&m.sheen.color_texture, &m.sheen.roughness_texture});
          },
      .texture_reads = 2,
-     .extra = true},
+     .products = 242,
+     .evaluated_without = true},
     {.effect = Effect::kIridescence,
      .material = is_iridescent,
      .disable_in_material = [](Material& m) { m.iridescence = {}; },
@@ -202,7 +205,7 @@ constexpr std::array<EffectRule, kEffects> kRules{{
            if (is_iridescent(m)) add(reads, {&m.iridescence.texture, &m.iridescence.thickness_texture});
          },
      .texture_reads = 2,
-     .extra = true},
+     .products = 630},
     {.effect = Effect::kAnisotropy,
      .material = is_anisotropic,
      .disable_in_material = [](Material& m) { m.anisotropy = {}; },
@@ -212,7 +215,7 @@ constexpr std::array<EffectRule, kEffects> kRules{{
            if (is_anisotropic(m)) add(reads, {&m.anisotropy.texture});
          },
      .texture_reads = 1,
-     .extra = true},
+     .products = 5264},
     {.effect = Effect::kAlphaMask,
      .material = has_alpha<AlphaMode::kMask>,
      .unlit_too = true,

@@ -69,7 +69,10 @@ PlannedEffect find_callers(const EffectRule& rule, const PlanInput& in) {
 EffectCost cost_of(const EffectRule& rule, const Config& config, std::uint32_t depth) {
   EffectCost cost;
   cost.texture_reads = rule.texture_reads;
-  if (rule.extra) cost.cycles_per_hit = static_cast<std::uint32_t>(config.shading.cycles_per_effect);
+  cost.products = rule.products;
+  const auto lookup = static_cast<std::uint32_t>(config.shading.cycles_per_lookup),
+             rate = static_cast<std::uint32_t>(config.shading.products_per_cycle);
+  cost.cycles_per_hit = lookup * rule.texture_reads + (rate == 0 ? 0 : (rule.products + rate - 1) / rate);
   if (rule.cycles_per_hit != nullptr) cost.cycles_per_hit = rule.cycles_per_hit(config);
   if (rule.rays_per_path != nullptr) cost.rays_per_path = rule.rays_per_path(depth);
   if (rule.path_state_bytes != nullptr) cost.path_state_bytes = rule.path_state_bytes(depth);

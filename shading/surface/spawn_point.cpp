@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/numeric/condition.h"
+
 namespace carousel::shading {
 
 namespace {
@@ -76,7 +78,9 @@ double spawn_distance(const TriangleGeometry& g) {
   const DMat3 inverse = glm::inverse(g.linear);
   const DMat3 abs_inverse{glm::abs(inverse[0]), glm::abs(inverse[1]), glm::abs(inverse[2])};
   const DVec3 back = abs_inverse * glm::abs(g.position - g.translation);
-  return distance + gamma(5) * glm::dot(model_n, back);
+  if (!(skeel_condition(g.linear) > kConditionForFloat)) return distance + gamma(5) * glm::dot(model_n, back);
+  // In double, with the entries to 48 bits, and rounded once at the end (accel/transform/transform.h, level_for()).
+  return distance + glm::dot(model_n, gamma(1) * glm::abs(inverse * (g.position - g.translation)) + 0x1p-45 * back);
 }
 
 Vec3 spawn_point(const TriangleGeometry& g, Side side, SpawnOffset offset) {

@@ -108,11 +108,11 @@ void PathTracer::shade(WorkerId worker_id, const HitBatch& completed, RayBatch& 
     shade_batch<false>(worker_id, completed, out, surface);
 }
 
-std::uint32_t PathTracer::extra_effects(const RayResult& result) const {
+ShadeWork PathTracer::extra_work(const RayResult& result) const {
   const Hit& hit = result.hit;
-  if (result.tag.kind == RayKind::kShadow || !hit.valid()) return 0;
+  if (!any_work_ || result.tag.kind == RayKind::kShadow || !hit.valid()) return {};
   const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
-  return surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())].effects;
+  return surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())].work;
 }
 
 void PathTracer::shade_shadow(const RayResult& result, Worker& worker) {
@@ -180,7 +180,7 @@ PathTracer::ShadeSurface PathTracer::shade_of(SurfaceClass surface, Lights light
 void PathTracer::choose_surfaces() {
   const std::vector<SurfaceClass> classes = surface_classes(scene_, plan_);
   const std::vector<ShaderParts> parts = parts_of_materials(scene_);
-  const std::vector<std::uint32_t> effects = shading::extra_effects(scene_, plan_);
+  const std::vector<ShadeWork> work = shading::extra_work(scene_, plan_);
   const Lights lights = media_                        ? Lights::kEmissiveAndMedia
                         : plan_.on(Effect::kEmission) ? Lights::kEmissive
                         : !lights_.empty()            ? Lights::kPunctual
@@ -192,7 +192,8 @@ void PathTracer::choose_surfaces() {
     surface.shade = shade_of(classes[i], lights);
     surface.glass = glass_tables(material);
     surface.absorbs = absorbs(material);
-    surface.effects = effects[i];
+    surface.work = work[i];
+    any_work_ |= work[i] != ShadeWork{};
     surface.boundary = parts[i] & kBoundary;
     if (!surface.absorbs) continue;
     for (int c = 0; c < 3; ++c) {

@@ -58,7 +58,7 @@ class PathTracer : public Workload {
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
-  std::uint32_t extra_effects(const RayResult& result) const override;
+  ShadeWork extra_work(const RayResult& result) const override;
 
   const EffectsPlan& plan() const { return plan_; }
 
@@ -99,8 +99,8 @@ class PathTracer : public Workload {
     GlassTables glass;
     Vec3 absorption{0};  ///< per scene unit, inside
     bool absorbs = false;
-    bool boundary = false;      ///< ShaderParts::kBoundary
-    std::uint32_t effects = 0;  ///< extra_effects()
+    bool boundary = false;  ///< ShaderParts::kBoundary
+    ShadeWork work;         ///< extra_work()
   };
 
   static ShadeSurface shade_of(SurfaceClass surface, Lights lights);
@@ -137,6 +137,7 @@ class PathTracer : public Workload {
   const CameraRays camera_;
   const LightSet lights_;
   const bool media_;
+  bool any_work_ = false;          ///< a material has extra_work()
   std::vector<Surface> surfaces_;  // by material
   PathPool pool_;
   Film film_;

@@ -60,14 +60,30 @@ std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::S
   return out;
 }
 
-std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan) {
-  std::vector<std::uint32_t> counts;
+std::vector<ShadeWork> extra_work(const scene::Scene& scene, const EffectsPlan& plan) {
+  std::vector<ShadeWork> work;
   for (const Material& material : scene.materials) {
-    counts.push_back(0);
-    for (const EffectRule& rule : effect_rules())
-      counts.back() += rule.extra && (plan.everything || requires_effect(rule, material)) ? 1u : 0u;
+    ShadeWork& own = work.emplace_back();
+    for (const EffectRule& rule : effect_rules()) {
+      if (rule.products == 0) continue;
+      if (requires_effect(rule, material)) {
+        own.products += rule.products;
+      } else if (plan.everything) {
+        own.products += rule.evaluated_without && !material.unlit ? rule.products : kCheckProducts;
+      }
+    }
+    own.lookups = static_cast<std::uint32_t>(textures_read(material).size());
   }
-  return counts;
+  for (const EffectRule& rule : effect_rules()) {
+    if (rule.mesh == nullptr || rule.products == 0) continue;
+    std::vector<bool> called(work.size());
+    for (const scene::Mesh& mesh : scene.meshes)
+      if (rule.mesh(mesh))
+        for (const MaterialId id : mesh.triangle_materials) called[id.value] = true;
+    for (std::size_t i = 0; i < work.size(); ++i)
+      if (called[i]) work[i].products += rule.products - (plan.everything ? kCheckProducts : 0);
+  }
+  return work;
 }
 
 }  // namespace carousel::shading

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/types/workload.h"
 #include "scene/model/scene.h"
 #include "shading/effects/effects_plan.h"
 
@@ -33,8 +34,8 @@ std::vector<SurfaceClass> surface_classes(const scene::Scene& scene, const Effec
 std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::Scene& scene, const EffectsPlan& plan);
 /// By material: the parts of the shading code that it needs, by its own effects and by those of its meshes.
 std::vector<ShaderParts> parts_of_materials(const scene::Scene& scene);
-/// By material: the number of effects that a hit computes beyond those of a plain surface (`EffectRule::extra`); with
-/// `all` every such effect counts.
-std::vector<std::uint32_t> extra_effects(const scene::Scene& scene, const EffectsPlan& plan);
+/// By material: the lookups and products of a hit beyond those of a plain surface. With `all` the effects that the
+/// material does not have count as well: as checks, or in full if the code evaluates them without a check.
+std::vector<ShadeWork> extra_work(const scene::Scene& scene, const EffectsPlan& plan);
 
 }  // namespace carousel::shading

@@ -108,12 +108,14 @@ TEST(Extending, AnEffectFollowsFromItsRule) {
   const std::vector<bool> reached{true};
   const EffectsPlan none;
   Config config;
-  config.shading.cycles_per_effect = 7;
+  config.shading.cycles_per_lookup = 7;
+  config.shading.products_per_cycle = 10;
   const PlannedEffect planned = find_callers(kFrostedGlass, {scene, config, reached, none});
   EXPECT_TRUE(planned.called_for);
   EXPECT_EQ(planned.why, "material frosted");
   const EffectCost cost = cost_of(kFrostedGlass, config, 3);
-  EXPECT_EQ(cost.cycles_per_hit, 7u);
+  EXPECT_EQ(cost.cycles_per_hit, 7u + 6);  // a lookup, and 54 products
+  EXPECT_EQ(cost.products, 54u);
   EXPECT_EQ(cost.texture_reads, 1u);
   EXPECT_EQ(cost.path_state_bytes, 12u);
   kFrostedGlass.disable_in_material(scene.materials[0]);

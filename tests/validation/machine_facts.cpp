@@ -13,6 +13,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "accel/box/double_slab.h"
+#include "accel/box/slab.h"
 #include "accel/traverse/kernels.h"
 #include "accel/traverse/ray_check.h"
 #include "app/run/prepare.h"
@@ -56,7 +58,8 @@ class Tree {
                       {"strip", {strip.address, strip.bytes}},
                       {"transform", {transform.address, transform.bytes}},
                       {"moves", transform.bytes > 0},
-                      {"transposed", transform.bytes > 0 && accel_.instances[key.instance].transform.transposed}});
+                      {"transposed", transform.bytes > 0 && accel_.instances[key.instance].transform.transposed},
+                      {"promoted", transform.bytes > 0 && accel_.instances[key.instance].transform.promoted}});
     Json children = Json::array();
     if (key.ref.is_inner())
       for (int lane = 0; lane < accel_.nodes[key.ref.node()].count; ++lane)
@@ -88,14 +91,16 @@ class RecordedWorkload final : public Workload {
     }
     return made;
   }
-  std::uint32_t extra_effects(const RayResult& result) const override { return inner_.extra_effects(result); }
+  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     std::vector<Name>& batch = shaded_.emplace_back();
     for (const RayResult& result : completed) {
       const Name own = name(result.tag);
       batch.push_back(own);
       Json& ray = rays_.at(own);
-      ray["effects"] = inner_.extra_effects(result);
+      const ShadeWork work = inner_.extra_work(result);
+      ray["lookups"] = work.lookups;
+      ray["products"] = work.products;
       ray["children"] = Json::array();
       const std::size_t before = out.size();
       inner_.shade(worker, {result}, out);
@@ -122,7 +127,8 @@ class RecordedWorkload final : public Workload {
     Json ray{{"shadow", request.tag.kind == RayKind::kShadow},
              {"range", number(fresh.hit.t)},
              {"boxes", Json::object()},
-             {"triangles", Json::object()}};
+             {"triangles", Json::object()},
+             {"candidates", Json::object()}};
     meet(tree_.accel().root_key(), fresh, ray);
     rays_.emplace(name(request.tag), std::move(ray));
   }
@@ -130,13 +136,15 @@ class RecordedWorkload final : public Workload {
     const std::string number = std::to_string(tree_.number_of(key));
     IntersectionCounts ignored;
     if (!key.ref.is_inner()) {
-      Json distances = Json::array();
+      Json distances = Json::array(), candidates = Json::array();
       for (std::uint32_t i = 0; i < key.ref.triangles(); ++i) {
         RayRecord record = fresh;
         accel::test_strip(tree_.accel(), key, 1u << i, {&record, nullptr, 1}, {}, ignored);
         distances.push_back(record.hit.valid() ? Json(record.hit.t) : Json());
+        candidates.push_back(candidate(key, i, fresh));
       }
       ray["triangles"][number] = distances;
+      ray["candidates"][number] = candidates;
       return;
     }
     RayRecord record = fresh;
@@ -150,6 +158,31 @@ class RecordedWorkload final : public Workload {
       if (mask >> lane & 1) meet(tree_.accel().child_key(key, lane), fresh, ray);
     }
     ray["boxes"][number] = entries;
+  }
+
+  /// The entry into the box of a triangle that the ray meets in 32 bits, up to which its closest hit lets the distance
+  /// be computed in 64; nothing if it is not met.
+  Json candidate(accel::NodeKey key, std::uint32_t triangle, const RayRecord& fresh) const {
+    RayRecord record = fresh;
+    IntersectionCounts counts;
+    const accel::Accel& accel = tree_.accel();
+    accel::test_strip(accel, key, 1u << triangle, {&record, nullptr, 1}, {}, counts);
+    if (counts.refined == 0) return {};
+    const accel::TriangleBlock& block = accel.blocks[key.ref.first_block() + triangle / accel::kBlockTriangles];
+    Aabb box;
+    for (const auto& vertex : block.vertex) {
+      const std::uint32_t lane = triangle % accel::kBlockTriangles;
+      box.extend({vertex[0][lane], vertex[1][lane], vertex[2][lane]});
+    }
+    const accel::InstanceTransform transform =
+        key.instance == kNoInstance ? accel::InstanceTransform{} : accel.instances[key.instance].transform;
+    const Ray model = transform.to_model(fresh.ray);
+    float entry;
+    if (accel.accuracy.box == BoxLevel::kDouble)
+      accel::slab(accel::DoubleSlabRay(model), box, fresh.hit.t, entry);
+    else
+      accel::slab(accel::SlabRay(model, accel::far_widening(accel.accuracy.box)), box, fresh.hit.t, entry);
+    return entry;
   }
 
   Workload& inner_;

@@ -24,7 +24,7 @@ struct ShadingConfig {
   bool idle_resources_shade = false;
   std::int64_t cycles_per_shade = 20;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
-  std::int64_t cycles_per_any_hit = 10, cycles_per_effect = 5;
+  std::int64_t cycles_per_any_hit = 10, cycles_per_lookup = 5, products_per_cycle = 8;
   RayFlags camera_rays{}, bounce_rays{}, shadow_rays{};
 };
 
@@ -60,9 +60,11 @@ void describe(V& v, ShadingConfig& c) {
   v.field("idle_resources_shade", c.idle_resources_shade, "", "Idle resources help the shader workers.");
   v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles",
           "The time to shade a ray that hit a plain surface or nothing.");
-  v.field("cycles_per_effect", c.cycles_per_effect, IntRange{0, 1'000'000}, "cycles",
-          "The additional time for each texture or layer that the surface has; with effects: all, for each that a "
-          "surface could have.");
+  v.field("cycles_per_lookup", c.cycles_per_lookup, IntRange{0, 1'000'000}, "cycles",
+          "The additional time for each filtered texture lookup at a surface.");
+  v.field("products_per_cycle", c.products_per_cycle, IntRange{0, 4096}, "products/cycle",
+          "The products of a surface's effects that a shader worker computes in a cycle, beyond those of a plain "
+          "surface. With 0 they take no time.");
   v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
           "The time in which a shader worker decides if a non-opaque primitive is hit, with testers.any_hit: shader.");
   v.section("camera_rays", c.camera_rays, "The flags of camera rays.");

@@ -23,7 +23,7 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
-/// each instance's transform, from a 64-byte border on.
+/// each instance's transform, from a 64-byte border on, in equal room for all of them.
 class ShapeMemory {
  public:
   ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
@@ -32,7 +32,9 @@ class ShapeMemory {
                     (accel.spheres.empty() ? 0 : sizeof(accel::Node::plane) - sizeof(accel::NodeSpheres))),
         blocks_at_((accel.nodes.size() * node_bytes_ + bytes_behind_nodes() + 63) / 64 * 64),
         instances_at_((blocks_at_ + accel.blocks.size() * sizeof(accel::TriangleBlock) + 63) / 64 * 64),
-        instance_bytes_(accel::instance_bytes(accuracy)) {}
+        instance_bytes_(accel::instance_bytes(accuracy)),
+        promoted_bytes_(accel::promoted_bytes(accuracy)),
+        instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) + 63) / 64 * 64) {}
 
   /// The strip below `key`: a node with its children's boxes and planes, or a leaf's triangles.
   ShapeSpan strip(accel::NodeKey key) const {
@@ -66,7 +68,8 @@ class ShapeMemory {
   /// The transform data that testing in `instance` needs; no bytes above the instances and where rays are not moved.
   ShapeSpan transform(std::uint32_t instance) const {
     if (instance == kNoInstance || accel_.instances[instance].transform.identity) return {};
-    return {instances_at_ + std::uint64_t{instance} * ((instance_bytes_ + 63) / 64 * 64), instance_bytes_};
+    return {instances_at_ + std::uint64_t{instance} * instance_room_,
+            accel_.instances[instance].transform.promoted ? promoted_bytes_ : instance_bytes_};
   }
 
  private:
@@ -100,7 +103,7 @@ class ShapeMemory {
   std::vector<std::uint64_t> behind_before_;  // bytes, by node; empty when there are none
   std::uint32_t node_bytes_;
   std::uint64_t blocks_at_, instances_at_;
-  std::uint32_t instance_bytes_;
+  std::uint32_t instance_bytes_, promoted_bytes_, instance_room_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -17,7 +17,8 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       clients_(std::move(clients)),
       trace_(static_cast<std::uint32_t>(machine.topology.resources()), window),
       shade_cycles_(static_cast<Cycle>(settings.shading.cycles_per_shade)),
-      effect_cycles_(static_cast<Cycle>(settings.shading.cycles_per_effect)),
+      lookup_cycles_(static_cast<Cycle>(settings.shading.cycles_per_lookup)),
+      products_per_cycle_(static_cast<std::uint64_t>(settings.shading.products_per_cycle)),
       any_hit_cycles_(static_cast<Cycle>(settings.shading.cycles_per_any_hit)),
       load_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(settings.link.bytes_per_cycle))),
       latency_(control_latency(settings.link)),
@@ -153,7 +154,10 @@ bool ShadingAgent::start_jobs(Cycle now) {
 }
 
 Cycle ShadingAgent::cycles_for(const RayResult& ray) const {
-  return effect_cycles_ == 0 ? shade_cycles_ : shade_cycles_ + effect_cycles_ * workload_.extra_effects(ray);
+  if (lookup_cycles_ == 0 && products_per_cycle_ == 0) return shade_cycles_;
+  const ShadeWork work = workload_.extra_work(ray);
+  const Cycle products = products_per_cycle_ == 0 ? 0 : ceil_div(work.products, products_per_cycle_);
+  return shade_cycles_ + lookup_cycles_ * work.lookups + products;
 }
 
 std::size_t ShadingAgent::take_camera_rays(std::uint32_t worker) {

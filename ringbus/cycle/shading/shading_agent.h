@@ -108,7 +108,9 @@ class ShadingAgent final : public Agent {
   Workload& workload_;
   std::vector<SidePorts> clients_;
   Trace trace_;
-  Cycle shade_cycles_, effect_cycles_, any_hit_cycles_, load_cycles_, latency_;
+  Cycle shade_cycles_, lookup_cycles_;
+  std::uint64_t products_per_cycle_;
+  Cycle any_hit_cycles_, load_cycles_, latency_;
   std::size_t slots_, group_;
   std::size_t gather_;  // new rays that are given slots together
   bool bundled_;

@@ -1,16 +1,13 @@
 #pragma once
 
 #include "core/config/config.h"
+#include "ringbus/cycle/testers/unit_passes.h"
 
 namespace carousel::ringbus::cycle {
 
-/// Passes of a test in 64 bits through a unit built for 32 bits: a product of two 53-bit significands is four products
-/// of 27 bits. All tests in 32 bits cost the same: Möller-Trumbore has 27 products a triangle, the watertight test 21,
-/// and a conservative box adds three products a ray. An exact test is charged as its filter in 64 bits; the longer
-/// arithmetic behind the filter is not charged.
-inline constexpr std::int64_t kDoublePasses = 4;
-
-/// Testers that are configured for 32 bits, at the levels of `accuracy`.
+/// Testers that are configured for 32 bits, at the levels of `accuracy`. All tests in 32 bits cost the same:
+/// Möller-Trumbore has 27 products a triangle, the watertight test 21, and a conservative box adds three products a
+/// ray. An exact test is charged as its filter in 64 bits, and for the arithmetic behind the filter as above.
 inline TestersConfig at_levels(TestersConfig testers, const AccuracyConfig& accuracy) {
   if (accuracy.triangle == TriangleLevel::kDouble || accuracy.triangle == TriangleLevel::kExact)
     testers.units[UnitKind::kTriangle].interval_cycles *= kDoublePasses;

@@ -38,8 +38,8 @@ class Tester {
     const UnitBank::Reservation bundled =
         tested(banks_[UnitKind::kBundle], store_.reserve(at, reads_cost_ ? reads : 0), bundle_passes);
     const Cycle inverse = inverted(bundled.first, counts);
-    const UnitBank::Reservation moved =
-        tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)}, counts.transforms);
+    const UnitBank::Reservation moved = tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)},
+                                               passes_of(UnitKind::kTransform, counts));
     return std::max(boxes(moved, counts), primitives(moved, counts));
   }
 
@@ -48,7 +48,7 @@ class Tester {
     const auto beside = [&](UnitKind kind, Cycle from) {
       return banks_[kind].reserve_beside(from, ray.tests[kind]).last;
     };
-    if (ray.inversions > 0) at = invert(at);
+    if (ray.inversion > 0) at = invert(at, ray.inversion);
     const Cycle moved = beside(UnitKind::kTransform, at);
     const bool planes_first = order_ == Order::kPlanesFirst && ray.tests[UnitKind::kPlane] > 0;
     const Cycle boxed = planes_first ? beside(UnitKind::kBox, beside(UnitKind::kPlane, moved))
@@ -59,8 +59,8 @@ class Tester {
     return std::max(boxed, inline_ ? beside(UnitKind::kAnyHit, met) : met);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
-  /// The end of the inversion of a matrix.
-  Cycle invert(Cycle at) { return banks_[UnitKind::kTransform].reserve(at, accel::kInversionPasses).last; }
+  /// The end of the inversion of a matrix, which takes so many passes.
+  Cycle invert(Cycle at, std::uint64_t passes) { return banks_[UnitKind::kTransform].reserve(at, passes).last; }
   /// The time at which `records` records that are wanted at `at` have been read, beside others.
   Cycle read(Cycle at, std::uint64_t records) { return reads_cost_ ? store_.reserve_beside(at, records).last : at; }
 
@@ -118,16 +118,14 @@ class Tester {
     UnitBank::Reservation met = moved;
     for (const UnitKindRow& row : kUnitKinds) {
       if (row.stage != Stage::kPrimitive || counts.*row.tests == 0) continue;
-      const UnitBank::Reservation own = tested(banks_[row.kind], moved, counts.*row.tests);
+      const UnitBank::Reservation own = tested(banks_[row.kind], moved, passes_of(row.kind, counts));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
     return tested(banks_[UnitKind::kAnyHit], met, lookups(counts)).last;
   }
   /// Any-hit calls that units of the resource answer.
   std::uint64_t lookups(const IntersectionCounts& counts) const { return inline_ ? counts.any_hit_calls : 0; }
-  Cycle inverted(Cycle at, const IntersectionCounts& counts) {
-    return banks_[UnitKind::kTransform].reserve(at, accel::kInversionPasses * counts.inversions).last;
-  }
+  Cycle inverted(Cycle at, const IntersectionCounts& counts) { return invert(at, inversion_passes(counts)); }
 
   PerUnit<UnitBank> banks_;
   UnitBank store_;

@@ -46,6 +46,7 @@ void RayWalk::enter(std::uint32_t instance, std::uint32_t slot, IntersectionCoun
   instance_ = instance;
   if (!transforms_->moves(instance) || !transforms_->needs(slot, instance)) return;
   tests.transforms = 1;
+  tests.transforms_in_double = transforms_->in_double(instance);
   tests.inversions = transforms_->inverts(instance);
 }
 
@@ -55,7 +56,7 @@ IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, 
   std::fill(std::begin(nearest), std::end(nearest), kInfinity);
   IntersectionCounts tests;
   accel::test_strip(accel, key, ~0u, ray, {&mask, nearest, entry}, tests);
-  tests.transforms = 0;  // the kernel's own, for every strip
+  tests.transforms = tests.transforms_in_double = 0;  // the kernel's own, for every strip
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
   if (!key.ref.is_inner() || mask == 0) return tests;
   std::uint64_t bytes = 0;

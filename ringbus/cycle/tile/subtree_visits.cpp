@@ -62,13 +62,13 @@ void SubtreeVisits::test(std::uint32_t index, Cycle now) {
   const WalkStep& step = visit.ways.steps[ray.step++];
   Cycle at = now;
   RayTests tests = step.tests;
-  if (std::exchange(tests.inversions, 0) > 0) [[unlikely]] {
+  if (const std::uint8_t passes = std::exchange(tests.inversion, 0); passes > 0) [[unlikely]] {
     // The first ray that needs a matrix inverted has it done for all of the visit.
     const auto done = std::find_if(visit.inverted.begin(), visit.inverted.end(),
                                    [&](const Inverted& one) { return one.instance == step.key.instance; });
     at = done != visit.inverted.end()
              ? std::max(now, done->at)
-             : visit.inverted.emplace_back(Inverted{step.key.instance, tester_.invert(now)}).at;
+             : visit.inverted.emplace_back(Inverted{step.key.instance, tester_.invert(now, passes)}).at;
   }
   ray.phase = Ray::Phase::kInTest;
   ++in_test_;

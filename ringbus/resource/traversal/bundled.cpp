@@ -126,6 +126,8 @@ void BundledTraversal::test_bundles(Packet& packet, LocalRays& local, TestOutcom
     // One inversion serves all rays of a visit.
     const bool inverts = transforms_ > 0 && outcome.counts.transforms == 0;
     counts.transforms = transforms_;
+    counts.transforms_in_double =
+        transforms_ > 0 && context_.transforms->in_double(packet.key.instance) ? transforms_ : 0;
     counts.inversions = inverts && context_.transforms->inverts(packet.key.instance);
   }
   outcome.counts += counts;
@@ -205,7 +207,9 @@ accel::BundleRecord BundledTraversal::bounds_in(std::uint32_t instance, std::spa
     bundle.widen(context_.accel.instances[instance].transform.to_model(record.ray), record.hit.t);
   }
   bundle.count = static_cast<std::uint8_t>(rays.size());
-  if (context_.transforms == nullptr) counts.transforms += rays.size();
+  if (context_.transforms != nullptr) return bundle;
+  counts.transforms += rays.size();
+  if (context_.accel.instances[instance].transform.promoted) counts.transforms_in_double += rays.size();
   return bundle;
 }
 

@@ -51,6 +51,7 @@ class TransformAccount {
     if (!moves(instance)) return counts;
     for (const std::uint32_t slot : slots)
       if ((records[slot].tag.flags & kRayDone) == 0) counts.transforms += needs(slot, instance);
+    counts.transforms_in_double = in_double(instance) ? counts.transforms : 0;
     counts.inversions = counts.transforms > 0 && inverts(instance);
     return counts;
   }
@@ -60,6 +61,8 @@ class TransformAccount {
     held_ -= accel::kTransformedRayBytes * kept_[slot].size();
     kept_[slot].clear();
   }
+  /// True if rays are transformed in double for this instance, at a level that is not.
+  bool in_double(std::uint32_t instance) const { return accel_.instances[instance].transform.promoted; }
   /// True if the inverse has to be computed before rays are transformed. A transpose needs no computing.
   bool inverts(std::uint32_t instance) const { return forward_ && !accel_.instances[instance].transform.transposed; }
 

@@ -42,6 +42,7 @@ class TransformCharge {
   void write(IntersectionCounts& counts) const {
     if (!accounted_) return;
     counts.transforms = charged_.transforms;
+    counts.transforms_in_double = charged_.transforms_in_double;
     counts.inversions = charged_.inversions;
   }
 

@@ -69,8 +69,48 @@ void times_modelled_cycles_and_pictures_are_there(const Json& report) {
   EXPECT_GT(
       level(report, "double", "double", "two_step").at("modelled_tester_cycles_per_ray").get<double>(),
       2 * level(report, "watertight", "conservative", "two_step").at("modelled_tester_cycles_per_ray").get<double>());
+  // Where the testers limit, four passes a test cost what they take.
+  const auto limited = [&](const char* triangle, const char* box) {
+    return level(report, triangle, box, "two_step").at("tester_limited_cycles_per_ray").get<double>();
+  };
+  EXPECT_GT(limited("double", "double"), 2 * limited("watertight", "conservative"));
+  EXPECT_GT(limited("exact", "double"), 0.95 * limited("double", "double"));  // the same tests, in another order
   EXPECT_GE(report.at("sampling").at("rows").size(), 6u);
   EXPECT_NEAR(report.at("sampling").at("slope").get<double>(), -0.5, 0.2);
+}
+
+void areas_and_energies_follow_the_levels(const Json& report) {
+  const Json& base = level(report, "watertight", "conservative", "two_step");
+  EXPECT_EQ(base.at("unit_area_over_default"), 1);
+  EXPECT_GT(base.at("unit_area_mm2"), 0);
+  const Json& wide = level(report, "double", "double", "two_step");
+  EXPECT_GT(wide.at("unit_area_over_default").get<double>(), 1.2);
+  EXPECT_GT(wide.at("energy_pj_per_ray").get<double>(), 2 * base.at("energy_pj_per_ray").get<double>());
+}
+
+void exact_pays_for_its_fall_back(const Json& report) {
+  EXPECT_EQ(level(report, "double", "double", "two_step").at("exact_volumes_per_ray"), 0);
+  const Json& exact = level(report, "exact", "double", "two_step");
+  EXPECT_GT(exact.at("exact_volumes_per_ray"), 0);
+  EXPECT_GT(exact.at("energy_pj_per_ray"), level(report, "double", "double", "two_step").at("energy_pj_per_ray"));
+}
+
+void what_loses_rays_of_a_hard_case_is_not_safe_and_not_recommended(const Json& report) {
+  EXPECT_EQ(level(report, "watertight", "conservative", "inverse_matrix").at("safe"), false);
+  for (const Json& row : report.at("levels")) {
+    std::uint64_t lost = 0;
+    for (const Json& errors : row.at("hard"))
+      lost += errors.at("missed").get<std::uint64_t>() + errors.at("extra").get<std::uint64_t>();
+    EXPECT_TRUE(lost == 0 || row.at("safe") == false);
+    for (const char* clock : {"host", "hardware"}) {
+      EXPECT_TRUE(row.at("frontier").at(clock).is_boolean());
+      const Json& chosen = report.at("recommended").at(clock);
+      ASSERT_TRUE(chosen.is_object());
+      const bool is_chosen = chosen.at("triangle") == row.at("triangle") && chosen.at("box") == row.at("box") &&
+                             chosen.at("transform") == row.at("transform");
+      EXPECT_TRUE(!is_chosen || row.at("safe") == true) << clock;
+    }
+  }
 }
 
 // One run for all: it takes a while, and each test is a process of its own.
@@ -86,10 +126,30 @@ TEST(AccuracyCommand, MeasuresWhatEachLevelGetsWrongAndCosts) {
   one_inverse_matrix_loses_far_meshes(report);
   a_bounded_spawn_offset_never_hits_its_own_triangle(report);
   times_modelled_cycles_and_pictures_are_there(report);
+  areas_and_energies_follow_the_levels(report);
+  exact_pays_for_its_fall_back(report);
+  what_loses_rays_of_a_hard_case_is_not_safe_and_not_recommended(report);
   EXPECT_THAT(outcome.out, HasSubstr("watertight"));
   EXPECT_THAT(outcome.out, HasSubstr("cheapest safe level"));
   EXPECT_THAT(outcome.out, HasSubstr("Monte Carlo: -0.50"));
   EXPECT_THAT(program.read("out/a/accuracy.svg"), HasSubstr("</svg>"));
+}
+
+TEST(AccuracyCommand, HonoursTheConfiguredPlanesAndBundles) {
+  const Program program;
+  program.write("a.yaml", std::string(kConfig) + "cull_planes: {count: 2}\nbundles: {size: 4}\n");
+  const Outcome outcome =
+      program.run({"accuracy", "a.yaml", "--rays", "300", "--hard-rays", "100", "--repetitions", "1"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json report = Json::parse(program.read("out/a/accuracy.json"));
+  const Json& base = level(report, "watertight", "conservative", "two_step");
+  EXPECT_EQ(base.at("cull_planes"), true);
+  EXPECT_GT(base.at("plane_tests_per_ray"), 0);
+  EXPECT_GT(base.at("bundle_tests_per_ray"), 0);
+  const Json& fast = level(report, "fast", "plain", "two_step");  // planes could lose its hits
+  EXPECT_EQ(fast.at("cull_planes"), false);
+  EXPECT_EQ(fast.at("plane_tests_per_ray"), 0);
+  EXPECT_THAT(outcome.out, HasSubstr("without cull planes"));
 }
 
 TEST(AccuracyCommandErrors, TrafficHasNoPictures) {

@@ -10,11 +10,12 @@ class CameraRayCost : public TimedRun {
  protected:
   Json picture(int side, int packet_rays, std::vector<std::string> sets = {}) {
     sets.push_back(fmt::format("packets.rays={}", packet_rays));
-    return report(fmt::format("scene: {{builtin: terrain, triangles: 600}}\n"
-                              "image: {{width: {}, height: {}, samples: 1, max_depth: 2}}\n"
-                              "shading: {{workers: 1, cycles_per_shade: 20, cycles_per_effect: 0}}\n",
-                              side, side),
-                  sets);
+    return report(
+        fmt::format("scene: {{builtin: terrain, triangles: 600}}\n"
+                    "image: {{width: {}, height: {}, samples: 1, max_depth: 2}}\n"
+                    "shading: {{workers: 1, cycles_per_shade: 20, cycles_per_lookup: 0, products_per_cycle: 0}}\n",
+                    side, side),
+        sets);
   }
   static double busy(const Json& report) {
     return report["shading"]["utilisation"].get<double>() * report["engine"]["cycles"].get<double>();

@@ -1,6 +1,7 @@
 #include "report/accuracy/accuracy.h"
 
 #include <cmath>
+#include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ TEST(AccuracyFrontier, HoldsWhatNothingBeatsInBoth) {
   mark_frontier(rows);
   std::vector<std::string> names;
   for (const AccuracyRow& r : rows)
-    if (r.frontier) names.push_back(r.triangle);
+    if (r.on_frontier(Clock::kHost)) names.push_back(r.triangle);
   EXPECT_THAT(names, testing::ElementsAre("fast", "slow", "middle", "even"));
 }
 
@@ -37,6 +38,66 @@ TEST(AccuracyVerdict, NamesTheFastestSafeLevelAndWhatItCosts) {
   EXPECT_THAT(accuracy_verdict({row("fast", 10, 5, false)}), testing::HasSubstr("No combination is safe"));
   EXPECT_THAT(accuracy_verdict({row("fast", 10, 0, true)}), testing::HasSubstr("also the fastest"));
   EXPECT_EQ(accuracy_verdict({}), "");
+}
+
+AccuracyRow with_cycles(AccuracyRow r, double cycles, double area) {
+  r.modelled.emplace().tester_limited = TesterLimited{cycles, "triangle", 0.9};
+  r.unit_area_mm2 = area;
+  return r;
+}
+
+TEST(AccuracyFrontier, CostsWhoseRangesOverlapAreEqual) {
+  std::vector<AccuracyRow> rows{row("fast", 10, 5, false), row("right", 11, 0, true)};
+  rows[0].ns_per_ray = {10, 9, 12};
+  rows[1].ns_per_ray = {11, 10, 13};
+  mark_frontier(rows);
+  EXPECT_FALSE(rows[0].on_frontier(Clock::kHost));  // as slow, and wrong
+  EXPECT_TRUE(rows[1].on_frontier(Clock::kHost));
+  rows[0].ns_per_ray.most = 9.9;
+  mark_frontier(rows);
+  EXPECT_TRUE(rows[0].on_frontier(Clock::kHost));
+}
+
+TEST(AccuracyFrontier, HardwareHasAClockOfItsOwn) {
+  // On the host doubles cost nothing more; in hardware they take twice the cycles.
+  std::vector<AccuracyRow> rows{with_cycles(row("watertight", 10, 5, false), 8.3, 1),
+                                with_cycles(row("double", 10, 0, true), 18.8, 2)};
+  mark_frontier(rows);
+  EXPECT_FALSE(rows[0].on_frontier(Clock::kHost));
+  EXPECT_TRUE(rows[0].on_frontier(Clock::kHardware));
+  EXPECT_TRUE(rows[1].on_frontier(Clock::kHardware));
+  EXPECT_THAT(accuracy_verdict(rows), testing::HasSubstr("For hardware"));
+  EXPECT_THAT(accuracy_verdict(rows), testing::HasSubstr("18.8 cycles a ray, +127 % over the cheapest"));
+}
+
+TEST(AccuracyRecommendation, OfEqualCostTheMoreAccurateThenTheSmallerUnit) {
+  std::vector<AccuracyRow> rows{with_cycles(row("a", 10, 0, true), 1.000, 3),
+                                with_cycles(row("b", 20, 0, true), 1.004, 2),
+                                with_cycles(row("c", 30, 0, true), 1.500, 1)};
+  EXPECT_EQ(recommended(rows, Clock::kHost), 0u);
+  EXPECT_EQ(recommended(rows, Clock::kHardware), 1u);  // as fast as a, and smaller
+  rows[0].scene.ulp_p99 = 0.5, rows[1].scene.ulp_p99 = 700;
+  EXPECT_EQ(recommended(rows, Clock::kHardware), 0u);  // as fast as b, and its t is better
+  rows[0].safe = rows[1].safe = false;
+  EXPECT_EQ(recommended(rows, Clock::kHardware), 2u);
+  rows[2].safe = false;
+  EXPECT_EQ(recommended(rows, Clock::kHardware), std::nullopt);
+}
+
+TEST(AccuracySafety, NothingIsSafeThatLosesRaysOfAHardCase) {
+  const std::vector<HardCase> hard{
+      {"edges", "", true, false}, {"slivers", "", false, true}, {"far mesh", "", false, false}};
+  AccuracyRow r = row("inverse", 10, 0, false);
+  r.hard.resize(3);
+  judge_safety(r, hard);
+  EXPECT_TRUE(r.safe);
+  r.hard[1].missed = 289;
+  judge_safety(r, hard);
+  EXPECT_FALSE(r.safe);
+  EXPECT_TRUE(r.safe_but_slivers);
+  r.hard[2].missed = 502;  // far meshes, as inverse_matrix does
+  judge_safety(r, hard);
+  EXPECT_FALSE(r.safe || r.safe_but_slivers);
 }
 
 TEST(AccuracySlope, IsThatOfAPowerLaw) {
@@ -56,9 +117,33 @@ TEST(AccuracyPlot, HasADotForEachRow) {
   std::size_t dots = 0;
   for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++dots;
   EXPECT_EQ(dots, 2u);
+  accuracy.rows = {with_cycles(row("fast", 10, 5, false), 1, 1), with_cycles(row("slow", 30, 0, true), 2, 1)};
+  mark_frontier(accuracy.rows);
+  const std::string both = accuracy_plot(accuracy);
+  dots = 0;
+  for (std::size_t at = both.find("<circle"); at != std::string::npos; at = both.find("<circle", at + 1)) ++dots;
+  EXPECT_EQ(dots, 4u);  // one on each clock
   EXPECT_THAT(svg, testing::HasSubstr("slow + box + two_step"));
   accuracy.rows.clear();
   EXPECT_THAT(accuracy_plot(accuracy), testing::EndsWith("</svg>\n"));
+}
+
+TEST(AccuracyPlot, NoNumberStandsOnAnother) {
+  Accuracy accuracy;
+  for (int i = 0; i < 13; ++i)  // all of the same cost, half without errors
+    accuracy.rows.push_back(with_cycles(row("level", 100 + 0.1 * i, i % 2 == 0 ? 0 : 1, false), 1, 1));
+  mark_frontier(accuracy.rows);
+  const std::string svg = accuracy_plot(accuracy);
+  const std::regex number("class='number' x='([0-9.]+)' y='([0-9.]+)'");
+  std::vector<std::pair<double, double>> places;
+  for (std::sregex_iterator i(svg.begin(), svg.end(), number), end; i != end; ++i)
+    places.emplace_back(std::stod((*i)[1]), std::stod((*i)[2]));
+  ASSERT_EQ(places.size(), 26u);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_TRUE(std::abs(places[i].first - places[k].first) >= 15.9 ||
+                  std::abs(places[i].second - places[k].second) >= 13.9)
+          << i << " and " << k;
 }
 
 }  // namespace

@@ -53,8 +53,9 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
     EXPECT_EQ(with[row.name]["per_ray"], static_cast<double>(count++) / 4) << row.name;
     EXPECT_EQ(without.contains(row.name), row.shown == Shown::kAlways) << row.name;
   }
-  EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "plane", "triangle", "bundle", "transforms", "inversions",
-                                                  "culled", "procedural", "any_hit", "ray_reads"}));
+  EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "plane", "triangle", "refined", "bundle", "transforms",
+                                                  "transforms_in_double", "inversions", "exact_volumes", "culled",
+                                                  "procedural", "any_hit", "ray_reads"}));
 }
 
 TEST(ReportSections, DerivedNumbersAreOfTheCounters) {

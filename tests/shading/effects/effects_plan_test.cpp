@@ -6,6 +6,7 @@
 
 #include "shading/surface/alpha_test.h"
 #include "shading/tracer/path_tracer.h"
+#include "shading/tracer/surface_class.h"
 #include "tests/shading/effects/effect_scenes.h"
 #include "tests/shading/path/brute_force_tracer.h"
 #include "tests/shading/path/threaded_frame.h"
@@ -150,17 +151,42 @@ TEST(EffectsPlan, CyclesAreThoseOfTheConfiguration) {
   Config config = small_image();
   config.image.max_depth = 3;
   config.shading.cycles_per_shade = 20;
-  config.shading.cycles_per_effect = 7;
+  config.shading.cycles_per_lookup = 7;
+  config.shading.products_per_cycle = 10;
   config.shading.cycles_per_any_hit = 11;
   config.testers.units[UnitKind::kAnyHit].interval_cycles = 2;
   const EffectsPlan plan = plan_effects(scene_of_everything(), config);
-  EXPECT_EQ(plan.of(Effect::kClearcoat).cost.cycles_per_hit, 7u);
+  EXPECT_EQ(plan.of(Effect::kClearcoat).cost.cycles_per_hit, 2u * 7 + 22);  // 2 lookups, 214 products
+  EXPECT_EQ(cost_of(rule_of(Effect::kIor), config, 3).cycles_per_hit, 1u);  // 10 products
   EXPECT_EQ(plan.of(Effect::kAlphaBlend).cost.cycles_per_hit, 2u);
   EXPECT_EQ(plan.of(Effect::kShadowRays).cost.cycles_per_path, 3u * 20);
   EXPECT_EQ(plan.of(Effect::kBounceRays).cost.cycles_per_path, 2u * 20);
   EXPECT_EQ(plan.of(Effect::kReflection).cost.cycles_per_hit, 0u);
   config.testers.any_hit = TestersConfig::AnyHit::kShader;
   EXPECT_EQ(plan_effects(scene_of_everything(), config).of(Effect::kAlphaBlend).cost.cycles_per_hit, 11u);
+}
+
+TEST(EffectsWork, FollowsFromTheOperationsOfTheMaterial) {
+  scene::Scene scene = empty_scene();
+  scene::Material coated = matte({1, 1, 1});
+  coated.clearcoat.weight = 1;
+  coated.clearcoat.texture.emplace();
+  scene::Material sheet = matte({1, 1, 1});
+  sheet.unlit = true;
+  for (const scene::Material& m : {matte({1, 1, 1}), coated, sheet}) {
+    const std::uint32_t id = add_material(scene, m);
+    add_quad(scene, {-4, -1, 4}, {4, -1, 4}, {4, -1, -4}, {-4, -1, -4}, id);
+  }
+  const std::size_t first = scene.materials.size() - 3;
+  const std::vector<ShadeWork> least = extra_work(scene, plan_effects(scene, small_image()));
+  EXPECT_EQ(least[first], (ShadeWork{0, 0}));
+  EXPECT_EQ(least[first + 1], (ShadeWork{1, 214}));
+  EXPECT_EQ(least[first + 2], (ShadeWork{0, 0}));
+  // With `all` the code evaluates both layers everywhere, and checks the eleven other effects that have products.
+  const std::vector<ShadeWork> most = extra_work(scene, plan_effects(scene, small_image(Choice::kAll)));
+  EXPECT_EQ(most[first], (ShadeWork{0, 214 + 242 + 11}));
+  EXPECT_EQ(most[first + 1], (ShadeWork{1, 214 + 242 + 11}));
+  EXPECT_EQ(most[first + 2], (ShadeWork{0, 13}));
 }
 
 TEST(EffectsPlan, PicturesOfEverythingDoNotDependOnWorkersOrOrder) {

@@ -125,7 +125,8 @@ class Shading:
         self.camera = [tuple(name) for name in self.facts["camera"]]
         self.controls, self.node = controls, config["topology"]["resources"]
         self.control = RayControl(config, machine.initial_tests)
-        self.shade, self.effect = s["cycles_per_shade"], s["cycles_per_effect"]
+        self.shade = s["cycles_per_shade"]
+        self.lookup, self.products_per_cycle = s["cycles_per_lookup"], s["products_per_cycle"]
         self.record = ceil_div(64, link["bytes_per_cycle"])
         self.slots = config["rays"]["slots_per_resource"] * self.node
         self.group = config["packets"]["rays"]
@@ -188,7 +189,9 @@ class Shading:
     def start_job(self, worker, now):
         ray, names = self.queues.take(worker), []
         if ray is not None:
-            end = now + self.shade + self.effect * ray.effects
+            end = now + self.shade + self.lookup * ray.lookups
+            if self.products_per_cycle > 0:
+                end += ceil_div(ray.products, self.products_per_cycle)
         else:
             names = self.camera[self.made:self.made + self.room()]
             if not names:

@@ -11,10 +11,11 @@ DOUBLE_PASSES = 4
 class Counts:
     """The tests of a visit."""
 
-    __slots__ = ("box", "triangle", "procedural", "transforms", "inversions")
+    __slots__ = ("box", "triangle", "refined", "procedural", "transforms", "in_double", "inversions")
 
     def __init__(self):
-        self.box = self.triangle = self.procedural = self.transforms = self.inversions = 0
+        for name in self.__slots__:
+            setattr(self, name, 0)
 
     def add(self, other):
         for name in self.__slots__:
@@ -22,8 +23,13 @@ class Counts:
 
     def passes(self, kind):
         if kind == TRANSFORM:
-            return self.transforms + INVERSION_PASSES * self.inversions
+            return self.transforms + (DOUBLE_PASSES - 1) * self.in_double
+        if kind == TRIANGLE:
+            return self.triangle + DOUBLE_PASSES * self.refined
         return getattr(self, kind, 0)
+
+    def inversion_passes(self):
+        return INVERSION_PASSES * self.inversions * (DOUBLE_PASSES if self.in_double else 1)
 
 
 class Bank:
@@ -80,8 +86,8 @@ class Testers:
 
     def strip(self, at, counts, reads):
         first, last = self._reads(at, reads)
-        inverse = self.banks[TRANSFORM].reserve(first, INVERSION_PASSES * counts.inversions)[1]
-        moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)), counts.transforms)
+        inverse = self.banks[TRANSFORM].reserve(first, counts.inversion_passes())[1]
+        moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)), counts.passes(TRANSFORM))
         end = self._behind(self.banks[BOX], moved, counts.box)[1]
         for kind in (TRIANGLE, PROCEDURAL):
             end = max(end, self._behind(self.banks[kind], moved, counts.passes(kind))[1])
@@ -90,15 +96,15 @@ class Testers:
     def read(self, at, records):
         return self.store.reserve_beside(at, records) if self.reads_per_cycle > 0 else at
 
-    def invert(self, at):
-        return self.banks[TRANSFORM].reserve(at, INVERSION_PASSES)[1]
+    def invert(self, at, passes):
+        return self.banks[TRANSFORM].reserve(at, passes)[1]
 
-    def ray(self, at, counts, inversions):
+    def ray(self, at, counts, inverts):
         """The last answer to the tests of a single ray."""
         bank = self.banks
-        if inversions > 0:
-            at = self.invert(at)
-        moved = bank[TRANSFORM].reserve_beside(at, counts.transforms)
+        if inverts and counts.inversions > 0:
+            at = self.invert(at, counts.inversion_passes())
+        moved = bank[TRANSFORM].reserve_beside(at, counts.passes(TRANSFORM))
         return max(moved, bank[BOX].reserve_beside(moved, counts.box),
-                   bank[TRIANGLE].reserve_beside(moved, counts.triangle),
+                   bank[TRIANGLE].reserve_beside(moved, counts.passes(TRIANGLE)),
                    bank[PROCEDURAL].reserve_beside(moved, counts.procedural))

@@ -27,6 +27,7 @@ class Transforms:
         if not node.moves:
             return
         counts.transforms = sum(self.needs(ray, node) for ray in rays if not ray.done)
+        counts.in_double = counts.transforms if node.promoted else 0
         counts.inversions = int(counts.transforms > 0 and self.inverts(node))
 
 
@@ -79,7 +80,7 @@ class Spread:
                     counts.procedural += len(lanes)
                 else:
                     counts.triangle += len(lanes)
-                ray.meet_triangles(node, lanes)
+                counts.refined += ray.meet_triangles(node, lanes)
             packet.masks[i] = [lane for lane, _ in hits]
             for lane, entry in hits:
                 packet.nearest[lane] = min(packet.nearest[lane], entry)
@@ -137,7 +138,7 @@ class Ordered(Spread):
                     counts.procedural += node.shapes
                 else:
                     counts.triangle += node.shapes
-                ray.meet_triangles(node, range(node.shapes))
+                counts.refined += ray.meet_triangles(node, range(node.shapes))
             packet.next[i] = self.next_of(ray)
             if packet.next[i] is None:
                 ray.pending -= 1

@@ -9,7 +9,7 @@ class Node:
         self.children = fact["children"]
         self.triangles_below = fact["triangles_below"]
         self.strip, self.transform = tuple(fact["strip"]), tuple(fact["transform"])
-        self.moves, self.transposed = fact["moves"], fact["transposed"]
+        self.moves, self.transposed, self.promoted = fact["moves"], fact["transposed"], fact["promoted"]
         self.instance = self.key >> 32  # the highest number above the instances
 
     def shapes_of(self, lane):
@@ -27,8 +27,8 @@ class Ray:
         self.fact = fact
         self.name = tuple(fact["name"])
         self.shadow = fact["shadow"]
-        self.boxes, self.triangles = fact["boxes"], fact["triangles"]
-        self.effects = fact.get("effects", 0)
+        self.boxes, self.triangles, self.candidates = fact["boxes"], fact["triangles"], fact["candidates"]
+        self.lookups, self.products = fact.get("lookups", 0), fact.get("products", 0)
         self.t = float("inf") if fact["range"] is None else fact["range"]
         self.done = False
         self.pending = 0
@@ -42,8 +42,13 @@ class Ray:
         return [(lane, entries[lane]) for lane in lanes if entries[lane] is not None and entries[lane] <= self.t]
 
     def meet_triangles(self, node, lanes):
+        """The number of triangles whose distance is computed in 64 bits."""
+        refined = 0
         for lane in lanes:
+            entry = self.candidates[str(node.number)][lane]
+            refined += entry is not None and entry <= self.t
             t = self.triangles[str(node.number)][lane]
             if t is not None and t <= self.t:
                 self.t = t
                 self.done = self.shadow
+        return refined

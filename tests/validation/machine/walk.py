@@ -34,6 +34,7 @@ class Walk:
             self.instance = node.instance
             if node.moves and self.transforms.needs(self.ray, node):
                 counts.transforms = 1
+                counts.in_double = int(node.promoted)
                 counts.inversions = int(self.transforms.inverts(node))
         if node.inner:
             counts.box = node.shapes
@@ -41,7 +42,7 @@ class Walk:
                 self.stack.append((node.children[lane], entry))
         else:
             setattr(counts, "procedural" if node.procedural else "triangle", node.shapes)
-            self.ray.meet_triangles(node, range(node.shapes))
+            counts.refined = self.ray.meet_triangles(node, range(node.shapes))
         return counts
 
 
@@ -98,10 +99,10 @@ class Visits:
         if counts.inversions > 0:
             instance = self.nodes[number].instance
             if instance not in ray.visit.inverted:
-                ray.visit.inverted[instance] = self.testers.invert(now)
+                ray.visit.inverted[instance] = self.testers.invert(now, counts.inversion_passes())
             at = max(now, ray.visit.inverted[instance])
         ray.in_test = True
-        self.add(self.testers.ray(at, counts, inversions=0), ray)
+        self.add(self.testers.ray(at, counts, inverts=False), ray)
 
     def run(self, now, others):
         """Rays whose events have come go on; contexts whose data has come are appended to `others`."""
