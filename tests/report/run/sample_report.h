@@ -10,7 +10,7 @@ inline Report sample_report() {
   r.carousel = {"1.2.3", "abc", "GNU 12", "Release", true};
   r.config = {{"image", {{"width", 64}, {"height", 32}, {"samples", 4}}},
               {"topology", {{"resources", 2}, {"shape", "ring"}}}};
-  r.scene = {"cornell", 1234567, 1300000, 3, 5, 7, 0, 1, 1, {{-1, -2, -3}, {1, 2, 3}}, {}};
+  r.scene = {"cornell", 1234567, 1300000, 3, 5, 7, 0, 0, 0, 1, 1, {{-1, -2, -3}, {1, 2, 3}}, {}};
   r.engine.kind = "native";
   r.engine.reason = "threads";
   r.rays = {1000, 990, 10, 0, 0, {500, 300, 200}};
