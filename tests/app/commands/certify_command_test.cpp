@@ -56,11 +56,11 @@ const json& row(const json& certificate, const std::string& property, const std:
 
 TEST(CertifyCommand, FindsNoViolationAndAsksEveryProperty) {
   const Program program;
-  const Outcome outcome = program.run({"accuracy", "--certify", "--cases", "5000", "--seed", seed(), "--json"});
+  const Outcome outcome = program.run({"accuracy", "--certify", "--cases", "6000", "--seed", seed(), "--json"});
   EXPECT_EQ(outcome.status, 0) << outcome.out;
   const json certificate = json::parse(outcome.out);
   EXPECT_EQ(certificate.at("violations"), 0);
-  EXPECT_EQ(certificate.at("cases"), 5000);
+  EXPECT_EQ(certificate.at("cases"), 6000);
   EXPECT_EQ(certificate.at("incomplete"), false);
   EXPECT_EQ(certificate.at("properties").size(), 3u + 3 + 4 + 4 + 12 + 4 + 4 + 4 + 12);
   for (const json& r : certificate.at("properties")) EXPECT_GT(r.at("cases").get<int>(), 1000) << r;

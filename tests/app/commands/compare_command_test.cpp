@@ -89,7 +89,8 @@ TEST(CycleRun, EndsWithStatusOneWhenItIsStuck) {
   const Program program;
   program.write("a.yaml",
                 std::string(kConfig) +
-                    "packets: {rays: 2}\ncollections: {ready: 2, when_full: spill}\nmemory: {fetch_ahead: 16}\n");
+                    "packets: {rays: 2}\ncollections: {ready: 2, when_full: spill}\nmemory: {fetch_ahead: 16}\n"
+                    "testers: {contexts: 1}\n");
   const std::vector<std::string> stuck{
       "run", "a.yaml", "--quiet", "--set", "topology.flow=none", "--set", "topology.link.depth=1"};
   EXPECT_EQ(program.run(stuck).status, 2);  // refused unless forced

@@ -5,6 +5,7 @@
 #include "accel/traverse/reference_tracer.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/what_if.h"
+#include "tests/core/config/config_issues.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus::cycle {
@@ -48,7 +49,7 @@ TEST(ExactFallback, IsTakenAtEdgesOnly) {
 }
 
 TEST(TesterLimited, LiftsAllButTheTestUnits) {
-  Config config;
+  Config config = parse_config("scene: {builtin: cornell}\n", "machine.yaml");
   config.engine.kind = EngineKind::kCycle;
   config.topology.resources = 4;
   const Config lifted = tester_limited(config);

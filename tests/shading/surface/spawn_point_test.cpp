@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/numeric/condition.h"
 #include "tests/shading/path/small_scenes.h"
 
 namespace carousel::shading {
@@ -47,11 +48,13 @@ double plane_side(const scene::Scene& scene, const Vec3& p) {
   return double(dot(n, to_quad(p) - a)) / (determinant < 0 ? -length : length);
 }
 
-/// The model-space side for a tracer that computes R^-1 (o - T) in float. It must not flip.
+/// The model-space side for a tracer that computes R^-1 (o - T) in float, or in double if R is nearly singular. It must
+/// not flip.
 double traced_side(const scene::Scene& scene, const Vec3& p) {
   const scene::Affine& m = scene.instances[0].world_from_model;
-  const Mat3 inverse(glm::inverse(DMat3(m.linear)));
-  const Vec3 o = inverse * (p - m.translation);
+  const DMat3 inverse = glm::inverse(DMat3(m.linear));
+  const Vec3 o = skeel_condition(m.linear) > kConditionForFloat ? Vec3(inverse * (DVec3(p) - DVec3(m.translation)))
+                                                                : Mat3(inverse) * (p - m.translation);
   const auto& v = scene.meshes[0].positions;
   const QVec a = to_quad(v[0]);
   return double(dot(cross(to_quad(v[1]) - a, to_quad(v[2]) - a), to_quad(o) - a));
