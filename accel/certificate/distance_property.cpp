@@ -49,11 +49,6 @@ struct DistanceBound {
   }
 };
 
-CaseValues make_distance(CaseRandom& random) {
-  const TriangleCase c = triangle_case(static_cast<TriangleCaseKind>(random.below(kTriangleCaseKinds)), random);
-  return CaseWriter().add(c.ray).add(c.corners[0]).add(c.corners[1]).add(c.corners[2]).take();
-}
-
 void judge_distance(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
                     CaseStory* story) {
   CaseReader read(values);
@@ -91,7 +86,7 @@ Property distance_property() {
           {AccuracyKey::kTriangle},
           ray_and({{"a", 3}, {"b", 3}, {"c", 3}}),
           [](const AccuracyConfig& level) { return level.triangle != TriangleLevel::kFast; },
-          make_distance,
+          make_triangle,
           judge_distance};
 }
 

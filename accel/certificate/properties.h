@@ -17,7 +17,7 @@ Property triangle_property();
 Property distance_property();
 /// From inside a closed mesh, aimed at its edges and vertices, something is hit.
 Property closed_mesh_property();
-/// The same of a mesh in an instance, up to the condition at which the promise ends.
+/// Closed meshes in instances lose no ray either, up to the condition at which the promise ends.
 Property placed_mesh_property();
 /// Points and directions brought to an instance's space are off by no more than the level's bound.
 Property transform_property();

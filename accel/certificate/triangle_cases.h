@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "accel/certificate/adversarial_numbers.h"
+#include "accel/certificate/case_random.h"
+#include "accel/certificate/case_values.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -99,6 +101,12 @@ TriangleCase triangle_case(TriangleCaseKind kind, Random& random) {
   }
   c.ray.direction = nudged(aim - c.ray.origin, 2, random);
   return c;
+}
+
+/// The values of a case of any of these kinds: a ray and three corners.
+inline CaseValues make_triangle(CaseRandom& random) {
+  const TriangleCase c = triangle_case(static_cast<TriangleCaseKind>(random.below(kTriangleCaseKinds)), random);
+  return CaseWriter().add(c.ray).add(c.corners[0]).add(c.corners[1]).add(c.corners[2]).take();
 }
 
 }  // namespace carousel::accel

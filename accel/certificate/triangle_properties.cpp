@@ -42,11 +42,6 @@ std::string described(const TriangleOracle& oracle) {
   return fmt::format("crossed at t = {:.17g}, u = {:.17g}, v = {:.17g}", oracle.t(), oracle.u(), oracle.v());
 }
 
-CaseValues make_triangle(CaseRandom& random) {
-  const TriangleCase c = triangle_case(static_cast<TriangleCaseKind>(random.below(kTriangleCaseKinds)), random);
-  return CaseWriter().add(c.ray).add(c.corners[0]).add(c.corners[1]).add(c.corners[2]).take();
-}
-
 void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
                     CaseStory* story) {
   CaseReader read(values);

@@ -12,7 +12,7 @@ namespace carousel::accel {
 /// The directions of an oriented box's edges, of any length.
 using BoxAxes = std::array<DVec3, 3>;
 
-/// Of the planes of an oriented box, as OrientedBoxChoice gives them.
+/// The axes of the box whose faces are `planes`, in the order in which OrientedBoxChoice gives them.
 BoxAxes axes_of(const std::vector<CullPlane>& planes);
 
 /// The faces of the least oriented box around what stands in a child, as cull planes in opposite pairs: a first object

@@ -22,7 +22,7 @@ inline std::uint32_t instance_bytes(const AccuracyConfig& c) {
   return fp64 ? 9 * 8 + 3 * 4 : 12 * 4;
 }
 
-/// The same of an instance whose rays are transformed in fp64 because its matrix is nearly singular.
+/// The stored data of an instance whose rays are transformed in fp64 because its matrix is nearly singular.
 inline std::uint32_t promoted_bytes(AccuracyConfig c) {
   c.transform = TransformLevel::kTwoStepDouble;
   return instance_bytes(c);

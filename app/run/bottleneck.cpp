@@ -14,17 +14,14 @@ namespace carousel::app {
 
 namespace {
 
-std::uint64_t slots_of(const Config& config) {
-  return static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
-}
-
 /// Some of the rays of a render job alone, or all of them; their picture is thrown away.
 class PilotWorkload final : public Workload {
  public:
   PilotWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits,
                 std::uint64_t paths)
       : job_(prepared, config, first_hits) {
-    if (paths < job_.first_rays()) job_.set_sample(&sample_.emplace(job_.draw(paths, slots_of(prepared.config()))));
+    if (paths < job_.first_rays())
+      job_.set_sample(&sample_.emplace(job_.draw(paths, ringbus::slots_of(prepared.config()))));
   }
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {

@@ -22,7 +22,7 @@ struct RayResult {
   RayTag tag;
 };
 
-/// What shading a hit takes beyond a plain surface's shading.
+/// The work of shading a hit beyond that of a plain surface.
 struct ShadeWork {
   std::uint32_t lookups = 0;   ///< filtered texture lookups
   std::uint32_t products = 0;  ///< products, divisions and roots

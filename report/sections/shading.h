@@ -85,7 +85,7 @@ void describe(V& v, const PairedRatio& r) {
   v.field("most", r.most, "ratio", "greatest of them");
 }
 
-/// What the frame takes with effects by demand and with all of them.
+/// The time, memory and work of the frame with effects by demand and with all of them.
 struct EffectsUse {
   PairedTimes seconds{};
   double products_per_ray = 0;

@@ -16,10 +16,6 @@ namespace carousel::ringbus {
 
 namespace {
 
-std::uint64_t slots_of(const Config& config) {
-  return static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
-}
-
 double rays_per_kilocycle(std::uint64_t rays, double cycles) {
   return 1000 * static_cast<double>(rays) / std::max(1.0, cycles);
 }
@@ -205,6 +201,10 @@ class Search {
 };
 
 }  // namespace
+
+std::uint64_t slots_of(const Config& config) {
+  return static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
+}
 
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
   // Four times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.

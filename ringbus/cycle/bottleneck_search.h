@@ -66,6 +66,9 @@ Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, floa
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe = {});
 
+/// The ray slots of a machine.
+std::uint64_t slots_of(const Config& config);
+
 /// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; all of them if that
 /// is most of the frame.
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted);

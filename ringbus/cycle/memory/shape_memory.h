@@ -17,8 +17,8 @@ struct ShapeSpan {
   std::uint32_t bytes = 0;
   friend bool operator==(const ShapeSpan&, const ShapeSpan&) = default;
 };
-/// What a test needs at one time: shapes, and the stored data of their instance's transform. A span without bytes is
-/// not needed.
+/// The data that a test needs at one time: shapes, and the stored data of their instance's transform. A span without
+/// bytes is not needed.
 using ShapeNeed = std::array<ShapeSpan, 2>;
 
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "accel/transform/instance_data.h"
@@ -33,16 +32,17 @@ inline std::uint64_t inversion_passes(const IntersectionCounts& counts) {
   return accel::kInversionPasses * counts.inversions * (counts.transforms_in_double > 0 ? kDoublePasses : 1);
 }
 
-/// The passes that the tests of a single ray need at one strip, in little room: a strip has few shapes.
+/// The passes that the tests of a single ray need at one strip. A strip has at most 128 triangles (eight leaves of 16
+/// in a mixed node), of 33 passes each where all of their volumes are exact.
 struct RayTests {
-  PerUnit<std::uint8_t> tests;  ///< by the kind of unit that makes them
-  std::uint8_t inversion = 0;   ///< ahead of them, through the transform units
+  PerUnit<std::uint16_t> tests;  ///< by the kind of unit that makes them
+  std::uint8_t inversion = 0;    ///< ahead of them, through the transform units
   friend bool operator==(const RayTests&, const RayTests&) = default;
 };
 inline RayTests ray_tests(const IntersectionCounts& counts) {
   RayTests out;
-  for (const UnitKindRow& row : kUnitKinds)  // hardly ever more than 255: some 30 volumes that doubles do not decide
-    out.tests[row.kind] = static_cast<std::uint8_t>(std::min<std::uint64_t>(passes_of(row.kind, counts), 255));
+  for (const UnitKindRow& row : kUnitKinds)
+    out.tests[row.kind] = static_cast<std::uint16_t>(passes_of(row.kind, counts));
   out.inversion = static_cast<std::uint8_t>(inversion_passes(counts));
   return out;
 }

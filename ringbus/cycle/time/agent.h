@@ -22,8 +22,8 @@ class Agent {
   virtual Cycle unannounced() const { return next(); }
   /// Does everything there is to do before `end`, in the order of time.
   virtual void run(Cycle end) = 0;
-  /// next(), as run() has left it. What has arrived since then is announced, and what unannounced() will tell may be
-  /// left out by one that is polled().
+  /// The same as next(), as run() has left it. Messages that have arrived since then are announced. An agent that is
+  /// polled() may leave out the changes that unannounced() will tell.
   virtual Cycle next_after_run() const { return polled() ? kNever : next(); }
   /// One line that says what it holds and waits for, for the report of a machine that got stuck; empty when it is at
   /// rest.

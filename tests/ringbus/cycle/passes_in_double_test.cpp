@@ -20,6 +20,13 @@ TEST(PassesInDouble, ATriangleThatIsMetTakesFourMore) {
             Tester(TestersConfig{}).ray(1000, IntersectionCounts{.triangle = 16 + 4 * 16}));
 }
 
+// Eight leaves of sixteen triangles in a mixed node, all met: more than a byte holds, and none of them free.
+TEST(PassesInDouble, AMixedNodeMayTakeHundreds) {
+  const TestersConfig config;
+  EXPECT_EQ(Tester(config).ray(1000, IntersectionCounts{.triangle = 128, .refined = 128}),
+            1000 + 5 * 128 - 1 + config.units[UnitKind::kTriangle].latency_cycles);
+}
+
 TEST(PassesInDouble, ATransformForANearlySingularInstanceTakesFour) {
   EXPECT_EQ(end_of({.transforms = 5, .transforms_in_double = 5}), end_of({.transforms = 4 * 5}));
   const std::uint64_t inversion = accel::kInversionPasses;
