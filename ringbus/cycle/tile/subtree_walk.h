@@ -17,7 +17,7 @@ struct WalkStep {
   accel::NodeKey key;
   RayTests tests;  ///< with an inversion wherever the ray needs one, also if another ray's will do
 };
-static_assert(sizeof(WalkStep) == 16);
+static_assert(sizeof(WalkStep) == 24);
 
 /// The ways of a visit's rays, one behind the other.
 struct WalkSteps {
