@@ -4,11 +4,11 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "app/commands/accuracy_command.h"
@@ -20,6 +20,7 @@
 #include "app/commands/schema_command.h"
 #include "app/commands/stress_command.h"
 #include "app/host/exit_status.h"
+#include "app/host/log.h"
 #include "app/host/output.h"
 #include "app/host/version_text.h"
 #include "core/config/edit_distance.h"
@@ -30,15 +31,6 @@ namespace carousel::app {
 namespace {
 
 const std::vector<std::string> kCommands{"run", "check", "stress", "accuracy", "inspect", "compare", "schema"};
-
-void log_to_stderr(bool quiet) {
-  // Replaces the logger, so that tests may call main() again.
-  spdlog::drop("carousel");
-  auto logger = spdlog::stderr_color_mt("carousel");
-  logger->set_pattern("%^%l%$: %v");
-  logger->set_level(quiet ? spdlog::level::err : spdlog::level::info);
-  spdlog::set_default_logger(std::move(logger));
-}
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
   const auto near = nearest_name(name, known);
@@ -66,6 +58,7 @@ std::string usage_hint(const CLI::App& program, int argc, const char* const* arg
 }
 
 struct Arguments {
+  LogArguments log;
   AccuracyArguments accuracy;
   RunArguments run;
   StressArguments stress;
@@ -87,6 +80,18 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
       ->type_name("KEY=VALUE");
 }
 
+void add_log_options(CLI::App& command, LogArguments& arguments) {
+  command
+      .add_option("--log-level", arguments.level,
+                  "Messages to print: debug, info, warning or error (default: warning; info in a --log-file)")
+      ->check(CLI::IsMember(log_levels()))
+      ->type_name("LEVEL");
+  command
+      .add_option("--log-file", arguments.file,
+                  "Write messages with their times to a file; the terminal gets warnings and errors (default: none)")
+      ->type_name("FILE");
+}
+
 void add_config_options(CLI::App& command, ConfigArguments& arguments, const char* without = nullptr) {
   const std::string absent = without == nullptr ? "" : fmt::format(" (default: {})", without);
   command.add_option("config", arguments.config, "Configuration file, YAML or JSON" + absent)
@@ -105,7 +110,9 @@ void add_run(CLI::App& program, RunArguments& r) {
       ->type_name("FILE");
   run->add_flag("--json", r.json, kJsonHelp);
   run->add_flag("--quiet", r.quiet, kQuietHelp);
-  run->add_flag("--force", r.force, "Run although the topology can deadlock (default: refused)");
+  run->add_flag("--force", r.force,
+                "Run although the topology can deadlock, and replace the results of another configuration "
+                "(default: both refused)");
 }
 
 void add_stress(CLI::App& program, StressArguments& s) {
@@ -227,6 +234,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       ->check(CLI::IsMember({"config", "report"}));
   schema->add_flag("--markdown", arguments.schema.markdown,
                    "Print every key with its meaning as Markdown (default: JSON Schema)");
+  for (CLI::App* command : program.get_subcommands({})) add_log_options(*command, arguments.log);
   program.footer("carousel COMMAND --help describes the options of a command.");
 }
 
@@ -246,7 +254,7 @@ int run_command_line(int argc, const char* const* argv) {
     spdlog::error("{}\ncarousel --help prints the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
-  log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet || arguments.stress.quiet);
+  start_log(arguments.log, arguments.run.quiet || arguments.accuracy.quiet || arguments.stress.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
   if (program.got_subcommand("stress")) return stress_command(arguments.stress);
   if (program.got_subcommand("check")) return check_command(arguments.check);
@@ -263,7 +271,7 @@ int run_command_line(int argc, const char* const* argv) {
 }  // namespace
 
 int main(int argc, const char* const* argv) {
-  log_to_stderr(false);
+  start_log({}, false);
   try {
     return run_command_line(argc, argv);
   } catch (const ConfigError& error) {
@@ -278,6 +286,12 @@ int main(int argc, const char* const* argv) {
   } catch (const std::bad_alloc&) {
     spdlog::error("not enough memory; carousel check prints how much the configuration needs");
     return kUsage;
+  } catch (const std::system_error& error) {
+    const bool starved = error.code() == std::errc::resource_unavailable_try_again;
+    spdlog::error(starved
+                      ? "cannot start a thread: not enough memory, address space or processes (ulimit -v, ulimit -u)"
+                      : fmt::format("internal error: {}", error.what()));
+    return starved ? kUsage : kBroken;
   } catch (const SimulationError& error) {
     spdlog::error("{}", error.what());
     return kBroken;
