@@ -37,6 +37,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
+      phases_(contexts_.size()),
       visits_(memory, shapes_, tester_, contexts_.size(),
               static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
@@ -92,13 +93,11 @@ bool Tile::wants_credit() const {
 }
 
 Cycle Tile::next_egress() const {
-  Cycle first = kNever;
+  Cycle first =
+      phases_.first_end_after(now_, phases_.in(ContextPhase::kComputing) | phases_.in(ContextPhase::kStarting));
   const auto consider = [&](Cycle at) {
     if (at > now_ && at < first) first = at;
   };
-  for (const Context& context : contexts_)
-    if (context.phase == Context::Phase::kComputing || context.phase == Context::Phase::kStarting)
-      consider(context.done);
   consider(next_partial_);
   if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
@@ -182,15 +181,11 @@ void Tile::step(Cycle now) {
 
 TileState Tile::classify() const {
   if (help_.shading()) return TileState::kShading;
-  bool fetching = false, computing = false;
-  for (const Context& c : contexts_) {
-    using enum Context::Phase;
-    const bool walking = c.phase == kWalking;
-    computing |= c.phase == kComputing || c.phase == kStarting || (walking && visits_.testing());
-    fetching |= c.phase == kFetching || walking;
-  }
-  if (computing) return TileState::kTesting;
-  if (fetching) return TileState::kMemory;
+  using enum ContextPhase;
+  const bool walking = phases_.in(kWalking) != 0;
+  if ((phases_.in(kComputing) | phases_.in(kStarting)) != 0 || (walking && visits_.testing()))
+    return TileState::kTesting;
+  if (walking || phases_.in(kFetching) != 0) return TileState::kMemory;
   for (const OutPort& out : ports_.out)
     if (out.blocked()) return TileState::kLink;
   if (!issue_.empty()) return is_ready(issue_.front()) ? TileState::kLink : TileState::kMemory;

@@ -13,6 +13,7 @@
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
+#include "ringbus/cycle/tile/context_phases.h"
 #include "ringbus/cycle/tile/rays_in_test.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/resource_samples.h"
@@ -77,10 +78,7 @@ class Tile final : public ResourceAgent {
  private:
   /// A packet in test.
   struct Context {
-    /// kStarting: the dispatch stage reads its IDs; kWalking: its rays go through a subtree by themselves.
-    enum class Phase : std::uint8_t { kFree, kStarting, kFetching, kComputing, kWalking } phase = Phase::kFree;
     PacketId packet;
-    Cycle done = 0;             // kStarting, kComputing: the end
     IntersectionCounts counts;  // of tests that begin when the shapes are there
     std::uint32_t reads = 0;    // records read for them
     std::uint32_t bundle_passes = 0;
@@ -140,11 +138,11 @@ class Tile final : public ResourceAgent {
   bool drained() const;
 
   Context* free_context();
-  std::size_t free_contexts() const;
-  bool testers_free() const;
+  bool testers_free() const { return phases_.all_free(); }
   ShapeBuffer::User user_of(const Context& context) const {
     return static_cast<ShapeBuffer::User>(&context - contexts_.data());
   }
+  void enter(const Context& context, ContextPhase phase, Cycle end = 0) { phases_.enter(user_of(context), phase, end); }
   bool is_ready(const Issue& issue) const {
     return issue.spilled == 0 && (!issue.takes_data || shapes_.is_here(issue.user));
   }
@@ -207,6 +205,7 @@ class Tile final : public ResourceAgent {
   Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::size_t issued_ = 0;
   std::vector<Context> contexts_;
+  ContextPhases phases_;
   SubtreeVisits visits_;
   bool storage_full_ = false;
   FaultsConfig::Resource fault_;
