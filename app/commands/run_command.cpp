@@ -48,6 +48,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = interrupt.token();
+  options.samples = static_cast<std::size_t>(p.config().report.samples);
   options.progress = [&](std::uint64_t completed) {
     if (line) line->update(report::ratio(counting.generated(), job.first_rays()), completed);
   };
@@ -58,7 +59,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
 void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
                   const std::filesystem::path& folder) {
   if (arguments.json)
-    print_result(report::report_json(report).dump(2) + "\n");
+    print_result(report::json_text(report::report_json(report)) + "\n");
   else if (!arguments.quiet)
     print_result(table + "files        " + folder.string() + "\n");
 }
@@ -78,7 +79,7 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   const report::Report report = traffic_report(p, result);
   const std::filesystem::path folder = out_folder(arguments);
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
-  write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
+  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
   print_report(arguments, report, report::traffic_table(report), folder);
   return verdict(report, interrupt.status());
 }
@@ -101,7 +102,7 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
     if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
   }
   // The report is written last, so that the files it names exist before it does.
-  write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
+  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
 }
 
 }  // namespace

@@ -93,6 +93,14 @@ class Tester {
   }
   Cycle busy_reads() const { return ray_reads_.use.busy; }
 
+  /// The cycles before `at` in which each bank was busy. Times of calls, also of account(), must not decrease.
+  PerUnit<Cycle> busy_before(Cycle at) {
+    PerUnit<Cycle> busy{};
+    for (const auto [kind, bank] : banks_) busy[kind] = bank.busy_before(at);
+    return busy;
+  }
+  Cycle reads_before(Cycle at) { return store_.busy_before(at); }
+
   const UnitBank& bank(UnitKind kind) const { return banks_[kind]; }
   const UnitBank& store() const { return store_; }  ///< the port of the ray store
 

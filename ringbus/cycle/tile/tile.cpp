@@ -10,7 +10,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
     : machine_(machine),
       memory_(memory),
       id_(id),
-      trace_(id.value, settings.trace),
+      trace_(id.value, settings.observed.steps),
       transforms_(settings.accuracy, machine.accel, machine.stores[id.value]->slots()),
       walk_(machine.accel, transforms_),
       resource_(settings.resource, machine.accel, *machine.stores[id.value],
@@ -47,7 +47,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
                     static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
       answers_due_(broadcasts_ ? machine.packets_per_direction : 0),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
-      ledger_(tester_) {
+      ledger_(tester_),
+      samples_(settings.observed.samples, counter_index(PortCounter::kBusy, ports_.out.size(), kFirstPortCounter)) {
   using Kind = FaultsConfig::Resource::Kind;
   pauses_ = fault_.kind == Kind::kPause && fault_.number == id.value;
   stops_ = fault_.kind == Kind::kStop && fault_.number == id.value;
@@ -120,6 +121,8 @@ void Tile::run(Cycle end) {
         next_ = std::min(now, visits_.next());
         return;
       }
+      if (samples_.due(now)) [[unlikely]]
+        sample(now);
       // Not with the bubble rule, under which a packet that waits to be injected must see every credit. Where a ray's
       // test ends in this cycle, it comes first, as in every step.
       if (now < rest && now < visits_.next() && !machine_.flow.bubble() && cut_through(now, true)) continue;
@@ -130,6 +133,7 @@ void Tile::run(Cycle end) {
 }
 
 void Tile::step(Cycle now) {
+  sample(now);
   now_ = now;
   census_.until(now, resource_.collections().memberships());
   for (OutPort& out : ports_.out) out.take_credits(now);
@@ -242,13 +246,6 @@ ResourceStatistics Tile::statistics() const {
   s.bubbles += passed_;
   s.seen_rays += passed_rays_;
   return s;
-}
-
-void Tile::close(Cycle end) {
-  ledger_.close(end);
-  census_.until(end, resource_.collections().memberships());
-  // The dispatch stage may still look through the IDs of the last packet.
-  if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
 }
 
 TileResult Tile::result() const {

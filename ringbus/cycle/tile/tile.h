@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "ringbus/cycle/tile/context_phases.h"
 #include "ringbus/cycle/tile/rays_in_test.h"
 #include "ringbus/cycle/tile/resource_agent.h"
+#include "ringbus/cycle/tile/resource_samples.h"
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/tile/spill_memory.h"
@@ -71,6 +73,7 @@ class Tile final : public ResourceAgent {
   std::string blocked(std::size_t port) const override;
   std::uint64_t packets_discarded() const override { return discarded_; }
   const Trace& trace() const override { return trace_; }
+  const CounterSamples& samples() const override { return samples_; }
 
  private:
   /// A packet in test.
@@ -94,6 +97,8 @@ class Tile final : public ResourceAgent {
   };
 
   std::uint64_t hops() const;
+  void sample(Cycle now);
+  void read(Cycle at, std::span<std::uint64_t> row);
   Cycle next_arrival() const;
   Cycle next_beside_ring() const;
   Cycle next_credit() const;
@@ -219,6 +224,8 @@ class Tile final : public ResourceAgent {
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
   IdCensus census_;
+  CounterSamples samples_;
+  LevelSum ids_, collections_;  // over time
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -202,6 +202,7 @@ inline std::vector<KeyRow> key_rows() {
        {"faults.resource.kind=stop", "faults.resource.after_rays=20", "faults.resource.silence_cycles=1000"},
        {"9000"}},
       {"faults.compare", kLinks},
+      {"report.samples", kTerrain, {}, {"16"}},
       {"verify", kTerrain},
       {"workload.rays_from", kCornell, {}, {"fewer.csv"}},
       {"workload.traffic.pattern", kTraffic},
