@@ -71,6 +71,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = interrupt.token();
+  options.samples = static_cast<std::size_t>(p.config().report.samples);
   const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
@@ -81,7 +82,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
 void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
                   const std::string& files) {
   if (arguments.json)
-    print_result(report::report_json(report).dump(2) + "\n");
+    print_result(report::json_text(report::report_json(report)) + "\n");
   else if (!arguments.quiet)
     print_text(table + "files        " + files + "\n");
 }
@@ -119,7 +120,7 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   const report::Report report = traffic_report(p, result);
   finish(arguments, report, report::traffic_table(report), output, [&] {
     write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
-    write_file(output.staging() / "report.json", report::report_json(report).dump(2) + "\n");
+    write_file(output.staging() / "report.json", report::json_text(report::report_json(report)) + "\n");
   });
   return verdict(report, interrupt.status());
 }
@@ -141,7 +142,7 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
     if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
     if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
   }
-  write_file(folder / "report.json", report::report_json(report).dump(2) + "\n");
+  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
 }
 
 }  // namespace
