@@ -208,9 +208,19 @@ void add_inspect(CLI::App& program, InspectArguments& i) {
 }
 
 void add_compare(CLI::App& program, CompareArguments& c) {
-  CLI::App* compare = program.add_subcommand("compare", "List the differences between two reports");
-  compare->add_option("a", c.a, "First report.json, or its folder")->required()->type_name("PATH");
-  compare->add_option("b", c.b, "Second report.json, or its folder")->required()->type_name("PATH");
+  CLI::App* compare =
+      program.add_subcommand("compare", "Show runs side by side, and what differs in their configurations");
+  compare
+      ->add_option("runs", c.runs, "Two or more report.json, or their folders; the first is compared with the others")
+      ->required()
+      ->expected(2, 26)
+      ->type_name("PATH");
+  compare->add_flag("--all", c.all, "Also list every other value that differs (default: their number)");
+  compare
+      ->add_option("--only", c.only,
+                   "Show only rows, keys and values whose names contain this; * is any text (default: all)")
+      ->type_name("PATTERN");
+  compare->add_flag("--json", c.json, kJsonHelp);
   compare->add_option("--expect", "With `identical`: exit status 1 if the reports differ (default: 0 in any case)")
       ->check(CLI::IsMember({"identical"}))
       ->each([&c](const std::string&) { c.expect_identical = true; });

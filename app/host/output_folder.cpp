@@ -86,24 +86,38 @@ OutputFolder::OutputFolder(const fs::path& folder, const Config& config, bool fo
   if (error) fail(folder, error.message());
   if (!target_.has_filename()) target_ = target_.parent_path();
   const fs::file_status status = fs::status(target_, error);
-  if (fs::exists(status) && !fs::is_directory(status)) fail(folder, "it is not a folder");
+  if (fs::exists(status) && !fs::is_directory(status)) fail(folder / "", "it is not a folder");
   if (!force) refuse_other_results(folder, config);
   const fs::path parent = target_.parent_path();
-  fs::create_directories(parent, error);
-  if (error) fail(folder, error.message());
+  make_parents();
   prefix_ = "." + target_.filename().string() + ".carousel-";
   if (fs::is_directory(status)) {
     if (access(target_.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
     remove_left_overs(target_);
   }
   remove_left_overs(parent);
-  if (!make_staging(parent) && !(fs::is_directory(status) && make_staging(target_))) fail(folder, std::strerror(errno));
+  if (make_staging(parent) || (fs::is_directory(status) && make_staging(target_))) return;
+  const int why = errno;
+  for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, error);
+  fail(folder, std::strerror(why));
+}
+
+void OutputFolder::make_parents() {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path at = target_.parent_path(); !fs::exists(at, error); at = at.parent_path()) missing.push_back(at);
+  for (auto at = missing.rbegin(); at != missing.rend(); ++at) {
+    if (fs::create_directory(*at, error)) made_.push_back(*at);
+    if (error) fail(folder_, error.message());
+  }
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
   if (lock_ >= 0) close(lock_);
+  // Only folders that are empty are removed: a run that ended without a result leaves nothing.
+  for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, ignored);
 }
 
 /// Makes the hidden folder in the folder `in`, and locks it. A lock ends with its process, however that ends.

@@ -32,12 +32,14 @@ class OutputFolder {
  private:
   bool make_staging(const std::filesystem::path& in);
   void remove_left_overs(const std::filesystem::path& in) const;
+  void make_parents();
   void move_each() const;
 
   std::filesystem::path folder_, target_;  // target_: folder_ without symbolic links
   std::string prefix_;                     // of the names of hidden folders
   std::filesystem::path staging_;
-  int lock_ = -1;  // is held as long as the run lives
+  int lock_ = -1;                            // is held as long as the run lives
+  std::vector<std::filesystem::path> made_;  // folders above, innermost last
 };
 
 /// True for the names of files that a run writes.
