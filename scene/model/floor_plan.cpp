@@ -120,11 +120,16 @@ double length_in_box(const Sight& sight, const DVec2& from, const DVec2& to, con
   return out;
 }
 
-std::optional<Place> best_place(const FloorPlan& plan, const DVec2& lo, const DVec2& hi) {
-  constexpr int kPlaces = 7, kDirections = 32;
-  constexpr double kLeastFronts = 0.5;
+/// What is seen from places all over the plan: shares of the sight lines, and the place that overlooks most.
+struct Survey {
+  double hits = 0, fronts = 0;
   std::optional<Place> best;
-  int lines = 0, fronts = 0;
+};
+
+Survey survey(const FloorPlan& plan, const DVec2& lo, const DVec2& hi) {
+  constexpr int kPlaces = 7, kDirections = 32;
+  std::optional<Place> best;
+  int lines = 0, hits = 0, fronts = 0;
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
     Place place{.at = lo + (hi - lo) * (DVec2(i % kPlaces, i / kPlaces) + 0.5) / double(kPlaces), .to = {}};
     double lengths[kDirections];
@@ -134,6 +139,7 @@ std::optional<Place> best_place(const FloorPlan& plan, const DVec2& lo, const DV
       const Sight sight = plan.look(place.at, to);
       lengths[d] = length_in_box(sight, place.at, to, lo, hi);
       place.area += lengths[d] * lengths[d];
+      hits += sight.hit();
       fronts += sight.front;
       backs += sight.hit() && !sight.front;
     }
@@ -149,22 +155,27 @@ std::optional<Place> best_place(const FloorPlan& plan, const DVec2& lo, const DV
     }
     best = place;
   }
-  return fronts >= kLeastFronts * lines ? best : std::nullopt;
+  return {static_cast<double>(hits) / lines, static_cast<double>(fronts) / lines, best};
 }
 
 }  // namespace
 
 std::optional<Camera> inside_camera(const Scene& scene) {
-  constexpr double kEyeHeight = 0.4, kStepBack = 0.9, kLeastBacks = 0.5;
+  constexpr double kEyeHeight = 0.4, kStepBack = 0.9;
+  constexpr double kMostly = 0.5;                                          // walls without an outside
+  constexpr double kEnclosed = 2.0 / 3, kInnerWalls = 0.6, kRoomSize = 3;  // walls with an outside; metres
   constexpr float kFieldOfView = 1.05f;
   const Aabb box = scene.bounds();
   if (box.empty()) return std::nullopt;
   const double height = box.lo.y + kEyeHeight * (double(box.hi.y) - box.lo.y);
   const DVec2 lo(box.lo.x, box.lo.z), hi(box.hi.x, box.hi.z);
+  if (std::min(hi.x - lo.x, hi.y - lo.y) < kRoomSize) return std::nullopt;
   const FloorPlan plan(scene, height);
-  if (plan.size() == 0 || backs_seen_from_outside(plan, lo, hi) < kLeastBacks) return std::nullopt;
-  const std::optional<Place> place = best_place(plan, lo, hi);
-  if (!place || !(place->ahead > 0)) return std::nullopt;
+  if (plan.size() == 0) return std::nullopt;
+  const bool thin = backs_seen_from_outside(plan, lo, hi) >= kMostly;
+  const auto [hits, fronts, place] = survey(plan, lo, hi);
+  const bool inside = thin ? fronts >= kMostly : hits >= kEnclosed && fronts >= kInnerWalls * hits;
+  if (!inside || !place || !(place->ahead > 0)) return std::nullopt;
   const DVec2 eye = place->at - kStepBack * place->behind * place->to, target = place->at + place->ahead * place->to;
   const Vec3 from(eye.x, height, eye.y), to(target.x, height, target.y);
   if (from == to) return std::nullopt;

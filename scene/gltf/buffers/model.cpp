@@ -56,6 +56,12 @@ std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buf
       if (!accessor.contains("bufferView")) accessor["bufferView"] = 0;
     }
   }
+  if (json.contains("cameras")) {
+    const Uses uses = uses_of(checked);
+    for (std::size_t i = 0; i < json["cameras"].size(); ++i)
+      if (!uses.cameras[i])
+        json["cameras"][i] = {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}};
+  }
   json.erase("skins");
   json.erase("animations");
   return json.dump();

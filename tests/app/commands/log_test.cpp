@@ -146,7 +146,9 @@ TEST(Messages, TooLittleAddressSpaceEndsWithAMessage) {
     const Outcome outcome = program.run({"run", "a.yaml", "--force", "--set", "engine.threads=2"});
     setrlimit(RLIMIT_AS, &old);
     EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << kib << " KiB: " << outcome.status << outcome.err;
-    if (outcome.status != 0) EXPECT_THAT(outcome.err, HasSubstr("error: ")) << kib;
+    if (outcome.status != 0) {
+      EXPECT_THAT(outcome.err, HasSubstr("error: ")) << kib;
+    }
     if (kib == 400'000) EXPECT_EQ(outcome.status, 2);
   }
 }

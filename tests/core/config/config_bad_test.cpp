@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:3:3: image.widht: unknown key; did you mean 'width'?"},
         BadConfig{"KeyOfAnotherSection", SCENE "placement: balanced\n",
                   "test.yaml:2:1: placement: unknown key; did you mean 'rays.placement'?"},
-        BadConfig{"EyeOfText", SCENE "camera: {eye: here, target: [0, 0, 0]}\n",
+        BadConfig{"EyeOfText", SCENE "camera: {eye: here, target: [0, 0, 5]}\n",
                   "test.yaml:2:15: camera.eye: expected auto or a list of 3 numbers, found 'here'"},
         BadConfig{"FieldOfViewOfNothing", SCENE "camera: {field_of_view: 0}\n",
                   "test.yaml:2:25: camera.field_of_view: expected auto or a number above 0 to 179 (degrees), found 0"},
@@ -118,7 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:8: scene: expected a scene: file, or builtin (cornell, spheres, terrain, "
                   "instances, sliver)"},
         BadConfig{"TwoScenes", "scene: {file: a.glb, builtin: cornell}\n",
-                  "test.yaml:1:31: scene.builtin: expected either file or builtin, found both"},
+                  "test.yaml:1:31: scene.builtin: expected either file or builtin, found both; another scene takes the "
+                  "place of both with --set 'scene={file: NAME}'"},
         BadConfig{"CyclePlacement", SCENE "engine: {kind: cycle}\nrays: {placement: addressed}\n",
                   "test.yaml:3:19: rays.placement: the cycle engine has no addressed; expected balanced or "
                   "round_robin"},

@@ -109,10 +109,30 @@ TEST(InsideCamera, StandsInARoomAndLooksAlongIt) {
   }
 }
 
+TEST(InsideCamera, SmallThingsAreSeenFromOutside) {
+  Scene scene = room(true);
+  scene.instances[0].world_from_model.linear *= 0.4f;
+  EXPECT_FALSE(inside_camera(scene)) << "a box turned inside out, not a room";
+}
+
 TEST(InsideCamera, SolidThingsAreSeenFromOutside) {
   EXPECT_FALSE(inside_camera(room(false)));
   EXPECT_FALSE(inside_camera(ball()));
   EXPECT_FALSE(inside_camera(Scene{}));
+}
+
+// Two boxes, one in the other: walls that are seen from both sides.
+TEST(InsideCamera, WallsMayHaveAnOutside) {
+  Scene scene = room(true);
+  const Scene shell = room(false);
+  scene.meshes.push_back(shell.meshes[0]);
+  scene.instances.push_back({MeshId(1), {Mat3(1.1f), {-0.4f, -0.1f, -0.3f}}});
+  EXPECT_TRUE(inside_camera(scene));
+  for (Instance& instance : scene.instances) {
+    instance.world_from_model.linear *= 0.3f;
+    instance.world_from_model.translation *= 0.3f;
+  }
+  EXPECT_FALSE(inside_camera(scene)) << "a box of 2 m is no room";
 }
 
 TEST(InsideCamera, MirroredWallsFaceTheOtherWay) {
