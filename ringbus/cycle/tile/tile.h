@@ -81,7 +81,7 @@ class Tile final : public ResourceAgent {
     PacketId packet;
     IntersectionCounts counts;  // of tests that begin when the shapes are there
     std::uint32_t reads = 0;    // records read for them
-    std::uint32_t bundle_passes = 0;
+    BundlePasses bundle_passes;
     AnyHitQuestion question;            // asked when the tests are done
     std::vector<std::uint32_t> tested;  // slots of its rays, for RaysInTest
     HitBatch completed;                 // rays handed over then, with the slots they leave

@@ -157,6 +157,7 @@ inline std::vector<KeyRow> key_rows() {
       {"testers.simd.map", kTerrain},
       {"testers.contexts", kTerrain, {}, {"3"}},
       {"testers.any_hit", kLayers},
+      {"testers.bundle_blocks", kBundles, {"bundles.order=parallel"}},
       {"memory.l2_kib", kTerrain, {}, {"1"}},
       {"memory.line_bytes", kTerrain, {}, {"128"}},
       {"memory.ways", kTerrain, {"memory.l2_kib=4"}, {"1"}},
