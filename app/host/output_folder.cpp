@@ -74,6 +74,12 @@ bool holds_only_run_files(const fs::path& folder) {
   return true;
 }
 
+/// True for the working folder: a user's shell would stay in the one that is taken away.
+bool is_current(const fs::path& folder) {
+  std::error_code error;
+  return fs::equivalent(folder, fs::current_path(error), error);
+}
+
 }  // namespace
 
 bool is_run_file(std::string_view name) {
@@ -178,7 +184,7 @@ void OutputFolder::commit() {
     if (!fs::exists(target_) && beside) {
       move_to(staging_, target_);
       staging_.clear();
-    } else if (beside && holds_only_run_files(target_) &&
+    } else if (beside && holds_only_run_files(target_) && !is_current(target_) &&
                renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
       // staging_ is now the old folder, which the destructor removes.
     } else {

@@ -89,7 +89,8 @@ std::string comparison_table(const Comparison& c, bool all) {
   out += fmt::format("\nhits           {}\npicture        {}\n", sameness(c.same_hits), sameness(c.same_picture));
   const bool same_answers = sameness(c.same_hits) == "the same" && sameness(c.same_picture) == "the same";
   if (!c.same_configuration)
-    out += fmt::format("configuration  {} keys differ\n", c.configuration.size());
+    out += fmt::format("configuration  {} {}\n", c.configuration.size(),
+                       c.configuration.size() == 1 ? "key differs" : "keys differ");
   else if (c.deterministic)
     out += "configuration  the same\n";
   else

@@ -133,19 +133,20 @@ Survey survey(const FloorPlan& plan, const DVec2& lo, const DVec2& hi) {
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
     Place place{.at = lo + (hi - lo) * (DVec2(i % kPlaces, i / kPlaces) + 0.5) / double(kPlaces), .to = {}};
     double lengths[kDirections];
-    int backs = 0;
+    int backs = 0, seen = 0;
     for (int d = 0; d < kDirections; ++d) {
       const DVec2 to = direction(d, kDirections);
       const Sight sight = plan.look(place.at, to);
       lengths[d] = length_in_box(sight, place.at, to, lo, hi);
-      place.area += lengths[d] * lengths[d];
+      if (sight.front) place.area += lengths[d] * lengths[d];  // what is open is not overlooked
+      seen += sight.front;
       hits += sight.hit();
       fronts += sight.front;
       backs += sight.hit() && !sight.front;
     }
     lines += kDirections;
-    // Among many backs the place is inside a wall or a cupboard.
-    if (backs > kDirections / 4 || (best && best->area >= place.area)) continue;
+    // Among many backs the place is inside a wall or a cupboard; where it sees few fronts it is outside.
+    if (backs > kDirections / 4 || seen < kDirections / 2 || (best && best->area >= place.area)) continue;
     for (int d = 0; d < kDirections; ++d) {
       const double ahead = lengths[d], behind = lengths[(d + kDirections / 2) % kDirections];
       if (ahead + behind <= place.ahead + place.behind || ahead < behind) continue;

@@ -39,8 +39,9 @@ TEST(FitLines, CountsCharactersNotBytes) {
 
 TEST(ProgressText, AlwaysHasARateAUnitAndAnEstimate) {
   const std::string text = progress_text(0.25, 10, 5000, "rays", "bottleneck, 2 of 9: links", 200);
-  EXPECT_NE(text.find("[#######......................]  25 %  bottleneck, 2 of 9: links  5 krays  500 rays/s  10.00 s"),
-            text.npos)
+  EXPECT_NE(
+      text.find("[#######.......................]  25 %  bottleneck, 2 of 9: links  5 krays  500 rays/s  10.00 s"),
+      text.npos)
       << text;
   EXPECT_NE(text.find("30.00 s left"), text.npos) << text;
   for (std::size_t width = 39; width < 150; ++width) {
