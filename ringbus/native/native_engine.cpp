@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "core/system/error.h"
-#include "core/system/thread_team.h"
 #include "ringbus/faults/unfinished_rays.h"
 #include "ringbus/native/native_machine.h"
 #include "ringbus/native/native_port.h"
@@ -91,7 +90,9 @@ class NativeRun {
   void run_threads() {
     ended_ = 0;
     end_ = false;
-    run_team(0, threads_, [this](std::size_t t) { work(t); }, [this] { watch(); });
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
+    watch();
   }
 
   /// Begins again without the resource that has stopped. All work that was under way is gone; every ray that had not

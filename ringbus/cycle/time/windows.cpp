@@ -9,7 +9,6 @@
 #include <thread>
 #include <vector>
 
-#include "core/system/thread_team.h"
 #include "ringbus/rays/ray_id.h"
 
 namespace carousel::ringbus::cycle {
@@ -78,7 +77,11 @@ class WindowRun {
         next_(parts.size()) {}
 
   Cycle run() {
-    run_team(1, parts_.size() - 1, [this](std::size_t t) { work(t); }, [this] { work(0); });
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t t = 1; t < parts_.size(); ++t) threads.emplace_back([this, t] { work(t); });
+      work(0);
+    }
     if (error_) std::rethrow_exception(error_);
     return reached_;
   }
