@@ -119,7 +119,7 @@ std::string Table::html() const {
   const bool folded = rows.size() > kFoldedRows;
   if (folded) out += fmt::format("<details><summary>Table: {} ({} rows)</summary>\n", name, rows.size());
   out += fmt::format(
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table id=\"{}\"><caption>{}</caption>\n"
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table id=\"table-{}\"><caption>{}</caption>\n"
       "<thead><tr>",
       name, id, name);
   for (std::size_t c = 0; c < columns.size(); ++c) {

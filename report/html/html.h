@@ -47,7 +47,7 @@ struct Column {
 
 /// A table with a caption; its first column names the row.
 struct Table {
-  std::string id, caption;
+  std::string id, caption;  ///< the element is table-ID
   std::vector<Column> columns{};
   std::vector<std::vector<Cell>> rows{};
 

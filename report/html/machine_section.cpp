@@ -34,7 +34,7 @@ std::string machine_section(const Json& report, const Json& schema) {
     double most_tested = 0;
     for (const Json& r : *resources) most_tested = std::max(most_tested, number_at(r, "rays_tested"));
     const bool timed = resources->front().contains("units");
-    Table table = table_of("resources", "Resources", *resources, *find(schema, "properties.resources.items"), {});
+    Table table = table_of("resources", "Resources", *resources, *find(schema, "properties.resources.items"));
     table.columns.insert(table.columns.begin() + 1,
                          Column{timed ? "busiest unit" : "load", "",
                                 timed ? "greatest share of the cycles in which a kind of its units was busy"
@@ -52,7 +52,8 @@ std::string machine_section(const Json& report, const Json& schema) {
     tables += table.html();
   }
   if (links && !links->empty()) {
-    Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"));
+    Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"),
+                           {"utilisation"});
     double carried = 0;
     for (const Json& link : *links) carried = std::max(carried, number_at(link, "packets"));
     const bool timed = links->front().contains("utilisation");

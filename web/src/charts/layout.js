@@ -44,6 +44,7 @@ export function bends(links, facts) {
     const before = seen.get(key) ?? 0;
     seen.set(key, before + 1);
     const both = facts.shape === 'bidirectional' || facts.shape === 'point_to_point' || facts.resources === 2;
-    return (both ? 0.14 : 0) + 0.22 * before;
+    // A ring's links follow its circle.
+    return (both ? 0.16 : -0.1) - (both ? -0.22 : 0.22) * before;
   });
 }

@@ -22,7 +22,7 @@ export function stacked({tables: [table], colours, width}) {
       return {
         type: 'bar', name: table.columns[c], stack: 'cycles', barMaxWidth: 22, data: rows.map((r) => r[c]),
         itemStyle: {color: nothing ? idle : kHues[(c - 1) % kHues.length], borderColor: colours.page, borderWidth: 1},
-        label: {show: true, color: nothing ? colours.ink : '#000', fontSize: 11,
+        label: {show: true, color: nothing ? colours.ink : c === 1 ? '#fff' : '#000', fontSize: 11,
           formatter: ({value}) => (value * width * 0.6 > 44 ? percent(value) : '')},
       };
     }),
