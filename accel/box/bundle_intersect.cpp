@@ -1,5 +1,6 @@
 #include "accel/box/bundle_intersect.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <optional>
@@ -47,10 +48,12 @@ class IntervalForm {
   IntervalForm(const BundleRecord& bundle, float widening, bool strict) : computed_(bundle, widening) {
     if (strict) exact_.emplace(bundle, 1.0f);
   }
-  std::uint32_t all_miss(const Node& node, int first, std::uint32_t) {
+  std::uint32_t all_miss(const Node& node, int first, std::uint32_t lanes) {
+    passes_ += static_cast<unsigned>(std::popcount(lanes));
     return bits_of(computed_.all_miss(planes_of<Real>(node, first)));
   }
   std::uint32_t all_hit(const Node& node, int first, std::uint32_t lanes) {
+    passes_ += static_cast<unsigned>(std::popcount(lanes));
     std::uint32_t hit = bits_of(computed_.all_hit(planes_of<Real>(node, first)));
     if (exact_ && (hit & lanes) != 0) hit &= bits_of(exact_->all_hit_exactly(planes_of<double>(node, first)));
     return hit;
@@ -63,10 +66,12 @@ class IntervalForm {
     }
   }
   unsigned edges() const { return 0; }
+  unsigned passes() const { return passes_; }
 
  private:
   BundleInterval<Real> computed_;
   std::optional<BundleInterval<double>> exact_;
+  unsigned passes_ = 0;
 };
 
 /// The silhouette form. Its claims that all rays hit are exact, with or without `strict`.
@@ -74,7 +79,9 @@ template <class Real>
 class SilhouetteForm {
  public:
   SilhouetteForm(const BundleRecord& bundle, BoxLevel level, BundlesConfig::Edges edges)
-      : silhouette_(bundle, level, edges), interval_(bundle, far_widening(level), false) {}
+      : silhouette_(bundle, level, edges),
+        interval_(bundle, far_widening(level), false),
+        edge_by_edge_(edges == BundlesConfig::Edges::kSerial) {}
   std::uint32_t all_miss(const Node& node, int first, std::uint32_t lanes) {
     return of_each(lanes, [&](int lane) { return silhouette_.all_miss(child_box(node, first + lane), edges_); });
   }
@@ -85,25 +92,31 @@ class SilhouetteForm {
     interval_.entries(node, first, lanes, out);
   }
   unsigned edges() const { return edges_; }
+  unsigned passes() const { return passes_; }
 
  private:
   template <class Holds>
-  static std::uint32_t of_each(std::uint32_t lanes, const Holds& holds) {
+  std::uint32_t of_each(std::uint32_t lanes, const Holds& holds) {
     std::uint32_t out = 0;
     for (; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
+      const unsigned before = edges_;
       if (holds(lane)) out |= 1u << lane;
+      // A box whose distance or direction decides takes a pass as well.
+      passes_ += edge_by_edge_ ? std::max(1u, edges_ - before) : 1u;
     }
     return out;
   }
 
   BundleSilhouette silhouette_;
   IntervalForm<Real> interval_;
-  unsigned edges_ = 0;
+  bool edge_by_edge_;
+  unsigned edges_ = 0, passes_ = 0;
 };
 
 struct Verdicts {
   std::uint32_t all, undecided;
+  unsigned first_passes;
 };
 
 /// Tests four boxes in the configured order; each test counts for the lanes it is applied to.
@@ -122,24 +135,31 @@ Verdicts verdicts(Form& form, const Node& node, int first, std::uint32_t lanes, 
   switch (order) {
     case Order::kAllHitFirst: {
       const std::uint32_t all = hit_among(lanes);
-      return {all, possible_among(lanes & ~all)};
+      const unsigned passes = form.passes();
+      return {all, possible_among(lanes & ~all), passes};
     }
     case Order::kAnyHitFirst: {
-      const std::uint32_t possible = possible_among(lanes), all = hit_among(possible);
-      return {all, possible & ~all};
+      const std::uint32_t possible = possible_among(lanes);
+      const unsigned passes = form.passes();
+      const std::uint32_t all = hit_among(possible);
+      return {all, possible & ~all, passes};
     }
     case Order::kParallel: {
-      const std::uint32_t possible = possible_among(lanes), all = hit_among(lanes) & possible;
-      return {all, possible & ~all};
+      const std::uint32_t all = hit_among(lanes);
+      const unsigned passes = form.passes();
+      const std::uint32_t possible = possible_among(lanes);
+      return {all & possible, possible & ~all, passes};
     }
     case Order::kAllHitOnly: {
       const std::uint32_t all = hit_among(lanes);
-      return {all, lanes & ~all};
+      return {all, lanes & ~all, form.passes()};
     }
-    case Order::kAnyHitOnly:
-      return {possible_among(lanes), 0};
+    case Order::kAnyHitOnly: {
+      const std::uint32_t possible = possible_among(lanes);
+      return {possible, 0, form.passes()};
+    }
   }
-  return {0, lanes};
+  return {0, lanes, 0};
 }
 
 template <class Form>
@@ -150,7 +170,10 @@ BundleAnswer answer(Form form, const Node& node, std::uint32_t lanes, BundlesCon
   for (int first = 0; first < kMaxWidth; first += kGroup) {
     const std::uint32_t group = lanes >> first & ((1u << kGroup) - 1);
     if (group == 0) continue;
+    const unsigned before = form.passes();
     const Verdicts found = verdicts(form, node, first, group, order, counts);
+    out.first_passes = static_cast<std::uint8_t>(out.first_passes + found.first_passes - before);
+    out.second_passes = static_cast<std::uint8_t>(out.second_passes + form.passes() - found.first_passes);
     out.all |= static_cast<std::uint8_t>(found.all << first);
     out.undecided |= static_cast<std::uint8_t>(found.undecided << first);
     if (found.all != 0) form.entries(node, first, found.all, out.entry + first);

@@ -11,9 +11,13 @@ namespace carousel::accel {
 
 /// The result of a bundle's tests of the children of a node, a bit a lane. Every ray misses a lane in neither set.
 struct BundleAnswer {
-  std::uint8_t all = 0;         ///< every ray hits the box, as far as is known: the bundle goes down whole
-  std::uint8_t undecided = 0;   ///< some may hit and some may miss: the bundle is split for this lane
-  std::uint8_t edges = 0;       ///< tested edges of silhouettes; 0 if the interval form was used
+  std::uint8_t all = 0;        ///< every ray hits the box, as far as is known: the bundle goes down whole
+  std::uint8_t undecided = 0;  ///< some may hit and some may miss: the bundle is split for this lane
+  std::uint8_t edges = 0;      ///< tested edges of silhouettes; 0 if the interval form was used
+  /// Passes through a unit that does one test of a box, or of one edge with `edges: serial`, at a time: of the tests
+  /// that are made in any case, and of those that the order makes only where the first ones have not decided. With
+  /// `order: parallel` the second ones are those for any ray, made in any case too.
+  std::uint8_t first_passes = 0, second_passes = 0;
   float entry[kMaxWidth] = {};  ///< a lower bound of the rays' entries, of lanes in `all`
 };
 

@@ -33,7 +33,8 @@ inline constexpr std::uint32_t kTransformedRayBytes = 6 * 4;
 
 /// Transforms whose time an inversion takes in the transform unit. A transform is 18 products, R^-1 times an origin
 /// and a direction; R^-1 by cofactors is 18 for the nine, 3 for the determinant and 9 to scale them, with one
-/// reciprocal: 30, two passes through the same multipliers.
-inline constexpr std::uint64_t kInversionPasses = 2;
+/// reciprocal: 30, two passes through the same multipliers. The inverse of the whole matrix, which `inverse_matrix`
+/// needs, has R^-1 T besides, 9 more: three passes (US 12394134, paragraph 25: the two steps need no full inverse).
+inline constexpr std::uint64_t kInversionPasses = 2, kFullInversionPasses = 3;
 
 }  // namespace carousel::accel

@@ -6,6 +6,7 @@
 #include "app/build_report/cycle_sections.h"
 #include "app/build_report/effects.h"
 #include "app/build_report/ring_sections.h"
+#include "app/build_report/series.h"
 #include "app/host/machine_info.h"
 #include "app/host/program_info.h"
 #include "core/config/config.h"
@@ -124,6 +125,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   r.shading.shaded = result.rays_completed;
   r.shading.saturated = job.saturated();
   add_effects(r.shading, prepared.scene, config);
+  if (result.series) (result.cycle ? r.time_series : r.host.time_series) = series_section(*result.series);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
   if (result.rays_restarted > 0 || (result.cycle && result.cycle->stop)) r.faults.emplace().stop = stop(config, result);
   if (verifying) r.verify = verify(*verifying);

@@ -49,6 +49,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = interrupt.token();
+  options.samples = static_cast<std::size_t>(p.config().report.samples);
   options.progress = [&](std::uint64_t completed) {
     if (line) line->update(report::ratio(counting.generated(), job.first_rays()), completed);
   };
@@ -59,7 +60,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
 void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
                   const std::filesystem::path& folder) {
   if (arguments.json)
-    print_result(report::report_json(report).dump(2) + "\n");
+    print_result(report::json_text(report::report_json(report)) + "\n");
   else if (!arguments.quiet)
     print_result(table + "files        " + folder.string() + "\n");
 }
@@ -68,7 +69,7 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
 void write_report(const std::filesystem::path& folder, const RunArguments& arguments, const report::Report& report) {
   const nlohmann::ordered_json json = report::report_json(report);
   if (!arguments.no_html) write_file(folder / "report.html", run_page_of(json, folder));
-  write_file(folder / "report.json", json.dump(2) + "\n");
+  write_file(folder / "report.json", report::json_text(json) + "\n");
 }
 
 /// Simulates the network alone, without rays.

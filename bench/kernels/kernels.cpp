@@ -14,6 +14,7 @@
 #include "accel/structure/accel.h"
 #include "accel/traverse/ray_check.h"
 #include "bench/common/ray_sets.h"
+#include "bench/kernels/terrain_packet.h"
 #include "core/config/config.h"
 #include "core/system/executor.h"
 #include "scene/builtin/builtin.h"
@@ -21,10 +22,6 @@
 namespace carousel::bench {
 
 namespace {
-
-constexpr std::int64_t kTriangles = 10'000;
-constexpr std::uint32_t kImageSide = 64;
-constexpr std::size_t kRays = 256;  // a packet's worth: 16 KiB of records
 
 /// A small terrain and rays that bounce off it, made once for all benchmarks.
 struct Setting {

@@ -16,6 +16,7 @@
 #include "accel/traverse/ray_check.h"
 #include "bench/common/embree_peer.h"
 #include "bench/common/ray_sets.h"
+#include "bench/kernels/terrain_packet.h"
 #include "core/config/config.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
@@ -26,9 +27,6 @@ namespace carousel::bench {
 
 namespace {
 
-constexpr std::int64_t kTriangles = 10'000;
-constexpr std::uint32_t kImageSide = 64;
-constexpr std::size_t kRays = 256;
 constexpr std::int64_t kLeafTriangles = 16;  // so that the set-up of a ray weighs little beside the tests
 
 /// A terrain and rays that bounce off it, with a structure for each pair of levels.
@@ -107,7 +105,7 @@ void boxes(benchmark::State& state, BoxLevel level, SimdTarget target) {
 }
 
 /// Items are triangles: a ray, set up, against a full leaf.
-void triangles(benchmark::State& state, TriangleLevel level, SimdTarget target) {
+void leaf_triangles(benchmark::State& state, TriangleLevel level, SimdTarget target) {
   LevelSetting& s = LevelSetting::get();
   const accel::Accel& a = s.accel(level, BoxLevel::kConservative, kLeafTriangles);
   accel::NodeKey leaf{0, a.instances.at(0).root};
@@ -169,7 +167,7 @@ const bool kRegistered = [] {
     for (const auto& level : kEnumNames<BoxLevel>)
       benchmark::RegisterBenchmark(name("boxes", level.name, target.name).c_str(), boxes, level.value, target.value);
     for (const auto& level : kEnumNames<TriangleLevel>)
-      benchmark::RegisterBenchmark(name("triangles", level.name, target.name).c_str(), triangles, level.value,
+      benchmark::RegisterBenchmark(name("triangles", level.name, target.name).c_str(), leaf_triangles, level.value,
                                    target.value);
   }
   for (const auto& triangle : kEnumNames<TriangleLevel>)

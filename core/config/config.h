@@ -18,6 +18,7 @@
 #include "core/config/fields/memory.h"
 #include "core/config/fields/packets.h"
 #include "core/config/fields/rays.h"
+#include "core/config/fields/report.h"
 #include "core/config/fields/scene.h"
 #include "core/config/fields/shading.h"
 #include "core/config/fields/testers.h"
@@ -60,6 +61,7 @@ struct Config {
   MemoryConfig memory;
   ShadingConfig shading;
   FaultsConfig faults;
+  ReportConfig report;
   Verify verify = Verify::kNone;
   WorkloadConfig workload;
   std::map<std::string, std::vector<std::string>> vary;  ///< key path to values; for sweep
@@ -96,6 +98,7 @@ void describe(V& v, Config& c) {
            "The first surface that a pixel shows is found by camera rays, or by a rasteriser, which leaves the other "
            "rays to the machine and needs a pinhole.");
   v.section("faults", c.faults, "Faults that happen on request.");
+  v.section("report", c.report, "The report of a run.");
   v.choice("verify", c.verify,
            "With reference every ray is traced again, depth first, and compared. With effects the picture is computed "
            "again with all effects and compared.");

@@ -39,6 +39,7 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"testers.simd.lanes", "", kBoth, "a choice of lanes"},
     {"testers.simd.map", "shapes", kBoth},
     {"testers.any_hit", "shader", kNative, "any-hit calls by shader workers"},
+    {"testers.bundle_blocks", "", kNative, "clock for bundle units"},
     {"memory.fetch", "multicast", kBoth},
     {"shading.idle_resources_shade", "true", kNative, "shading by idle resources"},
     {"shading.distribute", "", kNative, "choice of shader workers"},

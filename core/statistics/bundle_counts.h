@@ -10,6 +10,7 @@ struct BundleCounts {
   std::uint64_t lane_rays = 0, split_rays = 0;
   std::uint64_t visits = 0, visit_rays = 0, touched = 0, taken_apart = 0;
   std::uint64_t formed = 0, formed_rays = 0, loaded = 0, loaded_rays = 0;
+  std::uint64_t edges = 0, regrouped = 0;
 
   static constexpr auto counters() {
     using C = BundleCounts;
@@ -33,6 +34,9 @@ struct BundleCounts {
         Counter{"loaded", &C::loaded, "bundles", "bundles formed of new rays; the others were formed of split ones",
                 Shown::kNever},
         Counter{"loaded_rays", &C::loaded_rays, "rays", "rays of the bundles formed of new rays", Shown::kNever},
+        Counter{"edges", &C::edges, "edges", "edges of silhouettes that bundles were tested against"},
+        Counter{"regrouped", &C::regrouped, "rays",
+                "rays that left a bundle and passed the builder again, with lifetime: reformed or split: builder"},
     };
   }
   /// Tests of a ray against a box that bundles made unnecessary.

@@ -9,6 +9,7 @@ namespace carousel {
 struct IntersectionCounts {
   std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
   std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0, exact_volumes = 0, refined = 0, transforms_in_double = 0;
+  std::uint64_t full_inversions = 0;
 
   static constexpr auto counters() {
     using C = IntersectionCounts;
@@ -26,6 +27,9 @@ struct IntersectionCounts {
                 "singular"},
         Counter{"inversions", &C::inversions, "tests",
                 "inversions of an instance's matrix at a visit, with accuracy.invert: visit"},
+        Counter{"full_inversions", &C::full_inversions, "tests",
+                "those of the inversions that computed the inverse of the whole matrix, translation and all, with "
+                "accuracy.transform: inverse_matrix"},
         Counter{"exact_volumes", &C::exact_volumes, "volumes",
                 "volumes that accuracy.triangle: exact computed in exact arithmetic, as doubles did not decide: four a "
                 "triangle test at most"},

@@ -19,6 +19,7 @@
 #include "report/sections/shading.h"
 #include "report/sections/tests.h"
 #include "report/sections/throughput.h"
+#include "report/sections/time_series.h"
 #include "report/sections/traffic.h"
 #include "report/sections/verify.h"
 
@@ -45,6 +46,7 @@ struct Report {
   std::optional<std::vector<Link>> links;
   std::optional<Memory> memory;
   std::optional<std::vector<Bytes>> bytes;
+  std::optional<TimeSeries> time_series;
   std::optional<Traffic> traffic;
   Shading shading;
   std::optional<Bound> bound;
@@ -77,6 +79,7 @@ void describe(V& v, const Report& r) {
   v.section("memory", r.memory, "caches and memory of the simulated machine");
   v.section("bytes", r.bytes,
             "every byte that a part of the simulated machine hands to another, by kind of message (cycle)");
+  v.section("time_series", r.time_series, "quantities of the machine's parts over the run (cycle)");
   v.section("traffic", r.traffic, "the network alone, when workload is traffic");
   v.section("shading", r.shading, "shader workers and effects of light");
   v.section("bound", r.bound, "rate that each class of parts alone would allow");

@@ -1,10 +1,23 @@
 #include "report/run/report_json.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace carousel::report {
 
 using Json = nlohmann::ordered_json;
 
 namespace {
+
+/// Whole numbers are written as such, which takes less room.
+Json numbers(const std::vector<double>& values) {
+  Json out = Json::array();
+  for (const double value : values) {
+    const bool whole = std::abs(value) < 0x1p53 && value == std::trunc(value);
+    out.push_back(whole ? Json(static_cast<std::int64_t>(value)) : Json(value));
+  }
+  return out;
+}
 
 class JsonWriter {
  public:
@@ -28,6 +41,9 @@ class JsonWriter {
   template <class T>
   void field(const char* key, const std::optional<T>& value, const char*, const char*) {
     if (value) out_[key] = *value;
+  }
+  void field(const char* key, const std::vector<double>& values, const char*, const char*) {
+    out_[key] = numbers(values);
   }
   template <class T>
   void section(const char* key, const T& value, const char*) {
@@ -64,6 +80,9 @@ Json schema_of(std::int64_t) {
 }
 Json schema_of(const std::vector<std::string>&) {
   return {{"type", "array"}, {"items", {{"type", "string"}}}};
+}
+Json schema_of(const std::vector<double>&) {
+  return {{"type", "array"}, {"items", {{"type", "number"}}}};
 }
 Json schema_of(const std::array<double, 3>&) {
   return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
@@ -118,7 +137,31 @@ class SchemaWriter {
   Json properties_ = Json::object(), required_ = Json::array();
 };
 
+void write_text(std::string& out, const Json& json, std::size_t indent) {
+  const bool numbers_only =
+      json.is_array() && std::all_of(json.begin(), json.end(), [](const Json& item) { return item.is_number(); });
+  if (!json.is_structured() || json.empty() || numbers_only) {
+    out += json.dump();
+    return;
+  }
+  out += json.is_array() ? '[' : '{';
+  const char* separator = "\n";
+  for (const auto& [key, value] : json.items()) {
+    out.append(separator).append(indent + 2, ' ');
+    if (json.is_object()) out += Json(key).dump() + ": ";
+    write_text(out, value, indent + 2);
+    separator = ",\n";
+  }
+  out.append("\n").append(indent, ' ') += json.is_array() ? ']' : '}';
+}
+
 }  // namespace
+
+std::string json_text(const Json& json) {
+  std::string out;
+  write_text(out, json, 0);
+  return out;
+}
 
 Json report_json(const Report& report) {
   return JsonWriter::value_of(report);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include "report/run/report.h"
@@ -9,6 +11,8 @@ namespace carousel::report {
 
 /// report.json (DESIGN.md section 9). Keys stand in the order of the description.
 nlohmann::ordered_json report_json(const Report& report);
+/// Its text, indented by two. A list of numbers stands on one line, as a row of a time series has many.
+std::string json_text(const nlohmann::ordered_json& json);
 
 /// stress.json of `carousel stress`.
 nlohmann::ordered_json stress_json(const Stress& stress);

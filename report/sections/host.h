@@ -1,5 +1,6 @@
 #pragma once
 
+#include "report/sections/time_series.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -51,6 +52,7 @@ struct Host {
   Machine machine;
   std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{};
   std::optional<std::vector<HostLink>> links{};
+  std::optional<TimeSeries> time_series{};
 };
 
 template <class V>
@@ -69,6 +71,8 @@ void describe(V& v, const Host& r) {
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "most resident memory of the process");
   v.field("simd", r.simd, "", "instruction set of the intersection kernels");
   v.section("links", r.links, "queues of the links over the time of the host, link by link as in links (native)");
+  v.section("time_series", r.time_series,
+            "quantities of the machine's parts over the time of the host, looked at 100 times a second (native)");
   v.section("machine", r.machine, "machine that ran the simulation");
 }
 

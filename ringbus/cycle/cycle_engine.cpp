@@ -7,6 +7,7 @@
 #include "ringbus/cycle/progress_log.h"
 #include "ringbus/cycle/time/windows.h"
 #include "ringbus/cycle/wiring/byte_ledger.h"
+#include "ringbus/cycle/wiring/machine_series.h"
 #include "ringbus/cycle/wiring/simulated_machine.h"
 
 namespace carousel::ringbus {
@@ -23,7 +24,8 @@ class CycleRun {
       : config_(config),
         options_(options),
         link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
-        machine_(config, accel, scene_size, workload, options.statistics, options.trace) {
+        machine_(config, accel, scene_size, workload, options.statistics,
+                 {options.trace, most_samples(options.samples, series_counters(config))}) {
     machine_.warm(options.warm);
   }
 
@@ -122,8 +124,9 @@ class CycleRun {
     for (const auto& tile : machine_.resources()) traces.push_back(&tile->trace());
     c.epochs = combine(traces);
     c.steps = merge_steps(traces);
+    machine_.close(end);
+    if (options_.samples > 0) out.series = machine_series(machine_, config_);
     for (const auto& tile : machine_.resources()) {
-      tile->close(end);
       if (options_.statistics) out.resources.push_back(tile->statistics());
       out.collections.push_back(tile->collections());
       c.tiles.push_back(tile->result());

@@ -28,6 +28,9 @@ bool uses_links(const Config& c) {
 bool has_bundles(const Config& c) {
   return c.bundles.size > 0;
 }
+bool boxes_test_bundles(const Config& c) {
+  return c.testers.bundle_blocks == TestersConfig::BundleBlocks::kShared;
+}
 constexpr bool every_machine(const Config&) {
   return true;
 }
@@ -140,7 +143,7 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   };
   const RunFeatures features = features_of(config, accel);
   for (const UnitKindRow& row : kUnitKinds) {
-    if (!features.show(row.shown)) continue;
+    if (!features.show(row.shown) || (row.kind == UnitKind::kBundle && boxes_test_bundles(config))) continue;
     add(row.work, fmt::format("twice testers.{}.units", row.key), [kind = row.kind](Config& c) {
       for_all_testers(c, [&](TestersConfig& testers) { testers.units[kind].units *= 2; });
     });

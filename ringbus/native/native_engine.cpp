@@ -16,6 +16,7 @@
 #include "ringbus/faults/unfinished_rays.h"
 #include "ringbus/native/native_machine.h"
 #include "ringbus/native/native_port.h"
+#include "ringbus/native/native_series.h"
 #include "ringbus/native/shader_worker.h"
 
 namespace carousel::ringbus {
@@ -27,7 +28,12 @@ class NativeRun {
  public:
   NativeRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
             const RunOptions& options)
-      : options_(options), config_(config), accel_(accel), scene_size_(scene_size), workload_(workload) {
+      : options_(options),
+        config_(config),
+        accel_(accel),
+        scene_size_(scene_size),
+        workload_(workload),
+        series_(options.samples, config) {
     for (std::int64_t r = 0; r < config.topology.resources; ++r)
       sinks_.push_back(options.statistics ? std::make_unique<StatisticsSink>() : nullptr);
     if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
@@ -49,6 +55,7 @@ class NativeRun {
       restart();
     }
     const std::chrono::duration<double> wall = Clock::now() - start_;
+    look();
     const bool complete = count_.done();
     if (complete) check_drained();
     return result(complete, wall.count());
@@ -95,6 +102,7 @@ class NativeRun {
     std::vector<HitBatch> handed_over;
     while (std::optional<HitBatch> batch = machine_->completed.pop()) handed_over.push_back(std::move(*batch));
     for (const auto& port : ports_) packets_discarded_ += port->resource().packets_in_flight();
+    series_.carry(ports_);
     carry_links();
     slots_used_ += machine_->shared.control.slots_used();
     slot_waits_ += machine_->shared.control.slot_waits();
@@ -182,7 +190,12 @@ class NativeRun {
     Clock::time_point last_change = Clock::now();
     std::unique_lock lock(mutex_);
     const std::chrono::milliseconds interval(ledger_ ? 10 : 100);
-    while (!ended_changed_.wait_for(lock, interval, [this] { return ended_ == threads_; })) {
+    const auto pause = series_.on() ? std::min(interval, NativeSeries::kLook) : interval;
+    Clock::time_point next_check = Clock::now() + interval;
+    while (!ended_changed_.wait_for(lock, pause, [this] { return ended_ == threads_; })) {
+      look();
+      if (Clock::now() < next_check) continue;
+      next_check = Clock::now() + interval;
       if (options_.progress) options_.progress(count_.completed.load(std::memory_order_relaxed));
       std::uint64_t steps = 0;
       for (std::size_t t = 0; t < threads_; ++t) steps += progress_[t].steps.load(std::memory_order_relaxed);
@@ -196,6 +209,8 @@ class NativeRun {
       if (stuck_ || silent() || options_.stop.stop_requested()) end_.store(true, std::memory_order_release);
     }
   }
+
+  void look() { series_.look(Clock::now() - start_, count_, machine_->shared.control, ports_); }
 
   std::string describe_stuck() const {
     std::string text =
@@ -214,7 +229,7 @@ class NativeRun {
         throw SimulationError("something was left behind: " + port->describe());
   }
 
-  RunResult result(bool complete, double wall_seconds) const {
+  RunResult result(bool complete, double wall_seconds) {
     RunResult out;
     out.complete = complete;
     out.rays_emitted = count_.emitted;
@@ -236,6 +251,7 @@ class NativeRun {
           {link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
     for (std::size_t i = 0; i < faults_before_.size(); ++i) out.links[i].faults += faults_before_[i];
     out.start = start_;
+    if (series_.on()) out.series = series_.finish();
     return out;
   }
 
@@ -261,6 +277,7 @@ class NativeRun {
   std::vector<std::unique_ptr<ShaderWorker>> workers_;
   std::size_t threads_;
   Clock::time_point start_{};
+  NativeSeries series_;
   std::unique_ptr<Progress[]> progress_;
   std::atomic<bool> end_{false};
   bool stuck_ = false;

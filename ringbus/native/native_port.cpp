@@ -70,6 +70,7 @@ bool NativePort::step_now() {
   if (!moved) moved = issue(true);  // only when there is nothing better to do: waiting fills collections
   moved |= send_egress();
   flush_completed(!moved);
+  visits_.store(visits_now_, std::memory_order_relaxed);  // as for beats_
   return moved;
 }
 
@@ -125,7 +126,7 @@ void NativePort::arrive(PacketId id) {
       return packet_returned();
     case PacketFate::kTest:
     case PacketFate::kIdleVisit:  // which is counted there
-      resource_.test(packet);
+      test(packet);
       break;
     case PacketFate::kJoin:
       resource_.join(packet);
@@ -246,7 +247,7 @@ bool NativePort::issue(bool partial) {
       return moved;
     }
     moved = true;
-    if (packet.kind == PacketKind::kTest) resource_.test(packet);
+    if (packet.kind == PacketKind::kTest) test(packet);
     if (!id)
       resource_.retire(packet);
     else if (logic_.travels(packet))

@@ -46,6 +46,9 @@ class NativePort {
   /// Counts its steps, but not when it has stopped. Any thread may call.
   // Relaxed: the watcher only wants to see it change.
   std::uint64_t beats() const { return beats_.load(std::memory_order_relaxed); }
+  /// Visits of packets, and packets of its own that were tested on the spot, since it was made. Any thread may call.
+  // Relaxed: the watcher draws them over time.
+  std::uint64_t visits() const { return visits_.load(std::memory_order_relaxed); }
   /// One line that says what it waits for, with packet and ray IDs. Call when nothing steps.
   std::string describe() const;
 
@@ -69,6 +72,10 @@ class NativePort {
   void retire_at_owner(PacketId id);
   void packet_returned();
   void forward(PacketId id);
+  void test(Packet& packet) {
+    ++visits_now_;
+    resource_.test(packet);
+  }
   void inject(PacketId id);
 
   bool admit();
@@ -95,7 +102,8 @@ class NativePort {
   std::optional<ResourceFault> fault_;
   std::optional<std::uint64_t> stops_after_;  // rays completed here
   std::uint64_t rays_completed_ = 0;
-  std::atomic<std::uint64_t> beats_{0};
+  std::atomic<std::uint64_t> beats_{0}, visits_{0};
+  std::uint64_t visits_now_ = 0;  // published once a step
   std::vector<InPort> in_ports_;
   std::vector<OutPort> out_ports_;
   std::size_t egress_limit_;

@@ -14,6 +14,7 @@
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/link_statistics.h"
 #include "ringbus/results/occupancy_series.h"
+#include "ringbus/results/time_series.h"
 
 namespace carousel::ringbus {
 
@@ -23,6 +24,7 @@ struct RunOptions {
   bool link_statistics = true;                   ///< native: counts at the links too
   std::stop_token stop;                          ///< ends the run early; it is then incomplete
   std::chrono::milliseconds stuck_after{10000};  ///< native: a SimulationError after no progress for so long
+  std::size_t samples = 0;                       ///< most samples of the time series; 0: there is none
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
@@ -52,6 +54,7 @@ struct RunResult {
   std::vector<ResourceStatistics> resources;      ///< empty without statistics
   std::vector<CollectionStore::Statistics> collections;
   std::vector<LinkResult> links;
+  std::optional<TimeSeries> series;         ///< with RunOptions::samples
   std::optional<cycle::CycleResult> cycle;  ///< of the cycle engine
 };
 

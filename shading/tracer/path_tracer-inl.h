@@ -145,12 +145,13 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
   const LightDraw light_draw = sampler_.light(path.pixel, path.sample, bounce);
   RayTag tag{result.tag.path, RayKind::kShadow, result.tag.bounce, 0, 0};
 
-  // The medium of a ray that goes on from the surface: the volume behind it or the one before it.
-  const auto medium_beyond = [&](bool through) -> std::uint32_t {
-    const std::uint32_t here = pool_.medium(tag.path);
-    if (!through || !has_volume(*point.material)) return here;
-    const auto material = static_cast<std::size_t>(point.material - scene_.materials.data());
-    return front && surfaces_[material].absorbs ? static_cast<std::uint32_t>(material) + 1 : 0;
+  // The volumes that a ray is in that goes on from the surface.
+  const auto volumes_beyond = [&](bool through) {
+    VolumeStack volumes = pool_.volumes(tag.path);
+    if (!through || !has_volume(*point.material)) return volumes;
+    const auto material = static_cast<std::uint32_t>(point.material - scene_.materials.data());
+    front ? volumes.enter(material) : volumes.leave(material);
+    return volumes;
   };
 
   if constexpr (kLights != Lights::kNone) {
@@ -171,7 +172,7 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
           }
         }
         if constexpr (kMedia) {
-          const std::uint32_t medium = medium_beyond(side < 0.0f);
+          const std::uint32_t medium = volumes_beyond(side < 0.0f).innermost();
           if (medium != 0) contribution *= passed(medium, light.tmax < kInfinity ? glm::length(light.direction) : 0.0f);
         }
         // A contribution below half a step of the film's fixed point adds exactly nothing and needs no ray. NaN passes
@@ -205,7 +206,7 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
   const bool wide = bsdf.is_wide(draw.lobe);
   path.scattered = path.scattered || wide;
   if (wide) tag.flags = kRayAlone;
-  if constexpr (kMedia) pool_.medium(tag.path) = medium_beyond(through);
+  if constexpr (kMedia) pool_.volumes(tag.path) = volumes_beyond(through);
   tag.kind = RayKind::kBounce;
   ++tag.bounce;
   const Vec3 start = through ? spawn_point(geometry, front ? Side::kBack : Side::kFront, spawn_) : origin;

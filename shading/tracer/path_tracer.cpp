@@ -75,7 +75,7 @@ PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
   path.throughput = Vec3{1};
   path.bounce_pdf = 0;
   path.scattered = false;
-  if (media_) pool_.medium(index) = 0;
+  if (media_) pool_.volumes(index) = {};
   return at;
 }
 
@@ -133,7 +133,7 @@ Vec3 PathTracer::passed(std::uint32_t medium, float distance) const {
 /// Applies the Beer-Lambert law over the way to the hit. A ray that leaves the scene from within a volume has found a
 /// hole in the hull and keeps its light.
 void PathTracer::absorb(const RayResult& result) {
-  const std::uint32_t medium = pool_.medium(result.tag.path);
+  const std::uint32_t medium = pool_.volumes(result.tag.path).innermost();
   if (medium != 0) pool_.state(result.tag.path).throughput *= passed(medium, result.hit.t);
 }
 
@@ -191,11 +191,10 @@ void PathTracer::choose_surfaces() {
     Surface& surface = surfaces_[i];
     surface.shade = shade_of(classes[i], lights);
     surface.glass = glass_tables(material);
-    surface.absorbs = absorbs(material);
     surface.work = work[i];
     any_work_ |= work[i] != ShadeWork{};
     surface.boundary = parts[i] & kBoundary;
-    if (!surface.absorbs) continue;
+    if (!absorbs(material)) continue;
     for (int c = 0; c < 3; ++c) {
       const float left = std::clamp(material.volume.attenuation_color[c], 1e-6f, 1.0f);
       surface.absorption[c] = static_cast<float>(-log2_double(double{left}) * 0.69314718055994530942) /

@@ -98,7 +98,6 @@ class PathTracer : public Workload {
     ShadeSurface shade = nullptr;
     GlassTables glass;
     Vec3 absorption{0};  ///< per scene unit, inside
-    bool absorbs = false;
     bool boundary = false;  ///< ShaderParts::kBoundary
     ShadeWork work;         ///< extra_work()
   };

@@ -28,6 +28,7 @@ struct TestersConfig {
   } simd;
   std::int64_t contexts = 16;
   enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
+  enum class BundleBlocks { kSeparate, kPairs, kShared } bundle_blocks = BundleBlocks::kSeparate;
 };
 
 template <>
@@ -40,6 +41,12 @@ template <>
 inline constexpr auto kEnumNames<TestersConfig::AnyHit> = [] {
   using enum TestersConfig::AnyHit;
   return names<TestersConfig::AnyHit>({{kInline, "inline"}, {kShader, "shader"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<TestersConfig::BundleBlocks> = [] {
+  using enum TestersConfig::BundleBlocks;
+  return names<TestersConfig::BundleBlocks>({{kSeparate, "separate"}, {kPairs, "pairs"}, {kShared, "shared"}});
 }();
 
 namespace config {
@@ -64,6 +71,10 @@ void describe(V& v, TestersConfig& c) {
   v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.");
   v.choice("any_hit", c.any_hit,
            "The unit that meets a non-opaque primitive decides at once if it is hit, or a shader worker decides.");
+  v.choice(
+      "bundle_blocks", c.bundle_blocks,
+      "A bundle unit does one test of a bundle at a time; or it is a pair of blocks that does both tests of a box at "
+      "once, with bundles.order: parallel; or the box units test bundles as well.");
 }
 
 }  // namespace config

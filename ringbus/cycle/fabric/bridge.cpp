@@ -23,6 +23,7 @@ void Bridge::run(Cycle end) {
 }
 
 void Bridge::step(Cycle now) {
+  look_at(now);
   now_ = now;
   for (OutPort& out : out_) out.take_credits(now);
   for (std::size_t i = 0; i < in_.size(); ++i)

@@ -27,6 +27,7 @@ Cycle Bus::next() const {
 
 void Bus::run(Cycle end) {
   for (Cycle now; (now = next()) < end;) {
+    look_at(now);
     now_ = now;
     for (OutPort& out : out_) {
       out.take_credits(now);

@@ -4,9 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "ringbus/cycle/fabric/port_counters.h"
 #include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/packets/packet.h"
+#include "ringbus/results/counter_samples.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {
@@ -17,10 +19,25 @@ class Hub : public Agent {
   Hub(std::vector<InPort> in, std::vector<OutPort> out) : in_(std::move(in)), out_(std::move(out)) {}
   /// The near ends of its links, by port.
   const std::vector<OutPort>& out() const { return out_; }
+  /// From now on the counters of its links are read over time, at most so often (resource_samples.h).
+  void sample(std::size_t most) { samples_ = CounterSamples(most, counter_index(PortCounter::kBusy, out_.size(), 0)); }
+  void close(Cycle end) {
+    samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read_ports(out_, at, 0, row); });
+  }
+  const CounterSamples& samples() const { return samples_; }
 
  protected:
+  /// To be called before anything happens at `now`.
+  void look_at(Cycle now) {
+    if (samples_.due(now)) [[unlikely]]
+      samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read_ports(out_, at, 0, row); });
+  }
+
   std::vector<InPort> in_;
   std::vector<OutPort> out_;
+
+ private:
+  CounterSamples samples_;
 };
 
 /// The topology's hub number `hub`, with its ports. Keeps references to the topology and the packets.

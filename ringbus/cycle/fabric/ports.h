@@ -133,6 +133,7 @@ class OutPortOf {
   Cycle busy(Cycle end = kNever) const { return free_at_ <= end ? busy_ : busy_ - std::min(busy_, free_at_ - end); }
   Cycle stalled() const { return stalled_; }  ///< cycles in which a packet waited for a credit
   std::uint64_t packets() const { return packets_; }
+  std::uint64_t bytes() const { return wire_->packets.bytes_sent(); }
   LinkFaultCounts faults() const { return faults_ ? faults_->counts() : LinkFaultCounts{}; }
 
  private:

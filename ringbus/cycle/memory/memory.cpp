@@ -30,6 +30,11 @@ void Memory::run(Cycle end) {
   for (next_ = next(); next_ < end;) {
     const Cycle now = next_;
     next_ = kNever;
+    if (samples_.due(now)) [[unlikely]]
+      samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) {
+        // Lines that have been asked for are moved without a gap.
+        row[0] = bytes() - (moved_ > at * width_ ? moved_ - at * width_ : 0);
+      });
     for (const Client& client : clients_) {
       while (client.requests->next() <= now) {
         moved_ = std::max(moved_, now * width_) + line_bytes_;
@@ -44,6 +49,12 @@ void Memory::run(Cycle end) {
       next_ = std::min(next_, client.requests->next());
     }
   }
+}
+
+void Memory::close(Cycle end) {
+  samples_.close(end, [this, end](Cycle at, std::span<std::uint64_t> row) {
+    row[0] = bytes() - (at < end && moved_ > at * width_ ? moved_ - at * width_ : 0);
+  });
 }
 
 }  // namespace carousel::ringbus::cycle

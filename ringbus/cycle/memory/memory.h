@@ -5,6 +5,7 @@
 #include "core/config/config.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/cycle/time/channel.h"
+#include "ringbus/results/counter_samples.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -28,18 +29,26 @@ class Memory final : public Agent {
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override { return ""; }
 
+  /// From now on the bytes that it has moved are read over time, at most so often.
+  void sample(std::size_t most) { samples_ = CounterSamples(most, 1); }
+  void close(Cycle end);
+  const CounterSamples& samples() const { return samples_; }
+
   std::uint64_t lines() const { return lines_; }  ///< read
   std::uint64_t lines_written() const { return lines_written_; }
   /// Cycles that moving the lines took, the last one rounded up.
-  Cycle busy() const { return ceil_div((lines_ + lines_written_) * line_bytes_, width_); }
+  Cycle busy() const { return ceil_div(bytes(), width_); }
 
  private:
+  std::uint64_t bytes() const { return (lines_ + lines_written_) * line_bytes_; }
+
   Cycle answer_latency_;
   std::uint64_t line_bytes_, width_;
   std::vector<Client> clients_;
   std::uint64_t moved_ = 0;  // the channel is taken up to this byte of time, of which a cycle has width_
   std::uint64_t lines_ = 0, lines_written_ = 0;
   Cycle next_ = 0;  // next(), at the end of the last run()
+  CounterSamples samples_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -9,13 +9,13 @@
 
 namespace carousel::ringbus::cycle {
 
-ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload, TraceWindow window,
-                           std::vector<SidePorts> clients)
+ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload,
+                           const Observation& observed, std::vector<SidePorts> clients)
     : machine_(machine),
       fault_(settings.fault),
       workload_(workload),
       clients_(std::move(clients)),
-      trace_(static_cast<std::uint32_t>(machine.topology.resources()), window),
+      trace_(static_cast<std::uint32_t>(machine.topology.resources()), observed.steps),
       shade_cycles_(static_cast<Cycle>(settings.shading.cycles_per_shade)),
       lookup_cycles_(static_cast<Cycle>(settings.shading.cycles_per_lookup)),
       products_per_cycle_(static_cast<std::uint64_t>(settings.shading.products_per_cycle)),
@@ -33,7 +33,9 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       made_(settings.workers),
       load_free_(clients_.size()),
       id_wires_(clients_.size(), SideWire(settings.link, latency_)),
-      answer_wires_(clients_.size(), SideWire(settings.link, latency_)) {
+      answer_wires_(clients_.size(), SideWire(settings.link, latency_)),
+      samples_(observed.samples, kFirstHeldCounter + clients_.size()),
+      held_(clients_.size()) {
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
   for (std::uint32_t w = static_cast<std::uint32_t>(settings.workers); w-- > 0;) idle_.push_back(w);
   const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
@@ -57,6 +59,7 @@ void ShadingAgent::run(Cycle end) {
 }
 
 void ShadingAgent::step(Cycle now) {
+  sample(now);
   started_ = true;
   now_ = now;
   take_completed(now);
@@ -77,6 +80,7 @@ void ShadingAgent::take_completed(Cycle now) {
         continue;
       }
       machine_.control.free(ResourceId(r), done.slots);
+      held_[r].change(now, -static_cast<std::int64_t>(done.slots.size()));
       if (ledger_) ledger_->remove(done.rays);
       for (const RayResult& ray : done.rays) queues_.push(ray);
     }
@@ -221,6 +225,7 @@ void ShadingAgent::send_groups(Cycle now) {
         port = std::max(port, now) + load_cycles_ * records;
         loaded = std::max(loaded, port);
         loads += records;
+        held_[layout.owner(id).value].change(now, static_cast<std::int64_t>(records));
       }
       trace_.note(now, StepKind::kPlace, 0, group.ids.size());
       const Cycle arrival = id_wires_[r].send(4 * group.ids.size(), loaded);
@@ -254,6 +259,7 @@ void ShadingAgent::give_up(Cycle now) {
 void ShadingAgent::restart(Cycle now) {
   stop_->restarted = now;
   machine_.control.discard();
+  for (Level& held : held_) held.clear(now);
   machine_.control.exclude(ResourceId(stop_->resource));
   slots_ -= machine_.stores.front()->slots();
   order_all(NewRays::Order::kGoOn, now);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <queue>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,14 @@
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "ringbus/cycle/shading/shade_queues.h"
+#include "ringbus/cycle/shading/shading_samples.h"
 #include "ringbus/cycle/shading/shading_settings.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/faults/outstanding_rays.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/results/counter_samples.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/results/observation.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -41,7 +45,7 @@ namespace carousel::ringbus::cycle {
 class ShadingAgent final : public Agent {
  public:
   /// Keeps references to the machine and the workload. `clients` by resource.
-  ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload, TraceWindow window,
+  ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload, const Observation& observed,
                std::vector<SidePorts> clients);
 
   Cycle next() const override;
@@ -61,6 +65,9 @@ class ShadingAgent final : public Agent {
   /// Worker-cycles spent on jobs that are done: shading, camera rays and any-hit calls.
   Cycle busy() const { return busy_; }
   const Trace& trace() const { return trace_; }
+  /// Its counters over time (shading_samples.h), after close().
+  const CounterSamples& samples() const { return samples_; }
+  void close(Cycle end);
   /// The times at which a resource stopped and work began anew; absent if no stop was noted.
   const std::optional<StopTimes>& stop() const { return stop_; }
   std::uint64_t rays_restarted() const { return rays_restarted_; }
@@ -87,6 +94,8 @@ class ShadingAgent final : public Agent {
   };
 
   void step(Cycle now);
+  void sample(Cycle now);
+  void read(Cycle at, std::span<std::uint64_t> row) const;
   void take_completed(Cycle now);
   void take_questions(Cycle now);
   bool finish_jobs(Cycle now);
@@ -136,7 +145,10 @@ class ShadingAgent final : public Agent {
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;
-  Cycle next_ = 0;  // next(), at the end of the last run()
+  CounterSamples samples_;
+  LevelSum waiting_, working_;  // over time
+  std::vector<Level> held_;     // by resource: slots in use
+  Cycle next_ = 0;              // next(), at the end of the last run()
 };
 
 }  // namespace carousel::ringbus::cycle

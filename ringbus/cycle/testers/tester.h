@@ -10,6 +10,7 @@
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/cycle/testers/unit_passes.h"
 #include "ringbus/faults/resource_fault.h"
+#include "ringbus/resource/visit/test_outcome.h"
 #include "ringbus/results/cycle_result.h"
 
 namespace carousel::ringbus::cycle {
@@ -23,24 +24,29 @@ namespace carousel::ringbus::cycle {
 class Tester {
  public:
   using Order = CullPlanesConfig::Order;
-  /// `reads_per_cycle`: as rays.reads_per_cycle; 0: reads take no time.
-  explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst, std::int64_t reads_per_cycle = 0)
+  /// `reads_per_cycle`: as rays.reads_per_cycle; 0: reads take no time. `regrouped_per_cycle`: rays that the builder of
+  /// bundles takes.
+  explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst, std::int64_t reads_per_cycle = 0,
+                  std::int64_t regrouped_per_cycle = 1)
       : store_({std::max<std::int64_t>(1, reads_per_cycle), 1, 1}),
+        builder_({regrouped_per_cycle, 1, 1}),
+        blocks_(config.bundle_blocks),
         order_(order),
         reads_cost_(reads_per_cycle > 0),
         inline_(config.any_hit == TestersConfig::AnyHit::kInline) {
     for (const auto [kind, bank] : banks_) bank = UnitBank(config.units[kind]);
   }
 
-  /// The time of the last answer to the tests of one strip, started at `at`, for `reads` records, with so many passes
-  /// through the bundle units.
-  Cycle strip(Cycle at, const IntersectionCounts& counts, std::uint64_t reads = 0, std::uint64_t bundle_passes = 0) {
-    const UnitBank::Reservation bundled =
-        tested(banks_[UnitKind::kBundle], store_.reserve(at, reads_cost_ ? reads : 0), bundle_passes);
+  /// The time of the last answer to the tests of one strip, started at `at`, for `reads` records, and for the passes
+  /// of bundles; rays that leave bundles are then put into new ones.
+  Cycle strip(Cycle at, const IntersectionCounts& counts, std::uint64_t reads = 0, const BundlePasses& bundles = {}) {
+    const UnitBank::Reservation read = store_.reserve(at, reads_cost_ ? reads : 0),
+                                bundled = bundle_tests(read, bundles);
     const Cycle inverse = inverted(bundled.first, counts);
     const UnitBank::Reservation moved = tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)},
                                                passes_of(UnitKind::kTransform, counts));
-    return std::max(boxes(moved, counts), primitives(moved, counts));
+    const Cycle end = std::max(boxes(moved, counts), primitives(moved, counts));
+    return bundles.regrouped == 0 ? end : builder_.reserve(end, bundles.regrouped).last;
   }
 
   /// The same for a single ray, beside others.
@@ -87,6 +93,14 @@ class Tester {
   }
   Cycle busy_reads() const { return ray_reads_.use.busy; }
 
+  /// The cycles before `at` in which each bank was busy. Times of calls, also of account(), must not decrease.
+  PerUnit<Cycle> busy_before(Cycle at) {
+    PerUnit<Cycle> busy{};
+    for (const auto [kind, bank] : banks_) busy[kind] = bank.busy_before(at);
+    return busy;
+  }
+  Cycle reads_before(Cycle at) { return store_.busy_before(at); }
+
   const UnitBank& bank(UnitKind kind) const { return banks_[kind]; }
   const UnitBank& store() const { return store_; }  ///< the port of the ray store
 
@@ -108,6 +122,12 @@ class Tester {
     const UnitBank::Reservation own = bank.reserve(before.first, tests);
     return {own.first, before.last > before.first ? std::max(own.last, before.last + bank.latency()) : own.last};
   }
+  /// Tests that wait for the answers to the first begin with the first of these.
+  UnitBank::Reservation bundle_tests(const UnitBank::Reservation& read, const BundlePasses& passes) {
+    using Blocks = TestersConfig::BundleBlocks;
+    UnitBank& bank = banks_[blocks_ == Blocks::kShared ? UnitKind::kBox : UnitKind::kBundle];
+    return tested(bank, tested(bank, read, blocks_ == Blocks::kPairs ? passes.at_once : passes.first), passes.second);
+  }
   Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts) {
     UnitBank &box = banks_[UnitKind::kBox], &plane = banks_[UnitKind::kPlane];
     if (order_ == Order::kBoxFirst || counts.plane == 0)
@@ -128,7 +148,8 @@ class Tester {
   Cycle inverted(Cycle at, const IntersectionCounts& counts) { return invert(at, inversion_passes(counts)); }
 
   PerUnit<UnitBank> banks_;
-  UnitBank store_;
+  UnitBank store_, builder_;
+  TestersConfig::BundleBlocks blocks_;
   PerUnit<Ledger> units_;
   Ledger ray_reads_;
   Cycle accounted_ = 0;

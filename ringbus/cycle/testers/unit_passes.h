@@ -29,7 +29,9 @@ inline std::uint64_t passes_of(UnitKind kind, const IntersectionCounts& counts) 
 }
 /// Passes through the transform units ahead of that, for the inversions of an instance's matrix.
 inline std::uint64_t inversion_passes(const IntersectionCounts& counts) {
-  return accel::kInversionPasses * counts.inversions * (counts.transforms_in_double > 0 ? kDoublePasses : 1);
+  constexpr std::uint64_t more = accel::kFullInversionPasses - accel::kInversionPasses;
+  return (accel::kInversionPasses * counts.inversions + more * counts.full_inversions) *
+         (counts.transforms_in_double > 0 ? kDoublePasses : 1);
 }
 
 /// The passes that the tests of a single ray need at one strip. A strip has at most 128 triangles (eight leaves of 16

@@ -17,7 +17,7 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       store_(*machine.stores[id.value]),
       statistics_(settings.statistics),
       question_wire_(settings.link, control_latency(settings.link)),
-      trace_(id.value, settings.trace),
+      trace_(id.value, settings.observed.steps),
       ports_(ports),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
       shapes_(settings.memory, settings.link, ports),
@@ -25,7 +25,8 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       help_(settings.link, ports),
       transforms_(settings.accuracy, machine.accel, store_.slots()),
       threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, 0}),
-      ledger_(tester_) {}
+      ledger_(tester_),
+      samples_(settings.observed.samples, kFirstPortCounter) {}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
@@ -38,6 +39,8 @@ void IndependentTile::run(Cycle end) {
 }
 
 void IndependentTile::step(Cycle now) {
+  if (samples_.due(now)) [[unlikely]]
+    samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   now_ = now;
   take_new_rays(now);
   while (ports_.answers != nullptr && ports_.answers->next() <= now)
@@ -158,6 +161,17 @@ void IndependentTile::hand_over(Cycle now) {
 }
 
 // ---- the end, good or bad
+
+void IndependentTile::read(Cycle at, std::span<std::uint64_t> row) {
+  read_units(tester_, at, row);
+  row[counter_index(ResourceCounter::kCompleted)] = sink_.statistics().rays_completed;
+  row[counter_index(ResourceCounter::kTested)] = sink_.statistics().local_rays;
+}
+
+void IndependentTile::close(Cycle end) {
+  samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
+  ledger_.close(end);
+}
 
 TileResult IndependentTile::result() const {
   TileResult t;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <queue>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/cycle/tile/resource_agent.h"
+#include "ringbus/cycle/tile/resource_samples.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
@@ -38,7 +40,7 @@ class IndependentTile final : public ResourceAgent {
   std::string describe() const override;
 
   Cycle last_event() const override { return now_; }
-  void close(Cycle end) override { ledger_.close(end); }
+  void close(Cycle end) override;
   TileResult result() const override;
   Busy busy() const override { return {tester_.busy_units(), tester_.busy_reads(), 0}; }
   std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
@@ -47,6 +49,7 @@ class IndependentTile final : public ResourceAgent {
   const std::vector<OutPort>& out() const override { return no_links_; }
   std::string blocked(std::size_t) const override { return ""; }
   const Trace& trace() const override { return trace_; }
+  const CounterSamples& samples() const override { return samples_; }
 
  private:
   struct Thread {
@@ -72,6 +75,7 @@ class IndependentTile final : public ResourceAgent {
   void complete(std::uint32_t slot);
   void hand_over(Cycle now);
   TileState classify() const;
+  void read(Cycle at, std::span<std::uint64_t> row);
   void record(const Event& event) {
     if (statistics_) sink_.record(event);
   }
@@ -102,6 +106,7 @@ class IndependentTile final : public ResourceAgent {
   StackTraffic stack_;
   Cycle now_ = 0;
   TileLedger ledger_;
+  CounterSamples samples_;
   std::vector<OutPort> no_links_;
 };
 

@@ -47,7 +47,7 @@ void RayWalk::enter(std::uint32_t instance, std::uint32_t slot, IntersectionCoun
   if (!transforms_->moves(instance) || !transforms_->needs(slot, instance)) return;
   tests.transforms = 1;
   tests.transforms_in_double = transforms_->in_double(instance);
-  tests.inversions = transforms_->inverts(instance);
+  transforms_->invert(instance, tests);
 }
 
 IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray) {

@@ -8,6 +8,7 @@
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
+#include "ringbus/results/counter_samples.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/trace.h"
 
@@ -42,6 +43,8 @@ class ResourceAgent : public Agent {
   /// The packet that cannot leave by a port, with its first ray; or empty.
   virtual std::string blocked(std::size_t port) const = 0;
   virtual const Trace& trace() const = 0;
+  /// Its counters over time (resource_samples.h). After close().
+  virtual const CounterSamples& samples() const = 0;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -34,6 +34,8 @@ class RoundTrips {
 
   const LatencyHistogram& latency() const { return latency_; }
   Cycle packet_cycles() const { return packet_cycles_; }
+  /// Up to `at`, which is not before the last event.
+  Cycle packet_cycles(Cycle at) const { return packet_cycles_ + out_ * (at - since_); }
 
  private:
   void count(Cycle now) {

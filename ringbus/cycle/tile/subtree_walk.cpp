@@ -23,7 +23,7 @@ void SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, st
     IntersectionCounts tests = walk_.test(accel_, *key, ray);
     ways_.steps.push_back({*key, ray_tests(tests)});
     // One inversion serves all rays of a visit.
-    if (tests.inversions > 0 && !inverted_.insert(key->instance).second) tests.inversions = 0;
+    if (tests.inversions > 0 && !inverted_.insert(key->instance).second) tests.inversions = tests.full_inversions = 0;
     if (any_hit_calls != nullptr)
       *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, *any_hit_calls + tests.any_hit_calls));
     counts += tests;

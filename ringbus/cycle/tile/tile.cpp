@@ -10,7 +10,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
     : machine_(machine),
       memory_(memory),
       id_(id),
-      trace_(id.value, settings.trace),
+      trace_(id.value, settings.observed.steps),
       transforms_(settings.accuracy, machine.accel, machine.stores[id.value]->slots()),
       walk_(machine.accel, transforms_),
       resource_(settings.resource, machine.accel, *machine.stores[id.value],
@@ -18,7 +18,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
                  settings.resource.collections.when_full == WhenFull::kSpill, ports.questions != nullptr}),
       logic_(machine, resource_),
       ports_(std::move(ports)),
-      tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
+      tester_(settings.testers, settings.plane_order, settings.reads_per_cycle,
+              settings.resource.bundles.builder.rays_per_cycle),
       shapes_(settings.memory, settings.link, ports_),
       completed_port_(settings.link, ports_),
       help_(settings.link, ports_),
@@ -37,6 +38,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
+      phases_(contexts_.size()),
       visits_(memory, shapes_, tester_, contexts_.size(),
               static_cast<ShapeBuffer::User>(contexts_.size() + issue_places_)),
       fault_(settings.fault),
@@ -45,7 +47,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
                     static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets))),
       answers_due_(broadcasts_ ? machine.packets_per_direction : 0),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
-      ledger_(tester_) {
+      ledger_(tester_),
+      samples_(settings.observed.samples, counter_index(PortCounter::kBusy, ports_.out.size(), kFirstPortCounter)) {
   using Kind = FaultsConfig::Resource::Kind;
   pauses_ = fault_.kind == Kind::kPause && fault_.number == id.value;
   stops_ = fault_.kind == Kind::kStop && fault_.number == id.value;
@@ -91,13 +94,11 @@ bool Tile::wants_credit() const {
 }
 
 Cycle Tile::next_egress() const {
-  Cycle first = kNever;
+  Cycle first =
+      phases_.first_end_after(now_, phases_.in(ContextPhase::kComputing) | phases_.in(ContextPhase::kStarting));
   const auto consider = [&](Cycle at) {
     if (at > now_ && at < first) first = at;
   };
-  for (const Context& context : contexts_)
-    if (context.phase == Context::Phase::kComputing || context.phase == Context::Phase::kStarting)
-      consider(context.done);
   consider(next_partial_);
   if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
@@ -120,6 +121,8 @@ void Tile::run(Cycle end) {
         next_ = std::min(now, visits_.next());
         return;
       }
+      if (samples_.due(now)) [[unlikely]]
+        sample(now);
       // Not with the bubble rule, under which a packet that waits to be injected must see every credit. Where a ray's
       // test ends in this cycle, it comes first, as in every step.
       if (now < rest && now < visits_.next() && !machine_.flow.bubble() && cut_through(now, true)) continue;
@@ -130,6 +133,7 @@ void Tile::run(Cycle end) {
 }
 
 void Tile::step(Cycle now) {
+  sample(now);
   now_ = now;
   census_.until(now, resource_.collections().memberships());
   for (OutPort& out : ports_.out) out.take_credits(now);
@@ -178,15 +182,11 @@ void Tile::step(Cycle now) {
 
 TileState Tile::classify() const {
   if (help_.shading()) return TileState::kShading;
-  bool fetching = false, computing = false;
-  for (const Context& c : contexts_) {
-    using enum Context::Phase;
-    const bool walking = c.phase == kWalking;
-    computing |= c.phase == kComputing || c.phase == kStarting || (walking && visits_.testing());
-    fetching |= c.phase == kFetching || walking;
-  }
-  if (computing) return TileState::kTesting;
-  if (fetching) return TileState::kMemory;
+  using enum ContextPhase;
+  const bool walking = phases_.in(kWalking) != 0;
+  if ((phases_.in(kComputing) | phases_.in(kStarting)) != 0 || (walking && visits_.testing()))
+    return TileState::kTesting;
+  if (walking || phases_.in(kFetching) != 0) return TileState::kMemory;
   for (const OutPort& out : ports_.out)
     if (out.blocked()) return TileState::kLink;
   if (!issue_.empty()) return is_ready(issue_.front()) ? TileState::kLink : TileState::kMemory;
@@ -246,13 +246,6 @@ ResourceStatistics Tile::statistics() const {
   s.bubbles += passed_;
   s.seen_rays += passed_rays_;
   return s;
-}
-
-void Tile::close(Cycle end) {
-  ledger_.close(end);
-  census_.until(end, resource_.collections().memberships());
-  // The dispatch stage may still look through the IDs of the last packet.
-  if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
 }
 
 TileResult Tile::result() const {

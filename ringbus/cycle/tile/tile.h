@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,10 @@
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
+#include "ringbus/cycle/tile/context_phases.h"
 #include "ringbus/cycle/tile/rays_in_test.h"
 #include "ringbus/cycle/tile/resource_agent.h"
+#include "ringbus/cycle/tile/resource_samples.h"
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/tile/spill_memory.h"
@@ -70,17 +73,15 @@ class Tile final : public ResourceAgent {
   std::string blocked(std::size_t port) const override;
   std::uint64_t packets_discarded() const override { return discarded_; }
   const Trace& trace() const override { return trace_; }
+  const CounterSamples& samples() const override { return samples_; }
 
  private:
   /// A packet in test.
   struct Context {
-    /// kStarting: the dispatch stage reads its IDs; kWalking: its rays go through a subtree by themselves.
-    enum class Phase : std::uint8_t { kFree, kStarting, kFetching, kComputing, kWalking } phase = Phase::kFree;
     PacketId packet;
-    Cycle done = 0;             // kStarting, kComputing: the end
     IntersectionCounts counts;  // of tests that begin when the shapes are there
     std::uint32_t reads = 0;    // records read for them
-    std::uint32_t bundle_passes = 0;
+    BundlePasses bundle_passes;
     AnyHitQuestion question;            // asked when the tests are done
     std::vector<std::uint32_t> tested;  // slots of its rays, for RaysInTest
     HitBatch completed;                 // rays handed over then, with the slots they leave
@@ -96,6 +97,8 @@ class Tile final : public ResourceAgent {
   };
 
   std::uint64_t hops() const;
+  void sample(Cycle now);
+  void read(Cycle at, std::span<std::uint64_t> row);
   Cycle next_arrival() const;
   Cycle next_beside_ring() const;
   Cycle next_credit() const;
@@ -135,11 +138,11 @@ class Tile final : public ResourceAgent {
   bool drained() const;
 
   Context* free_context();
-  std::size_t free_contexts() const;
-  bool testers_free() const;
+  bool testers_free() const { return phases_.all_free(); }
   ShapeBuffer::User user_of(const Context& context) const {
     return static_cast<ShapeBuffer::User>(&context - contexts_.data());
   }
+  void enter(const Context& context, ContextPhase phase, Cycle end = 0) { phases_.enter(user_of(context), phase, end); }
   bool is_ready(const Issue& issue) const {
     return issue.spilled == 0 && (!issue.takes_data || shapes_.is_here(issue.user));
   }
@@ -202,6 +205,7 @@ class Tile final : public ResourceAgent {
   Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::size_t issued_ = 0;
   std::vector<Context> contexts_;
+  ContextPhases phases_;
   SubtreeVisits visits_;
   bool storage_full_ = false;
   FaultsConfig::Resource fault_;
@@ -220,6 +224,8 @@ class Tile final : public ResourceAgent {
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
   IdCensus census_;
+  CounterSamples samples_;
+  LevelSum ids_, collections_;  // over time
 };
 
 }  // namespace carousel::ringbus::cycle

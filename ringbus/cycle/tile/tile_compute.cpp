@@ -1,25 +1,15 @@
 // The tests of a packet at a resource: from the first cycle of its context to the last, with the fetches in between.
 #include <algorithm>
+#include <bit>
 
 #include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
 
-bool Tile::testers_free() const {
-  return std::all_of(contexts_.begin(), contexts_.end(),
-                     [](const Context& c) { return c.phase == Context::Phase::kFree; });
-}
-
 Tile::Context* Tile::free_context() {
-  if (help_.holds()) return nullptr;
-  for (Context& context : contexts_)
-    if (context.phase == Context::Phase::kFree) return &context;
-  return nullptr;
-}
-
-std::size_t Tile::free_contexts() const {
-  return static_cast<std::size_t>(std::count_if(contexts_.begin(), contexts_.end(),
-                                                [](const Context& c) { return c.phase == Context::Phase::kFree; }));
+  const ContextPhases::Set free = phases_.in(ContextPhase::kFree);
+  if (help_.holds() || free == 0) return nullptr;
+  return &contexts_[static_cast<std::size_t>(std::countr_zero(free))];
 }
 
 /// The shapes of a packet's tests, and what is stored of their instance's transform.
@@ -47,19 +37,19 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   context.has_data = has_data;
   if (context.subtree) visits_.prepare(user_of(context), walk_.ways());
   if (!starts_later_) return compute(context, at);
-  context.phase = Context::Phase::kStarting;
-  context.done = at;
+  enter(context, ContextPhase::kStarting, at);
 }
 
 void Tile::start_tests(Cycle now) {
-  for (Context& context : contexts_)
-    if (context.phase == Context::Phase::kStarting && context.done <= now) start(context, now);
+  ContextPhases::for_each(phases_.in(ContextPhase::kStarting), [&](std::size_t i) {
+    if (phases_.end(i) <= now) start(contexts_[i], now);
+  });
 }
 
 /// The dispatch stage has read the packet.
 void Tile::start(Context& context, Cycle now) {
   if (context.subtree) {
-    context.phase = Context::Phase::kWalking;
+    enter(context, ContextPhase::kWalking);
     visits_.begin(user_of(context), context.reads, now);
     if (context.has_data) shapes_.release(user_of(context), now);  // its rays have taken it
     return;
@@ -69,12 +59,11 @@ void Tile::start(Context& context, Cycle now) {
       shapes_.take(user_of(context), shape_data(packet, context.counts.transforms > 0), now))
     compute(context, now);
   else
-    context.phase = Context::Phase::kFetching;
+    enter(context, ContextPhase::kFetching);
 }
 
 void Tile::compute(Context& context, Cycle at) {
-  context.phase = Context::Phase::kComputing;
-  context.done = tester_.strip(at, context.counts, context.reads, context.bundle_passes);
+  enter(context, ContextPhase::kComputing, tester_.strip(at, context.counts, context.reads, context.bundle_passes));
 }
 
 /// Rays in subtrees go on, and those whose data has come begin their tests, then packets likewise.
@@ -89,15 +78,14 @@ void Tile::serve(Cycle now) {
 
 bool Tile::finish_tests(Cycle now) {
   serve(now);
+  using enum ContextPhase;
+  const ContextPhases::Set walking = phases_.in(kWalking);
   bool moved = false;
-  for (Context& context : contexts_) {
-    const bool ended = context.phase == Context::Phase::kWalking
-                           ? visits_.ended(user_of(context))
-                           : context.phase == Context::Phase::kComputing && context.done <= now;
-    if (!ended) continue;
-    end_test(context, now);
+  ContextPhases::for_each(walking | phases_.in(kComputing), [&](std::size_t i) {
+    if ((walking >> i & 1) != 0 ? !visits_.ended(i) : phases_.end(i) > now) return;
+    end_test(contexts_[i], now);
     moved = true;
-  }
+  });
   return moved;
 }
 
@@ -106,7 +94,7 @@ void Tile::end_test(Context& context, Cycle now) {
   const Packet& packet = machine_.packet(id);
   trace_.note(now, StepKind::kTested, id.value, packet.members.size());
   if (!context.subtree) shapes_.release(user_of(context), now);
-  context.phase = Context::Phase::kFree;
+  enter(context, ContextPhase::kFree);
   context.subtree = false;
   ask(context, now);
   in_test_.end(context.tested);

@@ -1,5 +1,6 @@
 // The start of a packet: from a ready collection to the issue queue, where it waits for its shapes, and to dispatch.
 #include <algorithm>
+#include <bit>
 
 #include "ringbus/cycle/tile/tile.h"
 
@@ -80,9 +81,7 @@ bool Tile::nothing_else_to_do(Cycle now) const {
 Cycle Tile::work_ahead_ends(Cycle now) const {
   Cycle ends = std::max(dispatch_free_, now);
   for (const Issue& issue : issue_) ends += dispatch_cycles(machine_.packet(issue.packet).members.size());
-  for (const Context& context : contexts_)
-    if (context.phase == Context::Phase::kComputing) ends = std::max(ends, context.done);
-  return ends;
+  return std::max(ends, phases_.last_end(phases_.in(ContextPhase::kComputing)));
 }
 
 Cycle Tile::partial_may_go(Cycle now) const {
@@ -93,7 +92,8 @@ Cycle Tile::partial_may_go(Cycle now) const {
       if (help_.holds()) return kNever;
       // Where a packet waits in contexts for its shapes, more packets than free contexts only wait in line, and fewer
       // rays share a wait.
-      if (contexts_fetch_ && issue_.size() >= free_contexts()) return kNever;
+      if (contexts_fetch_ && issue_.size() >= static_cast<std::size_t>(std::popcount(phases_.in(ContextPhase::kFree))))
+        return kNever;
       const Cycle ends = work_ahead_ends(now);
       return ends <= now + memory_latency_ ? now : ends - memory_latency_;
     }

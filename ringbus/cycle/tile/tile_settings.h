@@ -3,7 +3,7 @@
 #include "core/config/config.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/resource/settings.h"
-#include "ringbus/results/trace.h"
+#include "ringbus/results/observation.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -18,11 +18,11 @@ struct TileSettings {
   LinkConfig link;
   FaultsConfig::Resource fault;
   bool statistics = true;
-  TraceWindow trace;
+  Observation observed;
 };
 
 inline TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
-                                  TraceWindow trace) {
+                                  const Observation& observed) {
   return {resource_settings(config, scene_size),
           testers_of(config, id),
           config.accuracy,
@@ -32,7 +32,7 @@ inline TileSettings tile_settings(const Config& config, ResourceId id, float sce
           config.topology.link,
           config.faults.resource,
           statistics,
-          trace};
+          observed};
 }
 
 }  // namespace carousel::ringbus::cycle

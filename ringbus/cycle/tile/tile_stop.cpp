@@ -34,7 +34,7 @@ void Tile::discard_work(Cycle now) {
   issue_.clear();
   shapes_.clear_queue(now);
   for (Context& context : contexts_) {
-    if (context.phase == Context::Phase::kFree) continue;
+    if ((phases_.in(ContextPhase::kFree) >> user_of(context) & 1) != 0) continue;
     if (context.subtree) visits_.drop(user_of(context), now);
     shapes_.release(user_of(context), now);
     const PacketId id = context.packet;
@@ -46,6 +46,7 @@ void Tile::discard_work(Cycle now) {
       discard_at_owner(id);
     }
     context = Context{};
+    enter(context, ContextPhase::kFree);
   }
   in_test_.clear();
   shapes_.ready().clear();  // their packets are gone

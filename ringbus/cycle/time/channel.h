@@ -85,6 +85,7 @@ class Channel {
   struct Count {
     std::uint64_t sent = 0, taken = 0, waiting = 0;
   };
+  std::uint64_t bytes_sent() const { return bytes_sent_; }  ///< for the sender
   Count messages() const { return {tail_.load(std::memory_order_acquire), head_, size()}; }
   Count bytes() const {
     Count count{bytes_sent_, bytes_taken_, 0};

@@ -24,7 +24,7 @@ bool calls_shader(const Config& config, const accel::Accel& accel) {
 }  // namespace
 
 SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& accel, float scene_size,
-                                   Workload& workload, bool statistics, TraceWindow trace)
+                                   Workload& workload, bool statistics, const Observation& observed)
     : config_(config),
       shared_(config, accel, scene_size, local_packets(config)),
       shape_memory_(accel, config.accuracy),
@@ -37,7 +37,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
         std::make_unique<SideChannels>(config.shading.idle_resources_shade, calls_shader(config, accel)));
     const SidePorts& side = sides.emplace_back(channels_.back()->ports());
     cache_clients.push_back({side.fetch, side.fetched});
-    const TileSettings settings = tile_settings(config, id, scene_size, statistics, trace);
+    const TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
     if (shared_.topology.has_packets()) {
       Network::NodePorts links = network_.ports_at(id);
       resources_.push_back(std::make_unique<Tile>(id, shared_, shape_memory_, settings,
@@ -46,8 +46,10 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
       resources_.push_back(std::make_unique<IndependentTile>(id, shared_, shape_memory_, settings, side));
     }
   }
-  shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, trace, std::move(sides));
+  shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
   memory_ = std::make_unique<MemorySystem>(config.memory, cache_clients);
+  memory_->memory().sample(observed.samples);
+  for (const auto& hub : network_.hubs()) hub->sample(observed.samples);
 }
 
 std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads) const {
@@ -62,6 +64,13 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
   parts.back().push_back(&memory_->memory());
   parts.back().push_back(shading_.get());
   return parts;
+}
+
+void SimulatedMachine::close(Cycle end) const {
+  for (const auto& resource : resources_) resource->close(end);
+  for (const auto& hub : network_.hubs()) hub->close(end);
+  memory_->memory().close(end);
+  shading_->close(end);
 }
 
 void SimulatedMachine::connect(WakeupTable& wakeups) const {

@@ -22,7 +22,7 @@ class SimulatedMachine {
  public:
   /// Keeps references to the configuration, the structure and the workload.
   SimulatedMachine(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
-                   bool statistics, TraceWindow trace);
+                   bool statistics, const Observation& observed);
 
   const Machine& shared() const { return shared_; }
   const Network& network() const { return network_; }
@@ -43,6 +43,8 @@ class SimulatedMachine {
   /// Every agent that waits for something, a line each, and the circle of waits if there is one; empty when all are at
   /// rest.
   std::string describe_waits() const;
+  /// The run is over at `end`: all agents make their last readings.
+  void close(Cycle end) const;
   /// Calls `body` with each wire and the port by which it leaves its node.
   template <class Body>
   void for_each_link(const Body& body) const {

@@ -4,7 +4,6 @@
 #include <bit>
 #include <limits>
 
-#include "accel/box/bundle_intersect.h"
 #include "accel/traverse/kernels.h"
 #include "ringbus/resource/traversal/bundle_tally.h"
 
@@ -117,6 +116,8 @@ void BundledTraversal::test_bundles(Packet& packet, LocalRays& local, TestOutcom
     else
       rays_->test(packet, local, outcome);
   }
+  outcome.bundle_passes.regrouped = ejected_.regrouped();
+  counts_.regrouped += ejected_.regrouped();
   ejected_.send(packet, free_bundles_);
   // Only now may counts fall to nothing: every ray that goes on has been counted.
   if (reformed_)
@@ -124,11 +125,10 @@ void BundledTraversal::test_bundles(Packet& packet, LocalRays& local, TestOutcom
   for (const LocalBundle& bundle : bundles_) add_pending(bundle.slot, bundle.change, outcome);
   if (context_.transforms != nullptr) {
     // One inversion serves all rays of a visit.
-    const bool inverts = transforms_ > 0 && outcome.counts.transforms == 0;
     counts.transforms = transforms_;
     counts.transforms_in_double =
         transforms_ > 0 && context_.transforms->in_double(packet.key.instance) ? transforms_ : 0;
-    counts.inversions = inverts && context_.transforms->inverts(packet.key.instance);
+    if (transforms_ > 0 && outcome.counts.transforms == 0) context_.transforms->invert(packet.key.instance, counts);
   }
   outcome.counts += counts;
 }
@@ -151,10 +151,9 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   if (stays_out || split_.too_wide(bundle, node)) {
     answer.undecided = static_cast<std::uint8_t>(boxes);
   } else {
-    const std::uint64_t before = counts.bundle;
     answer = accel::test_bundle(context_.accel, node, boxes, bundle, config_, counts);
-    const bool edge_by_edge = config_.edges == BundlesConfig::Edges::kSerial && answer.edges > 0;
-    outcome.bundle_passes += edge_by_edge ? answer.edges : static_cast<std::uint32_t>(counts.bundle - before);
+    add_passes(answer, outcome.bundle_passes);
+    counts_.edges += answer.edges;
   }
   answer.undecided |= static_cast<std::uint8_t>(direct);
   for (std::uint32_t lanes = answer.all; lanes != 0; lanes &= lanes - 1) {
@@ -180,6 +179,14 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   local.change = (enters ? 0 : std::popcount(together)) - 1;
   if (enters && together != 0) descend_into_instance(packet, rays, inside, together);
   add_visit(counts_, rays.size(), node.count, std::popcount(answer.all), std::popcount(answer.undecided));
+}
+
+void BundledTraversal::add_passes(const accel::BundleAnswer& answer, BundlePasses& passes) const {
+  const std::uint32_t first = answer.first_passes, second = answer.second_passes;
+  const bool parallel = config_.order == BundlesConfig::Order::kParallel;
+  passes.first += parallel ? first + second : first;
+  passes.second += parallel ? 0 : second;
+  passes.at_once += parallel ? std::max(first, second) : first;
 }
 
 /// Tests single rays that are to go on in bundles.

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "accel/box/bundle_intersect.h"
 #include "ringbus/resource/traversal/bundle_split.h"
 #include "ringbus/resource/traversal/ejected_rays.h"
 #include "ringbus/resource/traversal/traversal_method.h"
@@ -51,6 +52,7 @@ class BundledTraversal final : public TraversalMethod {
   // Where bundles go on.
   void test_bundles(Packet& packet, LocalRays& local, TestOutcome& outcome);
   void test_bundle(Packet& packet, LocalBundle& local, IntersectionCounts& counts, TestOutcome& outcome);
+  void add_passes(const accel::BundleAnswer& answer, BundlePasses& passes) const;
   void eject_singles(Packet& packet, const LocalRays& local, TestOutcome& outcome);
   accel::BundleRecord bounds_in(std::uint32_t instance, std::span<const std::uint32_t> rays,
                                 IntersectionCounts& counts) const;

@@ -20,6 +20,8 @@ class EjectedRays {
 
   void begin() { rays_.clear(); }
   void add(std::uint32_t slot, std::uint8_t mask) { rays_.push_back({slot, mask}); }
+  /// The number of rays that pass the builder.
+  std::uint32_t regrouped() const { return builder_ ? static_cast<std::uint32_t>(rays_.size()) : 0; }
   /// Appends them to the packet's members, with counts for the tests to come. New bundles take slots from the end of
   /// `free_bundles`.
   void send(Packet& packet, std::vector<std::uint32_t>& free_bundles);

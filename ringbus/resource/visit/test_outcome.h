@@ -14,12 +14,21 @@ struct AnyHitCall {
   std::uint32_t slot, times;
 };
 
+/// Passes of a packet's bundles through the units that test them (US 11308683, FIG. 11 and 12): one a test, or one an
+/// edge of a silhouette.
+struct BundlePasses {
+  std::uint32_t first = 0;      ///< of the tests that are made at once
+  std::uint32_t second = 0;     ///< of those that the answers to the first call for
+  std::uint32_t at_once = 0;    ///< as `first`, where a pair of blocks makes both tests of a box at the same time
+  std::uint32_t regrouped = 0;  ///< rays that the builder then puts into new bundles
+};
+
 /// The cost of testing a packet at one resource. The pointer and the span are valid until the resource's next test.
 struct TestOutcome {
   IntersectionCounts counts;
-  std::size_t rays = 0;                   ///< tested one by one, not as members of a bundle
-  std::uint32_t reads = 0;                ///< records of rays and bundles that were read
-  std::uint32_t bundle_passes = 0;        ///< through a bundle unit: one a test, or one an edge of a silhouette
+  std::size_t rays = 0;     ///< tested one by one, not as members of a bundle
+  std::uint32_t reads = 0;  ///< records of rays and bundles that were read
+  BundlePasses bundle_passes;
   const BundleCounts* bundles = nullptr;  ///< what became of bundles; null when there are none
   /// With ResourceHooks::hold_any_hit_rays: the rays that wait for Resource::release().
   std::span<const AnyHitCall> any_hit_calls;

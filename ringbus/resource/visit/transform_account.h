@@ -23,6 +23,7 @@ class TransformAccount {
       : accel_(accel),
         store_(accuracy.transformed_ray == AccuracyConfig::TransformedRay::kStore),
         forward_(accel::stored_instance_data(accuracy) == AccuracyConfig::InstanceData::kForward),
+        full_(accuracy.transform == TransformLevel::kInverseMatrix),
         kept_(store_ ? slots : 0) {}
 
   /// True if rays are transformed for `instance` at all.
@@ -52,7 +53,7 @@ class TransformAccount {
     for (const std::uint32_t slot : slots)
       if ((records[slot].tag.flags & kRayDone) == 0) counts.transforms += needs(slot, instance);
     counts.transforms_in_double = in_double(instance) ? counts.transforms : 0;
-    counts.inversions = counts.transforms > 0 && inverts(instance);
+    if (counts.transforms > 0) invert(instance, counts);
     return counts;
   }
   /// The ray in `slot` is done.
@@ -63,14 +64,18 @@ class TransformAccount {
   }
   /// True if rays are transformed in double for this instance, at a level that is not.
   bool in_double(std::uint32_t instance) const { return accel_.instances[instance].transform.promoted; }
-  /// True if the inverse has to be computed before rays are transformed. A transpose needs no computing.
-  bool inverts(std::uint32_t instance) const { return forward_ && !accel_.instances[instance].transform.transposed; }
+  /// Counts one inversion if the inverse has to be computed before rays are transformed. A transpose needs no
+  /// computing. Instances whose rays are transformed in double take the two steps.
+  void invert(std::uint32_t instance, IntersectionCounts& counts) const {
+    counts.inversions = forward_ && !accel_.instances[instance].transform.transposed;
+    counts.full_inversions = full_ && !in_double(instance) ? counts.inversions : 0;
+  }
 
   const TransformedRayBytes& bytes() const { return bytes_; }
 
  private:
   const accel::Accel& accel_;
-  bool store_, forward_;
+  bool store_, forward_, full_;
   std::vector<std::vector<std::uint32_t>> kept_;  // by slot: the instances it has a copy for
   std::uint64_t held_ = 0;
   TransformedRayBytes bytes_;

@@ -44,6 +44,7 @@ class TransformCharge {
     counts.transforms = charged_.transforms;
     counts.transforms_in_double = charged_.transforms_in_double;
     counts.inversions = charged_.inversions;
+    counts.full_inversions = charged_.full_inversions;
   }
 
  private:

@@ -54,8 +54,8 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
     EXPECT_EQ(without.contains(row.name), row.shown == Shown::kAlways) << row.name;
   }
   EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "plane", "triangle", "refined", "bundle", "transforms",
-                                                  "transforms_in_double", "inversions", "exact_volumes", "culled",
-                                                  "procedural", "any_hit", "ray_reads"}));
+                                                  "transforms_in_double", "inversions", "full_inversions",
+                                                  "exact_volumes", "culled", "procedural", "any_hit", "ray_reads"}));
 }
 
 TEST(ReportSections, DerivedNumbersAreOfTheCounters) {

@@ -25,21 +25,55 @@ IntersectionCounts counts(std::uint64_t box, std::uint64_t bundle) {
 
 TEST(BundleUnits, OnePassAfterTheOther) {
   Tester tester(bundle_testers());
-  EXPECT_EQ(tester.strip(0, counts(0, 8), 1, 8), 7u + 3u);
+  EXPECT_EQ(tester.strip(0, counts(0, 8), 1, {.first = 8}), 7u + 3u);
   EXPECT_EQ(tester.bank(UnitKind::kBundle).busy(), 8u);
   EXPECT_EQ(tester.bank(UnitKind::kBox).busy(), 0u);
 }
 
 TEST(BundleUnits, EdgesOfASilhouetteArePasses) {
   Tester tester(bundle_testers());
-  EXPECT_EQ(tester.strip(0, counts(0, 8), 1, 40), 39u + 3u);
+  EXPECT_EQ(tester.strip(0, counts(0, 8), 1, {.first = 40}), 39u + 3u);
+}
+
+TEST(BundleUnits, ASecondTestWaitsForTheAnswerToTheFirst) {
+  // A box: its second test starts in cycle 3, with the answer to the first. Both at once: in cycles 0 and 1.
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 2), 1, {.first = 1, .second = 1}), 3u + 3u);
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 2), 1, {.first = 2}), 1u + 3u);
+  // Eight boxes keep the unit busy until the first answers are there.
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 12), 1, {.first = 8, .second = 4}), 11u + 3u);
+}
+
+TEST(BundleUnits, APairOfBlocksMakesBothTestsAtOnce) {
+  TestersConfig pairs = bundle_testers();
+  pairs.bundle_blocks = TestersConfig::BundleBlocks::kPairs;
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 16), 1, {.first = 16, .at_once = 8}), 15u + 3u);
+  EXPECT_EQ(Tester(pairs).strip(0, counts(0, 16), 1, {.first = 16, .at_once = 8}), 7u + 3u);
+}
+
+TEST(BundleUnits, SharedBlocksAreTheBoxUnits) {
+  TestersConfig shared = bundle_testers();
+  shared.bundle_blocks = TestersConfig::BundleBlocks::kShared;
+  Tester tester(shared);
+  EXPECT_EQ(tester.strip(0, counts(32, 8), 1, {.first = 8}), 4u + 3u + 4u);  // eight units, then four cycles of rays
+  EXPECT_EQ(tester.bank(UnitKind::kBundle).busy(), 0u);
+  EXPECT_EQ(tester.bank(UnitKind::kBox).busy(), 1u + 4u);
+}
+
+TEST(BundleUnits, RaysThatAreRegroupedPassTheBuilder) {
+  Tester tester(bundle_testers(), kOrder, 0, 2);
+  const Cycle tested = Tester(bundle_testers()).strip(0, counts(16, 8), 1, {.first = 8});
+  EXPECT_EQ(tester.strip(0, counts(16, 8), 1, {.first = 8, .regrouped = 11}), tested + 6);
+  EXPECT_EQ(Tester(bundle_testers(), kOrder, 0, 1024).strip(0, counts(16, 8), 1, {.first = 8, .regrouped = 11}),
+            tested + 1);
 }
 
 TEST(BundleUnits, RaysThatLeaveABundleAreTestedAfterIt) {
   Tester tester(bundle_testers());
-  EXPECT_EQ(tester.strip(10, counts(32, 8), 33, 8), 10u + 7u + 3u + 4u);  // the last to leave, the last to be tested
+  EXPECT_EQ(tester.strip(10, counts(32, 8), 33, {.first = 8}),
+            10u + 7u + 3u + 4u);  // the last to leave, the last to be tested
   Tester many(bundle_testers());
-  EXPECT_EQ(many.strip(10, counts(256, 2), 33, 2), 10u + 3u + 31u + 4u);  // 32 cycles of boxes from the first answer on
+  EXPECT_EQ(many.strip(10, counts(256, 2), 33, {.first = 2}),
+            10u + 3u + 31u + 4u);  // 32 cycles of boxes from the first answer on
 }
 
 TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
@@ -54,7 +88,7 @@ TEST(BundleUnits, ANarrowStoreHoldsUpWhatIsTested) {
 
 TEST(BundleUnits, ABundleReadsOneRecordWhereItsRaysReadAllOfTheirs) {
   Tester as_bundle(bundle_testers(), kOrder, 1), as_rays(bundle_testers(), kOrder, 1);
-  EXPECT_EQ(as_bundle.strip(0, counts(0, 8), 1, 8), 1u + 7u + 3u);
+  EXPECT_EQ(as_bundle.strip(0, counts(0, 8), 1, {.first = 8}), 1u + 7u + 3u);
   EXPECT_EQ(as_rays.strip(0, counts(256, 0), 32), 32u + 4u);
 }
 

@@ -34,6 +34,12 @@ TEST(PassesInDouble, ATransformForANearlySingularInstanceTakesFour) {
   EXPECT_EQ(inversion_passes({.transforms = 5, .inversions = 1, .transforms_in_double = 5}), 4 * inversion);
 }
 
+// US 12394134, paragraph 25: 39 products for the inverse of the whole matrix, 30 for the two steps, 18 in a pass.
+TEST(PassesInDouble, TheWholeInverseTakesAPassMore) {
+  EXPECT_EQ(inversion_passes({.transforms = 5, .inversions = 1}), 2u);
+  EXPECT_EQ(inversion_passes({.transforms = 5, .inversions = 1, .full_inversions = 1}), 3u);
+}
+
 TEST(PassesInDouble, ItsInverseTakes84Bytes) {
   scene::Scene scene = accel::icosphere_scene(1);
   scene.instances[0].world_from_model = accel::rotate_scale_translate({1, 2, 3}, 40, {1, 1, 1}, {1, 2, 3});

@@ -108,6 +108,7 @@ std::vector<Factor> bundles() {
       {"bundles.size", {"0", "2", "4", "16", "32"}},
       {"bundles.form", all<Config::Form>(), on},
       {"bundles.edges", all<Config::Edges>(), timed},
+      {"testers.bundle_blocks", all<TestersConfig::BundleBlocks>(), timed},
       {"bundles.order", all<Config::Order>(), on},
       {"bundles.strict", kSwitch, on},
       {"bundles.lifetime", all<Config::Lifetime>(), on},

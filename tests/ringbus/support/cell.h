@@ -15,6 +15,7 @@ struct Cell {
   std::size_t threads = 1;
   bool tight_storage = false;  ///< bounded collection storage at its least
   cycle::TraceWindow trace{};  ///< of the cycle engine
+  std::size_t samples = 0;     ///< of the time series
   std::stop_token stop{};      ///< ends the run, which is then incomplete
   bool non_opaque = false;     ///< half of the scene's triangles, and spheres; rays have flags
   float away = 0.5f;           ///< rays start within so many extents of the scene around it

@@ -57,6 +57,7 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   RunOptions options;
   options.threads = cell.threads;
   options.trace = cell.trace;
+  options.samples = cell.samples;
   options.stop = cell.stop;
   Outcome out;
   try {

@@ -5,13 +5,14 @@ BOX, TRIANGLE, PLANE, BUNDLE, TRANSFORM, PROCEDURAL, ANY_HIT = (
     "box", "triangle", "plane", "bundle", "transform", "procedural", "any_hit_unit")
 KINDS = (BOX, TRIANGLE, PLANE, BUNDLE, TRANSFORM, PROCEDURAL, ANY_HIT)
 INVERSION_PASSES = 2
+FULL_INVERSION_PASSES = 3
 DOUBLE_PASSES = 4
 
 
 class Counts:
     """The tests of a visit."""
 
-    __slots__ = ("box", "triangle", "refined", "procedural", "transforms", "in_double", "inversions")
+    __slots__ = ("box", "triangle", "refined", "procedural", "transforms", "in_double", "inversions", "full_inversions")
 
     def __init__(self):
         for name in self.__slots__:
@@ -29,7 +30,9 @@ class Counts:
         return getattr(self, kind, 0)
 
     def inversion_passes(self):
-        return INVERSION_PASSES * self.inversions * (DOUBLE_PASSES if self.in_double else 1)
+        passes = INVERSION_PASSES * self.inversions
+        passes += (FULL_INVERSION_PASSES - INVERSION_PASSES) * self.full_inversions
+        return passes * (DOUBLE_PASSES if self.in_double else 1)
 
 
 class Bank:

@@ -11,6 +11,7 @@ class Transforms:
         self.store = a["transformed_ray"] == "store"
         data = a.get("instance_data") or ("forward" if a.get("invert") == "visit" else "")
         self.forward = data == "forward"
+        self.full = a["transform"] == "inverse_matrix"
 
     def needs(self, ray, node):
         if not self.store:
@@ -20,15 +21,17 @@ class Transforms:
         ray.kept.add(node.instance)
         return True
 
-    def inverts(self, node):
-        return self.forward and not node.transposed
+    def invert(self, node, counts):
+        counts.inversions = int(self.forward and not node.transposed)
+        counts.full_inversions = counts.inversions if self.full and not node.promoted else 0
 
     def charge(self, rays, node, counts):
         if not node.moves:
             return
         counts.transforms = sum(self.needs(ray, node) for ray in rays if not ray.done)
         counts.in_double = counts.transforms if node.promoted else 0
-        counts.inversions = int(counts.transforms > 0 and self.inverts(node))
+        if counts.transforms > 0:
+            self.invert(node, counts)
 
 
 class Spread:

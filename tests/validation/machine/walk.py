@@ -35,7 +35,7 @@ class Walk:
             if node.moves and self.transforms.needs(self.ray, node):
                 counts.transforms = 1
                 counts.in_double = int(node.promoted)
-                counts.inversions = int(self.transforms.inverts(node))
+                self.transforms.invert(node, counts)
         if node.inner:
             counts.box = node.shapes
             for lane, entry in farthest_first(self.ray.meet_boxes(node, range(node.shapes))):

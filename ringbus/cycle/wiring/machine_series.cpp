@@ -1,0 +1,155 @@
+#include "ringbus/cycle/wiring/machine_series.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ringbus/cycle/tile/resource_samples.h"
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+using Kind = SeriesRow::Kind;
+
+/// Turns readings into rows.
+class SeriesWriter {
+ public:
+  explicit SeriesWriter(const SimulatedMachine& machine) : machine_(machine) {
+    Cycle end = 1;
+    const auto look = [&](const CounterSamples& samples) {
+      interval_ = std::max(interval_, samples.interval());
+      end = std::max(end, samples.end());
+    };
+    look(machine.shading().samples());
+    look(machine.memory().memory().samples());
+    for (const auto& resource : machine.resources()) look(resource->samples());
+    for (const auto& hub : machine.network().hubs()) look(hub->samples());
+    out_.unit = "cycles";
+    out_.interval = static_cast<double>(interval_);
+    out_.samples = ceil_div(end, interval_);
+  }
+
+  TimeSeries write(const Config& config) {
+    machine_rows(config);
+    for (std::size_t r = 0; r < machine_.resources().size(); ++r) resource_rows(r);
+    std::size_t link = 0;
+    machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
+      const std::string part = fmt::format("link {}", link++);
+      row({part, "busy", "share", Kind::kMean}, sum_of_port(wire, port, PortCounter::kBusy));
+      row({part, "bytes", "bytes", Kind::kSum}, sum_of_port(wire, port, PortCounter::kBytes));
+    });
+    return std::move(out_);
+  }
+
+ private:
+  using Sums = std::vector<std::uint64_t>;
+
+  void machine_rows(const Config& config) {
+    const std::size_t resources = machine_.resources().size();
+    const auto shading = [&](ShadingCounter counter) { return of_shading(counter_index(counter)); };
+    const auto all = [&](std::size_t counter) {
+      Sums sums = zeros();
+      for (const auto& resource : machine_.resources()) resource->samples().add_to(sums, interval_, counter);
+      return sums;
+    };
+    row({"machine", "rays completed", "rays", Kind::kSum}, shading(ShadingCounter::kCompleted));
+    Sums held = zeros();
+    for (std::size_t r = 0; r < resources; ++r)
+      machine_.shading().samples().add_to(held, interval_, kFirstHeldCounter + r);
+    row({"machine", "rays held", "rays", Kind::kMean}, held);
+    row({"machine", "ray IDs in collections", "entries", Kind::kMean}, all(counter_index(ResourceCounter::kIds)));
+    row({"machine", "open collections", "entries", Kind::kMean}, all(counter_index(ResourceCounter::kCollections)));
+    row({"machine", "packets under way", "packets", Kind::kMean}, all(counter_index(ResourceCounter::kPackets)));
+    row({"machine", "rays waiting to be shaded", "rays", Kind::kMean}, shading(ShadingCounter::kWaiting));
+    row({"machine", "shader workers busy", "workers", Kind::kMean}, shading(ShadingCounter::kWorkers));
+    for (const UnitKindRow& unit : kUnitKinds)
+      row({"machine", fmt::format("{} busy", unit.name), "share", Kind::kMean}, all(unit_index(unit.kind)), resources);
+    row({"machine", "dispatch busy", "share", Kind::kMean}, all(counter_index(ResourceCounter::kDispatch)), resources);
+    Sums busy = zeros(), bytes = zeros();
+    std::size_t links = 0;
+    machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
+      add_port(busy, wire, port, PortCounter::kBusy);
+      add_port(bytes, wire, port, PortCounter::kBytes);
+      ++links;
+    });
+    row({"machine", "links busy", "share", Kind::kMean}, busy, links);
+    row({"machine", "bytes on links", "bytes", Kind::kSum}, bytes);
+    Sums dram = zeros();
+    machine_.memory().memory().samples().add_to(dram, interval_, 0);
+    row({"machine", "bytes of DRAM", "bytes", Kind::kSum}, dram);
+    const double width = static_cast<double>(config.memory.dram_bytes_per_cycle);
+    row({"machine", "DRAM busy", "share", Kind::kMean}, dram, width);
+  }
+
+  void resource_rows(std::size_t r) {
+    const CounterSamples& samples = machine_.resources()[r]->samples();
+    const std::string part = fmt::format("resource {}", r);
+    const auto own = [&](std::size_t counter) {
+      Sums sums = zeros();
+      samples.add_to(sums, interval_, counter);
+      return sums;
+    };
+    row({part, "rays completed", "rays", Kind::kSum}, own(counter_index(ResourceCounter::kCompleted)));
+    row({part, "rays tested", "rays", Kind::kSum}, own(counter_index(ResourceCounter::kTested)));
+    row({part, "rays held", "rays", Kind::kMean}, of_shading(kFirstHeldCounter + r));
+    row({part, "ray IDs in collections", "entries", Kind::kMean}, own(counter_index(ResourceCounter::kIds)));
+    row({part, "open collections", "entries", Kind::kMean}, own(counter_index(ResourceCounter::kCollections)));
+    row({part, "packets under way", "packets", Kind::kMean}, own(counter_index(ResourceCounter::kPackets)));
+    for (const UnitKindRow& unit : kUnitKinds)
+      row({part, fmt::format("{} busy", unit.name), "share", Kind::kMean}, own(unit_index(unit.kind)));
+    row({part, "ray reads busy", "share", Kind::kMean}, own(counter_index(ResourceCounter::kRayReads)));
+    row({part, "dispatch busy", "share", Kind::kMean}, own(counter_index(ResourceCounter::kDispatch)));
+  }
+
+  Sums zeros() const { return Sums(out_.samples); }
+  Sums of_shading(std::size_t counter) const {
+    Sums sums = zeros();
+    machine_.shading().samples().add_to(sums, interval_, counter);
+    return sums;
+  }
+  void add_port(Sums& sums, const Topology::Wire& wire, std::size_t port, PortCounter counter) const {
+    const std::size_t resources = machine_.resources().size();
+    if (wire.from.value < resources)
+      machine_.resources()[wire.from.value]->samples().add_to(sums, interval_,
+                                                              counter_index(counter, port, kFirstPortCounter));
+    else
+      machine_.network().hubs()[wire.from.value - resources]->samples().add_to(sums, interval_,
+                                                                               counter_index(counter, port, 0));
+  }
+  Sums sum_of_port(const Topology::Wire& wire, std::size_t port, PortCounter counter) const {
+    Sums sums = zeros();
+    add_port(sums, wire, port, counter);
+    return sums;
+  }
+  /// `parts`: equal parts side by side, whose mean is taken.
+  void row(SeriesRow&& row, const Sums& sums, double parts = 1) {
+    const double by = row.kind == Kind::kMean ? parts * out_.interval : 1;
+    for (const std::uint64_t sum : sums) row.values.push_back(static_cast<double>(sum) / by);
+    out_.add(std::move(row));
+  }
+  void row(SeriesRow&& one, const Sums& sums, std::size_t parts) {
+    row(std::move(one), sums, static_cast<double>(parts));
+  }
+
+  const SimulatedMachine& machine_;
+  Cycle interval_ = 1;
+  TimeSeries out_;
+};
+
+}  // namespace
+
+std::size_t series_counters(const Config& config) {
+  const Topology topology(config.topology);
+  return topology.resources() * (kFirstPortCounter + 1) +
+         topology.wires().size() * static_cast<std::size_t>(PortCounter::kEnd) + 32;
+}
+
+TimeSeries machine_series(const SimulatedMachine& machine, const Config& config) {
+  return SeriesWriter(machine).write(config);
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace carousel::ringbus {
+
+/// The work of a part of the machine during a slice of time.
+enum class SliceKind : std::uint8_t {
+  kIssue,   ///< dispatch reads a packet of its own, which then leaves or is tested
+  kVisit,   ///< dispatch reads a packet of another resource
+  kPass,    ///< likewise, of a packet without rays here
+  kRetire,  ///< dispatch takes a packet of its own back
+  kTest,    ///< a packet is in a test context
+  kLink,    ///< a packet occupies a link
+  kUnits,   ///< units of one kind are at work
+};
+
+/// Times are cycles, or nanoseconds since the start in the native engine.
+struct Slice {
+  std::uint64_t begin = 0, end = 0;
+  std::uint64_t trip = 0;   ///< the packet's way from its issue until it retires; 0: of no packet
+  std::uint64_t at = 0;     ///< kTest: the beginning of its tests; kLink: its arrival at the far end
+  std::uint32_t track = 0;  ///< a part of the machine that does one thing at a time
+  std::uint32_t packet = 0, rays = 0;
+  SliceKind kind = SliceKind::kUnits;
+  friend bool operator==(const Slice&, const Slice&) = default;
+};
+
+/// A part of the machine that has slices.
+struct SliceTrack {
+  std::string part;  ///< as in the time series: resource N, or links
+  std::string name;  ///< within it
+  friend bool operator==(const SliceTrack&, const SliceTrack&) = default;
+};
+
+/// Slices of a run, and where they come from.
+struct Timeline {
+  std::vector<SliceTrack> tracks;
+  std::vector<Slice> slices;  ///< by begin, then track
+  std::uint64_t end = 0;      ///< of the run
+  bool cut = false;           ///< recording ended before the run did, for there were too many
+  friend bool operator==(const Timeline&, const Timeline&) = default;
+};
+
+/// The slices that are wanted.
+struct TimelineOptions {
+  std::uint64_t first = 0, end = std::numeric_limits<std::uint64_t>::max();  ///< those that begin in this window
+  std::uint64_t every = 1;  ///< of the packets of each resource; units are left out unless it is 1
+  std::size_t most = 0;     ///< about; 0: none is recorded
+};
+
+/// Slices of one agent or thread, in the order in which they ended.
+class SliceLog {
+ public:
+  explicit SliceLog(const TimelineOptions& options) : options_(options) {}
+
+  void add(const Slice& slice) {
+    if (recording_ && slice.begin >= options_.first && slice.begin < options_.end) slices_.push_back(slice);
+  }
+  bool keeps_units() const { return options_.every == 1; }
+  /// Tells whether the next packet that is issued here is to be recorded.
+  bool wants_next() { return issued_++ % options_.every == 0; }
+  /// Nothing is added any more.
+  void stop() { recording_ = false; }
+  const std::vector<Slice>& slices() const { return slices_; }
+
+ private:
+  TimelineOptions options_;
+  std::vector<Slice> slices_;
+  std::uint64_t issued_ = 0;
+  bool recording_ = true;
+};
+
+/// The trips of packets that are recorded: written by the packet's owner when it issues the packet, and read by those
+/// to whom the packet has been passed since.
+class TripTable {
+ public:
+  explicit TripTable(std::size_t packets) : trips_(packets) {}
+
+  void issue(std::uint32_t packet, bool recorded) {
+    Trip& trip = trips_[packet];
+    ++trip.count;
+    trip.recorded = recorded;
+  }
+  /// 0 if it is not recorded. Different for every trip of every packet.
+  std::uint64_t of(std::uint32_t packet) const {
+    const Trip& trip = trips_[packet];
+    return trip.recorded ? trip.count * trips_.size() + packet : 0;
+  }
+
+ private:
+  struct Trip {
+    std::uint64_t count = 0;  // of its trips, from 1 on
+    bool recorded = false;
+  };
+  std::vector<Trip> trips_;
+};
+
+}  // namespace carousel::ringbus
