@@ -30,7 +30,8 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "check", "stress", "accuracy", "inspect", "compare", "report", "schema"};
+const std::vector<std::string> kCommands{"run",     "check",   "stress", "accuracy",
+                                         "inspect", "compare", "report", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.

@@ -3,9 +3,9 @@
 #include <cstddef>
 
 // The files are put into the program as they are. Built with g++ or Clang, so that .incbin is known.
-#define CAROUSEL_EMBED(name, file)                                                         \
-  asm(".pushsection .rodata\n.global carousel_" name "_begin\n.global carousel_" name      \
-      "_end\ncarousel_" name "_begin:\n.incbin \"" file "\"\ncarousel_" name "_end:\n.byte 0\n.popsection\n")
+#define CAROUSEL_EMBED(name, file)                                                                           \
+  asm(".pushsection .rodata\n.global carousel_" name "_begin\n.global carousel_" name "_end\ncarousel_" name \
+      "_begin:\n.incbin \"" file "\"\ncarousel_" name "_end:\n.byte 0\n.popsection\n")
 
 CAROUSEL_EMBED("css", CAROUSEL_PAGE_CSS);
 extern "C" const char carousel_css_begin[], carousel_css_end[];

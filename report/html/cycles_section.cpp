@@ -19,9 +19,14 @@ struct Use {
   const char* key;
   const char* title;
 };
-constexpr Use kUses[] = {{"busy", "working"},      {"other_units", "other units work"}, {"memory", "waits for memory"},
-                         {"link", "waits for a link"}, {"credits", "waits for credits"}, {"storage", "waits for storage"},
-                         {"shading", "helps shading"}, {"idle", "nothing to do"}};
+constexpr Use kUses[] = {{"busy", "working"},
+                         {"other_units", "other units work"},
+                         {"memory", "waits for memory"},
+                         {"link", "waits for a link"},
+                         {"credits", "waits for credits"},
+                         {"storage", "waits for storage"},
+                         {"shading", "helps shading"},
+                         {"idle", "nothing to do"}};
 constexpr std::size_t kUseCount = std::size(kUses);
 using Shares = std::array<double, kUseCount>;
 
@@ -102,17 +107,24 @@ std::string cycles_section(const Json& report) {
   if (find(report, "shading.utilisation"))
     add(parts, "shader workers", busy_and_idle(number_at(report, "shading.utilisation")));
   if (parts.rows.empty()) return "";
-  std::string out = "<p>Each line adds up to all cycles of the run. A unit that waits shows the part that kept it.</p>\n";
+  std::string out =
+      "<p>Each line adds up to all cycles of the run. A unit that waits shows the part that kept it.</p>\n";
   const auto height = [](const Table& t) {
     return 110 + 30 * static_cast<int>(std::min<std::size_t>(t.rows.size(), 32));
   };
-  out += Figure{.id = "fig-cycles", .kind = "stacked", .tables = parts.id, .title = parts.caption,
+  out += Figure{.id = "fig-cycles",
+                .kind = "stacked",
+                .tables = parts.id,
+                .title = parts.caption,
                 .label = "Stacked bars, a bar a kind of part: the shares of its cycles, which add up to 100 percent.",
                 .height = height(parts)}
              .html();
   out += parts.html();
   if (each.rows.size() > 1) {
-    out += Figure{.id = "fig-cycles-each", .kind = "stacked", .tables = each.id, .title = each.caption,
+    out += Figure{.id = "fig-cycles-each",
+                  .kind = "stacked",
+                  .tables = each.id,
+                  .title = each.caption,
                   .label = "Stacked bars, a bar a resource: the shares of the cycles of its box units.",
                   .height = height(each)}
                .html();
@@ -132,13 +144,11 @@ void add_waits(std::vector<Wait>& out, const Json& report, double cycles) {
   struct Reason {
     const char *key, *keeper;
   };
-  constexpr Reason kReasons[] = {{"memory", "memory (shape data on its way)"},
-                                 {"link", "the link that it sends on (full)"},
-                                 {"credits", "its own packets (all under way)"},
-                                 {"storage", "its collections (no free block)"},
-                                 {"shading", "shader workers (helped out)"},
-                                 {"slots", "ray slots (all taken)"},
-                                 {"reserve", "its collections (reserve entered)"}};
+  constexpr Reason kReasons[] = {
+      {"memory", "memory (shape data on its way)"},    {"link", "the link that it sends on (full)"},
+      {"credits", "its own packets (all under way)"},  {"storage", "its collections (no free block)"},
+      {"shading", "shader workers (helped out)"},      {"slots", "ray slots (all taken)"},
+      {"reserve", "its collections (reserve entered)"}};
   if (const Json* resources = find(report, "resources")) {
     for (const Json& r : *resources) {
       const Json* from = find(r, "units.box");
@@ -175,7 +185,8 @@ std::string waits_section(const Json& report) {
   constexpr std::size_t kMost = 40;
   const bool timed = cycles > 0;
   std::map<std::string, double> keepers;
-  for (const Wait& wait : waits) keepers[wait.waiting.starts_with("link") ? "queues at the ends of links" : wait.keeper] += wait.amount;
+  for (const Wait& wait : waits)
+    keepers[wait.waiting.starts_with("link") ? "queues at the ends of links" : wait.keeper] += wait.amount;
   std::vector<std::pair<std::string, double>> ranked(keepers.begin(), keepers.end());
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   const std::string unit = timed ? "cycles" : "attempts";
@@ -189,10 +200,14 @@ std::string waits_section(const Json& report) {
     each.rows.push_back({cell(wait.waiting), cell(wait.keeper), cell(Json(static_cast<std::uint64_t>(wait.amount)))});
     if (timed) each.rows.back().push_back(share(wait.share));
   }
-  std::string out = timed ? "<p>Cycles in which a part had work and could not go on.</p>\n"
-                          : "<p>Attempts of worker threads that could not go on. They are counts of this host, not times "
-                            "of the simulated machine.</p>\n";
-  out += Figure{.id = "fig-waits", .kind = "bars", .tables = sums.id, .title = sums.caption,
+  std::string out = timed
+                        ? "<p>Cycles in which a part had work and could not go on.</p>\n"
+                        : "<p>Attempts of worker threads that could not go on. They are counts of this host, not times "
+                          "of the simulated machine.</p>\n";
+  out += Figure{.id = "fig-waits",
+                .kind = "bars",
+                .tables = sums.id,
+                .title = sums.caption,
                 .label = fmt::format("Bars, longest first: {} is the greatest cause of waiting.", ranked.front().first),
                 .height = 90 + 34 * static_cast<int>(sums.rows.size())}
              .html();

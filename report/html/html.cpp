@@ -119,14 +119,15 @@ std::string Table::html() const {
   const bool folded = rows.size() > kFoldedRows;
   if (folded) out += fmt::format("<details><summary>Table: {} ({} rows)</summary>\n", name, rows.size());
   out += fmt::format(
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table id=\"table-{}\"><caption>{}</caption>\n"
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table "
+      "id=\"table-{}\"><caption>{}</caption>\n"
       "<thead><tr>",
       name, id, name);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const Column& column = columns[c];
-    out += fmt::format("<th scope=\"col\"{}{}>{}", numbers[c] ? " class=\"n\"" : "",
-                       column.meaning.empty() ? "" : " title=\"" + escaped(column.meaning) + "\"",
-                       escaped(column.title));
+    out +=
+        fmt::format("<th scope=\"col\"{}{}>{}", numbers[c] ? " class=\"n\"" : "",
+                    column.meaning.empty() ? "" : " title=\"" + escaped(column.meaning) + "\"", escaped(column.title));
     if (!column.unit.empty()) out += " <small>" + escaped(column.unit) + "</small>";
     out += "</th>";
   }

@@ -55,8 +55,8 @@ struct Table {
   std::string html() const;
 };
 
-/// A table of the numbers and texts of a list of objects, with units and meanings from the schema of an item. Columns of
-/// `left_out` and those that hold objects or lists are not shown.
+/// A table of the numbers and texts of a list of objects, with units and meanings from the schema of an item. Columns
+/// of `left_out` and those that hold objects or lists are not shown.
 Table table_of(std::string id, std::string caption, const Json& list, const Json& item_schema,
                const std::vector<std::string>& left_out = {});
 

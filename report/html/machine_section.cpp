@@ -52,24 +52,27 @@ std::string machine_section(const Json& report, const Json& schema) {
     tables += table.html();
   }
   if (links && !links->empty()) {
-    Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"),
-                           {"utilisation"});
+    Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"), {"utilisation"});
     double carried = 0;
     for (const Json& link : *links) carried = std::max(carried, number_at(link, "packets"));
     const bool timed = links->front().contains("utilisation");
-    table.columns.insert(table.columns.begin() + 2, Column{timed ? "use" : "load", "",
-                                                           timed ? "share of the cycles in which it moved a packet"
-                                                                 : "packets, over those of the link that carried most"});
+    table.columns.insert(table.columns.begin() + 2,
+                         Column{timed ? "use" : "load", "",
+                                timed ? "share of the cycles in which it moved a packet"
+                                      : "packets, over those of the link that carried most"});
     for (std::size_t i = 0; i < links->size(); ++i) {
       const Json& link = (*links)[i];
-      const double use = timed ? number_at(link, "utilisation")
-                               : carried > 0 ? number_at(link, "packets") / carried : 0;
+      const double use = timed         ? number_at(link, "utilisation")
+                         : carried > 0 ? number_at(link, "packets") / carried
+                                       : 0;
       table.rows[i].insert(table.rows[i].begin() + 2, share(use));
     }
     tables += table.html();
   }
   if (tables.empty()) return "";
-  out += Figure{.id = "fig-machine", .kind = "machine", .tables = "resources links",
+  out += Figure{.id = "fig-machine",
+                .kind = "machine",
+                .tables = "resources links",
                 .title = "The machine, coloured by use",
                 .label = fmt::format("Drawing of the machine: {}. The tables below have the use of each part.",
                                      machine_words(report)),

@@ -11,7 +11,8 @@ namespace {
 
 constexpr const char* kNoCharts =
     "<p class=\"notice\">This page has no charts, because the program that wrote it was built without npm's packages. "
-    "Every number stands in the tables. To get the charts, install npm, run <code>script/bootstrap</code>, build again, "
+    "Every number stands in the tables. To get the charts, install npm, run <code>script/bootstrap</code>, build "
+    "again, "
     "and run <code>carousel report DIR</code> on this folder.</p>\n";
 constexpr const char* kNoScripts =
     "<noscript><p class=\"notice\">Charts need scripts, which this browser does not run. Every number of the charts "
@@ -36,14 +37,15 @@ std::string page_of(const std::string& title, const std::string& subtitle, const
   out += script.empty() ? kNoCharts : kNoScripts;
   for (const Section& section : sections)
     if (!section.body.empty())
-      out += fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
-                         section.id, escaped(section.title), section.body);
+      out += fmt::format(
+          "<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
+          section.id, escaped(section.title), section.body);
   out += "</main>\n<footer><p>Written by Carousel. The page needs no network.</p></footer>\n";
   if (!script.empty()) {
     std::string json = facts.dump();
     for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos; at += 6) json.replace(at, 1, "\\u003c");
-    out += fmt::format("<script type=\"application/json\" id=\"facts\">{}</script>\n{}<script>{}</script>\n", json, data,
-                       script);
+    out += fmt::format("<script type=\"application/json\" id=\"facts\">{}</script>\n{}<script>{}</script>\n", json,
+                       data, script);
   }
   return out + "</body>\n</html>\n";
 }

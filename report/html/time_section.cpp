@@ -26,21 +26,27 @@ std::string time_section(const Json& report) {
   if (!rows || rows->empty()) return "";
   const std::string unit = text_at(*series, "unit");
   const Json& interval = (*series)["interval"];
-  std::string out = fmt::format("<p>{} samples of {} {} each.</p>\n", value_text((*series)["samples"]),
-                                value_text(interval), unit);
+  std::string out =
+      fmt::format("<p>{} samples of {} {} each.</p>\n", value_text((*series)["samples"]), value_text(interval), unit);
   int number = 0;
   for (const auto& [of, quantities] : charts_of(*rows))
-    out += Figure{.id = fmt::format("fig-time-{}", number++), .kind = "series", .tables = of,
+    out += Figure{.id = fmt::format("fig-time-{}", number++),
+                  .kind = "series",
+                  .tables = of,
                   .title = fmt::format("The whole machine over time: {}", of),
                   .label = fmt::format("Curves over time: {}. The table below has least, mean and greatest of each.",
                                        fmt::join(quantities, ", ")),
                   .height = 340}
                .html();
-  out += Figure{.id = "fig-time-parts", .kind = "parts_over_time", .tables = "", .title = "Every part over time",
+  out += Figure{.id = "fig-time-parts",
+                .kind = "parts_over_time",
+                .tables = "",
+                .title = "Every part over time",
                 .label = "Heat map of a quantity by part and time; the table below has least, mean and greatest.",
                 .height = 420}
              .html();
-  Table table{"series-table", "Rows over time",
+  Table table{"series-table",
+              "Rows over time",
               {{"part"}, {"quantity"}, {"unit"}, {"least"}, {"mean"}, {"greatest"}, {"greatest at", unit}}};
   for (const Json& row : *rows) {
     double least = 0, most = 0, sum = 0;

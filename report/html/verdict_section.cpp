@@ -34,13 +34,15 @@ std::string verdict_sentence(const Json& report) {
   }
   if (bottleneck) return words(text_at(*bottleneck, "verdict")) + ".";
   if (find(report, "traffic"))
-    return fmt::format("The network accepted {:.4f} of {:.4f} offered packets a resource and cycle, with a mean latency of "
-                       "{:.1f} cycles.",
-                       number_at(report, "traffic.accepted"), number_at(report, "traffic.offered"),
-                       number_at(report, "traffic.latency.mean"));
+    return fmt::format(
+        "The network accepted {:.4f} of {:.4f} offered packets a resource and cycle, with a mean latency of "
+        "{:.1f} cycles.",
+        number_at(report, "traffic.accepted"), number_at(report, "traffic.offered"),
+        number_at(report, "traffic.latency.mean"));
   if (find(report, "engine.cycles"))
     return "The search for the limiting part was switched off; engine.what_if: true turns it on.";
-  return "A run of the native engine shows the queues of this host and no simulated time, so that no part of the machine "
+  return "A run of the native engine shows the queues of this host and no simulated time, so that no part of the "
+         "machine "
          "can be named as its limit. The cycle engine names it: --set engine.kind=cycle.";
 }
 
@@ -64,9 +66,12 @@ std::string throughput_text(const Json& report) {
 
 std::string picture_html(const Json& report, const Picture& picture) {
   if (picture.mime_type.empty()) return "";
-  const auto side = [&](const char* key) { return static_cast<int>(number_at(report, std::string("config.image.") + key)); };
+  const auto side = [&](const char* key) {
+    return static_cast<int>(number_at(report, std::string("config.image.") + key));
+  };
   return fmt::format(
-      "<img src=\"data:{};base64,{}\" width=\"{}\" height=\"{}\" alt=\"Picture of the scene {} that this run rendered, {} "
+      "<img src=\"data:{};base64,{}\" width=\"{}\" height=\"{}\" alt=\"Picture of the scene {} that this run rendered, "
+      "{} "
       "by {} pixels with {} samples each\">\n",
       picture.mime_type, base64(picture.bytes), side("width"), side("height"), escaped(text_at(report, "scene.name")),
       side("width"), side("height"), side("samples"));
@@ -86,32 +91,41 @@ std::string machine_words(const Json& report) {
 std::string verdict_section(const Json& report, const Picture& picture) {
   std::string out;
   if (report.value("incomplete", false))
-    out += "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n";
+    out +=
+        "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n";
   out += "<div class=\"glance\">\n" + picture_html(report, picture) + "<div>\n";
   out += fmt::format("<p class=\"verdict\">{}</p>\n<dl>\n", escaped(verdict_sentence(report)));
   fact(out, "Throughput", throughput_text(report));
   if (const Json* cycles = find(report, "engine.cycles"))
     fact(out, "Simulated", fmt::format("{} cycles", value_text(*cycles)));
   if (const Json* rays = find(report, "rays"); rays && number_at(*rays, "emitted") > 0)
-    fact(out, "Rays", fmt::format("{} emitted, {} completed, {} lost", value_text((*rays)["emitted"]),
-                                  value_text((*rays)["completed"]), value_text((*rays)["lost"])));
+    fact(out, "Rays",
+         fmt::format("{} emitted, {} completed, {} lost", value_text((*rays)["emitted"]),
+                     value_text((*rays)["completed"]), value_text((*rays)["lost"])));
   if (const Json* traffic = find(report, "traffic"))
-    fact(out, "Packets", fmt::format("{} created, {} delivered", value_text((*traffic)["packets"]),
-                                     value_text((*traffic)["delivered"])));
+    fact(out, "Packets",
+         fmt::format("{} created, {} delivered", value_text((*traffic)["packets"]),
+                     value_text((*traffic)["delivered"])));
   if (find(report, "scene.triangles") && number_at(report, "scene.triangles") > 0)
-    fact(out, "Scene", fmt::format("{}: {} triangles, {} instances", text_at(report, "scene.name"),
-                                   value_text(report["scene"]["triangles"]), value_text(report["scene"]["instances"])));
+    fact(out, "Scene",
+         fmt::format("{}: {} triangles, {} instances", text_at(report, "scene.name"),
+                     value_text(report["scene"]["triangles"]), value_text(report["scene"]["instances"])));
   if (find(report, "verify"))
-    fact(out, "Verified", fmt::format("{} rays traced again, {} mismatches", value_text(report["verify"]["compared"]),
-                                      value_text(report["verify"]["mismatches"])));
+    fact(out, "Verified",
+         fmt::format("{} rays traced again, {} mismatches", value_text(report["verify"]["compared"]),
+                     value_text(report["verify"]["mismatches"])));
   if (text_at(report, "digest.hits") != "") fact(out, "Digest of the hits", text_at(report, "digest.hits"));
   fact(out, "Digest of the picture", text_at(report, "digest.image"));
-  fact(out, "Host", fmt::format("{}, {} threads, {}", text_at(report, "host.machine.cpu"),
-                                number_at(report, "host.threads"), seconds_text(number_at(report, "host.wall_seconds"))));
-  fact(out, "Program", fmt::format("Carousel {} ({}, {})", text_at(report, "carousel.version"),
-                                   text_at(report, "carousel.commit"), text_at(report, "carousel.compiler")));
+  fact(out, "Host",
+       fmt::format("{}, {} threads, {}", text_at(report, "host.machine.cpu"), number_at(report, "host.threads"),
+                   seconds_text(number_at(report, "host.wall_seconds"))));
+  fact(out, "Program",
+       fmt::format("Carousel {} ({}, {})", text_at(report, "carousel.version"), text_at(report, "carousel.commit"),
+                   text_at(report, "carousel.compiler")));
   out += "</dl>\n</div>\n</div>\n<h3>To reproduce this run</h3>\n";
-  out += "<pre tabindex=\"0\"><code>carousel run config.resolved.yaml --out again\ncarousel compare . again</code></pre>\n";
+  out +=
+      "<pre tabindex=\"0\"><code>carousel run config.resolved.yaml --out again\ncarousel compare . "
+      "again</code></pre>\n";
   out += find(report, "engine.deterministic") && report["engine"].value("deterministic", false)
              ? "<p>Everything outside of the section <i>host</i> is the same in every run of this configuration.</p>\n"
              : "<p>Rays, hits and picture are the same in every run of this configuration; counts that depend on the "

@@ -27,17 +27,23 @@ std::string gains_section(const Json& report, const Json& schema) {
   const Json* classes = find(report, "bound.classes");
   std::string out;
   if (gains && !gains->empty()) {
-    Table table{"gains", "Gain of relaxing one class of parts",
+    Table table{"gains",
+                "Gain of relaxing one class of parts",
                 {{"class of parts"}, {"gain"}, {"low"}, {"high"}, {"change"}, {"to try it"}}};
     for (const Json& gain : *gains) {
       std::string sets;
       for (const Json& set : gain["sets"]) sets += (sets.empty() ? "--set " : " --set ") + set.get<std::string>();
-      table.rows.push_back({cell(words(text_at(gain, "name"))), cell(gain["gain"], "fraction"), cell(gain["low"], "fraction"),
-                            cell(gain["high"], "fraction"), cell(text_at(gain, "action")), cell(sets)});
+      table.rows.push_back({cell(words(text_at(gain, "name"))), cell(gain["gain"], "fraction"),
+                            cell(gain["low"], "fraction"), cell(gain["high"], "fraction"),
+                            cell(text_at(gain, "action")), cell(sets)});
     }
-    out += "<p>Each class of parts was relaxed alone, and the machine simulated again; low and high are the ends of the "
-           "interval of 95 % of confidence.</p>\n";
-    out += Figure{.id = "fig-gains", .kind = "intervals", .tables = table.id, .title = table.caption,
+    out +=
+        "<p>Each class of parts was relaxed alone, and the machine simulated again; low and high are the ends of the "
+        "interval of 95 % of confidence.</p>\n";
+    out += Figure{.id = "fig-gains",
+                  .kind = "intervals",
+                  .tables = table.id,
+                  .title = table.caption,
                   .label = "Bars with intervals, greatest gain first: " + table.rows.front()[0].text + " gains " +
                            table.rows.front()[1].text + ".",
                   .height = bars_height(table)}
@@ -64,12 +70,16 @@ std::string bytes_section(const Json& report, const Json& schema) {
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Json& a, const Json& b) { return number_at(a, "bytes") > number_at(b, "bytes"); });
   if (sorted.empty()) return "";
-  Table table = table_of("bytes-table", "Bytes by kind of message", sorted, schema_at(schema, "properties.bytes.items"));
+  Table table =
+      table_of("bytes-table", "Bytes by kind of message", sorted, schema_at(schema, "properties.bytes.items"));
   const double rays = number_at(report, "rays.completed");
   table.columns.push_back({"bytes a ray"});
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     table.rows[i].push_back(cell(Json(rays > 0 ? number_at(sorted[i], "bytes") / rays : 0.0)));
-  return Figure{.id = "fig-bytes", .kind = "bars", .tables = table.id, .title = table.caption,
+  return Figure{.id = "fig-bytes",
+                .kind = "bars",
+                .tables = table.id,
+                .title = table.caption,
                 .label = "Bars, longest first: " + table.rows.front()[0].text + " are the most bytes.",
                 .height = bars_height(table)}
              .html() +
@@ -89,7 +99,10 @@ std::string latency_section(const Json& report) {
     out += fmt::format("<p>The mean is {:.1f} cycles, the median {}, and 1 of 100 packets took more than {}.</p>\n",
                        number_at(*latency, "mean"), value_text((*latency)["p50"]), value_text((*latency)["p99"]));
     if (!table.rows.empty())
-      out += Figure{.id = "fig-latency", .kind = "quantiles", .tables = table.id, .title = title,
+      out += Figure{.id = "fig-latency",
+                    .kind = "quantiles",
+                    .tables = table.id,
+                    .title = title,
                     .label = "Curve of the part of the packets over the latency that they did not exceed."}
                  .html();
     out += table.html();
@@ -106,16 +119,21 @@ std::string collections_section(const Json& report, const Json& schema) {
   out += values_of("collections-table", "Collections of all resources", *collections,
                    schema_at(schema, "properties.collections"))
              .html();
-  Table each{"collections-each", "Collections by resource",
+  Table each{"collections-each",
+             "Collections by resource",
              {{"resource"}, {"made", "collections"}, {"most at one time", "collections"}, {"most waiting", "ray IDs"}}};
   if (const Json* resources = find(report, "resources"))
     for (const Json& r : *resources)
       if (r.contains("collections_created"))
-        each.rows.push_back({cell(fmt::format("resource {}", value_text(r["resource"]))), cell(r["collections_created"]),
-                             cell(r["collections_peak"]), cell(r["memberships_peak"])});
+        each.rows.push_back({cell(fmt::format("resource {}", value_text(r["resource"]))),
+                             cell(r["collections_created"]), cell(r["collections_peak"]), cell(r["memberships_peak"])});
   if (each.rows.size() > 1)
-    out += Figure{.id = "fig-collections", .kind = "bars", .tables = each.id, .title = "Collections made, by resource",
-                  .label = "Bars, a bar a resource: collections that it made.", .height = bars_height(each)}
+    out += Figure{.id = "fig-collections",
+                  .kind = "bars",
+                  .tables = each.id,
+                  .title = "Collections made, by resource",
+                  .label = "Bars, a bar a resource: collections that it made.",
+                  .height = bars_height(each)}
                .html();
   return out + each.html();
 }
@@ -125,7 +143,10 @@ std::string depth_section(const Json& report, const Json& schema) {
   if (const Json* depths = find(report, "tests.bundles.by_depth"); depths && !depths->empty()) {
     const Table table = table_of("bundle-depths", "Bundles by depth", *depths,
                                  schema_at(schema, "properties.tests.properties.bundles.properties.by_depth.items"));
-    out += Figure{.id = "fig-bundle-depths", .kind = "heat", .tables = table.id, .title = table.caption,
+    out += Figure{.id = "fig-bundle-depths",
+                  .kind = "heat",
+                  .tables = table.id,
+                  .title = table.caption,
                   .label = "Heat map of the outcomes of bundles, by depth.",
                   .height = 140 + 24 * static_cast<int>(table.columns.size())}
                .html() +
@@ -134,7 +155,10 @@ std::string depth_section(const Json& report, const Json& schema) {
   if (const Json* levels = find(report, "cull_planes.levels"); levels && !levels->empty()) {
     const Table table = table_of("cull-depths", "Cull planes by depth", *levels,
                                  schema_at(schema, "properties.cull_planes.properties.levels.items"));
-    out += Figure{.id = "fig-cull-depths", .kind = "heat", .tables = table.id, .title = table.caption,
+    out += Figure{.id = "fig-cull-depths",
+                  .kind = "heat",
+                  .tables = table.id,
+                  .title = table.caption,
                   .label = "Heat map of the work that cull planes spare, by depth.",
                   .height = 140 + 24 * static_cast<int>(table.columns.size())}
                .html() +
@@ -155,8 +179,12 @@ std::string rays_section(const Json& report) {
   const bool all = completed == emitted;
   for (const auto& [kind, count] : (*rays)["by_kind"].items())
     add(kind + " rays", all ? "completed" : "completed or lost", count);
-  return Figure{.id = "fig-rays", .kind = "flow", .tables = flow.id, .title = flow.caption,
-                .label = "Flow of rays from shading by kind to their outcome.", .height = 260}
+  return Figure{.id = "fig-rays",
+                .kind = "flow",
+                .tables = flow.id,
+                .title = flow.caption,
+                .label = "Flow of rays from shading by kind to their outcome.",
+                .height = 260}
              .html() +
          flow.html();
 }
@@ -164,15 +192,19 @@ std::string rays_section(const Json& report) {
 std::string tests_section(const Json& report, const Json& schema) {
   const Json* tests = find(report, "tests");
   if (!tests) return "";
-  Table table{"tests-table", "Tests and other work for each completed ray",
-              {{"work"}, {"a ray"}, {"in all"}, {"meaning"}}};
+  Table table{
+      "tests-table", "Tests and other work for each completed ray", {{"work"}, {"a ray"}, {"in all"}, {"meaning"}}};
   for (const auto& [key, value] : tests->items())
     if (value.is_object() && value.contains("per_ray") && number_at(value, "count") > 0)
       table.rows.push_back({cell(words(key)), cell(value["per_ray"]), cell(value["count"]),
                             cell(text_at(schema, "properties.tests.properties." + key + ".description"))});
   if (table.rows.empty()) return "";
-  std::string out = Figure{.id = "fig-tests", .kind = "bars", .tables = table.id, .title = table.caption,
-                           .label = "Bars: tests for each completed ray, by kind.", .height = bars_height(table)}
+  std::string out = Figure{.id = "fig-tests",
+                           .kind = "bars",
+                           .tables = table.id,
+                           .title = table.caption,
+                           .label = "Bars: tests for each completed ray, by kind.",
+                           .height = bars_height(table)}
                         .html();
   return out + table.html() +
          "<p>A depth-first tracer of the same rays is not part of this run. <code>--set "
@@ -183,7 +215,8 @@ std::string effects_section(const Json& report) {
   const Json* effects = find(report, "shading.effects");
   if (!effects || effects->empty()) return "";
   std::string on;
-  Table table{"effects-table", "Effects of light", {{"effect"}, {"computed"}, {"callers"}, {"reason"}, {"cycles a hit"}}};
+  Table table{
+      "effects-table", "Effects of light", {{"effect"}, {"computed"}, {"callers"}, {"reason"}, {"cycles a hit"}}};
   for (const Json& effect : *effects) {
     const bool is_on = effect.value("on", false);
     if (is_on) on += (on.empty() ? "" : ", ") + words(text_at(effect, "name"));
@@ -227,8 +260,9 @@ std::string values_section(const Json& report, const Json& schema) {
     if (table.rows.empty()) continue;
     const std::string html = table.html();
     const bool folded = html.starts_with("<details");
-    out += folded ? html : fmt::format("<details><summary>Table: {} ({} rows)</summary>\n{}</details>\n", key,
-                                       table.rows.size(), html);
+    out += folded ? html
+                  : fmt::format("<details><summary>Table: {} ({} rows)</summary>\n{}</details>\n", key,
+                                table.rows.size(), html);
   }
   return out;
 }

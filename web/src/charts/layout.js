@@ -45,6 +45,6 @@ export function bends(links, facts) {
     seen.set(key, before + 1);
     const both = facts.shape === 'bidirectional' || facts.shape === 'point_to_point' || facts.resources === 2;
     // A ring's links follow its circle.
-    return (both ? 0.16 : -0.1) - (both ? -0.22 : 0.22) * before;
+    return (both ? 0.16 : 0.1) + 0.22 * before;
   });
 }

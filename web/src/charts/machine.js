@@ -45,7 +45,8 @@ export function machine(context) {
   const data = Array.from({length: all}, (_, i) => node(i));
   const edges = ends.map(([a, b], i) => ({
     source: `${a}`, target: `${b}`, value: now.links[i],
-    lineStyle: {color: scaleColour((now.links[i] ?? 0) / most), width: thick, curveness: bent[i], opacity: 1},
+    lineStyle: {color: scaleColour((now.links[i] ?? 0) / most), width: thick, curveness: bent[i],
+      opacity: ends.length > 30 ? 0.25 + 0.75 * Math.min(1, (now.links[i] ?? 0) / most) : 1},
   }));
   if (bus) {
     // Each resource meets the bus where it stands, not in the middle of the bus.
