@@ -255,6 +255,11 @@ constexpr std::array<EffectRule, kEffects> kRules{{
     {.effect = Effect::kBounceRays,
      .scene = bounce_rays,
      .rays_per_path = [](std::uint32_t depth) { return depth - 1; }},
+    {.effect = Effect::kTransparentShadows,
+     .scene = transparent_shadows,
+     .texture_reads = 2,
+     .products = 40,
+     .rays_per_path = [](std::uint32_t depth) { return depth * (depth - 1) / 2; }},
 }};
 
 constexpr bool in_order() {

@@ -11,6 +11,7 @@
 #include "shading/math/luminance.h"
 #include "shading/math/shading_basis.h"
 #include "shading/surface/material_properties.h"
+#include "shading/surface/pane.h"
 #include "shading/surface/spawn_point.h"
 #include "shading/tracer/path_tracer.h"
 
@@ -64,7 +65,7 @@ void PathTracer::shade_batch(WorkerId worker_id, const HitBatch& completed, RayB
     if (recorder_ != nullptr) recorder_->record(worker_id, path.pixel, path.sample, result);
     std::uint32_t children = 0;
     if (result.tag.kind == RayKind::kShadow) {
-      shade_shadow(result, worker);
+      shade_shadow(result, worker, out, children);
     } else if (!result.hit.valid()) {
       shade_miss(result, worker);
     } else {
@@ -125,8 +126,16 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
       } else if (kClass == SurfaceClass::kAnything && !own.boundary) {
         shade_base(Bsdf(material, local));
       } else {
-        shade_base(
-            InterfaceBsdf<detail::transmits(kClass)>(interface_point(surface, material, own.glass, local.z), local));
+        const InterfacePoint boundary = interface_point(surface, material, own.glass, local.z);
+        if constexpr (detail::transmits(kClass)) {
+          if (own.pane) {
+            if (pass_pane(result, geometry, front, boundary, local.z, worker, out, children)) return;
+            scatter<SurfaceClass::kOpaque, kLights>(result, point, geometry, facing, front, frame,
+                                                    InterfaceBsdf<false>(boundary, local), worker, out, children);
+            return;
+          }
+        }
+        shade_base(InterfaceBsdf<detail::transmits(kClass)>(boundary, local));
       }
     }
   }
@@ -203,6 +212,7 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
   if (!(max_component(throughput) > 0.0f)) return;
   path.throughput = throughput;
   path.bounce_pdf = value.pdf;
+  path.behind = 0;
   const bool wide = bsdf.is_wide(draw.lobe);
   path.scattered = path.scattered || wide;
   if (wide) tag.flags = kRayAlone;
