@@ -153,7 +153,8 @@ void add_stress(CLI::App& program, StressArguments& s) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   stress->add_option("--seed", s.seed, "Seed of the random pauses between messages")->capture_default_str();
-  stress->add_option("--out", s.out, "Folder for stress.json (default: out/stress, or out/<config name>)")
+  stress
+      ->add_option("--out", s.out, "Folder for stress.json and stress.html (default: out/stress, or out/<config name>)")
       ->type_name("DIR");
   stress->add_flag("--json", s.json, kJsonHelp);
   stress->add_flag("--quiet", s.quiet, kQuietHelp);
@@ -162,7 +163,7 @@ void add_stress(CLI::App& program, StressArguments& s) {
 void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   CLI::App* accuracy = program.add_subcommand("accuracy", "Measure the time and the errors of every level of accuracy");
   add_config_options(*accuracy, a, "a built-in scene of instances");
-  accuracy->add_option("--out", a.out, "Folder for accuracy.json and accuracy.svg (default: out/<config name>)")
+  accuracy->add_option("--out", a.out, "Folder for accuracy.json, .html and .svg (default: out/<config name>)")
       ->type_name("DIR");
   accuracy->add_option("--rays", a.rays, "Most rays of the scene to compare with exact arithmetic")
       ->check(CLI::Range(1u, 10'000'000u))

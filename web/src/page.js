@@ -1,7 +1,8 @@
 // What makes a page lively: its charts, which are drawn when they scroll into view, and the choice of light or dark.
-import {BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyChart} from 'echarts/charts';
+import {BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyChart, ScatterChart} from 'echarts/charts';
 import {DataZoomComponent, GridComponent, LegendComponent, TooltipComponent, VisualMapComponent} from 'echarts/components';
 import * as echarts from 'echarts/core';
+import {LabelLayout} from 'echarts/features';
 import {CanvasRenderer, SVGRenderer} from 'echarts/renderers';
 
 import {bars, intervals} from './charts/bars.js';
@@ -10,16 +11,17 @@ import {heat} from './charts/heat.js';
 import {machine, machineOverTime} from './charts/machine.js';
 import {curves, parts} from './charts/over_time.js';
 import {quantiles} from './charts/quantiles.js';
+import {scatter} from './charts/scatter.js';
 import {stacked} from './charts/stacked.js';
 import {look} from './look.js';
 import {readTable} from './table.js';
 
-echarts.use([BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyChart, DataZoomComponent, GridComponent,
-  LegendComponent, TooltipComponent, VisualMapComponent, CanvasRenderer, SVGRenderer]);
+echarts.use([BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyChart, ScatterChart, DataZoomComponent, GridComponent,
+  LegendComponent, TooltipComponent, VisualMapComponent, LabelLayout, CanvasRenderer, SVGRenderer]);
 
 // A kind of chart: a function of its context that gives the option of ECharts, or {option, connect}, at once or later.
 const kinds = {
-  bars, intervals, stacked, quantiles, flow, heat, machine,
+  bars, intervals, stacked, quantiles, flow, heat, machine, scatter,
   series: (context) => curves({...context, name: context.names}),
   parts_over_time: parts,
 };
