@@ -215,9 +215,13 @@ void add_compare(CLI::App& program, CompareArguments& c) {
 }
 
 void add_report(CLI::App& program, ReportArguments& r) {
-  CLI::App* report = program.add_subcommand("report", "Make the page report.html of a run again from its report.json");
-  report->add_option("folder", r.folder, "Folder of a run, or its report.json")->required()->type_name("PATH");
-  report->add_option("--out", r.out, "Page to write (default: report.html in that folder)")->type_name("FILE");
+  CLI::App* report =
+      program.add_subcommand("report", "Make the HTML page of a run, or of another command's JSON, again");
+  report->add_option("folder", r.folder, "Folder of a run, or the JSON of run, stress, accuracy or follow")
+      ->required()
+      ->type_name("PATH");
+  report->add_option("--out", r.out, "Page to write (default: beside the JSON, with the ending .html)")
+      ->type_name("FILE");
 }
 
 void add_commands(CLI::App& program, Arguments& arguments) {

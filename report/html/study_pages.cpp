@@ -143,4 +143,39 @@ std::string accuracy_page(const Json& accuracy) {
                  Json::object(), "");
 }
 
+std::string ray_life_page(const Json& life) {
+  const std::string unit = text_at(life, "unit");
+  const auto list = [&](const char* key) { return life.contains(key) ? life[key] : Json::array(); };
+  const Table stages = table_of_rows("stages", "Time by stage", list("stages"),
+                                     [](const Json& row) { return text_at(row, "stage"); }, {"length", "share"});
+  const Json rows = list("spans");
+  std::size_t number = 0;
+  const Table spans =
+      table_of_rows("spans", "Stretches of its time", rows, [&](const Json&) { return std::to_string(++number); }, {});
+  number = 0;
+  const Table tests =
+      table_of_rows("tests", "Tests", list("tests"), [&](const Json&) { return std::to_string(++number); }, {});
+  const Table caused = table_of_rows("caused", "Rays that came of it", list("caused"),
+                                     [](const Json& row) { return text_at(row, "kind"); }, {});
+  std::string glance = fmt::format(
+      "<p class=\"verdict\">The ray took {} {}{}.</p>\n", value_text(life.value("latency", Json(0))), unit,
+      stages.rows.empty() ? ""
+                          : fmt::format(", most of it in the stage: {}", escaped(stages.rows.front().front().text)));
+  glance += values_of("ray", "The ray", life, Json::object()).html();
+  std::string where = Figure{.id = "fig-spans",
+                             .kind = "spans",
+                             .tables = "spans",
+                             .title = "Its time, stage by stage",
+                             .label = "Bars over time, a line a stage; the table below has each stretch.",
+                             .height = 320}
+                          .html();
+  return page_of("Carousel: the life of a ray", "carousel follow, " + text_at(life, "engine") + " engine",
+                 {{"verdict", "At a glance", glance},
+                  {"where", "Use of its time", bars_of(stages, stages.caption)},
+                  {"stretches", "Its time in order", spans.rows.empty() ? "" : where + spans.html()},
+                  {"tested", "Tests", tests.html()},
+                  {"next", "Rays that came of it", caused.html()}},
+                 Json::object(), "");
+}
+
 }  // namespace carousel::report::html

@@ -25,15 +25,16 @@ struct Latency {
   double mean = 0;
   std::uint64_t p50 = 0, p95 = 0, p99 = 0, max = 0;
   std::vector<LatencyQuantile> quantiles{};
-
-  Latency() = default;
-  explicit Latency(const LatencyHistogram& of)
-      : mean(of.mean()), p50(of.quantile(0.5)), p95(of.quantile(0.95)), p99(of.quantile(0.99)), max(of.max()) {
-    for (const double part : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999})
-      quantiles.push_back({part, of.quantile(part)});
-    quantiles.push_back({1, of.max()});
-  }
 };
+
+/// The mean, quantiles and distribution of a histogram.
+inline Latency latency_of(const LatencyHistogram& of) {
+  Latency out{of.mean(), of.quantile(0.5), of.quantile(0.95), of.quantile(0.99), of.max()};
+  for (const double part : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 0.999})
+    out.quantiles.push_back({part, of.quantile(part)});
+  out.quantiles.push_back({1, of.max()});
+  return out;
+}
 
 template <class V>
 void describe(V& v, const Latency& r) {

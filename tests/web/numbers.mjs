@@ -63,5 +63,11 @@ export function wrongCharts(charts, report) {
   if (sent.length) same('bytes', charts['fig-bytes'].series[0], sent);
   if (report.resources?.[0]?.units)
     same('cycles of box units', charts['fig-cycles-each'].series[0], report.resources.map((r) => r.units.box.busy / report.engine.cycles));
+  const curves = Object.entries(charts).filter(([id]) => /^fig-time-\d/.test(id)).map(([, chart]) => chart);
+  for (const row of report.time_series?.rows.filter((r) => r.part === 'machine') ?? []) {
+    const chart = curves.find((c) => c.names.includes(row.quantity));
+    if (!chart) wrong.push(`no chart has the curve of ${row.quantity}`);
+    else same(`curve of ${row.quantity}`, chart.series[chart.names.indexOf(row.quantity)].map(([, v]) => v), row.values);
+  }
   return wrong;
 }

@@ -61,6 +61,7 @@ async function drawn() {
     const series = chart.getOption().series;
     charts[id] = {
       marks, items: series.reduce((sum, s) => sum + (s.data?.length ?? 0), 0),
+      names: series.map((s) => s.name),
       series: series.map((s) => (s.data ?? []).map((d) => d?.value ?? d)),
       links: (series[0].links ?? []).map((l) => l.value), nodes: (series[0].data ?? []).map((d) => d?.value ?? null),
     };

@@ -12,6 +12,7 @@ import {machine, machineOverTime} from './charts/machine.js';
 import {curves, parts} from './charts/over_time.js';
 import {quantiles} from './charts/quantiles.js';
 import {scatter} from './charts/scatter.js';
+import {spans} from './charts/spans.js';
 import {stacked} from './charts/stacked.js';
 import {look} from './look.js';
 import {readTable} from './table.js';
@@ -21,7 +22,7 @@ echarts.use([BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyC
 
 // A kind of chart: a function of its context that gives the option of ECharts, or {option, connect}, at once or later.
 const kinds = {
-  bars, intervals, stacked, quantiles, flow, heat, machine, scatter,
+  bars, intervals, stacked, quantiles, flow, heat, machine, scatter, spans,
   series: (context) => curves({...context, name: context.names}),
   parts_over_time: parts,
 };
