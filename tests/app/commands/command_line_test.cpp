@@ -60,7 +60,7 @@ struct BadUsage {
 TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
   for (const BadUsage& bad :
-       std::vector<BadUsage>{{{}, "error: expected a command: run, check, stress, accuracy, inspect, compare, schema"},
+       std::vector<BadUsage>{{{}, "error: expected a command: run, check, stress, accuracy, inspect, compare, report, schema"},
                              {{"rnu", "a.yaml"},
                               "error: unknown command rnu; did you mean run?; known are run, check, stress, accuracy, "
                               "inspect, compare, schema"},

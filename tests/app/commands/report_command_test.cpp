@@ -17,9 +17,9 @@ constexpr const char* kConfig =
     "schema_version: 1\nscene: {builtin: spheres, triangles: 500}\nimage: {width: 8, height: 8, samples: 1}\n"
     "engine: {kind: cycle, what_if: false}\ntopology: {resources: 3}\n";
 
-class ReportPage : public testing::Test {
+class RunPage : public testing::Test {
  protected:
-  ReportPage() { program_.write("small.yaml", kConfig); }
+  RunPage() { program_.write("small.yaml", kConfig); }
   Outcome run(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{"run", "small.yaml", "--quiet", "--out", "out"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -30,7 +30,7 @@ class ReportPage : public testing::Test {
   Program program_;
 };
 
-TEST_F(ReportPage, IsWrittenByRunAndMadeAgainByReport) {
+TEST_F(RunPage, IsWrittenByRunAndMadeAgainByReport) {
   ASSERT_EQ(run({}).status, 0);
   const std::string page = program_.read("out/report.html");
   EXPECT_THAT(page, HasSubstr("<!DOCTYPE html>"));
@@ -42,13 +42,13 @@ TEST_F(ReportPage, IsWrittenByRunAndMadeAgainByReport) {
   EXPECT_EQ(program_.read("out/report.html"), page);
 }
 
-TEST_F(ReportPage, IsLeftOutOnRequest) {
+TEST_F(RunPage, IsLeftOutOnRequest) {
   ASSERT_EQ(run({"--no-html"}).status, 0);
   EXPECT_TRUE(exists("out/report.json"));
   EXPECT_FALSE(exists("out/report.html"));
 }
 
-TEST_F(ReportPage, ShowsTheNumbersOfTheReportInItsTables) {
+TEST_F(RunPage, ShowsTheNumbersOfTheReportInItsTables) {
   ASSERT_EQ(run({}).status, 0);
   const auto report = nlohmann::json::parse(program_.read("out/report.json"));
   const std::string page = program_.read("out/report.html");
@@ -57,7 +57,7 @@ TEST_F(ReportPage, ShowsTheNumbersOfTheReportInItsTables) {
   EXPECT_THAT(page, HasSubstr(report["digest"]["hits"].get<std::string>()));
 }
 
-TEST_F(ReportPage, TextOfAReportIsNoMarkup) {
+TEST_F(RunPage, TextOfAReportIsNoMarkup) {
   ASSERT_EQ(run({}).status, 0);
   auto report = nlohmann::ordered_json::parse(program_.read("out/report.json"));
   report["scene"]["name"] = "<script>alert(1)</script>";
@@ -70,7 +70,7 @@ TEST_F(ReportPage, TextOfAReportIsNoMarkup) {
   EXPECT_THAT(page, Not(HasSubstr("</script><b>")));
 }
 
-TEST_F(ReportPage, NeedsAReport) {
+TEST_F(RunPage, NeedsAReport) {
   program_.write("other.json", "{\"a\": 1}");
   const Outcome outcome = program_.run({"report", "other.json"});
   EXPECT_EQ(outcome.status, 2);
