@@ -16,6 +16,7 @@
 #include "app/commands/check_command.h"
 #include "app/commands/compare_command.h"
 #include "app/commands/inspect_command.h"
+#include "app/commands/report_command.h"
 #include "app/commands/run_command.h"
 #include "app/commands/schema_command.h"
 #include "app/commands/stress_command.h"
@@ -29,7 +30,8 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "check", "stress", "accuracy", "inspect", "compare", "schema"};
+const std::vector<std::string> kCommands{"run",     "check",   "stress", "accuracy",
+                                         "inspect", "compare", "report", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.
@@ -72,6 +74,7 @@ struct Arguments {
   CheckArguments check;
   InspectArguments inspect;
   CompareArguments compare;
+  ReportArguments report;
   SchemaArguments schema;
 };
 
@@ -103,6 +106,7 @@ void add_run(CLI::App& program, RunArguments& r) {
   run->add_option("--dump-rays", r.dump_rays,
                   "Write all rays as CSV, which workload: {rays_from: FILE} reads (default: not written)")
       ->type_name("FILE");
+  run->add_flag("--no-html", r.no_html, "Do not write report.html (default: written)");
   run->add_flag("--json", r.json, kJsonHelp);
   run->add_flag("--quiet", r.quiet, kQuietHelp);
   run->add_flag("--force", r.force, "Run although the topology can deadlock (default: refused)");
@@ -149,7 +153,8 @@ void add_stress(CLI::App& program, StressArguments& s) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   stress->add_option("--seed", s.seed, "Seed of the random pauses between messages")->capture_default_str();
-  stress->add_option("--out", s.out, "Folder for stress.json (default: out/stress, or out/<config name>)")
+  stress
+      ->add_option("--out", s.out, "Folder for stress.json and stress.html (default: out/stress, or out/<config name>)")
       ->type_name("DIR");
   stress->add_flag("--json", s.json, kJsonHelp);
   stress->add_flag("--quiet", s.quiet, kQuietHelp);
@@ -158,7 +163,7 @@ void add_stress(CLI::App& program, StressArguments& s) {
 void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   CLI::App* accuracy = program.add_subcommand("accuracy", "Measure the time and the errors of every level of accuracy");
   add_config_options(*accuracy, a, "a built-in scene of instances");
-  accuracy->add_option("--out", a.out, "Folder for accuracy.json and accuracy.svg (default: out/<config name>)")
+  accuracy->add_option("--out", a.out, "Folder for accuracy.json, .html and .svg (default: out/<config name>)")
       ->type_name("DIR");
   accuracy->add_option("--rays", a.rays, "Most rays of the scene to compare with exact arithmetic")
       ->check(CLI::Range(1u, 10'000'000u))
@@ -209,6 +214,16 @@ void add_compare(CLI::App& program, CompareArguments& c) {
       ->each([&c](const std::string&) { c.expect_identical = true; });
 }
 
+void add_report(CLI::App& program, ReportArguments& r) {
+  CLI::App* report =
+      program.add_subcommand("report", "Make the HTML page of a run, or of another command's JSON, again");
+  report->add_option("folder", r.folder, "Folder of a run, or the JSON of run, stress, accuracy or follow")
+      ->required()
+      ->type_name("PATH");
+  report->add_option("--out", r.out, "Page to write (default: beside the JSON, with the ending .html)")
+      ->type_name("FILE");
+}
+
 void add_commands(CLI::App& program, Arguments& arguments) {
   program.require_subcommand(1);
   program.set_help_flag("-h,--help", "Print this help and exit");
@@ -221,6 +236,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   add_accuracy(program, arguments.accuracy);
   add_inspect(program, arguments.inspect);
   add_compare(program, arguments.compare);
+  add_report(program, arguments.report);
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
@@ -257,6 +273,7 @@ int run_command_line(int argc, const char* const* argv) {
   }
   if (program.got_subcommand("inspect")) return inspect_command(arguments.inspect);
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
+  if (program.got_subcommand("report")) return report_command(arguments.report);
   return schema_command(arguments.schema);
 }
 

@@ -11,6 +11,7 @@
 #include "app/build_report/build_report.h"
 #include "app/build_report/traffic_report.h"
 #include "app/build_report/verdict.h"
+#include "app/commands/report_command.h"
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
 #include "app/run/bottleneck.h"
@@ -64,6 +65,13 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
     print_result(table + "files        " + folder.string() + "\n");
 }
 
+/// The report is written last, so that the files it names exist before it does; the page shows the picture beside it.
+void write_report(const std::filesystem::path& folder, const RunArguments& arguments, const report::Report& report) {
+  const nlohmann::ordered_json json = report::report_json(report);
+  if (!arguments.no_html) write_file(folder / "report.html", run_page_of(json, folder));
+  write_file(folder / "report.json", report::json_text(json) + "\n");
+}
+
 /// Simulates the network alone, without rays.
 int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt) {
   std::optional<report::ProgressLine> line;
@@ -79,7 +87,7 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   const report::Report report = traffic_report(p, result);
   const std::filesystem::path folder = out_folder(arguments);
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
-  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
+  write_report(folder, arguments, report);
   print_report(arguments, report, report::traffic_table(report), folder);
   return verdict(report, interrupt.status());
 }
@@ -101,8 +109,7 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
     if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
     if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
   }
-  // The report is written last, so that the files it names exist before it does.
-  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
+  write_report(folder, arguments, report);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace carousel::app {
 struct RunArguments : ConfigArguments {
   std::string out;        ///< folder; empty: out/<name of the configuration>
   std::string dump_rays;  ///< ray CSV to write; empty: none
-  bool hits = false, json = false, quiet = false, force = false;
+  bool hits = false, json = false, quiet = false, force = false, no_html = false;
 };
 
 /// `carousel run`: one simulation. Returns the exit status.

@@ -59,18 +59,18 @@ struct BadUsage {
 
 TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
-  for (const BadUsage& bad :
-       std::vector<BadUsage>{{{}, "error: expected a command: run, check, stress, accuracy, inspect, compare, schema"},
-                             {{"rnu", "a.yaml"},
-                              "error: unknown command rnu; did you mean run?; known are run, check, stress, accuracy, "
-                              "inspect, compare, schema"},
-                             {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
-                             {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},
-                             {{"run"}, "error: config is required"},
-                             {{"run", "a.yaml", "--set"}, "--set"},
-                             {{"accuracy", "--cases", "3"}, "--cases requires --certify"},
-                             {{"accuracy", "--certify", "--cases", "3", "--seconds", "2"}, "excludes"},
-                             {{"schema", "repot"}, "repot not in {config,report}"}}) {
+  for (const BadUsage& bad : std::vector<BadUsage>{
+           {{}, "error: expected a command: run, check, stress, accuracy, inspect, compare, report, schema"},
+           {{"rnu", "a.yaml"},
+            "error: unknown command rnu; did you mean run?; known are run, check, stress, accuracy, "
+            "inspect, compare, report, schema"},
+           {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
+           {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},
+           {{"run"}, "error: config is required"},
+           {{"run", "a.yaml", "--set"}, "--set"},
+           {{"accuracy", "--cases", "3"}, "--cases requires --certify"},
+           {{"accuracy", "--certify", "--cases", "3", "--seconds", "2"}, "excludes"},
+           {{"schema", "repot"}, "repot not in {config,report}"}}) {
     const Outcome outcome = program.run(bad.arguments);
     EXPECT_EQ(outcome.status, 2) << bad.message;
     EXPECT_THAT(outcome.err, HasSubstr(bad.message));
