@@ -42,7 +42,7 @@ std::filesystem::path out_folder(const RunArguments& arguments) {
 }
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
-                            const InterruptScope& interrupt, bool quiet) {
+                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
   CountingWorkload counting(workload);
   std::optional<report::ProgressLine> line;
   if (!quiet) line.emplace(stderr);
@@ -50,6 +50,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.threads = p.threads;
   options.stop = interrupt.token();
   options.samples = static_cast<std::size_t>(p.config().report.samples);
+  if (trace != nullptr) options.timeline = trace->wanted();
   options.progress = [&](std::uint64_t completed) {
     if (line) line->update(report::ratio(counting.generated(), job.first_rays()), completed);
   };
@@ -98,6 +99,14 @@ void require_no_hits(const RunArguments& arguments) {
       "synthetic traffic has no rays; expected workload: rays, or a run without this option";
   if (arguments.hits) throw ConfigError({{{}, "--hits", kMessage}});
   if (!arguments.dump_rays.empty()) throw ConfigError({{{}, "--dump-rays", kMessage}});
+  if (!arguments.trace.file.empty()) throw ConfigError({{{}, "--trace", kMessage}});
+}
+
+void write_trace(TraceFile& trace, const TraceArguments& arguments, const ringbus::RunResult& result) {
+  const TraceFile::Written written = trace.write(*result.timeline, result.series ? &*result.series : nullptr);
+  if (written.cut)
+    spdlog::warn("{} has {} events and ends before the run; --trace-window, --trace-sample and --trace-events choose",
+                 arguments.file, written.events);
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -136,7 +145,10 @@ int run_command(const RunArguments& arguments) {
   }
   Workload& workload = verifying ? *verifying : job.workload();
 
-  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet);
+  std::optional<TraceFile> trace;
+  if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
+  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet, trace ? &*trace : nullptr);
+  if (trace) write_trace(*trace, arguments.trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {
     report.bound = bound_of(result);
