@@ -197,7 +197,7 @@ HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord
 template <class Slab>
 HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, LocalRay<Slab>& frame,
                               TraceStacks& stacks, int level, TraversalCounts& counts) {
-  const bool any_hit = record.tag.kind == RayKind::kShadow;
+  const bool any_hit = takes_any_hit(record.tag);
   Hit& hit = record.hit;
   return depth_first(accel, root, frame, hit, stacks.at[level], counts, [&](NodeRef& ref) HWY_ATTR {
     if (HWY_LIKELY(!ref.is_instance())) {

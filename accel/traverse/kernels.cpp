@@ -25,7 +25,7 @@ HWY_INLINE RayRecord& member(const RayMembers& members, std::size_t i) {
 }
 
 HWY_INLINE void settle(RayRecord& record) {
-  if (record.tag.kind == RayKind::kShadow && record.hit.valid()) record.tag.flags |= kRayDone;
+  if (takes_any_hit(record.tag) && record.hit.valid()) record.tag.flags |= kRayDone;
 }
 
 /// Tests the primitives of the node's own leaves among `lanes`; true when the hit changed.
@@ -163,7 +163,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, I
       if (record.tag.flags & kRayDone) continue;
       enter_frame(accel, key.instance, record, &walker.frame.ray, counts);
       walker.record = &record;
-      walker.any_hit = record.tag.kind == RayKind::kShadow;
+      walker.any_hit = takes_any_hit(record.tag);
       walker.top = walker.stack.entries;
       if (walk_on(accel, walker, true, key.ref, stacks, counts)) return true;
       settle(record);

@@ -39,6 +39,7 @@ enum class Effect : std::uint8_t {
   kDepthOfField,
   kShadowRays,
   kBounceRays,
+  kTransparentShadows,
 };
 
 /// In the order of the enum.
@@ -69,7 +70,8 @@ inline constexpr auto kEffectNames = std::to_array<std::string_view>({"base_colo
                                                                       "sky",
                                                                       "depth_of_field",
                                                                       "shadow_rays",
-                                                                      "bounce_rays"});
+                                                                      "bounce_rays",
+                                                                      "transparent_shadows"});
 inline constexpr std::size_t kEffects = kEffectNames.size();
 
 constexpr std::string_view effect_name(Effect effect) {

@@ -33,8 +33,9 @@ enum RayFlag : std::uint8_t {
   kRayCullFront = 4,    ///< triangles that show their front are not there
   kRayForceOpaque = 8,  ///< nothing is asked, whatever lets rays through (core/types/any_hit.h)
   kRayAlone = 16,       ///< unlike its neighbours, and not worth a place in a bundle: no more than a hint
+  kRayClosest = 32,     ///< a shadow ray that wants to know the first thing in its way, since light may pass that
 };
-inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayForceOpaque | kRayAlone;
+inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayForceOpaque | kRayAlone | kRayClosest;
 
 /// Which ray of the frame this is. `path` indexes the path state of the workload that emitted the ray; with
 /// (kind, bounce, index) it is unique among rays in flight.
@@ -45,6 +46,11 @@ struct RayTag {
   std::uint8_t index = 0;   ///< index within the kind at one (path, bounce)
   std::uint8_t flags = 0;   ///< RayFlag bits
 };
+
+/// True if any hit ends the ray's way.
+inline bool takes_any_hit(const RayTag& tag) {
+  return tag.kind == RayKind::kShadow && (tag.flags & kRayClosest) == 0;
+}
 
 /// The closest hit, as section 3 of the design defines it: t is t', the largest of the kernel's t and the
 /// entries of the triangle's own box and of its instance's world box; ties go to the smallest

@@ -5,6 +5,7 @@
 #include "shading/effects/effect_rule.h"
 #include "shading/effects/secondary_rays.h"
 #include "shading/math/luminance.h"
+#include "shading/path/volume_stack.h"
 #include "shading/surface/material_properties.h"
 #include "shading/surface/surface.h"
 
@@ -152,7 +153,7 @@ constexpr std::array<EffectRule, kEffects> kRules{{
      .material = absorbs,
      .disable_in_material = [](Material& m) { m.volume.attenuation_distance = INFINITY; },
      .products = 30,
-     .path_state_bytes = [](std::uint32_t) { return u32(sizeof(std::uint32_t)); }},
+     .path_state_bytes = [](std::uint32_t) { return u32(sizeof(VolumeStack)); }},
     {.effect = Effect::kIor,
      .material = [](const Material& m) { return m.ior != 1.5f; },
      .dielectric_only = true,
@@ -254,6 +255,11 @@ constexpr std::array<EffectRule, kEffects> kRules{{
     {.effect = Effect::kBounceRays,
      .scene = bounce_rays,
      .rays_per_path = [](std::uint32_t depth) { return depth - 1; }},
+    {.effect = Effect::kTransparentShadows,
+     .scene = transparent_shadows,
+     .texture_reads = 2,
+     .products = 40,
+     .rays_per_path = [](std::uint32_t depth) { return depth * (depth - 1) / 2; }},
 }};
 
 constexpr bool in_order() {

@@ -2,7 +2,10 @@
 
 #include <initializer_list>
 
+#include <fmt/format.h>
+
 #include "shading/effects/effects_plan.h"
+#include "shading/surface/pane.h"
 
 namespace carousel::shading {
 
@@ -36,6 +39,15 @@ Need bounce_rays(const PlanInput& in) {
   if (!has_light(in) && !any_called_for(in.so_far, {Effect::kSky, Effect::kUnlit}))
     return {false, "there is no light to find"};
   return {true, "surfaces send on light"};
+}
+
+Need transparent_shadows(const PlanInput& in) {
+  if (!in.so_far.of(Effect::kShadowRays).called_for) return {false, "there are no shadow rays"};
+  if (in.config.image.max_depth <= 2) return {false, "image.max_depth is less than 3"};
+  for (std::size_t i = 0; i < in.scene.materials.size(); ++i)
+    if (in.reached[i] && is_pane(in.scene.materials[i]))
+      return {true, fmt::format("material '{}', a smooth thin wall", in.scene.materials[i].name)};
+  return {false, "no smooth thin wall lets light through"};
 }
 
 }  // namespace carousel::shading

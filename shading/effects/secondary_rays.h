@@ -8,5 +8,6 @@ namespace carousel::shading {
 
 Need shadow_rays(const PlanInput& in);
 Need bounce_rays(const PlanInput& in);
+Need transparent_shadows(const PlanInput& in);
 
 }  // namespace carousel::shading

@@ -10,7 +10,7 @@ PathPool::PathPool(std::size_t states, std::uint64_t paths, std::size_t shadow_s
   const auto count = static_cast<std::size_t>(std::clamp<std::uint64_t>(paths, 1, std::max<std::size_t>(states, 1)));
   states_ = std::make_unique<PathState[]>(count);
   if (shadow_slots > 0) shadow_ = std::make_unique<Vec3[]>(count * shadow_slots);
-  if (media) media_ = std::make_unique<std::uint32_t[]>(count);
+  if (media) volumes_ = std::make_unique<VolumeStack[]>(count);
   free_.resize(count);
   // The lowest index comes out first, so that a small frame uses neighbouring states.
   for (std::size_t i = 0; i < count; ++i) free_[i] = static_cast<std::uint32_t>(count - 1 - i);

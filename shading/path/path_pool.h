@@ -9,6 +9,7 @@
 
 #include "core/types/vec.h"
 #include "shading/path/path_state.h"
+#include "shading/path/volume_stack.h"
 
 namespace carousel::shading {
 
@@ -23,7 +24,7 @@ class PathPool {
 
   /// Memory a state takes, for estimates.
   static constexpr std::size_t bytes_per_state(std::size_t shadow_slots, bool media) {
-    return sizeof(PathState) + shadow_slots * sizeof(Vec3) + (media ? 2 : 1) * sizeof(std::uint32_t);
+    return sizeof(PathState) + shadow_slots * sizeof(Vec3) + (media ? sizeof(VolumeStack) : 0) + sizeof(std::uint32_t);
   }
 
   /// Of the paths, only so many are to be traced. Before the first admission.
@@ -42,15 +43,15 @@ class PathPool {
   Vec3& shadow_contribution(std::uint32_t index, std::size_t bounce) {
     return shadow_[std::size_t{index} * shadow_slots_ + bounce];
   }
-  /// The material whose volume the path is in, plus 1; 0 outside. Precondition: there are media.
-  std::uint32_t& medium(std::uint32_t index) { return media_[index]; }
+  /// The volumes that the path is in. Precondition: there are media.
+  VolumeStack& volumes(std::uint32_t index) { return volumes_[index]; }
 
  private:
   std::size_t shadow_slots_;
   std::uint64_t paths_;
   std::unique_ptr<PathState[]> states_;
   std::unique_ptr<Vec3[]> shadow_;
-  std::unique_ptr<std::uint32_t[]> media_;
+  std::unique_ptr<VolumeStack[]> volumes_;
   std::mutex mutex_;
   std::vector<std::uint32_t> free_;  // guarded by mutex_
   std::uint64_t admitted_ = 0;       // guarded by mutex_

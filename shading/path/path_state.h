@@ -16,6 +16,7 @@ struct alignas(64) PathState {
   std::uint32_t pixel = 0, sample = 0;        ///< pixel = y * width + x
   Vec3 throughput{1};
   float bounce_pdf = 0;    ///< density of the direction of the bounce ray in flight
+  float behind = 0;        ///< length of its way before the panes that it has passed since it was scattered
   bool scattered = false;  ///< a bounce went through a wide lobe: see widened_roughness()
 };
 static_assert(sizeof(PathState) == 64);

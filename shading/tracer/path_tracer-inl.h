@@ -11,6 +11,7 @@
 #include "shading/math/luminance.h"
 #include "shading/math/shading_basis.h"
 #include "shading/surface/material_properties.h"
+#include "shading/surface/pane.h"
 #include "shading/surface/spawn_point.h"
 #include "shading/tracer/path_tracer.h"
 
@@ -64,7 +65,7 @@ void PathTracer::shade_batch(WorkerId worker_id, const HitBatch& completed, RayB
     if (recorder_ != nullptr) recorder_->record(worker_id, path.pixel, path.sample, result);
     std::uint32_t children = 0;
     if (result.tag.kind == RayKind::kShadow) {
-      shade_shadow(result, worker);
+      shade_shadow(result, worker, out, children);
     } else if (!result.hit.valid()) {
       shade_miss(result, worker);
     } else {
@@ -125,8 +126,16 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
       } else if (kClass == SurfaceClass::kAnything && !own.boundary) {
         shade_base(Bsdf(material, local));
       } else {
-        shade_base(
-            InterfaceBsdf<detail::transmits(kClass)>(interface_point(surface, material, own.glass, local.z), local));
+        const InterfacePoint boundary = interface_point(surface, material, own.glass, local.z);
+        if constexpr (detail::transmits(kClass)) {
+          if (own.pane) {
+            if (pass_pane(result, geometry, front, boundary, local.z, worker, out, children)) return;
+            scatter<SurfaceClass::kOpaque, kLights>(result, point, geometry, facing, front, frame,
+                                                    InterfaceBsdf<false>(boundary, local), worker, out, children);
+            return;
+          }
+        }
+        shade_base(InterfaceBsdf<detail::transmits(kClass)>(boundary, local));
       }
     }
   }
@@ -145,12 +154,13 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
   const LightDraw light_draw = sampler_.light(path.pixel, path.sample, bounce);
   RayTag tag{result.tag.path, RayKind::kShadow, result.tag.bounce, 0, 0};
 
-  // The medium of a ray that goes on from the surface: the volume behind it or the one before it.
-  const auto medium_beyond = [&](bool through) -> std::uint32_t {
-    const std::uint32_t here = pool_.medium(tag.path);
-    if (!through || !has_volume(*point.material)) return here;
-    const auto material = static_cast<std::size_t>(point.material - scene_.materials.data());
-    return front && surfaces_[material].absorbs ? static_cast<std::uint32_t>(material) + 1 : 0;
+  // The volumes that a ray is in that goes on from the surface.
+  const auto volumes_beyond = [&](bool through) {
+    VolumeStack volumes = pool_.volumes(tag.path);
+    if (!through || !has_volume(*point.material)) return volumes;
+    const auto material = static_cast<std::uint32_t>(point.material - scene_.materials.data());
+    front ? volumes.enter(material) : volumes.leave(material);
+    return volumes;
   };
 
   if constexpr (kLights != Lights::kNone) {
@@ -171,7 +181,7 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
           }
         }
         if constexpr (kMedia) {
-          const std::uint32_t medium = medium_beyond(side < 0.0f);
+          const std::uint32_t medium = volumes_beyond(side < 0.0f).innermost();
           if (medium != 0) contribution *= passed(medium, light.tmax < kInfinity ? glm::length(light.direction) : 0.0f);
         }
         // A contribution below half a step of the film's fixed point adds exactly nothing and needs no ray. NaN passes
@@ -202,10 +212,11 @@ void PathTracer::scatter(const RayResult& result, const TrianglePoint& point, co
   if (!(max_component(throughput) > 0.0f)) return;
   path.throughput = throughput;
   path.bounce_pdf = value.pdf;
+  path.behind = 0;
   const bool wide = bsdf.is_wide(draw.lobe);
   path.scattered = path.scattered || wide;
   if (wide) tag.flags = kRayAlone;
-  if constexpr (kMedia) pool_.medium(tag.path) = medium_beyond(through);
+  if constexpr (kMedia) pool_.volumes(tag.path) = volumes_beyond(through);
   tag.kind = RayKind::kBounce;
   ++tag.bounce;
   const Vec3 start = through ? spawn_point(geometry, front ? Side::kBack : Side::kFront, spawn_) : origin;

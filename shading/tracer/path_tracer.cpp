@@ -42,13 +42,15 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
       max_depth_(plan_.on(Effect::kBounceRays) ? u32(config.image.max_depth) : 1),
       spawn_(config.accuracy.spawn),
       ray_flags_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays),
-                 flags_of(config.shading.shadow_rays)},
+                 static_cast<std::uint8_t>(flags_of(config.shading.shadow_rays) |
+                                           (plan_.on(Effect::kTransparentShadows) ? kRayClosest : 0))},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
       order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
               u32(config.image.width), u32(config.image.height)),
       lights_(scene, plan_.on(Effect::kShadowRays), plan_.on(Effect::kShadowRays) && plan_.on(Effect::kAreaLights)),
       media_(plan_.on(Effect::kVolume)),
+      panes_(plan_.on(Effect::kTransparentShadows)),
       pool_(max_paths_in_flight, paths_, plan_.on(Effect::kShadowRays) ? max_depth_ : 0, media_),
       film_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       workers_(std::make_unique<Worker[]>(workers)),
@@ -74,8 +76,9 @@ PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
   path.sample = at.sample;
   path.throughput = Vec3{1};
   path.bounce_pdf = 0;
+  path.behind = 0;
   path.scattered = false;
-  if (media_) pool_.medium(index) = 0;
+  if (media_) pool_.volumes(index) = {};
   return at;
 }
 
@@ -110,13 +113,18 @@ void PathTracer::shade(WorkerId worker_id, const HitBatch& completed, RayBatch& 
 
 ShadeWork PathTracer::extra_work(const RayResult& result) const {
   const Hit& hit = result.hit;
-  if (!any_work_ || result.tag.kind == RayKind::kShadow || !hit.valid()) return {};
+  const bool shadow = result.tag.kind == RayKind::kShadow;
+  if (!any_work_ || (shadow && !panes_) || !hit.valid()) return {};
   const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
-  return surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())].work;
+  const Surface& surface = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
+  return shadow && !surface.pane ? ShadeWork{} : surface.work;
 }
 
-void PathTracer::shade_shadow(const RayResult& result, Worker& worker) {
-  if (result.hit.valid()) return;
+void PathTracer::shade_shadow(const RayResult& result, Worker& worker, RayBatch& out, std::uint32_t& children) {
+  if (result.hit.valid()) {
+    if (panes_) pass_shadow(result, worker, out, children);
+    return;
+  }
   add_radiance(pool_.state(result.tag.path), pool_.shadow_contribution(result.tag.path, result.tag.bounce), worker);
 }
 
@@ -133,7 +141,7 @@ Vec3 PathTracer::passed(std::uint32_t medium, float distance) const {
 /// Applies the Beer-Lambert law over the way to the hit. A ray that leaves the scene from within a volume has found a
 /// hole in the hull and keeps its light.
 void PathTracer::absorb(const RayResult& result) {
-  const std::uint32_t medium = pool_.medium(result.tag.path);
+  const std::uint32_t medium = pool_.volumes(result.tag.path).innermost();
   if (medium != 0) pool_.state(result.tag.path).throughput *= passed(medium, result.hit.t);
 }
 
@@ -191,11 +199,11 @@ void PathTracer::choose_surfaces() {
     Surface& surface = surfaces_[i];
     surface.shade = shade_of(classes[i], lights);
     surface.glass = glass_tables(material);
-    surface.absorbs = absorbs(material);
     surface.work = work[i];
     any_work_ |= work[i] != ShadeWork{};
     surface.boundary = parts[i] & kBoundary;
-    if (!surface.absorbs) continue;
+    surface.pane = panes_ && is_pane(material);
+    if (!absorbs(material)) continue;
     for (int c = 0; c < 3; ++c) {
       const float left = std::clamp(material.volume.attenuation_color[c], 1e-6f, 1.0f);
       surface.absorption[c] = static_cast<float>(-log2_double(double{left}) * 0.69314718055994530942) /
@@ -210,7 +218,9 @@ void PathTracer::add_emission(PathState& path, const RayResult& result, const Tr
   float weight = 1.0f;
   if (result.tag.kind == RayKind::kBounce) {
     const float cos_light = std::abs(glm::dot(Vec3(geometry.normal), result.ray.direction));
-    weight = detail::balance(path.bounce_pdf, lights_.primitive_pdf(result.hit, geometry, front, cos_light));
+    Hit from_surface = result.hit;  // light was sampled from there, panes or not
+    from_surface.t += path.behind;
+    weight = detail::balance(path.bounce_pdf, lights_.primitive_pdf(from_surface, geometry, front, cos_light));
   }
   add_radiance(path, path.throughput * emitted(scene_, point) * weight, worker);
 }

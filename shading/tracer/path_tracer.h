@@ -32,9 +32,10 @@ namespace carousel::shading {
 /// multiple importance sampling (E. Veach, L. Guibas, SIGGRAPH 1995, balance heuristic), Russian roulette
 /// from the fourth surface on. Image and hits digest are the same bits for any number of workers, any cutting
 /// of batches and any order. Each material is shaded by the least code that has all effects it calls for, chosen once
-/// (surface_class.h). Shadow rays treat transmissive surfaces as opaque: light passes them by bounce rays alone, and at
-/// points of glass by shadow rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light
-/// from the sky, which only such rays find, is not seen there.
+/// (surface_class.h). Shadow rays pass panes (surface/pane.h), which count among the surfaces of a path, and treat
+/// other transmissive surfaces as opaque: light passes these by bounce rays alone, and at points of glass by shadow
+/// rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light from the sky, which only such
+/// rays find, is not seen there.
 class PathTracer : public Workload {
  public:
   /// Keeps a reference to `scene`, which has been through strip_effects() with config.shading.effects. At most
@@ -97,9 +98,9 @@ class PathTracer : public Workload {
   struct Surface {
     ShadeSurface shade = nullptr;
     GlassTables glass;
-    Vec3 absorption{0};  ///< per scene unit, inside
-    bool absorbs = false;
+    Vec3 absorption{0};     ///< per scene unit, inside
     bool boundary = false;  ///< ShaderParts::kBoundary
+    bool pane = false;      ///< light passes it straight on, by Effect::kTransparentShadows
     ShadeWork work;         ///< extra_work()
   };
 
@@ -119,7 +120,13 @@ class PathTracer : public Workload {
   Generated generate_from_hits(WorkerId worker, std::size_t max_rays, RayBatch& out);
   /// Shades a first hit that was found without a camera ray.
   void shade_first(const RayResult& result, Worker& worker, RayBatch& out);
-  void shade_shadow(const RayResult& result, Worker& worker);
+  void shade_shadow(const RayResult& result, Worker& worker, RayBatch& out, std::uint32_t& children);
+  /// A shadow ray that has met a surface goes on behind it, with less light, if that is a pane.
+  void pass_shadow(const RayResult& result, Worker& worker, RayBatch& out, std::uint32_t& children);
+  /// Chooses whether a path goes straight on at a pane, and if so sends it on. If not, its throughput makes up for
+  /// that.
+  bool pass_pane(const RayResult& result, const TriangleGeometry& geometry, bool front, const InterfacePoint& pane,
+                 float cosine, Worker& worker, RayBatch& out, std::uint32_t& children);
   void add_emission(PathState& path, const RayResult& result, const TriangleGeometry& geometry,
                     const TrianglePoint& point, bool front, Worker& worker);
   void add_radiance(PathState& path, const Vec3& radiance, Worker& worker);
@@ -136,7 +143,7 @@ class PathTracer : public Workload {
   const PixelOrder order_;
   const CameraRays camera_;
   const LightSet lights_;
-  const bool media_;
+  const bool media_, panes_;
   bool any_work_ = false;          ///< a material has extra_work()
   std::vector<Surface> surfaces_;  // by material
   PathPool pool_;

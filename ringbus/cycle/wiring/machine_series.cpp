@@ -76,7 +76,7 @@ class SeriesWriter {
       add_port(bytes, wire, port, PortCounter::kBytes);
       ++links;
     });
-    row({"machine", "links busy", "share", Kind::kMean}, busy, links);
+    row({"machine", "links busy", "share", Kind::kMean}, busy, std::max<std::size_t>(1, links));
     row({"machine", "bytes on links", "bytes", Kind::kSum}, bytes);
     Sums dram = zeros();
     machine_.memory().memory().samples().add_to(dram, interval_, 0);

@@ -63,7 +63,7 @@ TEST(TimeSeriesRun, OfTheCycleEngineIsInCyclesAndBounded) {
 TEST(TimeSeriesRun, OfTheNativeEngineIsInSecondsOfTheHost) {
   const Program program;
   program.write("small.yaml", kSmall);
-  ASSERT_EQ(program.run({"run", "small.yaml", "--set", "image.samples=200"}).status, 0);
+  ASSERT_EQ(program.run({"run", "small.yaml", "--set", "image.samples=10"}).status, 0);
   const Json report = Json::parse(program.read("out/small/report.json"));
   EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
   EXPECT_FALSE(report.contains("time_series"));

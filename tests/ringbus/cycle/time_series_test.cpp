@@ -11,7 +11,7 @@ namespace {
 
 using Kind = SeriesRow::Kind;
 
-Cell random_machine(std::uint32_t seed, const std::string& shape = "") {
+Cell series_machine(std::uint32_t seed, const std::string& shape = "") {
   std::mt19937 random(seed);
   std::vector<std::string> with{"engine.kind=cycle", "faults.resource.kind=none"};
   if (!shape.empty()) with.push_back("topology.shape=" + shape);
@@ -35,7 +35,7 @@ double total(const TimeSeries& series, const std::string& part, const std::strin
 TEST(CycleTimeSeries, IsTheSameOnAnyNumberOfThreads) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 600, 0), 60, 2);
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(6)); ++seed) {
-    Cell cell = random_machine(seed + 7000);
+    Cell cell = series_machine(seed + 7000);
     std::optional<TimeSeries> alone;
     for (const std::size_t threads : {1, 2, 3}) {
       cell.threads = threads;
@@ -53,7 +53,7 @@ TEST(CycleTimeSeries, AddsUpToTheTotalsOfTheRun) {
   std::uint64_t dram = 0, bridges = 0;
   const std::vector<std::string> shapes{"", "hierarchical", "bus", "independent", ""};
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(25)); ++seed) {
-    const Cell cell = random_machine(seed + 8000, shapes[seed % shapes.size()]);
+    const Cell cell = series_machine(seed + 8000, shapes[seed % shapes.size()]);
     const Outcome out = run_cell(scene, cell);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
     ASSERT_EQ(out.fault, "");
@@ -101,7 +101,7 @@ TEST(CycleTimeSeries, AddsUpToTheTotalsOfTheRun) {
 TEST(CycleTimeSeries, StaysWithinTheMachine) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 600, 0), 400, 2);
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(12)); ++seed) {
-    const Cell cell = random_machine(seed + 9000);
+    const Cell cell = series_machine(seed + 9000);
     const Outcome out = run_cell(scene, cell);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
     ASSERT_EQ(out.fault, "");
@@ -123,7 +123,7 @@ TEST(CycleTimeSeries, StaysWithinTheMachine) {
 
 TEST(CycleTimeSeries, IsAbsentUnlessItIsAskedFor) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 600, 0), 60, 2);
-  Cell cell = random_machine(1);
+  Cell cell = series_machine(1);
   cell.samples = 0;
   EXPECT_FALSE(run_cell(scene, cell).result.series);
 }

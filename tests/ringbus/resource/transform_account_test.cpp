@@ -60,9 +60,13 @@ TEST(TransformAccount, InvertsWhatIsStoredForwardUnlessItIsTransposed) {
     for (const auto& data : kEnumNames<Data>) {
       accuracy.instance_data = data.value;
       const TransformAccount account(accuracy, accel, 1);
-      EXPECT_EQ(account.inverts(2), data.value == Data::kForward);
-      EXPECT_EQ(account.inverts(1),
-                data.value == Data::kForward && level.value != TransformLevel::kTransposeIfRotation);
+      const bool forward = data.value == Data::kForward, whole = level.value == TransformLevel::kInverseMatrix;
+      IntersectionCounts any, turned;
+      account.invert(2, any);
+      account.invert(1, turned);
+      EXPECT_EQ(any.inversions, forward);
+      EXPECT_EQ(any.full_inversions, forward && whole);  // the two steps need no more than the linear part's
+      EXPECT_EQ(turned.inversions, forward && level.value != TransformLevel::kTransposeIfRotation);
     }
   }
 }

@@ -72,6 +72,10 @@ inline scene::Scene scene_that_calls_for(Effect effect) {
     case Effect::kTransmission:
       m.transmission.weight = 0.8f;
       break;
+    case Effect::kTransparentShadows:
+      m.roughness = 0;
+      m.transmission.weight = 0.8f;
+      break;
     case Effect::kRefraction:
     case Effect::kVolume:
       m.roughness = 0;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "shading/path/volume_stack.h"
 #include "shading/surface/alpha_test.h"
 #include "shading/tracer/path_tracer.h"
 #include "shading/tracer/surface_class.h"
@@ -235,6 +236,54 @@ TEST(Volume, TakesLightAsBeerAndLambertSay) {
       EXPECT_NEAR(through_glass(thickness, color, 0.8f, c), expected, 0.01) << thickness << " " << c;
     }
   }
+}
+
+/// Adds a horizontal slab of an absorbing volume that neither reflects nor refracts, wide enough to fill the view.
+void add_slab(scene::Scene& scene, float bottom, float top, const Vec3& color) {
+  scene::Material m = matte({1, 1, 1});
+  m.roughness = 0;
+  m.ior = 1;
+  m.transmission.weight = 1;
+  m.volume = {.thickness = 1, .thickness_texture = {}, .attenuation_color = color, .attenuation_distance = 1};
+  const std::uint32_t index = add_material(scene, m);
+  add_quad(scene, {-9, top, 9}, {9, top, 9}, {9, top, -9}, {-9, top, -9}, index);
+  add_quad(scene, {-9, bottom, -9}, {9, bottom, -9}, {9, bottom, 9}, {-9, bottom, 9}, index);
+}
+
+TEST(Volume, NestsAndIsLeftIntoTheOneAround) {
+  const Vec3 outer{0.9f, 0.5f, 0.7f}, middle{0.6f, 0.8f, 0.9f}, inner{0.5f, 0.9f, 0.4f};
+  scene::Scene scene = empty_scene();
+  add_slab(scene, -2, 2, outer);  // 1 above the next, 1 below it
+  add_slab(scene, -1, 1, middle);
+  add_slab(scene, -0.25f, 0.25f, inner);
+  scene.sky.radiance = Vec3{1};
+  scene.cameras[0] = looking_down(5, 0.05f);
+  Config config;
+  config.image = {4, 4, 4, 12, 1};
+  const Picture p = picture(scene, config);
+  for (int c = 0; c < 3; ++c) {
+    const double expected =
+        std::pow(double{outer[c]}, 2.0) * std::pow(double{middle[c]}, 1.5) * std::sqrt(double{inner[c]});
+    for (std::size_t i = std::size_t(c); i < p.rgb.size(); i += 3) EXPECT_NEAR(p.rgb[i], expected, 0.002) << c;
+  }
+}
+
+TEST(VolumeStack, KeepsTheOuterVolumesInAnyOrderOfLeaving) {
+  VolumeStack stack;
+  stack.leave(3);  // never entered
+  EXPECT_EQ(stack.innermost(), 0u);
+  for (const std::uint32_t m : {7u, 3u, 5u, 3u}) stack.enter(m);
+  stack.enter(9);  // no room
+  EXPECT_EQ(stack.innermost(), 4u);
+  stack.leave(9);
+  stack.leave(5);  // overlapping hulls
+  EXPECT_EQ(stack.innermost(), 4u);
+  stack.leave(3);
+  EXPECT_EQ(stack.innermost(), 4u);
+  stack.leave(3);
+  EXPECT_EQ(stack.innermost(), 8u);
+  stack.leave(7);
+  EXPECT_EQ(stack.innermost(), 0u);
 }
 
 TEST(PathTracer, LightPassesAWindowTwice) {

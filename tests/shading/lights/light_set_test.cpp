@@ -128,7 +128,7 @@ TEST(LightSet, DensityOfAMetTriangleIsTheDensityOfChoosingIt) {
   for (std::uint32_t s = 0; s < 500; ++s) {
     const LightSample light = lights.sample(sampler.light(0, s, 0), p, SpawnOffset::kBound);
     if (light.pdf == 0.0f) continue;
-    const Hit hit = tracer.trace({p, 0, light.wi, kInfinity}, RayKind::kBounce);
+    const Hit hit = tracer.trace({p, 0, light.wi, kInfinity}, {});
     if (!hit.valid() || scene.instances[hit.instance].mesh.value != 1) continue;
     const float pdf = lights.primitive_pdf(hit, triangle_geometry(scene, hit.instance, hit.primitive, hit.u, hit.v),
                                            true, std::abs(light.wi.y));

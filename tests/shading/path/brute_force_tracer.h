@@ -32,7 +32,7 @@ class BruteForceTracer {
     }
   }
 
-  Hit trace(const Ray& ray, RayKind kind) const {
+  Hit trace(const Ray& ray, const RayTag& tag) const {
     Hit best;
     float tmax = ray.tmax;
     for (const Triangle& triangle : triangles_) {
@@ -51,7 +51,7 @@ class BruteForceTracer {
       if (any_hit_ != nullptr && !any_hit_->accepts(ray, triangle.instance, triangle.primitive, u, v)) continue;
       tmax = t;
       best = {t, u, v, triangle.instance, triangle.primitive};
-      if (kind == RayKind::kShadow) return best;
+      if (takes_any_hit(tag)) return best;
     }
     return best;
   }
@@ -80,7 +80,7 @@ inline void run_frame(Workload& workload, const BruteForceTracer& tracer, std::s
     hits.clear();
     while (done < rays.size() && hits.size() < batch) {
       const RayRequest& request = rays[done++];
-      hits.push_back({request.ray, tracer.trace(request.ray, request.tag.kind), request.tag});
+      hits.push_back({request.ray, tracer.trace(request.ray, request.tag), request.tag});
     }
     workload.shade(WorkerId(0), hits, rays);
   }

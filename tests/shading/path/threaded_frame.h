@@ -52,7 +52,7 @@ inline void run_unruly_frame(Workload& workload, const BruteForceTracer& tracer,
           if (generated.finished) finished.store(true);
         }
       }
-      for (RayResult& hit : hits) hit.hit = tracer.trace(hit.ray, hit.tag.kind);
+      for (RayResult& hit : hits) hit.hit = tracer.trace(hit.ray, hit.tag);
       const std::size_t before = rays.size();
       workload.shade(WorkerId(id), hits, rays);
       unshaded.fetch_add(rays.size() - before);
