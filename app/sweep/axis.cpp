@@ -16,7 +16,7 @@ namespace carousel::app {
 
 namespace {
 
-constexpr std::size_t kMostLevels = 100'000;  // of one range: more is a slip of the pen
+constexpr std::size_t kMostRangeValues = 100'000;  // of one range: more is a slip of the pen
 
 [[noreturn]] void fail(const std::string& where, const std::string& key, const std::string& message) {
   throw ConfigError({{{where, 0, 0}, key, message}});
@@ -66,7 +66,7 @@ std::vector<std::string> expand(const std::string& text, const std::string& key,
          fmt::format("expected log:low..high:count with low above 0, found '{}'; as in log:64..4096:7", text));
   std::vector<double> values;
   if (kind == ":") {
-    if (step < 1 || step > kMostLevels || step != std::floor(step))
+    if (step < 1 || step > kMostRangeValues || step != std::floor(step))
       fail(where, key, fmt::format("expected a number of values of 1 or more behind the colon, found '{}'", text));
     span = {*low, *high, logarithmic, integral};
     for (int i = 0; i < static_cast<int>(step); ++i) {
@@ -76,10 +76,10 @@ std::vector<std::string> expand(const std::string& text, const std::string& key,
   } else {
     if ((kind == "*" && (step <= 1 || *low <= 0)) || step <= 0)
       fail(where, key, fmt::format("expected a step that leads from the low end to the high one, found '{}'", text));
-    for (double v = *low; v <= *high * (1 + 1e-12) && values.size() <= kMostLevels;
+    for (double v = *low; v <= *high * (1 + 1e-12) && values.size() <= kMostRangeValues;
          v = kind == "*" ? v * step : v + step)
       values.push_back(v);
-    if (values.size() > kMostLevels) fail(where, key, fmt::format("'{}' has more than {} values", text, kMostLevels));
+    if (values.size() > kMostRangeValues) fail(where, key, fmt::format("'{}' has more than {} values", text, kMostRangeValues));
   }
   std::vector<std::string> out;
   for (const double value : values) {
