@@ -14,8 +14,9 @@
 
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
-#include "app/sweep/design.h"
+#include "app/sweep/ask_tell.h"
 #include "app/sweep/folder_lock.h"
+#include "app/sweep/plan/design.h"
 #include "app/sweep/sweep_files.h"
 #include "app/sweep/sweep_run.h"
 #include "core/system/atomic_file.h"
@@ -182,8 +183,20 @@ void log_failures(const SweepRows& rows) {
   if (shown > 0) spdlog::error("failed points run again with --retry-failed");
 }
 
+int finish(const SweepRows& rows, const InterruptScope& interrupt) {
+  log_failures(rows);
+  const std::size_t missing = rows.rows.size() - rows.done() - rows.failed();
+  if (interrupt.interrupted()) {
+    spdlog::warn("interrupted with {} of {} points finished; the same command goes on with the other {}",
+                 rows.rows.size() - missing, rows.rows.size(), missing);
+    return interrupt.status();
+  }
+  if (missing > 0) spdlog::error("{} points are missing; the same command without --merge runs them", missing);
+  return missing > 0 || rows.failed() > 0 ? kBroken : kDone;
+}
+
 /// Writes and prints the results.
-void give_results(const SweepArguments& arguments, const SweepSetup& setup, SweepRows rows, bool write) {
+void give_results(const SweepArguments& arguments, const SweepSetup& setup, SweepRows rows, bool write, bool print) {
   rows.drop_empty();
   const std::vector<Goal> goals = arguments.pareto.empty() ? std::vector<Goal>{} : parse_goals(rows, arguments.pareto);
   const std::string json = sweep_json(rows, goals, arguments.config).dump(1) + "\n";
@@ -191,11 +204,26 @@ void give_results(const SweepArguments& arguments, const SweepSetup& setup, Swee
     write_file(setup.out / "sweep.csv", sweep_csv(rows));
     write_file(setup.out / "sweep.json", json);
   }
+  if (!print) return;
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
     print_result(sweep_table(rows, goals, terminal_width()) + "\n" + counts_text(rows) + "\nfiles        " +
                  setup.out.string() + "\n");
+}
+
+/// The points come from another program (--ask, --tell).
+int ask_command(const SweepArguments& arguments, const SweepSetup& setup, const SweepOptions& options, SweepRows rows,
+                const InterruptScope& interrupt) {
+  if (!arguments.vary.empty() || !arguments.shard.empty() || !arguments.merge.empty() || arguments.points)
+    usage("--ask", "takes its points from standard input; expected no --vary, --points, --shard and --merge");
+  PointMaker maker(setup.source, setup.config.parent_path(), arguments.sets);
+  const FolderLock lock(setup.out, "sweep.lock");
+  remove_partial_points(setup.out);
+  Ledger ledger(setup.out);
+  ask_and_tell(setup, options, maker, rows, ledger, interrupt);
+  if (!rows.rows.empty()) give_results(arguments, setup, rows, true, false);
+  return finish(rows, interrupt);
 }
 
 }  // namespace
@@ -209,8 +237,10 @@ int sweep_command(const SweepArguments& arguments) {
   SweepOptions options{arguments.jobs, arguments.quiet, arguments.retry_failed};
   if (options.jobs == 0) options.jobs = std::max(1u, std::thread::hardware_concurrency());
 
-  const std::vector<Axis> axes = axes_of(arguments, base);
   SweepRows rows{{}, result_columns(arguments.results), {}};
+  if (arguments.ask) return ask_command(arguments, setup, options, std::move(rows), interrupt);
+
+  const std::vector<Axis> axes = axes_of(arguments, base);
   for (const Axis& axis : axes) rows.keys.insert(rows.keys.end(), axis.keys.begin(), axis.keys.end());
   if (!arguments.pareto.empty()) parse_goals(rows, arguments.pareto);
   PointMaker maker(setup.source, setup.config.parent_path(), arguments.sets);
@@ -229,16 +259,8 @@ int sweep_command(const SweepArguments& arguments) {
   if (!arguments.merge.empty()) merge(arguments, setup, rows);
   if (ledger) record(*ledger, rows);
   if (arguments.merge.empty()) run_missing(setup, options, rows, ledger ? &*ledger : nullptr, interrupt);
-  give_results(arguments, setup, rows, !sharded);
-  log_failures(rows);
-  const std::size_t missing = rows.rows.size() - rows.done() - rows.failed();
-  if (interrupt.interrupted()) {
-    spdlog::warn("interrupted with {} of {} points finished; the same command goes on with the other {}",
-                 rows.rows.size() - missing, rows.rows.size(), missing);
-    return interrupt.status();
-  }
-  if (missing > 0) spdlog::error("{} points are missing; the same command without --merge runs them", missing);
-  return missing > 0 || rows.failed() > 0 ? kBroken : kDone;
+  give_results(arguments, setup, rows, !sharded, true);
+  return finish(rows, interrupt);
 }
 
 }  // namespace carousel::app

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "app/sweep/point.h"
-#include "app/sweep/point_file.h"
+#include "app/sweep/plan/point.h"
+#include "app/sweep/process/point_file.h"
 
 struct sqlite3;
 

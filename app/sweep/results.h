@@ -9,8 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/sweep/point.h"
-#include "app/sweep/point_file.h"
+#include "app/sweep/plan/point.h"
+#include "app/sweep/process/point_file.h"
 
 namespace carousel::app {
 

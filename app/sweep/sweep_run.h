@@ -5,8 +5,8 @@
 
 #include "app/host/interrupt.h"
 #include "app/sweep/ledger.h"
+#include "app/sweep/process/worker_pool.h"
 #include "app/sweep/results.h"
-#include "app/sweep/worker_pool.h"
 
 namespace carousel::app {
 

@@ -1,4 +1,4 @@
-#include "app/sweep/point.h"
+#include "app/sweep/plan/point.h"
 
 #include <algorithm>
 #include <map>

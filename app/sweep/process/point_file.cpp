@@ -1,4 +1,4 @@
-#include "app/sweep/point_file.h"
+#include "app/sweep/process/point_file.h"
 
 #include <fstream>
 #include <iterator>

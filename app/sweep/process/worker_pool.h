@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/sweep/scene_host.h"
+#include "app/sweep/process/scene_host.h"
 
 namespace carousel::app {
 

@@ -1,4 +1,4 @@
-#include "app/sweep/axis.h"
+#include "app/sweep/plan/axis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +79,8 @@ std::vector<std::string> expand(const std::string& text, const std::string& key,
     for (double v = *low; v <= *high * (1 + 1e-12) && values.size() <= kMostRangeValues;
          v = kind == "*" ? v * step : v + step)
       values.push_back(v);
-    if (values.size() > kMostRangeValues) fail(where, key, fmt::format("'{}' has more than {} values", text, kMostRangeValues));
+    if (values.size() > kMostRangeValues)
+      fail(where, key, fmt::format("'{}' has more than {} values", text, kMostRangeValues));
   }
   std::vector<std::string> out;
   for (const double value : values) {

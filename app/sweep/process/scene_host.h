@@ -6,7 +6,7 @@
 
 #include <sys/types.h>
 
-#include "app/sweep/point_run.h"
+#include "app/sweep/process/point_run.h"
 
 namespace carousel::app {
 

@@ -1,4 +1,4 @@
-#include "app/sweep/design.h"
+#include "app/sweep/plan/design.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "app/sweep/scene_host.h"
+#include "app/sweep/process/scene_host.h"
 
 #include <algorithm>
 #include <cerrno>

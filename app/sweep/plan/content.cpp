@@ -1,4 +1,4 @@
-#include "app/sweep/content.h"
+#include "app/sweep/plan/content.h"
 
 #include <cerrno>
 #include <cstring>

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "app/run/prepare.h"
-#include "app/sweep/point.h"
-#include "app/sweep/point_file.h"
+#include "app/sweep/plan/point.h"
+#include "app/sweep/process/point_file.h"
 
 namespace carousel::app {
 

@@ -1,4 +1,4 @@
-#include "app/sweep/point_run.h"
+#include "app/sweep/process/point_run.h"
 
 #include <chrono>
 #include <new>

@@ -1,4 +1,4 @@
-#include "app/sweep/worker_pool.h"
+#include "app/sweep/process/worker_pool.h"
 
 #include <algorithm>
 #include <cerrno>

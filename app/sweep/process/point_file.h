@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/sweep/point.h"
+#include "app/sweep/plan/point.h"
 
 namespace carousel::app {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/sweep/content.h"
-#include "app/sweep/design.h"
+#include "app/sweep/plan/content.h"
+#include "app/sweep/plan/design.h"
 #include "core/config/load.h"
 
 namespace carousel::app {

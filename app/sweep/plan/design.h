@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "app/sweep/axis.h"
+#include "app/sweep/plan/axis.h"
 
 namespace carousel::app {
 
