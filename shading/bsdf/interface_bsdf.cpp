@@ -47,6 +47,13 @@ Vec3 single_albedo(const Vec3& f0, float f90, const GgxAlbedo::Split& split) {
 
 }  // namespace
 
+Vec3 boundary_albedo(const InterfacePoint& point, float cosine, float alpha) {
+  const GgxAlbedo& table = GgxAlbedo::table();
+  const GgxAlbedo::Split view = table.split(cosine, alpha), mean = table.average_split(alpha);
+  return single_albedo(point.dielectric_f0, point.dielectric_f90, view) +
+         returned_share(point.dielectric_f0, point.dielectric_f90, mean.full) * (1.0f - view.full);
+}
+
 template <bool kTransmits>
 InterfaceBsdf<kTransmits>::InterfaceBsdf(const InterfacePoint& point, const Vec3& wo)
     : wo_(wo), point_(point), anisotropic_(point.alpha.x != point.alpha.y) {

@@ -19,6 +19,10 @@ struct InterfacePoint {
   const GlassAlbedo* glass = nullptr;  ///< table for `eta`; null: opaque, or a thin wall
 };
 
+/// The share of light that a boundary without `glass` reflects, seen under a cosine `cosine` > 0, where its material is
+/// not metal: once, or several times between its microfacets. `alpha`: of both directions.
+Vec3 boundary_albedo(const InterfacePoint& point, float cosine, float alpha);
+
 /// As Bsdf, with a Fresnel factor of any colour and with light that passes through (wi.z < 0): by refraction if the
 /// point has `glass`, straight on if not. Energy that single scattering loses is returned by a cosine-like lobe on both
 /// sides, so that energy is neither lost nor created. The function is reciprocal, thin walls included; with `glass` or

@@ -258,7 +258,6 @@ constexpr std::array<EffectRule, kEffects> kRules{{
     {.effect = Effect::kTransparentShadows,
      .scene = transparent_shadows,
      .texture_reads = 2,
-     .products = 40,
      .rays_per_path = [](std::uint32_t depth) { return depth * (depth - 1) / 2; }},
 }};
 

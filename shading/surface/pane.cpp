@@ -3,19 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shading/bsdf/fresnel.h"
+#include "shading/bsdf/interface_bsdf.h"
 #include "shading/math/luminance.h"
 #include "shading/surface/material_properties.h"
 
 namespace carousel::shading {
-
-namespace {
-
-Vec3 reflected_share(const InterfacePoint& pane, float cosine) {
-  return pane.dielectric_f0 + (Vec3{pane.dielectric_f90} - pane.dielectric_f0) * schlick_weight(std::abs(cosine));
-}
-
-}  // namespace
 
 bool is_pane(const scene::Material& m) {
   return !m.unlit && transmits(m) && !has_volume(m) && m.roughness <= kMirrorRoughness && !(m.clearcoat.weight > 0) &&
@@ -24,12 +16,13 @@ bool is_pane(const scene::Material& m) {
 
 Vec3 passing_share(const InterfacePoint& pane, float cosine) {
   const Vec3 tint = pane.material.base_color * ((1.0f - pane.material.metallic) * pane.transmission);
-  return tint * (Vec3{1} - reflected_share(pane, cosine));
+  return tint * (Vec3{1} - boundary_albedo(pane, std::abs(cosine), pane.alpha.y));
 }
 
 float passing_chance(const InterfacePoint& pane, const Vec3& passing, float cosine) {
   const float through = luminance(passing), dielectric = 1.0f - pane.material.metallic;
-  const float back = pane.material.metallic + dielectric * luminance(reflected_share(pane, cosine)) +
+  const float back = pane.material.metallic +
+                     dielectric * luminance(boundary_albedo(pane, std::abs(cosine), pane.alpha.y)) +
                      dielectric * (1.0f - pane.transmission) * luminance(pane.material.base_color);
   if (!(through > 0.0f)) return 0.0f;
   return back > 0.0f ? std::min(through / (through + back), 0.98f) : 1.0f;

@@ -59,8 +59,10 @@ void PathTracer::pass_shadow(const RayResult& result, Worker& worker, RayBatch& 
   const bool front = glm::dot(geometry.normal, DVec3(wo)) >= 0.0;
   const Vec3 facing = Vec3(front ? geometry.normal : -geometry.normal);
   const float cosine = glm::dot(shading_normal(scene_, point, geometry, facing, front, wo), wo);
-  const InterfacePoint pane = interface_point({scene_, point, geometry, facing, wo, front, false},
-                                              material_point(scene_, point), own.glass, cosine);
+  MaterialPoint material = material_point(scene_, point);
+  material.roughness = widened_roughness(material.roughness);  // as on the path of a bounce ray from there
+  const InterfacePoint pane =
+      interface_point({scene_, point, geometry, facing, wo, front, true}, material, own.glass, cosine);
   Vec3& contribution = pool_.shadow_contribution(tag.path, tag.bounce);
   contribution *= passing_share(pane, cosine);
   if (max_component(contribution) < 0x1p-29f) return;

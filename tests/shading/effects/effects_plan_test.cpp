@@ -259,13 +259,14 @@ TEST(Volume, NestsAndIsLeftIntoTheOneAround) {
   scene.sky.radiance = Vec3{1};
   scene.cameras[0] = looking_down(5, 0.05f);
   Config config;
-  config.image = {4, 4, 4, 12, 1};
+  config.image = {16, 16, 64, 12, 1};
   const Picture p = picture(scene, config);
-  for (int c = 0; c < 3; ++c) {
-    const double expected =
-        std::pow(double{outer[c]}, 2.0) * std::pow(double{middle[c]}, 1.5) * std::sqrt(double{inner[c]});
-    for (std::size_t i = std::size_t(c); i < p.rgb.size(); i += 3) EXPECT_NEAR(p.rgb[i], expected, 0.002) << c;
-  }
+  double means[3] = {};  // paths end early by chance
+  for (std::size_t i = 0; i < p.rgb.size(); ++i) means[i % 3] += p.rgb[i] / (double(p.rgb.size()) / 3);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(means[c],
+                std::pow(double{outer[c]}, 2.0) * std::pow(double{middle[c]}, 1.5) * std::sqrt(double{inner[c]}), 0.01)
+        << c;
 }
 
 TEST(VolumeStack, KeepsTheOuterVolumesInAnyOrderOfLeaving) {
