@@ -21,6 +21,7 @@
 #include "app/commands/run_command.h"
 #include "app/commands/schema_command.h"
 #include "app/commands/stress_command.h"
+#include "app/commands/sweep_command.h"
 #include "app/host/exit_status.h"
 #include "app/host/output.h"
 #include "app/host/version_text.h"
@@ -31,9 +32,8 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run",     "check",   "stress", "accuracy",
-                                         "inspect", "compare", "follow", "report",
-                                         "schema"};
+const std::vector<std::string> kCommands{"run",     "sweep",   "check",  "stress", "accuracy",
+                                         "inspect", "compare", "follow", "report", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.
@@ -72,6 +72,7 @@ std::string usage_hint(const CLI::App& program, int argc, const char* const* arg
 struct Arguments {
   AccuracyArguments accuracy;
   RunArguments run;
+  SweepArguments sweep;
   StressArguments stress;
   CheckArguments check;
   InspectArguments inspect;
@@ -262,6 +263,9 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   program.set_help_flag("-h,--help", "Print this help and exit");
   program.set_version_flag("--version", version_text, "Print version, commit and compiler, and exit");
   add_run(program, arguments.run);
+  CLI::App* sweep = program.add_subcommand("sweep", "Simulate one configuration with many values of some keys");
+  add_config_options(*sweep, arguments.sweep);
+  add_sweep_options(*sweep, arguments.sweep);
   CLI::App* check = program.add_subcommand(
       "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
   add_config_options(*check, arguments.check);
@@ -296,8 +300,10 @@ int run_command_line(int argc, const char* const* argv) {
     spdlog::error("{}\ncarousel --help prints the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
-  log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet || arguments.stress.quiet || arguments.follow.quiet);
+  log_to_stderr(arguments.run.quiet || arguments.sweep.quiet || arguments.accuracy.quiet || arguments.stress.quiet ||
+                arguments.follow.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
+  if (program.got_subcommand("sweep")) return sweep_command(arguments.sweep);
   if (program.got_subcommand("stress")) return stress_command(arguments.stress);
   if (program.got_subcommand("check")) return check_command(arguments.check);
   if (program.got_subcommand("accuracy")) {
