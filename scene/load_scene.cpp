@@ -1,11 +1,14 @@
 #include "scene/load_scene.h"
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 
 #include "core/system/error.h"
 #include "scene/builtin/builtin.h"
 #include "scene/gltf/import.h"
+#include "scene/model/camera_pose.h"
+#include "scene/model/fitted_camera.h"
 #include "scene/model/key_light.h"
 
 namespace carousel::scene {
@@ -13,17 +16,43 @@ namespace carousel::scene {
 namespace {
 
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& config_dir) {
+  namespace fs = std::filesystem;
   std::error_code ignored;
-  const std::filesystem::path beside = config_dir / name;
-  if (std::filesystem::is_regular_file(beside, ignored)) return beside;
-  if (std::filesystem::is_regular_file(name, ignored)) return name;
-  throw SceneError(name, "", "no such file; looked in '" + config_dir.string() + "' and in the working directory");
+  const fs::path beside = config_dir / name;
+  if (fs::is_regular_file(beside, ignored)) return beside;
+  if (fs::is_regular_file(name, ignored)) return name;
+  const bool folder = fs::is_directory(beside, ignored) || fs::is_directory(name, ignored);
+  throw ConfigError(
+      {{{},
+        "scene.file",
+        folder ? "expected a glTF file, found '" + name + "', which is a folder"
+               : "expected a glTF file, found '" + name + "', which is not there; looked in '" +
+                     (config_dir.empty() ? "." : config_dir.string()) + "' and in the working directory"}});
+}
+
+/// Gives the scene's camera the view of the configuration.
+void set_up(Camera& camera, const CameraConfig& config) {
+  constexpr float kRadians = std::numbers::pi_v<float> / 180;
+  constexpr float kDefaultDegrees = 40;
+  const bool orthographic = camera.projection == Camera::Projection::kOrthographic;
+  if (config.field_of_view && orthographic && !config.eye) {
+    throw ConfigError({{{},
+                        "camera.field_of_view",
+                        "the scene's camera is orthographic, and has no angle of view; expected auto, or camera.eye "
+                        "and camera.target beside it"}});
+  }
+  if (config.eye && config.target) {
+    const float fallback = orthographic ? kDefaultDegrees * kRadians : camera.yfov;
+    camera = look_at(*config.eye, *config.target, fallback, config.up);
+    camera.name = "configured";
+  }
+  if (config.field_of_view) camera.yfov = *config.field_of_view * kRadians;
 }
 
 }  // namespace
 
 Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn,
-                 const ImageChoice& images) {
+                 const ImageChoice& images, const View& view) {
   if (config.file.empty() == !config.builtin.has_value()) {
     throw ConfigError({{{}, "scene", "expected exactly one of file and builtin"}});
   }
@@ -39,9 +68,15 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
                         "expected 0 to " + std::to_string(cameras - 1) + " (the cameras of this scene), found " +
                             std::to_string(config.camera)}});
   }
+  Camera& camera = scene.cameras[static_cast<std::size_t>(config.camera)];
+  if (scene.added.camera && !view.camera.eye) make_up_camera(scene, view.aspect);
+  set_up(camera, view.camera);
+  if (scene.added.camera && view.camera.eye) scene.added.camera = false;
   if (!config.builtin && !config.sky && !has_light(scene)) {
-    scene.lights.push_back(key_light(scene.cameras[static_cast<std::size_t>(config.camera)]));
-    if (warn) warn(config.file + ": has no light; a sun was added (give scene.sky to have the sky alone)");
+    scene.lights.push_back(key_light(camera));
+    scene.added.sun = true;
+    if (warn)
+      warn(config.file + ": has no light that could show it; a sun was added (give scene.sky to have the sky alone)");
   }
   return scene;
 }

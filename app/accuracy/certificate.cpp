@@ -72,7 +72,8 @@ std::uint64_t Certificate::violations() const {
 }
 
 Certificate certify(std::uint64_t seed, const CertificateLimits& limits, const std::optional<AccuracyConfig>& level,
-                    Executor& executor, const std::function<bool()>& stopped) {
+                    Executor& executor, const std::function<bool()>& stopped,
+                    const std::function<void(double part, std::uint64_t cases)>& progress) {
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Certificate out;
@@ -91,6 +92,9 @@ Certificate certify(std::uint64_t seed, const CertificateLimits& limits, const s
     const std::size_t count = limits.cases ? std::min<std::uint64_t>(kRound, *limits.cases - out.cases) : kRound;
     for (PropertyResult& result : out.properties) try_cases(result, seed, out.cases, count, executor);
     out.cases += count;
+    const double part =
+        limits.cases ? static_cast<double>(out.cases) / static_cast<double>(*limits.cases) : elapsed() / limits.seconds;
+    if (progress) progress(part, out.cases * out.properties.size());
   }
   out.seconds = elapsed();
   return out;

@@ -45,9 +45,11 @@ struct CertificateLimits {
 };
 
 /// Tries cases 0, 1, ... of every property at `level`, or at all levels, until a limit is reached or `stopped`. For a
-/// number of cases everything but `seconds` is the same for any executor.
+/// number of cases everything but `seconds` is the same for any executor. `progress`, which may be empty, is told the
+/// part of the work that is done, in [0, 1], and the cases of all properties together.
 Certificate certify(std::uint64_t seed, const CertificateLimits& limits, const std::optional<AccuracyConfig>& level,
-                    Executor& executor, const std::function<bool()>& stopped);
+                    Executor& executor, const std::function<bool()>& stopped,
+                    const std::function<void(double part, std::uint64_t cases)>& progress = {});
 
 /// The values of case `number` of a property.
 accel::CaseValues certificate_case(const accel::Property& property, std::uint64_t seed, std::uint64_t number);

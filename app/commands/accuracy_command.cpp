@@ -108,7 +108,7 @@ class Trial {
   bool stopped() const { return interrupt_.interrupted(); }
   void done() {
     ++step_;
-    if (progress_) progress_->update(static_cast<double>(step_) / static_cast<double>(steps_), step_);
+    if (progress_) progress_->update(static_cast<double>(step_) / static_cast<double>(steps_), step_, "stages");
   }
 
   void make_hard() {
@@ -230,8 +230,8 @@ int accuracy_command(const AccuracyArguments& arguments) {
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
-    print_result(report::accuracy_table(accuracy) + "files: " + folder.string() +
-                 "/accuracy.json, accuracy.html, accuracy.svg\n");
+    print_text(report::accuracy_table(accuracy) + "files: " + folder.string() +
+               "/accuracy.json, accuracy.html, accuracy.svg\n");
   return accuracy.incomplete ? interrupt.status() : kDone;
 }
 

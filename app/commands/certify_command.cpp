@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
 #include "core/config/load.h"
+#include "report/text/progress_line.h"
 
 namespace carousel::app {
 
@@ -54,12 +56,19 @@ int certify_command(const AccuracyArguments& arguments) {
   const InterruptScope interrupt;
   const std::optional<AccuracyConfig> level = configured_level(arguments);
   const auto executor = make_tbb_executor(std::max(1u, std::thread::hardware_concurrency()));
-  const Certificate certificate = certify(arguments.seed, {arguments.cases, arguments.seconds}, level, *executor,
-                                          [&] { return interrupt.interrupted(); });
+  std::optional<report::ProgressLine> line;
+  if (!arguments.quiet) line.emplace(stderr);
+  const auto show = [&](double part, std::uint64_t cases) {
+    if (line) line->update(part, cases, "cases", "certificate");
+  };
+  const Certificate certificate = certify(
+      arguments.seed, {arguments.cases, arguments.seconds}, level, *executor, [&] { return interrupt.interrupted(); },
+      show);
+  line.reset();
   if (arguments.json)
     print_result(certificate_json(certificate).dump(2) + "\n");
   else if (!arguments.quiet || certificate.violations() > 0)
-    print_result(certificate_table(certificate));
+    print_text(certificate_table(certificate));
   if (certificate.violations() > 0) return kBroken;
   return certificate.incomplete ? interrupt.status() : kDone;
 }
@@ -78,7 +87,7 @@ int reproduce_command(const AccuracyArguments& arguments) {
   if (arguments.json)
     print_result(nlohmann::json{{"cases", list}, {"broken", broken}}.dump(2) + "\n");
   else if (!arguments.quiet)
-    print_result(text);
+    print_text(text);
   return broken ? kBroken : kDone;
 }
 

@@ -4,11 +4,11 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "app/commands/accuracy_command.h"
@@ -21,7 +21,9 @@
 #include "app/commands/run_command.h"
 #include "app/commands/schema_command.h"
 #include "app/commands/stress_command.h"
+#include "app/commands/sweep_command.h"
 #include "app/host/exit_status.h"
+#include "app/host/log.h"
 #include "app/host/output.h"
 #include "app/host/version_text.h"
 #include "core/config/edit_distance.h"
@@ -31,18 +33,8 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run",     "check",   "stress", "accuracy",
-                                         "inspect", "compare", "follow", "report",
-                                         "schema"};
-
-void log_to_stderr(bool quiet) {
-  // Replaces the logger, so that tests may call main() again.
-  spdlog::drop("carousel");
-  auto logger = spdlog::stderr_color_mt("carousel");
-  logger->set_pattern("%^%l%$: %v");
-  logger->set_level(quiet ? spdlog::level::err : spdlog::level::info);
-  spdlog::set_default_logger(std::move(logger));
-}
+const std::vector<std::string> kCommands{"run",     "sweep",   "check",  "stress", "accuracy",
+                                         "inspect", "compare", "follow", "report", "schema"};
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
   const auto near = nearest_name(name, known);
@@ -70,8 +62,10 @@ std::string usage_hint(const CLI::App& program, int argc, const char* const* arg
 }
 
 struct Arguments {
+  LogArguments log;
   AccuracyArguments accuracy;
   RunArguments run;
+  SweepArguments sweep;
   StressArguments stress;
   CheckArguments check;
   InspectArguments inspect;
@@ -91,6 +85,18 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
           "Set one key of the configuration, e.g. image.width=256; may be repeated (default: the file's values)")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
+}
+
+void add_log_options(CLI::App& command, LogArguments& arguments) {
+  command
+      .add_option("--log-level", arguments.level,
+                  "Messages to print: debug, info, warning or error (default: warning; info in a --log-file)")
+      ->check(CLI::IsMember(log_levels()))
+      ->type_name("LEVEL");
+  command
+      .add_option("--log-file", arguments.file,
+                  "Write messages with their times to a file; the terminal gets warnings and errors (default: none)")
+      ->type_name("FILE");
 }
 
 void add_config_options(CLI::App& command, ConfigArguments& arguments, const char* without = nullptr) {
@@ -128,7 +134,9 @@ void add_run(CLI::App& program, RunArguments& r) {
       ->capture_default_str();
   run->add_flag("--json", r.json, kJsonHelp);
   run->add_flag("--quiet", r.quiet, kQuietHelp);
-  run->add_flag("--force", r.force, "Run although the topology can deadlock (default: refused)");
+  run->add_flag("--force", r.force,
+                "Run although the topology can deadlock, and replace the results of another configuration "
+                "(default: both refused)");
 }
 
 void add_stress(CLI::App& program, StressArguments& s) {
@@ -225,9 +233,19 @@ void add_inspect(CLI::App& program, InspectArguments& i) {
 }
 
 void add_compare(CLI::App& program, CompareArguments& c) {
-  CLI::App* compare = program.add_subcommand("compare", "List the differences between two reports");
-  compare->add_option("a", c.a, "First report.json, or its folder")->required()->type_name("PATH");
-  compare->add_option("b", c.b, "Second report.json, or its folder")->required()->type_name("PATH");
+  CLI::App* compare =
+      program.add_subcommand("compare", "Show runs side by side, and what differs in their configurations");
+  compare
+      ->add_option("runs", c.runs, "Two or more report.json, or their folders; the first is compared with the others")
+      ->required()
+      ->expected(2, 26)
+      ->type_name("PATH");
+  compare->add_flag("--all", c.all, "Also list every other value that differs (default: their number)");
+  compare
+      ->add_option("--only", c.only,
+                   "Show only rows, keys and values whose names contain this; * is any text (default: all)")
+      ->type_name("PATTERN");
+  compare->add_flag("--json", c.json, kJsonHelp);
   compare->add_option("--expect", "With `identical`: exit status 1 if the reports differ (default: 0 in any case)")
       ->check(CLI::IsMember({"identical"}))
       ->each([&c](const std::string&) { c.expect_identical = true; });
@@ -262,6 +280,9 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   program.set_help_flag("-h,--help", "Print this help and exit");
   program.set_version_flag("--version", version_text, "Print version, commit and compiler, and exit");
   add_run(program, arguments.run);
+  CLI::App* sweep = program.add_subcommand("sweep", "Simulate one configuration with many values of some keys");
+  add_config_options(*sweep, arguments.sweep);
+  add_sweep_options(*sweep, arguments.sweep);
   CLI::App* check = program.add_subcommand(
       "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
   add_config_options(*check, arguments.check);
@@ -277,6 +298,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       ->check(CLI::IsMember({"config", "report"}));
   schema->add_flag("--markdown", arguments.schema.markdown,
                    "Print every key with its meaning as Markdown (default: JSON Schema)");
+  for (CLI::App* command : program.get_subcommands({})) add_log_options(*command, arguments.log);
   program.footer("carousel COMMAND --help describes the options of a command.");
 }
 
@@ -296,8 +318,10 @@ int run_command_line(int argc, const char* const* argv) {
     spdlog::error("{}\ncarousel --help prints the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
-  log_to_stderr(arguments.run.quiet || arguments.accuracy.quiet || arguments.stress.quiet || arguments.follow.quiet);
+  start_log(arguments.log, arguments.run.quiet || arguments.sweep.quiet || arguments.accuracy.quiet ||
+                               arguments.stress.quiet || arguments.follow.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
+  if (program.got_subcommand("sweep")) return sweep_command(arguments.sweep);
   if (program.got_subcommand("stress")) return stress_command(arguments.stress);
   if (program.got_subcommand("check")) return check_command(arguments.check);
   if (program.got_subcommand("accuracy")) {
@@ -315,7 +339,7 @@ int run_command_line(int argc, const char* const* argv) {
 }  // namespace
 
 int main(int argc, const char* const* argv) {
-  log_to_stderr(false);
+  start_log({}, false);
   try {
     return run_command_line(argc, argv);
   } catch (const ConfigError& error) {
@@ -330,6 +354,12 @@ int main(int argc, const char* const* argv) {
   } catch (const std::bad_alloc&) {
     spdlog::error("not enough memory; carousel check prints how much the configuration needs");
     return kUsage;
+  } catch (const std::system_error& error) {
+    const bool starved = error.code() == std::errc::resource_unavailable_try_again;
+    spdlog::error(starved
+                      ? "cannot start a thread: not enough memory, address space or processes (ulimit -v, ulimit -u)"
+                      : fmt::format("internal error: {}", error.what()));
+    return starved ? kUsage : kBroken;
   } catch (const SimulationError& error) {
     spdlog::error("{}", error.what());
     return kBroken;

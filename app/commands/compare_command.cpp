@@ -11,6 +11,7 @@
 #include "app/run/prepare.h"
 #include "app/run/render_job.h"
 #include "core/system/error.h"
+#include "report/compare/comparison.h"
 #include "report/run/report_difference.h"
 #include "ringbus/cycle/cycle_engine.h"
 
@@ -19,8 +20,6 @@ namespace carousel::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t kMostDifferences = 20;
 
 Json read_report(const std::string& name) {
   std::filesystem::path path = name;
@@ -60,22 +59,20 @@ std::string first_divergence(const Json& a, const Json& b) {
 }  // namespace
 
 int compare_command(const CompareArguments& arguments) {
-  const Json a = read_report(arguments.a), b = read_report(arguments.b);
-  const std::vector<report::Difference> found = report::differences(a, b);
-  if (found.empty()) {
-    print_result("identical\n");
-    return kDone;
+  std::vector<report::ComparedRun> runs;
+  for (const std::string& name : arguments.runs) runs.push_back({name, read_report(name)});
+  const report::Comparison comparison = report::compare_runs(runs, arguments.only);
+  const bool all = arguments.all || !arguments.only.empty();
+  if (arguments.json) {
+    print_result(report::comparison_json(comparison, all).dump(2) + "\n");
+  } else {
+    std::string text = report::comparison_table(comparison, all);
+    const bool unexpected = comparison.same_configuration && comparison.deterministic;
+    if (!comparison.identical && runs.size() == 2 && (arguments.all || (unexpected && arguments.only.empty())))
+      text += first_divergence(runs[0].report, runs[1].report);
+    print_text(text);
   }
-  std::string text = fmt::format("{} values differ\n", found.size());
-  std::size_t width = 0;
-  const std::size_t shown = std::min(found.size(), kMostDifferences);
-  for (std::size_t i = 0; i < shown; ++i) width = std::max(width, found[i].path.size());
-  for (std::size_t i = 0; i < shown; ++i)
-    text += fmt::format("  {:<{}}  {}  {}\n", found[i].path, width, found[i].a.empty() ? "-" : found[i].a,
-                        found[i].b.empty() ? "-" : found[i].b);
-  if (shown < found.size()) text += fmt::format("  and {} more\n", found.size() - shown);
-  print_result(text + first_divergence(a, b));
-  return arguments.expect_identical ? kBroken : kDone;
+  return arguments.expect_identical && !comparison.identical ? kBroken : kDone;
 }
 
 }  // namespace carousel::app

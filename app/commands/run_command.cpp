@@ -1,9 +1,12 @@
 #include "app/commands/run_command.h"
 
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <optional>
+#include <string>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "accel/planes/cull_planes.h"
@@ -13,12 +16,15 @@
 #include "app/build_report/verdict.h"
 #include "app/commands/report_command.h"
 #include "app/host/interrupt.h"
+#include "app/host/log.h"
 #include "app/host/output.h"
+#include "app/host/output_folder.h"
 #include "app/run/bottleneck.h"
 #include "app/run/counting_workload.h"
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
 #include "app/run/hit_recorder.h"
+#include "app/run/ray_progress.h"
 #include "app/run/render_job.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
@@ -26,6 +32,7 @@
 #include "report/run/report_json.h"
 #include "report/run/report_table.h"
 #include "report/run/traffic_table.h"
+#include "report/text/number_text.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
@@ -41,29 +48,62 @@ std::filesystem::path out_folder(const RunArguments& arguments) {
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
 }
 
+/// What a run came to, and what went wrong on request.
+std::string run_text(const Config& config, const ringbus::RunResult& result) {
+  std::string out = fmt::format("{} engine, {} rays, {} threads", enum_name(config.engine.kind),
+                                report::scaled(double(result.rays_completed)), result.threads);
+  if (result.cycle) out += fmt::format(", {} cycles", report::grouped(result.cycle->cycles));
+  if (result.rays_restarted > 0)
+    out += fmt::format("; a resource stopped: {} rays restarted, {} packets discarded", result.rays_restarted,
+                       result.packets_discarded);
+  LinkFaultCounts faults;
+  for (const ringbus::LinkResult& link : result.links) faults += link.faults;
+  for (const auto& counter : LinkFaultCounts::counters())
+    if (const std::uint64_t count = counter.value(faults); count > 0)
+      out += fmt::format("; {} {} {}", count, counter.unit, counter.name);
+  if (result.slot_waits > 0) spdlog::debug("run: new rays waited {} times for free slots", result.slot_waits);
+  return out + (result.complete ? "" : "; stopped early");
+}
+
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
                             const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
+  Phase phase("run");
   CountingWorkload counting(workload);
-  std::optional<report::ProgressLine> line;
-  if (!quiet) line.emplace(stderr);
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = interrupt.token();
   options.samples = static_cast<std::size_t>(p.config().report.samples);
   if (trace != nullptr) options.timeline = trace->wanted();
-  options.progress = [&](std::uint64_t completed) {
-    if (line) line->update(report::ratio(counting.generated(), job.first_rays()), completed);
-  };
+  const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
-  return run(p.config(), p.accel, p.scene_size(), counting, options);
+  ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
+  phase.result(run_text(p.config(), result));
+  return result;
 }
 
 void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
-                  const std::filesystem::path& folder) {
+                  const std::string& files) {
   if (arguments.json)
     print_result(report::json_text(report::report_json(report)) + "\n");
   else if (!arguments.quiet)
-    print_result(table + "files        " + folder.string() + "\n");
+    print_text(table + "files        " + files + "\n");
+}
+
+/// Makes the files of a run appear, and prints its result: also where the files cannot be written, which is an error
+/// after that.
+template <class WriteFiles>
+void finish(const RunArguments& arguments, const report::Report& report, const std::string& table, OutputFolder& output,
+            const WriteFiles& write_files) {
+  std::exception_ptr failure;
+  try {
+    const Phase phase("files");
+    write_files();
+    output.commit();
+  } catch (const FileError&) {
+    failure = std::current_exception();
+  }
+  print_report(arguments, report, table, failure ? "none, they cannot be written" : output.folder().string());
+  if (failure) std::rethrow_exception(failure);
 }
 
 /// The report is written last, so that the files it names exist before it does; the page shows the picture beside it.
@@ -74,22 +114,23 @@ void write_report(const std::filesystem::path& folder, const RunArguments& argum
 }
 
 /// Simulates the network alone, without rays.
-int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt) {
+int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
+                        OutputFolder& output) {
   std::optional<report::ProgressLine> line;
   if (!arguments.quiet) line.emplace(stderr);
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = interrupt.token();
   options.progress = [&](std::uint64_t packets) {
-    if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets);
+    if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
   };
   const ringbus::TrafficResult result = ringbus::run_traffic(p.config(), options);
   line.reset();
   const report::Report report = traffic_report(p, result);
-  const std::filesystem::path folder = out_folder(arguments);
-  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
-  write_report(folder, arguments, report);
-  print_report(arguments, report, report::traffic_table(report), folder);
+  finish(arguments, report, report::traffic_table(report), output, [&] {
+    write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
+    write_report(output.staging(), arguments, report);
+  });
   return verdict(report, interrupt.status());
 }
 
@@ -126,12 +167,15 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
 int run_command(const RunArguments& arguments) {
   const InterruptScope interrupt;
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
-  const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits);
+  std::optional<OutputFolder> output;
+  const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits, [&](const Config& config) {
+    output.emplace(out_folder(arguments), config, arguments.force);  // before any work that could be lost
+  });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
     require_no_hits(arguments);
-    return run_traffic_command(arguments, p, interrupt);
+    return run_traffic_command(arguments, p, interrupt, *output);
   }
 
   RenderJob job(p);
@@ -153,16 +197,18 @@ int run_command(const RunArguments& arguments) {
   if (result.cycle) {
     report.bound = bound_of(result);
     if (p.config().engine.what_if) {
+      Phase phase("search");
       report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), arguments.quiet);
       report.incomplete |= !report.bottleneck->complete;
+      phase.result(
+          fmt::format("{} classes relaxed for {} rays each; scene, structure and first hits are those of the run",
+                      report.bottleneck->gains.size(), report.bottleneck->rays));
     }
   }
-  if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
-  if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, report);
-  const std::filesystem::path folder = out_folder(arguments);
-  write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr);
-
-  print_report(arguments, report, report::report_table(report), folder);
+  if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), arguments.quiet, report);
+  if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, arguments.quiet, report);
+  finish(arguments, report, report::report_table(report), *output,
+         [&] { write_files(output->staging(), arguments, p, job, report, recorder ? &*recorder : nullptr); });
   return verdict(report, interrupt.status());
 }
 

@@ -132,6 +132,7 @@ int stress_command(const StressArguments& arguments) {
   }
 
   std::optional<report::ProgressLine> line;
+  std::uint64_t trials = 0;
   if (!arguments.quiet) line.emplace(stderr);
   report::Stress out;
   out.cores = std::max(1u, std::thread::hardware_concurrency());
@@ -147,7 +148,7 @@ int stress_command(const StressArguments& arguments) {
   options.seed = arguments.seed;
   options.stop = interrupt.token();
   options.progress = [&](double part) {
-    if (line) line->update(prepared ? part / 2 : part, 0);
+    if (line) line->update(prepared ? part / 2 : part, ++trials, "trials", "queues");
   };
   for (const stress::StressRow& row : stress::run_stress(queues, options))
     if (!row.rates.empty()) out.rows.push_back(row_of(row, queues[row.queue], arguments.capacity));
@@ -157,7 +158,7 @@ int stress_command(const StressArguments& arguments) {
         arguments.depths.empty() ? depths_about(prepared->config().topology) : arguments.depths;
     RingTrial trial{kinds, depths, arguments.repetitions, arguments.pairs, interrupt.token()};
     trial.progress = [&](double part) {
-      if (line) line->update(0.5 + part / 2, 0);
+      if (line) line->update(0.5 + part / 2, ++trials, "trials", "ring");
     };
     RingTrialResult tried = try_in_ring(*prepared, trial);
     out.ring = std::move(tried.rows);
@@ -179,7 +180,7 @@ int stress_command(const StressArguments& arguments) {
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
-    print_result(report::stress_table(out) + "files: " + (folder / "stress.json").string() + ", stress.html\n");
+    print_text(report::stress_table(out) + "files: " + (folder / "stress.json").string() + ", stress.html\n");
   if (out.broken()) {
     std::string last;  // one message a queue and pattern; the table has the rest
     for (const report::StressRow& row : out.rows)

@@ -50,7 +50,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   const auto show = [&](const ringbus::SearchProgress& at) {
     if (!line) return;
     const double part = std::min(1.0, report::ratio(at.completed, at.rays));
-    line->update((static_cast<double>(at.done) + part) / static_cast<double>(at.of), at.completed,
+    line->update((static_cast<double>(at.done) + part) / static_cast<double>(at.of), at.completed, "rays",
                  fmt::format("bottleneck, {}, {} of {}: {}", at.stage, std::min(at.done + 1, at.of), at.of,
                              at.name.empty() ? "as configured" : at.name));
   };

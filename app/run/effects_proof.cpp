@@ -6,7 +6,9 @@
 
 #include "accel/traverse/reference_tracer.h"
 #include "app/host/cpu_time.h"
+#include "app/host/log.h"
 #include "app/run/memory_need.h"
+#include "app/run/ray_progress.h"
 #include "app/run/render_job.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
@@ -88,7 +90,7 @@ void time_both(const Prepared& by_demand, const Prepared& all, const shading::Pa
 }  // namespace
 
 void prove_effects(const ConfigArguments& arguments, const Prepared& by_demand, const InterruptScope& interrupt,
-                   report::Report& report) {
+                   bool quiet, report::Report& report) {
   if (report.incomplete || !report.tests) return;
   ConfigArguments with_all = arguments;
   with_all.sets.insert(with_all.sets.end(), {"verify=none", "shading.effects=all"});
@@ -98,7 +100,11 @@ void prove_effects(const ConfigArguments& arguments, const Prepared& by_demand, 
   options.threads = p.threads;
   options.stop = interrupt.token();
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
-  const ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), job.workload(), options);
+  const Phase phase("run with all effects");
+  CountingWorkload counting(job.workload());
+  auto line = show_rays(options, counting, job.first_rays(), "with all effects", quiet);
+  const ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
+  line.reset();
   if (!result.complete) {
     report.incomplete = true;
     return;

@@ -2,12 +2,14 @@
 
 #include <utility>
 
+#include "app/host/log.h"
+#include "app/run/ray_progress.h"
 #include "app/run/render_job.h"
 #include "ringbus/cycle/cycle_engine.h"
 
 namespace carousel::app {
 
-void compare_without_faults(const Prepared& prepared, std::stop_token stop, report::Report& report) {
+void compare_without_faults(const Prepared& prepared, std::stop_token stop, bool quiet, report::Report& report) {
   if (report.incomplete || !report.engine.cycles) return;
   Config sound = prepared.config();
   sound.faults = {};
@@ -16,8 +18,10 @@ void compare_without_faults(const Prepared& prepared, std::stop_token stop, repo
   options.threads = prepared.threads;
   options.stop = std::move(stop);
   options.statistics = false;
-  const ringbus::RunResult result =
-      ringbus::run_cycle(sound, prepared.accel, prepared.scene_size(), job.workload(), options);
+  const Phase phase("run without faults");
+  CountingWorkload counting(job.workload());
+  const auto line = show_rays(options, counting, job.first_rays(), "without faults", quiet);
+  const ringbus::RunResult result = ringbus::run_cycle(sound, prepared.accel, prepared.scene_size(), counting, options);
   if (!result.complete) {
     report.incomplete = true;
     return;

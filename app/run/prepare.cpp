@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -11,13 +12,14 @@
 #include "accel/build/build.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/kernels.h"
+#include "app/host/log.h"
 #include "app/host/machine_info.h"
 #include "app/run/memory_need.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
+#include "report/text/number_text.h"
 #include "ringbus/cycle/memory/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
-#include "scene/load_scene.h"
 #include "shading/effects/effects_plan.h"
 
 namespace carousel::app {
@@ -51,39 +53,67 @@ void require_ray_file(const Prepared& p) {
                                   name)}});
 }
 
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+/// Says what the scene came to, and what was made up for it.
+std::string scene_text(const scene::Scene& s) {
+  std::string out = fmt::format("{}: {} triangles, {} instances, {} materials", s.name, s.unique_triangle_count(),
+                                s.instances.size(), s.materials.size());
+  if (s.added.camera) out += s.added.inside ? ", a camera made up inside it" : ", a camera fitted to it";
+  if (s.added.sun) out += ", a sun added";
+  return out;
+}
 
 void load_scene(Prepared& p) {
-  const Stopwatch watch;
+  std::optional<Phase> phase(std::in_place, "scene");
+  double seconds = 0;
   p.scene = scene::load_scene(
       p.config().scene, p.config_folder,
       [&](const std::string& warning) {
         spdlog::warn("{}", warning);
         p.warnings.push_back(warning);
       },
-      [&](const scene::Scene& s) { return shading::images_read(s, p.config().shading.effects); });
+      [&](const scene::Scene& s) {
+        // From here on images are decoded.
+        seconds += phase->seconds();
+        phase.emplace("textures");
+        return shading::images_read(s, p.config().shading.effects);
+      },
+      view_of(p.config()));
   shading::strip_effects(p.scene, p.config().shading.effects);
-  p.scene_seconds = watch.seconds();
+  std::uint64_t image_bytes = 0;
+  for (const scene::Image& image : p.scene.images) image_bytes += image.rgba.size();
+  phase->result(p.config().scene.builtin ? scene_text(p.scene)
+                                         : fmt::format("{} images, {}; {}", p.scene.images.size(),
+                                                       report::bytes_text(image_bytes), scene_text(p.scene)));
+  p.scene_seconds = seconds + phase->seconds();
 }
 
 void build_accel(Prepared& p) {
-  const Stopwatch watch;
   accel::select_simd_target(p.config().engine.simd);
   const auto executor = make_tbb_executor(p.threads);
-  p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
-  p.build_seconds = watch.seconds();
+  {
+    Phase phase("build");
+    p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
+    p.build_seconds = phase.seconds();
+    phase.result(fmt::format("{}, {} nodes; kernels {}", report::bytes_text(p.accel.size_bytes()), p.accel.nodes.size(),
+                             accel::simd_targets().front()));
+  }
+  if (p.accel.baked_instances > 0 || p.accel.promoted_instances > 0)
+    spdlog::debug(
+        "build: {} instances with singular transforms are stored as triangles of the world, rays of {} nearly "
+        "singular ones are transformed in double",
+        p.accel.baked_instances, p.accel.promoted_instances);
   if (p.accel.has_non_opaque) {
     p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
     p.accel.any_hit = p.alpha_test.get();
   }
-  accel::add_cull_planes(p.accel, p.scene, p.config().cull_planes, *executor);
-  p.plane_seconds = watch.seconds() - p.build_seconds;
+  {
+    std::optional<Phase> phase;
+    if (p.config().cull_planes.count > 0) phase.emplace("cull planes");
+    const auto start = std::chrono::steady_clock::now();
+    accel::add_cull_planes(p.accel, p.scene, p.config().cull_planes, *executor);
+    p.plane_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (phase) phase->result(fmt::format("{} planes fitted", p.accel.planes.size()));
+  }
   if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
     throw ConfigError(std::move(issues));
   if (std::vector<ConfigIssue> issues = ringbus::cycle::check_shape_buffer(p.config(), p.accel); !issues.empty())
@@ -97,6 +127,7 @@ void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
+  spdlog::debug("threads: {}{}", p.threads, p.config().engine.threads ? "" : ", chosen");
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene
   const KeyPositions& positions = p.located.positions;
   require_ray_file(p);
@@ -105,20 +136,29 @@ void prepare_located(Prepared& p, bool keep_hits) {
     load_scene(p);
     build_accel(p);
   });
-  require_fit(estimate(p.config(), keep_hits, p.scene, p.accel), usable_memory_bytes(), positions);
+  const MemoryNeed need = estimate(p.config(), keep_hits, p.scene, p.accel);
+  spdlog::debug("memory: about {} of {} usable", report::bytes_text(need.total()),
+                report::bytes_text(usable_memory_bytes()));
+  require_fit(need, usable_memory_bytes(), positions);
 }
 
 }  // namespace
+
+scene::View view_of(const Config& config) {
+  return {config.camera, static_cast<float>(config.image.width) / static_cast<float>(config.image.height)};
+}
 
 float Prepared::scene_size() const {
   const Aabb box = scene.bounds();
   return box.empty() ? 1.0f : glm::length(box.extent());
 }
 
-Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits) {
+Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits,
+                 const std::function<void(const Config&)>& before_scene) {
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
+  if (before_scene) before_scene(p.config());
   prepare_located(p, keep_hits);
   return p;
 }

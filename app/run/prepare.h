@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "accel/structure/accel.h"
 #include "core/config/load.h"
+#include "scene/load_scene.h"
 #include "scene/model/scene.h"
 #include "shading/surface/alpha_test.h"
 
@@ -37,11 +39,16 @@ struct Prepared {
 };
 
 /// Loads configuration, scene and structure; for synthetic traffic the configuration only. Refuses a scene that would
-/// not fit into the machine's memory before loading it. Throws ConfigError, SceneError and FileError; logs warnings.
-Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits);
+/// not fit into the machine's memory before loading it. `before_scene` is called with the configuration first. Throws
+/// ConfigError, SceneError and FileError; logs warnings and the times of the phases.
+Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits,
+                 const std::function<void(const Config&)>& before_scene = {});
 
 /// The same for a configuration given as text; files that it names are looked for in the working folder.
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {});
+
+/// The view of the configured picture.
+scene::View view_of(const Config& config);
 
 /// Path of a file that a configuration names: in the configuration's folder, or else in the working folder.
 std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file);

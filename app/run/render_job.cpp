@@ -11,6 +11,7 @@ namespace carousel::app {
 
 RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits)
     : seed_(static_cast<std::uint64_t>(config.image.seed)),
+      exposure_(config.image.exposure),
       order_(static_cast<std::uint32_t>(config.image.width), static_cast<std::uint32_t>(config.image.height),
              static_cast<std::uint32_t>(config.image.samples)) {
   const auto workers = static_cast<std::size_t>(shader_workers(config));
@@ -82,7 +83,7 @@ std::optional<RasterCounts> RenderJob::raster() const {
 void RenderJob::write_images(const std::filesystem::path& folder) const {
   if (!tracer_) return;
   const std::vector<float> rgb = tracer_->linear_rgb();
-  shading::write_png(folder / "image.png", tracer_->width(), tracer_->height(), rgb);
+  shading::write_png(folder / "image.png", tracer_->width(), tracer_->height(), rgb, exposure_);
   shading::write_exr(folder / "image.exr", tracer_->width(), tracer_->height(), rgb);
 }
 

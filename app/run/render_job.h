@@ -60,6 +60,7 @@ class RenderJob {
   std::unique_ptr<shading::PathTracer> tracer_;  // either tracer_ or list_ is set
   std::unique_ptr<RayListWorkload> list_;
   std::uint64_t first_rays_, seed_;
+  float exposure_;
   shading::PixelOrder order_;
 };
 

@@ -80,7 +80,7 @@ template <class V>
 void describe(V& v, Config& c) {
   v.field("schema_version", c.schema_version, IntRange{1, 1}, "", "The version of these keys.");
   v.section("scene", c.scene, "The scene that is rendered.");
-  v.section("camera", c.camera, "The lens of the camera.");
+  v.section("camera", c.camera, "The place, the view and the lens of the camera.");
   v.section("image", c.image, "The picture and its paths.");
   v.section("engine", c.engine, "The engine that simulates the machine.");
   v.section("topology", c.topology, "The resources and their links.");

@@ -96,10 +96,13 @@ void Reader::field(std::string_view key, double& value, RealRange range, const c
 }
 
 void Reader::field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*) {
+  vector(key, value, range, unit, "a list of 3 numbers");
+}
+
+void Reader::vector(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* expected) {
   const Visit visit(*this, key);
   if (!visit.node) return;
-  if (visit.node->kind != Node::Kind::kSeq || visit.node->items.size() != 3)
-    return wrong(*visit.node, "a list of 3 numbers");
+  if (visit.node->kind != Node::Kind::kSeq || visit.node->items.size() != 3) return wrong(*visit.node, expected);
   for (int axis = 0; axis < 3; ++axis) {
     const Node& item = visit.node->items[std::size_t(axis)];
     if (const auto number = real_of<float>(item, range))
@@ -138,6 +141,32 @@ void Reader::field_or_auto(std::string_view key, std::optional<std::int64_t>& va
     value = *number;
   else
     wrong(*visit.node, "auto or " + expected_integer(range, unit));
+}
+
+bool Reader::is_auto(std::string_view key) const {
+  const Node* node = scopes_.back().node->find(key);
+  return node && node->kind == Node::Kind::kString && node->text == "auto";
+}
+
+void Reader::field_or_auto(std::string_view key, std::optional<float>& value, RealRange range, const char* unit,
+                           const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (is_auto(key))
+    value.reset();
+  else if (const auto number = real_of<float>(*visit.node, range))
+    value = *number;
+  else
+    wrong(*visit.node, "auto or " + expected_real(range, unit));
+}
+
+void Reader::field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange range, const char* unit,
+                           const char*) {
+  if (!scopes_.back().node->find(key) || is_auto(key)) {
+    const Visit known(*this, key);
+    return value.reset();
+  }
+  vector(key, value.emplace(0.0f), range, unit, "auto or a list of 3 numbers");
 }
 
 std::optional<std::size_t> Reader::choose(const Node& node, const std::vector<std::string>& names) {

@@ -33,6 +33,8 @@ class Reader {
   void field(std::string_view key, std::string& value, const char*, const char*);
   void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,
                      const char*);
+  void field_or_auto(std::string_view key, std::optional<float>& value, RealRange range, const char* unit, const char*);
+  void field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange range, const char* unit, const char*);
 
   template <class E>
   void choice(std::string_view key, E& value, const char*) {
@@ -90,6 +92,9 @@ class Reader {
 
   template <class Real>
   void real(std::string_view key, Real& value, RealRange range, const char* unit);
+  /// True if the key says auto.
+  bool is_auto(std::string_view key) const;
+  void vector(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* expected);
   std::optional<std::size_t> choose(const Node& node, const std::vector<std::string>& names);
   void read_override(const Node& node, ResourceOverride& value);
   void report_unknown(const Scope& frame);

@@ -49,13 +49,9 @@ class SchemaWriter {
     put(key, std::move(out), unit, meaning);
   }
   void field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* meaning) {
-    put(key,
-        {{"type", "array"},
-         {"items", real(range)},
-         {"minItems", 3},
-         {"maxItems", 3},
-         {"default", {shortest(value.x), shortest(value.y), shortest(value.z)}}},
-        unit, meaning);
+    Json out = vector(range);
+    out["default"] = {shortest(value.x), shortest(value.y), shortest(value.z)};
+    put(key, std::move(out), unit, meaning);
   }
   void field(std::string_view key, bool& value, const char* unit, const char* meaning) {
     put(key, {{"type", "boolean"}, {"default", value}}, unit, meaning);
@@ -65,7 +61,15 @@ class SchemaWriter {
   }
   void field_or_auto(std::string_view key, std::optional<std::int64_t>&, IntRange range, const char* unit,
                      const char* meaning) {
-    put(key, {{"anyOf", {Json{{"const", "auto"}}, integer(range)}}, {"default", "auto"}}, unit, meaning);
+    put(key, or_auto(integer(range)), unit, meaning);
+  }
+  void field_or_auto(std::string_view key, std::optional<float>&, RealRange range, const char* unit,
+                     const char* meaning) {
+    put(key, or_auto(real(range)), unit, meaning);
+  }
+  void field_or_auto(std::string_view key, std::optional<Vec3>&, RealRange range, const char* unit,
+                     const char* meaning) {
+    put(key, or_auto(vector(range)), unit, meaning);
   }
   template <class E>
   void choice(std::string_view key, E& value, const char* meaning) {
@@ -129,6 +133,12 @@ class SchemaWriter {
   }
 
  private:
+  static Json or_auto(Json schema) {
+    return {{"anyOf", {Json{{"const", "auto"}}, std::move(schema)}}, {"default", "auto"}};
+  }
+  static Json vector(RealRange range) {
+    return {{"type", "array"}, {"items", real(range)}, {"minItems", 3}, {"maxItems", 3}};
+  }
   static Json integer(IntRange range) { return {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}}; }
   static Json real(RealRange range) {
     return {{"type", "number"}, {range.above_min ? "exclusiveMinimum" : "minimum", range.min}, {"maximum", range.max}};

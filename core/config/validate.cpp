@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "core/config/edit_distance.h"
 #include "core/config/network_rules.h"
@@ -24,6 +25,7 @@ class Rules {
 
   std::vector<ConfigIssue> check() {
     one_scene();
+    camera_has_a_view();
     raster_needs_a_pinhole();
     all_is_built();
     stored_transform_fits();
@@ -51,7 +53,31 @@ class Rules {
     }
     if (c.scene.procedural && c.scene.builtin != BuiltinScene::kSpheres)
       issue("scene.procedural", "only the built-in spheres are procedural primitives; expected false, found true");
-    if (!c.scene.file.empty() && c.scene.builtin) issue("scene.builtin", "expected either file or builtin, found both");
+    if (!c.scene.file.empty() && c.scene.builtin)
+      issue("scene.builtin",
+            "expected either file or builtin, found both; another scene takes the place of both with --set "
+            "'scene={file: NAME}'");
+  }
+
+  void camera_has_a_view() {
+    const CameraConfig& camera = c.camera;
+    if (camera.eye && !camera.target)
+      issue("camera.eye", "a camera of your own looks at a point; expected camera.target beside camera.eye");
+    if (camera.target && !camera.eye)
+      issue("camera.target", "a camera of your own has a place; expected camera.eye beside camera.target");
+    if (!camera.eye || !camera.target) {
+      if (camera.up != CameraConfig{}.up && !camera.eye && !camera.target)
+        issue("camera.up",
+              "only a camera of your own is turned; expected camera.eye and camera.target beside camera.up");
+      return;
+    }
+    const DVec3 view = DVec3(*camera.target) - DVec3(*camera.eye), up(camera.up);
+    if (glm::dot(view, view) == 0) return issue("camera.target", "expected another point than camera.eye");
+    if (glm::dot(up, up) == 0) return issue("camera.up", "expected a direction, found a vector of length 0");
+    const DVec3 aside = glm::cross(view, up);
+    constexpr double kLeastSine = 1e-6;  // of the angle between up and the view; look_at() needs more than roundings
+    if (glm::dot(aside, aside) <= kLeastSine * kLeastSine * glm::dot(view, view) * glm::dot(up, up))
+      issue("camera.up", "the camera looks along this direction; expected one that is not parallel to the view");
   }
 
   void raster_needs_a_pinhole() {

@@ -47,6 +47,12 @@ class JsonWriter {
   void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange, const char*, const char*) {
     put(key, value ? Json(*value) : Json("auto"));
   }
+  void field_or_auto(std::string_view key, std::optional<float>& value, RealRange, const char*, const char*) {
+    put(key, value ? Json(shortest(*value)) : Json("auto"));
+  }
+  void field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange, const char*, const char*) {
+    put(key, value ? Json{shortest(value->x), shortest(value->y), shortest(value->z)} : Json("auto"));
+  }
   template <class E>
   void choice(std::string_view key, E& value, const char*) {
     put(key, enum_name(value));

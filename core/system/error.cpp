@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/system/plain_text.h"
+
 namespace carousel {
 
 std::string SourcePosition::text() const {
@@ -35,9 +37,9 @@ ConfigError::ConfigError(std::vector<ConfigIssue> issues)
     : std::runtime_error(join(issues)), issues_(std::move(issues)) {}
 
 SceneError::SceneError(std::string file, std::string json_path, std::string message)
-    : std::runtime_error(file + (json_path.empty() ? "" : ": " + json_path) + ": " + message),
+    : std::runtime_error(plain_text(file + (json_path.empty() ? "" : ": " + json_path) + ": " + message)),
       file_(std::move(file)),
-      json_path_(std::move(json_path)),
-      message_(std::move(message)) {}
+      json_path_(plain_text(json_path)),
+      message_(plain_text(message)) {}
 
 }  // namespace carousel

@@ -39,7 +39,8 @@ class ConfigError : public std::runtime_error {
 /// The user's scene (or a file it names) is wrong. Exit status 2.
 class SceneError : public std::runtime_error {
  public:
-  /// `json_path` as in "/meshes/0/primitives/1/indices"; empty when the whole file is meant.
+  /// Control characters of the texts, which may come from the file, are replaced (plain_text.h). `json_path` as in
+  /// "/meshes/0/primitives/1/indices"; empty when the whole file is meant.
   SceneError(std::string file, std::string json_path, std::string message);
   const std::string& file() const { return file_; }
   const std::string& json_path() const { return json_path_; }

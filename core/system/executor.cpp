@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
@@ -105,10 +106,12 @@ class JthreadExecutor final : public Executor {
   std::atomic<std::size_t> busy_{0};
 };
 
+/// Has no more workers than the machine has cores: TBB would refuse the others, with a warning of its own on stderr.
 class TbbExecutor final : public Executor {
  public:
   explicit TbbExecutor(std::size_t threads)
-      : threads_(std::max<std::size_t>(1, threads)), arena_(static_cast<int>(threads_)) {}
+      : threads_(std::max<std::size_t>(1, threads)),
+        arena_(std::min(static_cast<int>(threads_), tbb::info::default_concurrency())) {}
 
   void parallel_for(std::size_t count, std::size_t grain,
                     const std::function<void(std::size_t, std::size_t)>& body) override {

@@ -1,6 +1,7 @@
 #include "report/run/report_difference.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace carousel::report {
 
@@ -8,36 +9,83 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void compare(const std::string& path, const Json* a, const Json* b, std::vector<Difference>& out) {
-  if (a != nullptr && b != nullptr && *a == *b) return;
+using Reports = std::vector<const Json*>;
+
+bool all_are(const Reports& values, bool (Json::*is)() const noexcept) {
+  return std::all_of(values.begin(), values.end(),
+                     [&](const Json* value) { return value != nullptr && (value->*is)(); });
+}
+
+bool all_equal(const Reports& values) {
+  return std::all_of(values.begin(), values.end(), [&](const Json* value) {
+    return value == nullptr ? values.front() == nullptr : values.front() != nullptr && *value == *values.front();
+  });
+}
+
+const Json* item_of(const Json& array, std::size_t i) {
+  return i < array.size() ? &array[i] : nullptr;
+}
+
+/// True for a list that is too long to be told value by value.
+bool is_series(const Reports& values) {
+  constexpr std::size_t kMostValues = 64;
+  return std::any_of(values.begin(), values.end(),
+                     [](const Json* value) { return value->size() > kMostValues && !value->front().is_structured(); });
+}
+
+void compare(const std::string& path, const Reports& values, std::vector<ManyDifference>& out) {
+  if (all_equal(values)) return;
   const auto child = [&](const std::string& key) { return path.empty() ? key : path + "." + key; };
-  if (a != nullptr && b != nullptr && a->is_object() && b->is_object()) {
-    for (const auto& [key, value] : a->items())
-      compare(child(key), &value, b->contains(key) ? &(*b)[key] : nullptr, out);
-    for (const auto& [key, value] : b->items())
-      if (!a->contains(key)) compare(child(key), nullptr, &value, out);
+  Reports below(values.size());
+  if (all_are(values, &Json::is_object)) {
+    std::vector<std::string> keys;
+    for (const Json* value : values)
+      for (const auto& [key, ignored] : value->items())
+        if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    for (const std::string& key : keys) {
+      for (std::size_t r = 0; r < values.size(); ++r)
+        below[r] = values[r]->contains(key) ? &(*values[r])[key] : nullptr;
+      compare(child(key), below, out);
+    }
     return;
   }
-  if (a != nullptr && b != nullptr && a->is_array() && b->is_array()) {
-    for (std::size_t i = 0; i < std::max(a->size(), b->size()); ++i)
-      compare(child(std::to_string(i)), i < a->size() ? &(*a)[i] : nullptr, i < b->size() ? &(*b)[i] : nullptr, out);
+  if (all_are(values, &Json::is_array)) {
+    std::size_t most = 0;
+    for (const Json* value : values) most = std::max(most, value->size());
+    const bool series = is_series(values);
+    const std::size_t before = out.size();
+    for (std::size_t i = 0; i < most && !(series && out.size() > before); ++i) {
+      for (std::size_t r = 0; r < values.size(); ++r) below[r] = item_of(*values[r], i);
+      compare(child(std::to_string(i)), below, out);
+    }
     return;
   }
-  out.push_back({path, a != nullptr ? a->dump() : "", b != nullptr ? b->dump() : ""});
+  ManyDifference& difference = out.emplace_back(ManyDifference{path, {}});
+  for (const Json* value : values) difference.values.push_back(value != nullptr ? value->dump() : "");
 }
 
 }  // namespace
 
-std::vector<Difference> differences(const Json& a, const Json& b) {
-  Json left = a, right = b;
-  for (Json* report : {&left, &right}) {
-    report->erase("host");
+std::vector<ManyDifference> differences(const std::vector<const Json*>& reports) {
+  std::vector<Json> copies;
+  copies.reserve(reports.size());
+  Reports values;
+  for (const Json* report : reports) {
+    Json& copy = copies.emplace_back(*report);
+    copy.erase("host");
     // How many threads the host was to use is its affair too.
-    if (const auto engine = Json::json_pointer("/config/engine"); report->contains(engine))
-      (*report)[engine].erase("threads");
+    if (const auto engine = Json::json_pointer("/config/engine"); copy.contains(engine)) copy[engine].erase("threads");
+    values.push_back(&copy);
   }
+  std::vector<ManyDifference> out;
+  compare("", values, out);
+  return out;
+}
+
+std::vector<Difference> differences(const Json& a, const Json& b) {
   std::vector<Difference> out;
-  compare("", &left, &right, out);
+  for (ManyDifference& one : differences({&a, &b}))
+    out.push_back({std::move(one.path), std::move(one.values[0]), std::move(one.values[1])});
   return out;
 }
 

@@ -13,6 +13,16 @@ struct Difference {
   std::string path, a, b;
 };
 
+/// A place where several reports differ; the value of a report that does not have it is empty. A long list of numbers
+/// is one place: the first that differs.
+struct ManyDifference {
+  std::string path;
+  std::vector<std::string> values;  ///< by report
+};
+
+/// The places where reports differ outside of `host` and of config.engine.threads, in the order of the first.
+std::vector<ManyDifference> differences(const std::vector<const nlohmann::ordered_json*>& reports);
+
 /// The places where two reports differ outside of `host` and of config.engine.threads, in the order of the first. Two
 /// runs are identical when there is none.
 std::vector<Difference> differences(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b);

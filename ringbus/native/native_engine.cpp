@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/system/error.h"
+#include "core/system/thread_team.h"
 #include "ringbus/faults/unfinished_rays.h"
 #include "ringbus/native/native_machine.h"
 #include "ringbus/native/native_port.h"
@@ -95,9 +96,7 @@ class NativeRun {
   void run_threads() {
     ended_ = 0;
     end_ = false;
-    std::vector<std::jthread> threads;
-    for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
-    watch();
+    run_team(0, threads_, [this](std::size_t t) { work(t); }, [this] { watch(); });
   }
 
   /// Begins again without the resource that has stopped. All work that was under way is gone; every ray that had not

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/system/error.h"
+#include "core/system/plain_text.h"
 #include "scene/gltf/buffers/accessor.h"
 #include "scene/gltf/buffers/buffers.h"
 #include "scene/gltf/buffers/draco.h"
@@ -21,7 +22,7 @@
 #include "scene/gltf/materials/materials.h"
 #include "scene/gltf/meshes.h"
 #include "scene/gltf/nodes.h"
-#include "scene/model/camera_pose.h"
+#include "scene/model/fitted_camera.h"
 
 namespace carousel::scene {
 
@@ -29,15 +30,16 @@ namespace {
 
 /// Reads the meshes that instances name (by the file's indices, then those of `spheres`) and renumbers them for the
 /// scene, in the file's order.
-void read_used_meshes(MeshReader& reader, DracoReader& draco, std::size_t file_meshes, std::vector<Mesh> spheres,
+void read_used_meshes(MeshReader& reader, DracoReader& draco, tinygltf::Model& model, std::vector<Mesh> spheres,
                       Scene& scene) {
+  const std::size_t file_meshes = model.meshes.size();
   std::vector<std::optional<MeshId>> ids(file_meshes + spheres.size());
   for (const Instance& instance : scene.instances) ids[instance.mesh.value] = MeshId(0);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (!ids[i]) continue;
     ids[i] = MeshId(static_cast<std::uint32_t>(scene.meshes.size()));
     if (i < file_meshes) {
-      draco.decode(i);
+      draco.decode(i, model.meshes[i]);
       scene.meshes.push_back(reader.read(i));
     } else {
       scene.meshes.push_back(std::move(spheres[i - file_meshes]));
@@ -50,32 +52,45 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
              const WarningSink& warn, const ImageChoice& choice) {
   GltfDocument document = parse_document(bytes, file);
   check_extensions(document, warn);
-  check_schema(document);
-  check_links(document);
+  check_schema(document, warn);
+  check_links(document, warn);
   Scene scene;
   const std::vector<std::size_t> images = read_materials(document, scene, warn);
+  scene.added.material = true;
   const MaterialId default_material(static_cast<std::uint32_t>(scene.materials.size() - 1));
   const GltfResources resources(document, std::move(folder));
   GltfModel model = read_model(document, resources);
 
   const std::map<std::size_t, Bytes> unpacked = decode_meshopt_views(document, model);
-  AccessorTable accessors(document, model, unpacked);
+  AccessorTable accessors(document, model, unpacked, warn);
   ImportBudget budget(document, bytes.size() + model.bytes_read);
   for (const auto& [view, decoded] : unpacked) budget.earn(decoded.size());
   std::vector<Mesh> spheres = read_nodes(document, model.model, accessors, budget, default_material, scene);
-  MeshReader meshes(document, model.model, accessors, budget, default_material);
+  MeshReader meshes(document, model.model, accessors, budget, default_material, warn);
   DracoReader draco(document, accessors, budget);
-  read_used_meshes(meshes, draco, model.model.meshes.size(), std::move(spheres), scene);
+  read_used_meshes(meshes, draco, model.model, std::move(spheres), scene);
   if (meshes.skipped_primitives() > 0 && warn) {
     warn(file + ": " + std::to_string(meshes.skipped_primitives()) +
          " primitives skipped: points, lines or without positions");
   }
   const bool empty =
       std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
-  if (empty) document.fail("", "the scene shows no triangles");
   read_images(document, resources, model, images, choice, scene);
-  if (scene.cameras.empty()) scene.cameras.push_back(fitted_camera(scene.bounds()));
+  if (empty) {
+    // Other faults come first: they may be why nothing is shown.
+    for (std::size_t i = 0; i < model.model.meshes.size(); ++i) {
+      draco.decode(i, model.model.meshes[i]);
+      meshes.read(i);
+    }
+    document.fail("", scene.instances.empty() ? "the scene shows no triangles: no node of it has a mesh"
+                                              : "the scene shows no triangles");
+  }
+  if (scene.cameras.empty()) {
+    scene.cameras.push_back(fitted_camera(scene));
+    scene.added.camera = true;
+  }
   if (scene.name.empty()) scene.name = std::filesystem::path(file).stem().string();
+  scene.name = plain_text(scene.name);
   return scene;
 }
 

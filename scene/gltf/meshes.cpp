@@ -1,13 +1,18 @@
 #include "scene/gltf/meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <glm/geometric.hpp>
+
+#include "core/system/error.h"
+#include "scene/gltf/document/uses.h"
 
 namespace carousel::scene {
 
@@ -98,25 +103,31 @@ void append(std::vector<T>& to, const std::vector<T>& from, std::size_t before, 
 
 struct MeshReader::Cache {
   std::map<std::string, int> key;
+  std::array<bool, 2> reads{};  ///< the material's sets of texture coordinates
   Attributes attributes;
 };
 
 MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                       ImportBudget& budget, MaterialId default_material)
+                       ImportBudget& budget, MaterialId default_material, WarningSink warn)
     : document_(document),
       model_(model),
       accessors_(accessors),
       budget_(budget),
       default_material_(default_material),
+      warn_(std::move(warn)),
       cache_(std::make_unique<Cache>()) {}
 
 MeshReader::~MeshReader() = default;
 
 const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitive& primitive, const std::string& path) {
-  if (cache_->key != primitive.attributes) {
+  const Json* material =
+      primitive.material >= 0 ? &document_.json["materials"][static_cast<std::size_t>(primitive.material)] : nullptr;
+  const std::array reads{material && reads_tex_coords(*material, 0), material && reads_tex_coords(*material, 1)};
+  if (cache_->key != primitive.attributes || cache_->reads != reads) {
     cache_->key.clear();
-    cache_->attributes = read_attributes(primitive, path);
+    cache_->attributes = read_attributes(primitive, path, reads);
     cache_->key = primitive.attributes;
+    cache_->reads = reads;
   }
   return cache_->attributes;
 }
@@ -126,8 +137,8 @@ MeshReader::Attributes MeshReader::picked(const Attributes& from, const std::vec
           pick(from.uv1, vertices), pick(from.colors, vertices)};
 }
 
-MeshReader::Attributes MeshReader::read_attributes(const tinygltf::Primitive& primitive,
-                                                   const std::string& path) const {
+MeshReader::Attributes MeshReader::read_attributes(const tinygltf::Primitive& primitive, const std::string& path,
+                                                   const std::array<bool, 2>& reads) const {
   const std::string attributes = json_path(path, "attributes");
   const auto vertices = accessors_.count(static_cast<std::size_t>(primitive.attributes.at("POSITION")));
   const auto read = [&](const char* name, AccessorUse use, int& width) -> std::vector<float> {
@@ -148,8 +159,17 @@ MeshReader::Attributes MeshReader::read_attributes(const tinygltf::Primitive& pr
   int width = 0;
   out.positions = as_vectors<Vec3>(read("POSITION", AccessorUse::kPosition, width));
   out.normals = as_vectors<Vec3>(read("NORMAL", AccessorUse::kNormal, width));
-  out.uv0 = as_vectors<Vec2>(read("TEXCOORD_0", AccessorUse::kTexCoord, width));
-  out.uv1 = as_vectors<Vec2>(read("TEXCOORD_1", AccessorUse::kTexCoord, width));
+  const auto tex_coords = [&](const char* name, bool used) -> std::vector<Vec2> {
+    try {
+      return as_vectors<Vec2>(read(name, AccessorUse::kTexCoord, width));
+    } catch (const SceneError& error) {
+      if (used) throw;
+      if (warn_) warn_(std::string(error.what()) + "; ignored, since no texture of the material reads it");
+      return {};
+    }
+  };
+  out.uv0 = tex_coords("TEXCOORD_0", reads[0]);
+  out.uv1 = tex_coords("TEXCOORD_1", reads[1]);
   const std::vector<float> colors = read("COLOR_0", AccessorUse::kColor, width);
   if (!colors.empty() && width == 3) {
     for (const Vec3& c : as_vectors<Vec3>(colors)) out.colors.emplace_back(c, 1.0f);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 #include "scene/gltf/buffers/accessor.h"
 #include "scene/gltf/document/document.h"
 #include "scene/model/scene.h"
+#include "scene/model/warnings.h"
 
 namespace carousel::scene {
 
@@ -16,12 +18,13 @@ class MeshReader {
  public:
   /// `default_material` is the material of primitives that name none.
   MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-             ImportBudget& budget, MaterialId default_material);
+             ImportBudget& budget, MaterialId default_material, WarningSink warn);
   ~MeshReader();
 
   /// The triangles of all primitives in order; strips and fans become lists. Primitives with the same
   /// attributes share their vertices. Where only some primitives have normals, the others get flat ones.
-  /// Points, lines and primitives without positions are skipped and counted. Throws SceneError.
+  /// Points, lines and primitives without positions are skipped and counted. Texture coordinates that no texture reads
+  /// may be wrong: they are left out with a warning. Throws SceneError.
   Mesh read(std::size_t mesh);
 
   std::size_t skipped_primitives() const { return skipped_; }
@@ -33,7 +36,8 @@ class MeshReader {
   /// The primitive's attributes; valid until the next call. The last ones are kept, because exporters like to
   /// let many primitives share one set of vertices.
   const Attributes& attributes_of(const tinygltf::Primitive& primitive, const std::string& path);
-  Attributes read_attributes(const tinygltf::Primitive& primitive, const std::string& path) const;
+  Attributes read_attributes(const tinygltf::Primitive& primitive, const std::string& path,
+                             const std::array<bool, 2>& reads) const;
   std::vector<std::uint32_t> read_triangles(const tinygltf::Primitive& primitive, std::uint64_t vertices,
                                             const std::string& path);
   static Attributes picked(const Attributes& from, const std::vector<std::uint32_t>& vertices);
@@ -44,6 +48,7 @@ class MeshReader {
   const AccessorTable& accessors_;
   ImportBudget& budget_;
   MaterialId default_material_;
+  WarningSink warn_;
   std::unique_ptr<Cache> cache_;
   std::size_t skipped_ = 0;
 };

@@ -155,6 +155,14 @@ struct PunctualLight {
   float inner_cone_cos = 1, outer_cone_cos = 0.70710678f;
 };
 
+/// What a loader put into a scene because the file has none.
+struct Added {
+  bool camera = false;    ///< cameras[0] was made up
+  bool inside = false;    ///< and stands inside the model
+  bool sun = false;       ///< the last of the lights
+  bool material = false;  ///< the last of the materials, of triangles that name none
+};
+
 struct Sky {
   Vec3 radiance{0};  ///< constant over the sphere
 };
@@ -168,8 +176,9 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<PunctualLight> lights;
-  std::vector<Camera> cameras;  ///< at least one: the file's, or one made from the bounds
+  std::vector<Camera> cameras;  ///< at least one: the file's, or one that was made up
   Sky sky;
+  Added added;
 
   std::size_t unique_triangle_count() const;     ///< over meshes
   std::size_t instanced_triangle_count() const;  ///< over instances

@@ -1,5 +1,6 @@
 #include "shading/camera/image_file.h"
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -34,11 +35,12 @@ void write(const std::filesystem::path& path, const std::string& format, const O
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
-               std::span<const float> rgb) {
+void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::span<const float> rgb,
+               float exposure) {
+  const float factor = std::exp2(exposure);
   std::vector<std::uint8_t> pixels(rgb.size());
   for (std::size_t i = 0; i < rgb.size(); i += 3) {
-    const Vec3 color = tone_curve({rgb[i], rgb[i + 1], rgb[i + 2]});
+    const Vec3 color = tone_curve(factor * Vec3{rgb[i], rgb[i + 1], rgb[i + 2]});
     for (std::size_t c = 0; c < 3; ++c) {
       pixels[i + c] = static_cast<std::uint8_t>(linear_to_srgb(color[static_cast<int>(c)]) * 255.0f + 0.5f);
     }

@@ -18,7 +18,7 @@ POINTS = [(8, 16, 0.02), (8, 16, 0.1), (8, 16, 0.15), (8, 16, 0.2), (8, 16, 0.24
 def ours(carousel, resources, depth, rate):
     values = {"topology.resources": resources, "topology.link.depth": depth, "workload.traffic.rate": rate}
     sets = [word for key, value in values.items() for word in ("--set", f"{key}={value}")]
-    run = subprocess.run([carousel, "run", CONFIG, "--json", "--out", "out/validate", *sets], capture_output=True, text=True, check=True)
+    run = subprocess.run([carousel, "run", CONFIG, "--json", "--force", "--out", "out/validate", *sets], capture_output=True, text=True, check=True)
     return json.loads(run.stdout)["traffic"]
 
 

@@ -22,7 +22,7 @@ def use_of_links(carousel, packets, shape, k, rings, flow, queues):
               "topology.link.depth": 16, "workload.traffic.rate": 1.0, "workload.traffic.packets": packets,
               "workload.traffic.source_queues": queues}
     sets = [word for key, value in values.items() for word in ("--set", f"{key}={value}")]
-    run = subprocess.run([carousel, "run", CONFIG, "--json", "--out", "out/validate", *sets], capture_output=True, text=True, check=True)
+    run = subprocess.run([carousel, "run", CONFIG, "--json", "--force", "--out", "out/validate", *sets], capture_output=True, text=True, check=True)
     return json.loads(run.stdout)["traffic"]["accepted_of_links"]
 
 

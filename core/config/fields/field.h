@@ -12,7 +12,7 @@ namespace carousel::config {
 // spellings, the struct with its defaults, and a function `describe` that shows a visitor each key with its range,
 // unit and meaning. Reader, writer, schema and documentation are visitors. A visitor V offers
 //   field(key, value, [range,] unit, meaning)   integers, reals, colours; texts and switches without a range
-//   field_or_auto(key, optional integer, range, unit, meaning)
+//   field_or_auto(key, optional integer, real or vector, range, unit, meaning)
 //   choice(key, enum or optional enum, meaning)
 //   section(key, struct or optional struct, meaning)
 //   section_or_number(key, struct, meaning)     a bare number stands for {units: number}

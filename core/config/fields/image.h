@@ -11,6 +11,7 @@ struct ImageConfig {
   std::int64_t samples = 4;
   std::int64_t max_depth = 4;
   std::int64_t seed = 1;
+  float exposure = 0;
 };
 
 namespace config {
@@ -23,6 +24,10 @@ void describe(V& v, ImageConfig& c) {
   v.field("max_depth", c.max_depth, IntRange{1, 64}, "surfaces",
           "The number of surfaces that a path may visit. With 1 there is direct light only.");
   v.field("seed", c.seed, kSeed, "", "The seed of all random numbers of the picture.");
+  v.field(
+      "exposure", c.exposure, RealRange{-30, 30}, "stops",
+      "The exposure of image.png: each stop doubles its light before the tone curve. image.exr and the digests keep "
+      "the light as it was computed.");
 }
 
 }  // namespace config

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <charconv>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include <yaml-cpp/eventhandler.h>
@@ -155,6 +157,22 @@ class YamlHandler final : public YAML::EventHandler {
   std::map<YAML::anchor_t, Node> anchors_;
 };
 
+/// Line and column, from 1.
+struct Place {
+  int line, column;
+};
+
+/// The first tab before the text of a line, up to the line in which the parser gave up (from 0).
+std::optional<Place> tab_in_indentation(std::string_view text, int last_line) {
+  int line = 0;
+  for (std::size_t begin = 0; begin < text.size() && line <= last_line; ++line) {
+    const std::size_t first = std::min(text.find_first_not_of(' ', begin), text.size());
+    if (first < text.size() && text[first] == '\t') return Place{line + 1, static_cast<int>(first - begin) + 1};
+    begin = std::min(text.find('\n', begin), text.size() - 1) + 1;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Node parse_yaml(std::string_view text, const std::string& name, std::vector<ConfigIssue>& issues) {
@@ -166,6 +184,9 @@ Node parse_yaml(std::string_view text, const std::string& name, std::vector<Conf
     while (parser.HandleNextDocument(handler)) {
     }
   } catch (const YAML::Exception& error) {
+    if (const std::optional<Place> tab = tab_in_indentation(text, error.mark.line))
+      handler.builder().fail(handler.builder().at(tab->line, tab->column),
+                             "a tab is used for indentation, which YAML does not allow; expected spaces");
     handler.builder().fail(handler.builder().at(error.mark.line + 1, error.mark.column + 1), error.msg);
   }
   return handler.builder().take_root();

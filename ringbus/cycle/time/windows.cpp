@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/system/thread_team.h"
 #include "ringbus/rays/ray_id.h"
 
 namespace carousel::ringbus::cycle {
@@ -77,11 +78,7 @@ class WindowRun {
         next_(parts.size()) {}
 
   Cycle run() {
-    {
-      std::vector<std::jthread> threads;
-      for (std::size_t t = 1; t < parts_.size(); ++t) threads.emplace_back([this, t] { work(t); });
-      work(0);
-    }
+    run_team(1, parts_.size() - 1, [this](std::size_t t) { work(t); }, [this] { work(0); });
     if (error_) std::rethrow_exception(error_);
     return reached_;
   }

@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string>
+#include <utility>
+
+#include "core/system/error.h"
+#include "scene/gltf/document/uses.h"
 
 namespace carousel::scene {
 
@@ -96,7 +101,7 @@ std::span<const unsigned char> bytes_of(const Json& view, const GltfModel& model
 }  // namespace
 
 AccessorTable::AccessorTable(const GltfDocument& document, const GltfModel& model,
-                             const std::map<std::size_t, Bytes>& unpacked)
+                             const std::map<std::size_t, Bytes>& unpacked, const WarningSink& warn)
     : document_(document) {
   const Json& json = document.json;
   const std::size_t views = json.contains("bufferViews") ? json["bufferViews"].size() : 0;
@@ -111,9 +116,16 @@ AccessorTable::AccessorTable(const GltfDocument& document, const GltfModel& mode
   }
   if (!json.contains("accessors")) return;
   const Json& accessors = json["accessors"];
+  const Uses uses = uses_of(json);
   accessors_.reserve(accessors.size());
   for (std::size_t i = 0; i < accessors.size(); ++i) {
-    accessors_.push_back(parse(accessors[i], json_path("/accessors", i)));
+    try {
+      accessors_.push_back(parse(accessors[i], json_path("/accessors", i)));
+    } catch (const SceneError& error) {
+      if (uses.accessors[i]) throw;
+      accessors_.emplace_back();
+      if (warn) warn(std::string(error.what()) + "; ignored, since nothing that is shown uses it");
+    }
   }
 }
 
@@ -177,6 +189,17 @@ void AccessorTable::replace(std::size_t index, Bytes bytes) {
   accessor.base = {replacements_.back().data(), element_size(accessor.type, accessor.component)};
   accessor.sparse.reset();
   accessor.views.clear();
+  accessor.replaced = true;
+}
+
+std::size_t AccessorTable::add_like(std::size_t index) {
+  Accessor copy = accessors_[index];
+  copy.base.reset();
+  copy.sparse.reset();
+  copy.views.clear();
+  copy.replaced = false;
+  accessors_.push_back(std::move(copy));
+  return accessors_.size() - 1;
 }
 
 std::vector<std::uint32_t> AccessorTable::sparse_indices(std::size_t index) const {

@@ -10,6 +10,7 @@
 
 #include "scene/gltf/buffers/model.h"
 #include "scene/gltf/document/document.h"
+#include "scene/model/warnings.h"
 
 namespace carousel::scene {
 
@@ -41,18 +42,25 @@ enum class AccessorUse {
 /// The accessors of a file, each checked against its buffer views before anything is allocated for it.
 class AccessorTable {
  public:
-  /// Throws SceneError at the accessor that reaches outside its buffer view, whether it is used or not.
-  /// `unpacked` holds the bytes of buffer views that were compressed. All arguments must outlive the table.
-  AccessorTable(const GltfDocument& document, const GltfModel& model, const std::map<std::size_t, Bytes>& unpacked);
+  /// Throws SceneError at the accessor that reaches outside its buffer view; where no mesh and no instances use it,
+  /// warns instead. `unpacked` holds the bytes of buffer views that were compressed. All arguments must outlive the
+  /// table.
+  AccessorTable(const GltfDocument& document, const GltfModel& model, const std::map<std::size_t, Bytes>& unpacked,
+                const WarningSink& warn);
 
   /// From here on the accessor reads `bytes`: its elements one after the other, of its own type. The position of its
   /// data in the file is forgotten.
   void replace(std::size_t accessor, Bytes bytes);
 
+  /// A new accessor of the same type and number of elements, without data.
+  std::size_t add_like(std::size_t accessor);
+
   std::uint64_t count(std::size_t accessor) const { return accessors_[accessor].count; }
   /// Components of one element: 1 to 4, more for matrices.
   int components(std::size_t accessor) const { return accessors_[accessor].components; }
   Component component(std::size_t accessor) const { return accessors_[accessor].component; }
+  /// True after replace().
+  bool replaced(std::size_t accessor) const { return accessors_[accessor].replaced; }
   /// True if the file holds data for the accessor.
   bool stored(std::size_t accessor) const { return accessors_[accessor].base || accessors_[accessor].sparse; }
 
@@ -91,6 +99,7 @@ class AccessorTable {
     std::optional<Strided> base;
     std::optional<Sparse> sparse;
     std::vector<std::size_t> views;  ///< every buffer view it reads
+    bool replaced = false;
   };
 
   Accessor parse(const Json& json, const std::string& path) const;

@@ -130,15 +130,26 @@ bool copy_indices(const draco::Mesh& from, Component component, Bytes& out) {
 
 }  // namespace
 
-void DracoReader::decode(std::size_t mesh) {
+void DracoReader::decode(std::size_t mesh, tinygltf::Mesh& model) {
   const Json& primitives = document_.json["meshes"][mesh]["primitives"];
   for (std::size_t p = 0; p < primitives.size(); ++p) {
     if (!primitives[p].contains(Json::json_pointer("/extensions/KHR_draco_mesh_compression"))) continue;
-    decode_primitive(primitives[p], json_path(json_path(json_path("/meshes", mesh), "primitives"), p));
+    decode_primitive(primitives[p], json_path(json_path(json_path("/meshes", mesh), "primitives"), p),
+                     model.primitives[p]);
   }
 }
 
-void DracoReader::decode_primitive(const Json& primitive, const std::string& path) {
+/// The accessor that gets the data of `source` where the file names `named`: another one where that has its data from
+/// elsewhere.
+std::size_t DracoReader::accessor_for(std::size_t named, const Source& source) {
+  const auto [entry, fresh] = sources_.try_emplace(named, source);
+  if (fresh || entry->second == source) return named;
+  const auto [other, made] = others_.try_emplace({named, source}, 0);
+  if (made) other->second = accessors_.add_like(named);
+  return other->second;
+}
+
+void DracoReader::decode_primitive(const Json& primitive, const std::string& path, tinygltf::Primitive& model) {
   constexpr int kTriangles = 4;
   const std::string where = path + "/extensions/KHR_draco_mesh_compression";
   const Json& extension = primitive["extensions"]["KHR_draco_mesh_compression"];
@@ -152,25 +163,30 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
     std::size_t accessor;
     std::int64_t id;
     std::string path;
+    std::string name;  ///< of the attribute; empty: indices
   };
-  std::vector<Target> targets{{primitive["indices"].get<std::size_t>(), kIndices, json_path(path, "indices")}};
+  std::vector<Target> targets{{primitive["indices"].get<std::size_t>(), kIndices, json_path(path, "indices"), ""}};
   for (const auto& [name, id] : extension["attributes"].items()) {
     const auto accessor = primitive["attributes"].find(name);
     const std::string at = json_path(json_path(where, "attributes"), name);
     if (accessor == primitive["attributes"].end()) document_.fail(at, "the primitive has no such attribute");
-    targets.push_back({accessor->get<std::size_t>(), id.get<std::int64_t>(), at});
+    targets.push_back({accessor->get<std::size_t>(), id.get<std::int64_t>(), at, name});
   }
-  bool needed = false;
-  for (const Target& target : targets) {
-    const auto source = sources_.find(target.accessor);
-    if (source == sources_.end()) {
-      needed = needed || !accessors_.stored(target.accessor);
-    } else if (source->second != std::pair(view, target.id)) {
-      document_.fail(target.path, "accessor " + std::to_string(target.accessor) + " has its data from buffer view " +
-                                      std::to_string(source->second.first) + " already");
-    }
-  }
+  // A primitive whose accessors all have data in the file needs no stream.
+  const bool needed = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
+    return sources_.contains(target.accessor) || !accessors_.stored(target.accessor);
+  });
   if (!needed) return;
+  bool decoded = true;
+  for (Target& target : targets) {
+    target.accessor = accessor_for(target.accessor, {view, target.id});
+    decoded = decoded && accessors_.replaced(target.accessor);
+    if (target.name.empty())
+      model.indices = static_cast<int>(target.accessor);
+    else
+      model.attributes[target.name] = static_cast<int>(target.accessor);
+  }
+  if (decoded) return;
 
   const Stream bytes = accessors_.view(view);
   if (bytes.empty()) document_.fail(json_path(where, "bufferView"), "the buffer holds no data");
@@ -209,7 +225,6 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
     }
     budget_.earn(data.size());
     accessors_.replace(target.accessor, std::move(data));
-    sources_[target.accessor] = {view, target.id};
   }
 }
 

@@ -22,17 +22,23 @@ class DracoReader {
   /// Gives the accessors of the mesh's compressed primitives their data; call before the mesh is read. A primitive
   /// whose accessors all have data of their own (a fallback) is left as it is. Throws SceneError for streams that are
   /// broken, declare more triangles or vertices than so few bytes can hold (before anything is allocated for them),
-  /// hold other numbers of elements than the accessors say, or lack an attribute.
-  void decode(std::size_t mesh);
+  /// hold other numbers of elements than the accessors say, or lack an attribute. Some writers name one accessor for
+  /// several attributes of a stream (two sets of texture coordinates): each then gets an accessor of its own, and
+  /// `attributes` of tinygltf's primitive is changed to name it.
+  void decode(std::size_t mesh, tinygltf::Mesh& model);
 
  private:
-  void decode_primitive(const Json& primitive, const std::string& path);
+  using Source = std::pair<std::size_t, std::int64_t>;  ///< buffer view and attribute of the stream, or kIndices
+
+  void decode_primitive(const Json& primitive, const std::string& path, tinygltf::Primitive& model);
+  std::size_t accessor_for(std::size_t named, const Source& source);
 
   const GltfDocument& document_;
   AccessorTable& accessors_;
   ImportBudget& budget_;
-  /// Source of an accessor's data: buffer view and attribute of the stream, or kIndices.
-  std::map<std::size_t, std::pair<std::size_t, std::int64_t>> sources_;
+  std::map<std::size_t, Source> sources_;  ///< of an accessor's data
+  /// The accessors that stand for one of the file whose data has another source.
+  std::map<std::pair<std::size_t, Source>, std::size_t> others_;
 };
 
 }  // namespace carousel::scene

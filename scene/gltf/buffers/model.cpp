@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/system/error.h"
+#include "scene/gltf/document/uses.h"
 
 namespace carousel::scene {
 
@@ -43,8 +44,10 @@ std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buf
     json["buffers"][i]["byteLength"] = buffers[i].size();
   }
   if (json.contains("images")) {
+    const Uses uses = uses_of(checked);
     for (std::size_t i = 0; i < json["images"].size(); ++i) {
       Json& image = json["images"][i];
+      if (!uses.images[i]) image = {{"uri", ""}};  // tinygltf would read it
       if (image.contains("uri")) image["uri"] = std::string(kImageAddress) + std::to_string(i);
     }
   }
@@ -52,6 +55,12 @@ std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buf
     for (Json& accessor : json["accessors"]) {
       if (!accessor.contains("bufferView")) accessor["bufferView"] = 0;
     }
+  }
+  if (json.contains("cameras")) {
+    const Uses uses = uses_of(checked);
+    for (std::size_t i = 0; i < json["cameras"].size(); ++i)
+      if (!uses.cameras[i])
+        json["cameras"][i] = {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}};
   }
   json.erase("skins");
   json.erase("animations");
@@ -64,12 +73,13 @@ bool is_fallback(const Json& buffer) {
   return buffer.contains(pointer) && buffer.at(pointer).get<bool>();
 }
 
-/// Checks that every image in a buffer view has its bytes there, before tinygltf reads them.
+/// Checks that every image that is used and lies in a buffer view has its bytes there, before tinygltf reads them.
 void check_embedded_images(const GltfDocument& document, const std::vector<bool>& has_data) {
   if (!document.json.contains("images")) return;
   const Json& images = document.json["images"];
+  const Uses uses = uses_of(document.json);
   for (std::size_t i = 0; i < images.size(); ++i) {
-    if (!images[i].contains("bufferView")) continue;
+    if (!uses.images[i] || !images[i].contains("bufferView")) continue;
     const Json& view = document.json["bufferViews"][images[i]["bufferView"].get<std::size_t>()];
     const std::string path = json_path(json_path("/images", i), "bufferView");
     if (!has_data[view["buffer"].get<std::size_t>()]) {

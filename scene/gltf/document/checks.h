@@ -11,8 +11,10 @@ namespace carousel::scene {
 void check_extensions(const GltfDocument& document, const WarningSink& warn);
 
 /// Checks rules that the schema cannot express, on the JSON after check_schema: buffer views lie inside their buffers,
-/// an image has one source, indices are stored somewhere, cameras and spot lights have their details, animation
-/// channels name a sampler, and the nodes form trees of which scenes name the roots. Throws SceneError.
-void check_links(const GltfDocument& document);
+/// an image has one source, indices are stored somewhere, cameras and spot lights have their details, and the nodes
+/// form trees. Throws SceneError. Faults that change nothing that is shown are warnings: images and cameras that are
+/// not used, channels of animations, and roots that a scene names twice or that are below another of its roots; these
+/// are removed from the list.
+void check_links(GltfDocument& document, const WarningSink& warn);
 
 }  // namespace carousel::scene

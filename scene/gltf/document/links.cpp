@@ -1,8 +1,11 @@
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/gltf/document/checks.h"
+#include "scene/gltf/document/uses.h"
 
 namespace carousel::scene {
 
@@ -34,18 +37,26 @@ void check_buffer_views(const GltfDocument& document) {
   }
 }
 
-void check_details(const GltfDocument& document) {
+/// Refuses a fault of an entry that is used, and warns of another.
+void report(const GltfDocument& document, const WarningSink& warn, bool used, const std::string& path,
+            const std::string& message) {
+  if (used) document.fail(path, message);
+  if (warn) warn(document.file + ": " + path + ": " + message + "; ignored, since nothing that is shown uses it");
+}
+
+void check_details(const GltfDocument& document, const WarningSink& warn) {
   const Json& json = document.json;
+  const Uses uses = uses_of(json);
   const Json& images = entries(json, "images");
   for (std::size_t i = 0; i < images.size(); ++i) {
-    if (images[i].contains("uri") == images[i].contains("bufferView")) {
-      document.fail(json_path("/images", i), "expected exactly one of uri and bufferView");
-    }
+    if (images[i].contains("uri") == images[i].contains("bufferView"))
+      report(document, warn, uses.images[i], json_path("/images", i), "expected exactly one of uri and bufferView");
   }
   const Json& cameras = entries(json, "cameras");
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const auto& type = cameras[i]["type"].get_ref<const std::string&>();
-    if (!cameras[i].contains(type)) document.fail(json_path(json_path("/cameras", i), type), "missing");
+    if (!cameras[i].contains(type))
+      report(document, warn, uses.cameras[i], json_path(json_path("/cameras", i), type), "missing");
   }
   const Json& animations = entries(json, "animations");
   for (std::size_t a = 0; a < animations.size(); ++a) {
@@ -53,9 +64,10 @@ void check_details(const GltfDocument& document) {
     const Json& channels = animations[a]["channels"];
     for (std::size_t c = 0; c < channels.size(); ++c) {
       if (channels[c]["sampler"].get<std::size_t>() >= samplers) {
-        document.fail(json_path(json_path(json_path(json_path("/animations", a), "channels"), c), "sampler"),
-                      "expected an index into this animation's samplers, which has " + std::to_string(samplers) +
-                          " entries, found " + channels[c]["sampler"].dump());
+        report(document, warn, false,
+               json_path(json_path(json_path(json_path("/animations", a), "channels"), c), "sampler"),
+               "expected an index into this animation's samplers, which has " + std::to_string(samplers) +
+                   " entries, found " + channels[c]["sampler"].dump());
       }
     }
   }
@@ -107,10 +119,12 @@ std::string node_name(std::size_t node) {
   return "node " + std::to_string(node);
 }
 
+using Parents = std::vector<std::optional<std::size_t>>;
+
 /// Checks that every node has at most one parent and that no node is its own ancestor; then the roots span all nodes.
-void check_nodes(const GltfDocument& document) {
+Parents check_nodes(const GltfDocument& document) {
   const Json& nodes = entries(document.json, "nodes");
-  std::vector<std::optional<std::size_t>> parents(nodes.size());
+  Parents parents(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Json& children = entries(nodes[i], "children");
     for (std::size_t c = 0; c < children.size(); ++c) {
@@ -136,30 +150,53 @@ void check_nodes(const GltfDocument& document) {
       }
     }
   }
-  const Json& scenes = entries(document.json, "scenes");
+  return parents;
+}
+
+/// Removes from the scenes' roots those that are named twice, and those below another root, which shows them.
+void check_roots(GltfDocument& document, const Parents& parents, const WarningSink& warn) {
+  const auto told = [&](const std::string& path, const std::string& fault) {
+    if (warn) warn(document.file + ": " + path + ": " + fault);
+  };
+  if (!document.json.contains("scenes")) return;
+  Json& scenes = document.json["scenes"];
   for (std::size_t s = 0; s < scenes.size(); ++s) {
-    const Json& roots = entries(scenes[s], "nodes");
-    std::vector<bool> named(nodes.size());
+    if (!scenes[s].contains("nodes")) continue;
+    Json& roots = scenes[s]["nodes"];
+    std::vector<bool> named(parents.size()), kept(parents.size());
+    for (const Json& root : roots) named[root.get<std::size_t>()] = true;
+    Json out = Json::array();
     for (std::size_t r = 0; r < roots.size(); ++r) {
       const auto root = roots[r].get<std::size_t>();
       const std::string path = json_path(json_path(json_path("/scenes", s), "nodes"), r);
-      if (parents[root])
-        document.fail(path, node_name(root) + " is not a root: it is a child of " + node_name(*parents[root]));
-      if (named[root]) document.fail(path, node_name(root) + " is named twice");
-      named[root] = true;
+      bool below_another = false;
+      for (auto at = parents[root]; at && !below_another; at = parents[*at]) below_another = named[*at];
+      if (kept[root]) {
+        told(path, node_name(root) + " is named twice; it is shown once");
+      } else if (below_another) {
+        told(path, node_name(root) + " is not a root: it is a child of " + node_name(*parents[root]) +
+                       ", and is shown there once");
+      } else {
+        if (parents[root])
+          told(path, node_name(root) + " is not a root: it is a child of " + node_name(*parents[root]) +
+                         ", which the scene does not show");
+        kept[root] = true;
+        out.push_back(root);
+      }
     }
+    roots = std::move(out);
   }
 }
 
 }  // namespace
 
-void check_links(const GltfDocument& document) {
+void check_links(GltfDocument& document, const WarningSink& warn) {
   check_buffer_views(document);
-  check_details(document);
+  check_details(document, warn);
   check_primitives(document);
   check_lights(document);
   check_spheres(document);
-  check_nodes(document);
+  check_roots(document, check_nodes(document), warn);
 }
 
 }  // namespace carousel::scene

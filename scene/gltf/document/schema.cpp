@@ -2,8 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "core/system/error.h"
 #include "scene/gltf/document/schema_table.h"
+#include "scene/gltf/document/uses.h"
 
 namespace carousel::scene {
 
@@ -31,6 +37,24 @@ std::string shown(double value) {
   return Json(value).dump();
 }
 
+/// A faulty entry of an array that may hold entries that nobody uses. An empty one stands in its place.
+struct Fault {
+  std::string array;
+  std::size_t index;
+  SceneError error;
+};
+
+/// The arrays of which only the entries that are used have to be sound, and what stands for a faulty entry.
+const std::map<std::string, Json>& lenient_arrays() {
+  static const std::map<std::string, Json> arrays{
+      {"/textures", Json::object()},
+      {"/images", {{"uri", ""}}},
+      {"/samplers", Json::object()},
+      {"/skins", {{"joints", Json::array()}}},
+      {"/animations", {{"channels", Json::array()}, {"samplers", Json::array()}}}};
+  return arrays;
+}
+
 class Checker {
  public:
   Checker(const GltfDocument& document, const Json& root) : document_(document), root_(root) {}
@@ -49,6 +73,8 @@ class Checker {
     }
     return out;
   }
+
+  const std::vector<Fault>& faults() const { return faults_; }
 
  private:
   [[noreturn]] void fail(const Json& value, const std::string& path, const std::string& expected) const {
@@ -103,6 +129,8 @@ class Checker {
       case SchemaKind::kObject:
         return object(value, *rule.child, path);
       case SchemaKind::kObjects:
+        if (const auto lenient = lenient_arrays().find(path); lenient != lenient_arrays().end())
+          return each_leniently(value, *rule.child, path, lenient->second);
         return each(value, path, [&](const Json& v, const std::string& p) { return object(v, *rule.child, p); });
     }
     return {};
@@ -115,6 +143,19 @@ class Checker {
     out.get_ref<Json::array_t&>().reserve(value.size());
     for (std::size_t i = 0; i < value.size(); ++i) out.push_back(check_one(value[i], json_path(path, i)));
     return out;
+  }
+
+  Json each_leniently(const Json& value, const Schema& schema, const std::string& path, const Json& substitute) const {
+    std::size_t index = 0;
+    return each(value, path, [&](const Json& v, const std::string& p) {
+      const std::size_t at = index++;
+      try {
+        return object(v, schema, p);
+      } catch (const SceneError& error) {
+        faults_.push_back({path, at, error});
+        return substitute;
+      }
+    });
   }
 
   Json name(const Json& value, const SchemaRule& rule, const std::string& path) const {
@@ -176,11 +217,12 @@ class Checker {
 
   const GltfDocument& document_;
   const Json& root_;
+  mutable std::vector<Fault> faults_;
 };
 
 }  // namespace
 
-void check_schema(GltfDocument& document) {
+void check_schema(GltfDocument& document, const WarningSink& warn) {
   // This check comes first: otherwise an index into a value that is no array would get the blame.
   for (const SchemaRule& rule : gltf_schema()) {
     const auto entry = document.json.find(rule.key);
@@ -188,7 +230,18 @@ void check_schema(GltfDocument& document) {
       document.fail(json_path("", rule.key), "expected an array, " + found(*entry));
     }
   }
-  document.json = Checker(document, document.json).object(document.json, gltf_schema(), "");
+  const Checker checker(document, document.json);
+  Json checked = checker.object(document.json, gltf_schema(), "");
+  const Uses uses = uses_of(checked);
+  for (const Fault& fault : checker.faults()) {
+    const bool used = fault.array == "/textures"   ? uses.textures[fault.index]
+                      : fault.array == "/images"   ? uses.images[fault.index]
+                      : fault.array == "/samplers" ? uses.samplers[fault.index]
+                                                   : false;
+    if (used) throw fault.error;
+    if (warn) warn(std::string(fault.error.what()) + "; ignored, since nothing that is shown uses it");
+  }
+  document.json = std::move(checked);
 }
 
 }  // namespace carousel::scene

@@ -60,9 +60,10 @@ struct BadUsage {
 TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
   for (const BadUsage& bad : std::vector<BadUsage>{
-           {{}, "error: expected a command: run, check, stress, accuracy, inspect, compare, follow, report, schema"},
+           {{},
+            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, follow, report, schema"},
            {{"rnu", "a.yaml"},
-            "error: unknown command rnu; did you mean run?; known are run, check, stress, accuracy, "
+            "error: unknown command rnu; did you mean run?; known are run, sweep, check, stress, accuracy, "
             "inspect, compare, follow, report, schema"},
            {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
            {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},

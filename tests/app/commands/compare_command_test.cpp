@@ -37,9 +37,9 @@ TEST(CompareCommand, NamesTheFirstDivergence) {
   const Program program;
   program.write("a.yaml", kConfig);
   const std::string a = run_into(program, "one"), b = run_into(program, "two", {"topology.link.latency_cycles=5"});
-  const Outcome outcome = program.run({"compare", a + "/report.json", b});
+  const Outcome outcome = program.run({"compare", a + "/report.json", b, "--all"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("config.topology.link.latency_cycles"));
+  EXPECT_THAT(outcome.out, HasSubstr("topology.link.latency_cycles"));
   EXPECT_THAT(outcome.out, HasSubstr("first differing epoch: cycles 0 to 4095"));
   EXPECT_THAT(outcome.out, HasSubstr("first divergence\n  A: cycle "));
   EXPECT_EQ(program.run({"compare", a, b, "--expect", "identical"}).status, 1);
@@ -55,6 +55,69 @@ TEST(CompareCommand, SaysWhenAReportIsAnotherProgramsWork) {
   const Outcome outcome = program.run({"compare", a, "changed.json"});
   EXPECT_THAT(outcome.out, HasSubstr("engine.epochs.digests.0"));
   EXPECT_THAT(outcome.out, HasSubstr("one of the reports was written by another program"));
+}
+
+TEST(CompareCommand, ShowsTwoMachinesSideBySide) {
+  const Program program;
+  program.write("a.yaml", kConfig);
+  const std::string a = run_into(program, "one"), b = run_into(program, "two", {"topology.resources=2"}),
+                    c = run_into(program, "three", {"image.seed=2"});
+  const auto cycles = [&](const std::string& folder) {
+    return nlohmann::json::parse(program.read(folder + "/report.json"))["engine"]["cycles"].get<double>();
+  };
+  const Outcome outcome = program.run({"compare", a, b, c});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("A  one\nB  two\nC  three\n\nhits           different: C from A\n"
+                                     "picture        different: C from A\nconfiguration  2 keys differ\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("topology.resources  4  2  4\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("image.seed          1  1  2\n"));
+  for (const char* title : {"throughput", "cycles of the test units", "bytes", "memory"})
+    EXPECT_THAT(outcome.out, HasSubstr(std::string("\n") + title));
+  EXPECT_THAT(outcome.out, testing::Not(HasSubstr("resources.0.")));
+  EXPECT_THAT(outcome.out, HasSubstr("more values differ (--all, or --only PATTERN, lists them)"));
+
+  const auto json = nlohmann::json::parse(program.run({"compare", a, b, c, "--json"}).out);
+  EXPECT_EQ(json["same_hits"], nlohmann::json({true, true, false}));
+  const auto& rows = json["sections"][0]["rows"];
+  EXPECT_EQ(json["sections"][0]["name"], "throughput");
+  bool found = false;
+  for (const auto& row : rows) {
+    if (row["name"] != "length") continue;
+    found = true;
+    EXPECT_EQ(row["values"][1], cycles(b));
+    EXPECT_DOUBLE_EQ(row["ratios"][1], cycles(b) / cycles(a));
+  }
+  EXPECT_TRUE(found);
+  for (const auto& section : json["sections"]) {  // a ledger of cycles adds up to the whole
+    if (section["name"] != "cycles of the test units") continue;
+    double box = 0;
+    for (const auto& row : section["rows"])
+      if (row["name"].get<std::string>().starts_with("box ")) box += row["values"][0].get<double>();
+    EXPECT_NEAR(box, 1, 1e-9);
+  }
+}
+
+TEST(CompareCommand, OnlyKeepsWhatAPatternNames) {
+  const Program program;
+  program.write("a.yaml", kConfig);
+  const std::string a = run_into(program, "one"), b = run_into(program, "two", {"topology.resources=2"});
+  const std::string text = program.run({"compare", a, b, "--only", "PACK*issued"}).out;
+  EXPECT_THAT(text, HasSubstr("packets.issued"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("whole run")));
+  EXPECT_THAT(text, testing::Not(HasSubstr("topology.resources")));
+}
+
+TEST(CompareCommand, SaysThatNativeRunsOfOneConfigurationAreTheSame) {
+  const Program program;
+  program.write("a.yaml", kConfig);
+  const std::string a = run_into(program, "one", {"engine.kind=native"}),
+                    b = run_into(program, "two", {"engine.kind=native"});
+  const Outcome outcome = program.run({"compare", a, b});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  if (outcome.out == "identical\n") return;  // the threads kept the same time
+  EXPECT_THAT(outcome.out,
+              HasSubstr("hits           the same\npicture        the same\nconfiguration  the same: these are "
+                        "runs of one configuration with the same result"));
 }
 
 TEST(CompareCommand, RefusesWhatIsNoReport) {

@@ -16,7 +16,7 @@ const char* const kInstances =
     "engine: {threads: 1}\ntopology: {resources: 3}\ncull_planes: {count: 4, nodes: all, levels: all}\n";
 
 Json reported(const Program& program, const std::vector<std::string>& sets) {
-  std::vector<std::string> arguments{"run", "planes.yaml", "--json", "--quiet"};
+  std::vector<std::string> arguments{"run", "planes.yaml", "--json", "--quiet", "--force"};
   for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
   const Outcome outcome = program.run(arguments);
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -55,14 +55,23 @@ TEST(RunCommand, GoesOnWithoutAResourceThatStops) {
   ASSERT_EQ(program.run({"run", "small.yaml", "--out", "whole"}).status, 0);
   const Json whole = Json::parse(program.read("whole/report.json"));
   for (const std::string engine : {"native", "cycle"}) {
-    std::vector<std::string> run{"run",   "small.yaml",
-                                 "--out", "out",
-                                 "--set", "engine.kind=" + engine,
-                                 "--set", "engine.what_if=false",
-                                 "--set", "rays.slots_per_resource=64",
-                                 "--set", "faults.resource.kind=stop",
-                                 "--set", "faults.resource.number=1",
-                                 "--set", "faults.resource.after_rays=20"};
+    std::vector<std::string> run{"run",
+                                 "small.yaml",
+                                 "--force",
+                                 "--out",
+                                 "out",
+                                 "--set",
+                                 "engine.kind=" + engine,
+                                 "--set",
+                                 "engine.what_if=false",
+                                 "--set",
+                                 "rays.slots_per_resource=64",
+                                 "--set",
+                                 "faults.resource.kind=stop",
+                                 "--set",
+                                 "faults.resource.number=1",
+                                 "--set",
+                                 "faults.resource.after_rays=20"};
     if (engine == "cycle") run.insert(run.end(), {"--set", "faults.compare=true"});
     const Outcome outcome = program.run(run);
     ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -61,7 +61,7 @@ class TerminalTable : public testing::Test {
  protected:
   Outcome run(const std::string& config) {
     program_.write("a.yaml", config);
-    return program_.run({"run", "a.yaml", "--out", "o"});
+    return program_.run({"run", "a.yaml", "--out", "o", "--force"});
   }
 
   /// The names of the table's lines.

@@ -68,7 +68,7 @@ TEST(TrafficRun, HasNoHitsToWrite) {
   const Program program;
   program.write("net.yaml", kTraffic);
   for (const std::vector<std::string>& option : {std::vector<std::string>{"--hits"}, {"--dump-rays", "rays.csv"}}) {
-    std::vector<std::string> arguments{"run", "net.yaml"};
+    std::vector<std::string> arguments{"run", "net.yaml", "--force"};
     arguments.insert(arguments.end(), option.begin(), option.end());
     const Outcome outcome = program.run(arguments);
     EXPECT_EQ(outcome.status, 2);

@@ -16,7 +16,7 @@ class VerdictRun : public testing::Test {
  protected:
   Json run(const std::string& config, const std::vector<std::string>& sets) const {
     program_.write("a.yaml", config);
-    std::vector<std::string> words{"run", "a.yaml", "--quiet", "--out", "out"};
+    std::vector<std::string> words{"run", "a.yaml", "--quiet", "--force", "--out", "out"};
     for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
     const Outcome outcome = program_.run(words);
     EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -59,7 +59,9 @@ class KeyEffects : public testing::Test {
     }
     Json report = Json::parse(program_.read("out/report.json"));
     Json config = report["config"];
-    return {"", result_of(std::move(report)), std::move(config)};
+    const std::string picture =
+        std::filesystem::exists(program_.folder() / "out/image.png") ? program_.read("out/image.png") : std::string();
+    return {"", result_of(std::move(report)) + picture, std::move(config)};
   }
 
   void check(const KeyRow& row) {

@@ -24,7 +24,7 @@ class TimedRun : public testing::Test {
     sets.insert(sets.begin(), {"engine.kind=cycle", "engine.what_if=false"});
     arguments.sets = std::move(sets);
     arguments.out = (program_.folder() / "out").string();
-    arguments.quiet = true;
+    arguments.quiet = arguments.force = true;
     app::run_command(arguments);
     return Json::parse(program_.read("out/report.json"));
   }

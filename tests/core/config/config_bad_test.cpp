@@ -30,8 +30,13 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:3:3: image.widht: unknown key; did you mean 'width'?"},
         BadConfig{"KeyOfAnotherSection", SCENE "placement: balanced\n",
                   "test.yaml:2:1: placement: unknown key; did you mean 'rays.placement'?"},
+        BadConfig{"EyeOfText", SCENE "camera: {eye: here, target: [0, 0, 5]}\n",
+                  "test.yaml:2:15: camera.eye: expected auto or a list of 3 numbers, found 'here'"},
+        BadConfig{"FieldOfViewOfNothing", SCENE "camera: {field_of_view: 0}\n",
+                  "test.yaml:2:25: camera.field_of_view: expected auto or a number above 0 to 179 (degrees), found 0"},
         BadConfig{"KeyLikeNothing", SCENE "camera: {zzzzzzzz: 1}\n",
-                  "test.yaml:2:10: camera.zzzzzzzz: unknown key; known here: aperture, focus_distance"},
+                  "test.yaml:2:10: camera.zzzzzzzz: unknown key; known here: eye, target, up, field_of_view, aperture, "
+                  "focus_distance"},
         BadConfig{"DuplicateKey", SCENE "image:\n  width: 5\n  width: 6\n",
                   "test.yaml:4:3: image.width: duplicate key; first given at line 3, column 3"},
         BadConfig{"DuplicateSection", "scene: {builtin: cornell}\nscene: {builtin: sliver}\n",
@@ -113,7 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:8: scene: expected a scene: file, or builtin (cornell, spheres, terrain, "
                   "instances, sliver)"},
         BadConfig{"TwoScenes", "scene: {file: a.glb, builtin: cornell}\n",
-                  "test.yaml:1:31: scene.builtin: expected either file or builtin, found both"},
+                  "test.yaml:1:31: scene.builtin: expected either file or builtin, found both; another scene takes the "
+                  "place of both with --set 'scene={file: NAME}'"},
         BadConfig{"CyclePlacement", SCENE "engine: {kind: cycle}\nrays: {placement: addressed}\n",
                   "test.yaml:3:19: rays.placement: the cycle engine has no addressed; expected balanced or "
                   "round_robin"},
@@ -266,6 +272,22 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:40: topology.link.depth: flow: bubble keeps one place of a link free; "
                   "expected at least 2, "
                   "found 1"},
+        BadConfig{"EyeAlone", SCENE "camera: {eye: [0, 0, 1]}\n",
+                  "test.yaml:2:15: camera.eye: a camera of your own looks at a point; expected camera.target beside "
+                  "camera.eye"},
+        BadConfig{"TargetAlone", SCENE "camera: {target: [0, 0, 1]}\n",
+                  "test.yaml:2:18: camera.target: a camera of your own has a place; expected camera.eye beside "
+                  "camera.target"},
+        BadConfig{"UpAlone", SCENE "camera: {up: [0, 0, 1]}\n",
+                  "test.yaml:2:14: camera.up: only a camera of your own is turned; expected camera.eye and "
+                  "camera.target beside camera.up"},
+        BadConfig{"EyeIsTarget", SCENE "camera: {eye: [0, 0, 1], target: [0, 0, 1]}\n",
+                  "test.yaml:2:34: camera.target: expected another point than camera.eye"},
+        BadConfig{"UpAlongTheView", SCENE "camera: {eye: [0, 9, 0], target: [0, 2, 0]}\n",
+                  "test.yaml:2:9: camera.up: the camera looks along this direction; expected one that is not parallel "
+                  "to the view"},
+        BadConfig{"UpOfNothing", SCENE "camera: {eye: [0, 9, 0], target: [0, 2, 0], up: [0, 0, 0]}\n",
+                  "test.yaml:2:49: camera.up: expected a direction, found a vector of length 0"},
         BadConfig{"OrderedSingle", SCENE "collections: {traversal: ordered}\npackets: {shapes: single}\n",
                   "test.yaml:3:19: packets.shapes: traversal: ordered sorts the hits of a whole strip; "
                   "expected strip, "

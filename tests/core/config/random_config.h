@@ -60,6 +60,11 @@ class RandomFiller {
     value.reset();
     if (pick(2) == 1) field("", value.emplace(), range, "", "");
   }
+  template <class T>
+  void field_or_auto(std::string_view, std::optional<T>& value, config::RealRange range, const char*, const char*) {
+    value.reset();
+    if (pick(2) == 1) field("", value.emplace(), range, "", "");
+  }
   template <class E>
   void choice(std::string_view, E& value, const char*) {
     value = kEnumNames<E>[pick(kEnumNames<E>.size())].value;

@@ -243,6 +243,7 @@ TEST(GltfCamera, WithoutOneACameraIsFittedToTheBounds) {
 TEST(GltfCamera, RefusesCamerasWithoutTheirDetails) {
   GltfBuilder b = GltfBuilder::square();
   b.push("cameras", {{"type", "perspective"}});
+  b.node({{"camera", 0}});
   expect_refused(b, "/cameras/0/perspective", "missing");
 }
 

@@ -73,7 +73,6 @@ std::vector<Damage> document_damages() {
       {"number beyond a float", set("/nodes/0/scale", {1, 1e300, 1}, "expected a number from", "/1")},
       {"unknown mode", set("/meshes/0/primitives/0/mode", 7, "expected an integer from 0 to 6")},
       {"matrix of two", set("/nodes/0/matrix", {1, 2}, "expected an array of 16")},
-      {"animation of nobody", set("/animations/0/channels/0/sampler", 7, "this animation's samplers")},
   };
 }
 
@@ -90,14 +89,6 @@ std::vector<Damage> node_damages() {
        [](ModelFiles& m) -> Verdict {
          const std::size_t second = add_node(m, {{"children", {some_child(m)}}});
          return {{"/nodes/" + std::to_string(second) + "/children/0", "has several parents"}};
-       }},
-      {"child as a root",
-       [](ModelFiles& m) -> Verdict {
-         return {{add_root(m, some_child(m)), "is not a root"}};
-       }},
-      {"root named twice",
-       [](ModelFiles& m) -> Verdict {
-         return {{add_root(m, m.json["scenes"][0]["nodes"][0]), "is named twice"}};
        }},
       {"projective matrix",
        on_node("/mesh", "/matrix", "not an affine transform",

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "report/run/report_difference.h"
+
+namespace carousel::report {
+
+/// A report that is compared, by the name that the user gave.
+struct ComparedRun {
+  std::string name;
+  nlohmann::ordered_json report;
+};
+
+/// A number of all runs. A run that does not have it has no value.
+struct ComparedRow {
+  std::string name, unit;
+  std::vector<std::optional<double>> values;  ///< by run
+  std::vector<std::optional<double>> ratios;  ///< of each value to the first run's; that of the first is 1
+};
+
+/// Rows that belong together: throughput, a ledger, memory.
+struct ComparedSection {
+  std::string name;
+  std::vector<ComparedRow> rows;
+};
+
+/// A text of all runs; empty where a run does not have it.
+struct ComparedText {
+  std::string name;
+  std::vector<std::string> texts;
+};
+
+/// Reports side by side. The first is the one that the others are compared with.
+struct Comparison {
+  std::vector<std::string> runs;              ///< names
+  std::vector<bool> same_hits, same_picture;  ///< by run, as in the first; true where neither has any
+  bool same_configuration = false;            ///< apart from the number of host threads
+  bool deterministic = true;                  ///< every run was; otherwise counts and times may differ from run to run
+  bool identical = false;                     ///< everything outside of `host` is equal
+  std::vector<ComparedText> texts;            ///< the verdict
+  std::vector<ComparedSection> sections;
+  std::vector<ComparedText> configuration;  ///< the keys that differ
+  std::vector<ComparedText> differences;    ///< all other values outside of `host` that differ, by their path
+};
+
+/// Compares two runs or more. With a pattern only rows and keys stay whose name, or whose section's, contains it, in
+/// any case; `*` in it stands for any characters.
+Comparison compare_runs(const std::vector<ComparedRun>& runs, const std::string& only = "");
+
+nlohmann::ordered_json comparison_json(const Comparison& comparison, bool all);
+
+/// For a terminal: first whether the answers are the same, then numbers side by side, then the configuration; with
+/// `all` every value that differs.
+std::string comparison_table(const Comparison& comparison, bool all);
+
+}  // namespace carousel::report

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "scene/gltf/document/document.h"
+
+namespace carousel::scene {
+
+/// The entries of a file's arrays that decide what is seen: all others may have faults without harm.
+struct Uses {
+  std::vector<bool> textures, images, samplers;  ///< those that materials use, occlusion apart, which is not read
+  std::vector<bool> cameras;                     ///< those of nodes
+  std::vector<bool> accessors;                   ///< those of meshes and instances, not of animations or skins
+};
+
+/// For the JSON after check_schema.
+Uses uses_of(const Json& json);
+
+/// True if a texture of the material reads TEXCOORD_<set>; occlusion apart. For the JSON after check_schema.
+bool reads_tex_coords(const Json& material, int set);
+
+}  // namespace carousel::scene

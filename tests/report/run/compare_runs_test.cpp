@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include "report/compare/comparison.h"
+
+namespace carousel::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json report(double cycles, const char* hits = "aa", std::int64_t resources = 4) {
+  return {
+      {"config", {{"engine", {{"kind", "cycle"}, {"threads", cycles}}}, {"topology", {{"resources", resources}}}}},
+      {"engine", {{"cycles", cycles}, {"deterministic", true}}},
+      {"throughput", {{"whole", {{"rays_per_kilocycle", 1000 / cycles}}}}},
+      {"rays", {{"completed", 10}}},
+      {"resources",
+       {{{"units", {{"box", {{"busy", 30}, {"idle", 10}}}}}}, {{"units", {{"box", {{"busy", 10}, {"idle", 50}}}}}}}},
+      {"bytes", {{{"what", "packets"}, {"from", "a"}, {"to", "b"}, {"bytes", 4 * cycles}}}},
+      {"area", {{"units_mm2", 2.5}}},
+      {"digest", {{"hits", hits}, {"image", "ii"}}},
+      {"host", {{"rays_per_second", cycles}}}};
+}
+
+const ComparedRow* find(const Comparison& c, const std::string& section, const std::string& row) {
+  for (const ComparedSection& s : c.sections)
+    for (const ComparedRow& r : s.rows)
+      if (s.name == section && r.name == row) return &r;
+  return nullptr;
+}
+
+TEST(CompareRuns, EqualReportsAreIdenticalWhateverTheHost) {
+  Json other = report(100);
+  other["host"]["rays_per_second"] = 1;
+  other["config"]["engine"]["threads"] = 7;
+  const Comparison c = compare_runs({{"a", report(100)}, {"b", other}});
+  EXPECT_TRUE(c.identical);
+  EXPECT_EQ(comparison_table(c, false), "identical\n");
+}
+
+TEST(CompareRuns, GivesValuesAndRatios) {
+  const Comparison c = compare_runs({{"a", report(100)}, {"b", report(50, "bb", 8)}, {"c", report(200)}});
+  EXPECT_EQ(c.same_hits, (std::vector<bool>{true, false, true}));
+  EXPECT_EQ(c.same_picture, (std::vector<bool>{true, true, true}));
+  const ComparedRow* length = find(c, "throughput", "length");
+  ASSERT_NE(length, nullptr);
+  EXPECT_EQ(length->ratios, (std::vector<std::optional<double>>{1, 0.5, 2}));
+  const ComparedRow* box = find(c, "cycles of the test units", "box busy");
+  ASSERT_NE(box, nullptr);
+  EXPECT_DOUBLE_EQ(*box->values[0], 0.4);
+  const ComparedRow* bytes = find(c, "bytes", "packets, a to b");
+  ASSERT_NE(bytes, nullptr);
+  EXPECT_DOUBLE_EQ(*bytes->values[1], 20);
+  EXPECT_NE(find(c, "area", "units_mm2"), nullptr);
+  EXPECT_EQ(find(c, "energy", "units_mm2"), nullptr);
+  ASSERT_EQ(c.configuration.size(), 1u);
+  EXPECT_EQ(c.configuration[0].name, "topology.resources");
+  EXPECT_EQ(c.configuration[0].texts, (std::vector<std::string>{"4", "8", "4"}));
+}
+
+TEST(CompareRuns, ARowThatOneRunLacksHasNoRatio) {
+  Json native = report(100);
+  native["engine"].erase("cycles");
+  const Comparison c = compare_runs({{"a", native}, {"b", report(100)}});
+  const ComparedRow* length = find(c, "throughput", "length");
+  ASSERT_NE(length, nullptr);
+  EXPECT_FALSE(length->values[0]);
+  EXPECT_FALSE(length->ratios[1]);
+}
+
+TEST(CompareRuns, ALongListIsOneDifference) {
+  Json a = report(100), b = report(100);
+  a["time_series"] = std::vector<int>(500, 1);
+  b["time_series"] = std::vector<int>(500, 2);
+  const Comparison c = compare_runs({{"a", a}, {"b", b}});
+  ASSERT_EQ(c.differences.size(), 1u);
+  EXPECT_EQ(c.differences[0].name, "time_series.0");
+}
+
+TEST(CompareRuns, PatternsKeepRowsSectionsAndKeys) {
+  const std::vector<ComparedRun> runs{{"a", report(100)}, {"b", report(50, "aa", 8)}};
+  const Comparison box = compare_runs(runs, "BOX*id");
+  EXPECT_NE(find(box, "cycles of the test units", "box idle"), nullptr);
+  EXPECT_EQ(find(box, "cycles of the test units", "box busy"), nullptr);
+  EXPECT_TRUE(box.configuration.empty());
+  EXPECT_EQ(compare_runs(runs, "resources").configuration.size(), 1u);
+  EXPECT_EQ(compare_runs(runs, "bytes").sections.size(), 1u) << "a section's name keeps its rows";
+}
+
+}  // namespace
+}  // namespace carousel::report
