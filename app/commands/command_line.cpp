@@ -15,7 +15,9 @@
 #include "app/commands/certify_command.h"
 #include "app/commands/check_command.h"
 #include "app/commands/compare_command.h"
+#include "app/commands/follow_command.h"
 #include "app/commands/inspect_command.h"
+#include "app/commands/report_command.h"
 #include "app/commands/run_command.h"
 #include "app/commands/schema_command.h"
 #include "app/commands/stress_command.h"
@@ -30,7 +32,8 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "sweep", "check", "stress", "accuracy", "inspect", "compare", "schema"};
+const std::vector<std::string> kCommands{"run",     "sweep",   "check",  "stress", "accuracy",
+                                         "inspect", "compare", "follow", "report", "schema"};
 
 void log_to_stderr(bool quiet) {
   // Replaces the logger, so that tests may call main() again.
@@ -74,6 +77,8 @@ struct Arguments {
   CheckArguments check;
   InspectArguments inspect;
   CompareArguments compare;
+  ReportArguments report;
+  FollowArguments follow;
   SchemaArguments schema;
 };
 
@@ -105,6 +110,23 @@ void add_run(CLI::App& program, RunArguments& r) {
   run->add_option("--dump-rays", r.dump_rays,
                   "Write all rays as CSV, which workload: {rays_from: FILE} reads (default: not written)")
       ->type_name("FILE");
+  run->add_flag("--no-html", r.no_html, "Do not write report.html (default: written)");
+  CLI::Option* trace = run->add_option("--trace", r.trace.file,
+                                       "Write a timeline of events that ui.perfetto.dev opens (default: not written)")
+                           ->type_name("FILE");
+  run->add_option(
+         "--trace-window", r.trace.window,
+         "With --trace: only events that begin between these cycles, or seconds of a native run (default: all)")
+      ->needs(trace)
+      ->type_name("A:B");
+  run->add_option("--trace-sample", r.trace.every, "With --trace: only every N-th packet of each resource")
+      ->needs(trace)
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->capture_default_str();
+  run->add_option("--trace-events", r.trace.events, "With --trace: most events")
+      ->needs(trace)
+      ->check(CLI::Range(std::size_t{1'000}, std::size_t{100'000'000}))
+      ->capture_default_str();
   run->add_flag("--json", r.json, kJsonHelp);
   run->add_flag("--quiet", r.quiet, kQuietHelp);
   run->add_flag("--force", r.force, "Run although the topology can deadlock (default: refused)");
@@ -151,7 +173,8 @@ void add_stress(CLI::App& program, StressArguments& s) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   stress->add_option("--seed", s.seed, "Seed of the random pauses between messages")->capture_default_str();
-  stress->add_option("--out", s.out, "Folder for stress.json (default: out/stress, or out/<config name>)")
+  stress
+      ->add_option("--out", s.out, "Folder for stress.json and stress.html (default: out/stress, or out/<config name>)")
       ->type_name("DIR");
   stress->add_flag("--json", s.json, kJsonHelp);
   stress->add_flag("--quiet", s.quiet, kQuietHelp);
@@ -160,7 +183,7 @@ void add_stress(CLI::App& program, StressArguments& s) {
 void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   CLI::App* accuracy = program.add_subcommand("accuracy", "Measure the time and the errors of every level of accuracy");
   add_config_options(*accuracy, a, "a built-in scene of instances");
-  accuracy->add_option("--out", a.out, "Folder for accuracy.json and accuracy.svg (default: out/<config name>)")
+  accuracy->add_option("--out", a.out, "Folder for accuracy.json, .html and .svg (default: out/<config name>)")
       ->type_name("DIR");
   accuracy->add_option("--rays", a.rays, "Most rays of the scene to compare with exact arithmetic")
       ->check(CLI::Range(1u, 10'000'000u))
@@ -211,6 +234,30 @@ void add_compare(CLI::App& program, CompareArguments& c) {
       ->each([&c](const std::string&) { c.expect_identical = true; });
 }
 
+void add_report(CLI::App& program, ReportArguments& r) {
+  CLI::App* report =
+      program.add_subcommand("report", "Make the HTML page of a run, or of another command's JSON, again");
+  report->add_option("folder", r.folder, "Folder of a run, or the JSON of run, stress, accuracy or follow")
+      ->required()
+      ->type_name("PATH");
+  report->add_option("--out", r.out, "Page to write (default: beside the JSON, with the ending .html)")
+      ->type_name("FILE");
+}
+
+void add_follow(CLI::App& program, FollowArguments& f) {
+  CLI::App* follow = program.add_subcommand("follow", "Tell the life of one ray: its waits, packets, tests and hit");
+  add_config_options(*follow, f);
+  follow->add_option("--pixel", f.pixel, "Pixel, from the left and from the top, both from 0 (default: none)")
+      ->type_name("X,Y");
+  follow->add_option("--sample", f.sample, "Sample of the pixel")->capture_default_str();
+  follow->add_option("--bounce", f.bounce, "Bounce of the path: 0 is the camera ray")->capture_default_str();
+  follow->add_flag("--shadow", f.shadow, "The shadow ray of that bounce (default: the ray that seeks a surface)");
+  follow->add_option("--ray", f.ray, "Number of the ray in hits.csv, in place of a pixel (default: none)")
+      ->type_name("ID");
+  follow->add_flag("--json", f.json, kJsonHelp);
+  follow->add_flag("--quiet", f.quiet, kQuietHelp);
+}
+
 void add_commands(CLI::App& program, Arguments& arguments) {
   program.require_subcommand(1);
   program.set_help_flag("-h,--help", "Print this help and exit");
@@ -226,6 +273,8 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   add_accuracy(program, arguments.accuracy);
   add_inspect(program, arguments.inspect);
   add_compare(program, arguments.compare);
+  add_report(program, arguments.report);
+  add_follow(program, arguments.follow);
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
@@ -251,7 +300,8 @@ int run_command_line(int argc, const char* const* argv) {
     spdlog::error("{}\ncarousel --help prints the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
-  log_to_stderr(arguments.run.quiet || arguments.sweep.quiet || arguments.accuracy.quiet || arguments.stress.quiet);
+  log_to_stderr(arguments.run.quiet || arguments.sweep.quiet || arguments.accuracy.quiet || arguments.stress.quiet ||
+                arguments.follow.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
   if (program.got_subcommand("sweep")) return sweep_command(arguments.sweep);
   if (program.got_subcommand("stress")) return stress_command(arguments.stress);
@@ -263,6 +313,8 @@ int run_command_line(int argc, const char* const* argv) {
   }
   if (program.got_subcommand("inspect")) return inspect_command(arguments.inspect);
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
+  if (program.got_subcommand("report")) return report_command(arguments.report);
+  if (program.got_subcommand("follow")) return follow_command(arguments.follow);
   return schema_command(arguments.schema);
 }
 

@@ -11,6 +11,7 @@
 #include "app/build_report/build_report.h"
 #include "app/build_report/traffic_report.h"
 #include "app/build_report/verdict.h"
+#include "app/commands/report_command.h"
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
 #include "app/run/bottleneck.h"
@@ -41,7 +42,7 @@ std::filesystem::path out_folder(const RunArguments& arguments) {
 }
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
-                            const InterruptScope& interrupt, bool quiet) {
+                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
   CountingWorkload counting(workload);
   std::optional<report::ProgressLine> line;
   if (!quiet) line.emplace(stderr);
@@ -49,6 +50,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.threads = p.threads;
   options.stop = interrupt.token();
   options.samples = static_cast<std::size_t>(p.config().report.samples);
+  if (trace != nullptr) options.timeline = trace->wanted();
   options.progress = [&](std::uint64_t completed) {
     if (line) line->update(report::ratio(counting.generated(), job.first_rays()), completed);
   };
@@ -62,6 +64,13 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
     print_result(report::json_text(report::report_json(report)) + "\n");
   else if (!arguments.quiet)
     print_result(table + "files        " + folder.string() + "\n");
+}
+
+/// The report is written last, so that the files it names exist before it does; the page shows the picture beside it.
+void write_report(const std::filesystem::path& folder, const RunArguments& arguments, const report::Report& report) {
+  const nlohmann::ordered_json json = report::report_json(report);
+  if (!arguments.no_html) write_file(folder / "report.html", run_page_of(json, folder));
+  write_file(folder / "report.json", report::json_text(json) + "\n");
 }
 
 /// Simulates the network alone, without rays.
@@ -79,7 +88,7 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   const report::Report report = traffic_report(p, result);
   const std::filesystem::path folder = out_folder(arguments);
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
-  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
+  write_report(folder, arguments, report);
   print_report(arguments, report, report::traffic_table(report), folder);
   return verdict(report, interrupt.status());
 }
@@ -90,6 +99,14 @@ void require_no_hits(const RunArguments& arguments) {
       "synthetic traffic has no rays; expected workload: rays, or a run without this option";
   if (arguments.hits) throw ConfigError({{{}, "--hits", kMessage}});
   if (!arguments.dump_rays.empty()) throw ConfigError({{{}, "--dump-rays", kMessage}});
+  if (!arguments.trace.file.empty()) throw ConfigError({{{}, "--trace", kMessage}});
+}
+
+void write_trace(TraceFile& trace, const TraceArguments& arguments, const ringbus::RunResult& result) {
+  const TraceFile::Written written = trace.write(*result.timeline, result.series ? &*result.series : nullptr);
+  if (written.cut)
+    spdlog::warn("{} has {} events and ends before the run; --trace-window, --trace-sample and --trace-events choose",
+                 arguments.file, written.events);
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -101,8 +118,7 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
     if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
     if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
   }
-  // The report is written last, so that the files it names exist before it does.
-  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
+  write_report(folder, arguments, report);
 }
 
 }  // namespace
@@ -129,7 +145,10 @@ int run_command(const RunArguments& arguments) {
   }
   Workload& workload = verifying ? *verifying : job.workload();
 
-  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet);
+  std::optional<TraceFile> trace;
+  if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
+  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet, trace ? &*trace : nullptr);
+  if (trace) write_trace(*trace, arguments.trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {
     report.bound = bound_of(result);
