@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kWaitMs = 200;
+constexpr int kAskWaitMs = 200;
 
 /// The lines of standard input, without waiting for them.
 class Lines {
@@ -99,7 +99,7 @@ void ask_and_tell(const SweepSetup& setup, const SweepOptions& options, PointMak
   while ((lines.open() || pool.busy()) && !interrupt.interrupted()) {
     for (const std::string& line : lines.read_some()) ask(line);
     const auto started = [&](const SweepPoint& point) { ledger.set(point, "running"); };
-    for (const WorkerPool::Finished& finished : pool.step(kWaitMs, lines.open() ? STDIN_FILENO : -1, started)) {
+    for (const WorkerPool::Finished& finished : pool.step(kAskWaitMs, lines.open() ? STDIN_FILENO : -1, started)) {
       SweepRow& row = rows.rows[by_digest.at(finished.point.digest)];
       settle(setup, finished, row, rows.columns);
       ledger.set(row.point, row.error ? "failed" : "done", row.seconds, row.error ? &*row.error : nullptr);
