@@ -66,8 +66,8 @@ report::Report simulate(const Prepared& p, const ConfigArguments& arguments, con
     report.bound = bound_of(result);
     if (p.config().engine.what_if) report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), true);
   }
-  if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), report);
-  if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, report);
+  if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), true, report);
+  if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, true, report);
   return report;
 }
 
