@@ -10,6 +10,8 @@ find_package(CLI11 REQUIRED)
 find_package(OpenImageIO REQUIRED)
 find_package(draco REQUIRED)
 find_package(meshoptimizer REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(SQLite3 REQUIRED)
 find_package(Boost REQUIRED)   # headers only
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)

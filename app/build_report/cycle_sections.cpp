@@ -101,9 +101,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   for (std::size_t i = 0; r.links && i < r.links->size(); ++i) add_to_link((*r.links)[i], c.links[i], c.cycles);
   LatencyHistogram trips;
   for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
-  if (r.packets && trips.count() > 0)
-    r.packets->latency =
-        report::Latency{trips.mean(), trips.quantile(0.5), trips.quantile(0.95), trips.quantile(0.99), trips.max()};
+  if (r.packets && trips.count() > 0) r.packets->latency = report::latency_of(trips);
   if (r.collections && config.collections.when_full == WhenFull::kSpill) {
     r.collections->spill_bytes_written = r.collections->spill_bytes_read = 0;
     for (const ringbus::cycle::TileResult& tile : c.tiles) {

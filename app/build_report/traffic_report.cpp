@@ -32,8 +32,7 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
   out.accepted = ratio(result.accepted, resource_cycles);
   out.routers_mean = result.routers_mean();
   out.zero_load_latency = result.zero_load_latency(config);
-  const LatencyHistogram& l = result.latency;
-  out.latency = {l.mean(), l.quantile(0.5), l.quantile(0.95), l.quantile(0.99), l.max()};
+  out.latency = report::latency_of(result.latency);
   std::uint64_t busy = 0, busiest = 0;
   for (const ringbus::cycle::LinkUse& link : result.links) {
     busy += link.use.busy;

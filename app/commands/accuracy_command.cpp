@@ -21,6 +21,7 @@
 #include "core/types/enum_names.h"
 #include "report/accuracy/accuracy_plot.h"
 #include "report/accuracy/accuracy_table.h"
+#include "report/html/study_pages.h"
 #include "report/text/progress_line.h"
 #include "ringbus/cycle/what_if.h"
 
@@ -221,13 +222,16 @@ int accuracy_command(const AccuracyArguments& arguments) {
   if (folder.empty())
     folder = std::filesystem::path("out") /
              (arguments.config.empty() ? "accuracy" : std::filesystem::path(arguments.config).stem());
-  const std::string json = report::accuracy_json(accuracy).dump(2) + "\n";
+  const nlohmann::ordered_json result = report::accuracy_json(accuracy);
+  const std::string json = result.dump(2) + "\n";
+  write_file(folder / "accuracy.html", report::html::accuracy_page(result));
   write_file(folder / "accuracy.json", json);
   write_file(folder / "accuracy.svg", report::accuracy_plot(accuracy));
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
-    print_text(report::accuracy_table(accuracy) + "files: " + folder.string() + "/accuracy.json, accuracy.svg\n");
+    print_text(report::accuracy_table(accuracy) + "files: " + folder.string() +
+               "/accuracy.json, accuracy.html, accuracy.svg\n");
   return accuracy.incomplete ? interrupt.status() : kDone;
 }
 

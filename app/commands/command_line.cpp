@@ -15,10 +15,13 @@
 #include "app/commands/certify_command.h"
 #include "app/commands/check_command.h"
 #include "app/commands/compare_command.h"
+#include "app/commands/follow_command.h"
 #include "app/commands/inspect_command.h"
+#include "app/commands/report_command.h"
 #include "app/commands/run_command.h"
 #include "app/commands/schema_command.h"
 #include "app/commands/stress_command.h"
+#include "app/commands/sweep_command.h"
 #include "app/host/exit_status.h"
 #include "app/host/log.h"
 #include "app/host/output.h"
@@ -30,7 +33,8 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run", "check", "stress", "accuracy", "inspect", "compare", "schema"};
+const std::vector<std::string> kCommands{"run",     "sweep",   "check",  "stress", "accuracy",
+                                         "inspect", "compare", "follow", "report", "schema"};
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
   const auto near = nearest_name(name, known);
@@ -61,10 +65,13 @@ struct Arguments {
   LogArguments log;
   AccuracyArguments accuracy;
   RunArguments run;
+  SweepArguments sweep;
   StressArguments stress;
   CheckArguments check;
   InspectArguments inspect;
   CompareArguments compare;
+  ReportArguments report;
+  FollowArguments follow;
   SchemaArguments schema;
 };
 
@@ -108,6 +115,23 @@ void add_run(CLI::App& program, RunArguments& r) {
   run->add_option("--dump-rays", r.dump_rays,
                   "Write all rays as CSV, which workload: {rays_from: FILE} reads (default: not written)")
       ->type_name("FILE");
+  run->add_flag("--no-html", r.no_html, "Do not write report.html (default: written)");
+  CLI::Option* trace = run->add_option("--trace", r.trace.file,
+                                       "Write a timeline of events that ui.perfetto.dev opens (default: not written)")
+                           ->type_name("FILE");
+  run->add_option(
+         "--trace-window", r.trace.window,
+         "With --trace: only events that begin between these cycles, or seconds of a native run (default: all)")
+      ->needs(trace)
+      ->type_name("A:B");
+  run->add_option("--trace-sample", r.trace.every, "With --trace: only every N-th packet of each resource")
+      ->needs(trace)
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->capture_default_str();
+  run->add_option("--trace-events", r.trace.events, "With --trace: most events")
+      ->needs(trace)
+      ->check(CLI::Range(std::size_t{1'000}, std::size_t{100'000'000}))
+      ->capture_default_str();
   run->add_flag("--json", r.json, kJsonHelp);
   run->add_flag("--quiet", r.quiet, kQuietHelp);
   run->add_flag("--force", r.force,
@@ -156,7 +180,8 @@ void add_stress(CLI::App& program, StressArguments& s) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   stress->add_option("--seed", s.seed, "Seed of the random pauses between messages")->capture_default_str();
-  stress->add_option("--out", s.out, "Folder for stress.json (default: out/stress, or out/<config name>)")
+  stress
+      ->add_option("--out", s.out, "Folder for stress.json and stress.html (default: out/stress, or out/<config name>)")
       ->type_name("DIR");
   stress->add_flag("--json", s.json, kJsonHelp);
   stress->add_flag("--quiet", s.quiet, kQuietHelp);
@@ -165,7 +190,7 @@ void add_stress(CLI::App& program, StressArguments& s) {
 void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   CLI::App* accuracy = program.add_subcommand("accuracy", "Measure the time and the errors of every level of accuracy");
   add_config_options(*accuracy, a, "a built-in scene of instances");
-  accuracy->add_option("--out", a.out, "Folder for accuracy.json and accuracy.svg (default: out/<config name>)")
+  accuracy->add_option("--out", a.out, "Folder for accuracy.json, .html and .svg (default: out/<config name>)")
       ->type_name("DIR");
   accuracy->add_option("--rays", a.rays, "Most rays of the scene to compare with exact arithmetic")
       ->check(CLI::Range(1u, 10'000'000u))
@@ -226,11 +251,38 @@ void add_compare(CLI::App& program, CompareArguments& c) {
       ->each([&c](const std::string&) { c.expect_identical = true; });
 }
 
+void add_report(CLI::App& program, ReportArguments& r) {
+  CLI::App* report =
+      program.add_subcommand("report", "Make the HTML page of a run, or of another command's JSON, again");
+  report->add_option("folder", r.folder, "Folder of a run, or the JSON of run, stress, accuracy or follow")
+      ->required()
+      ->type_name("PATH");
+  report->add_option("--out", r.out, "Page to write (default: beside the JSON, with the ending .html)")
+      ->type_name("FILE");
+}
+
+void add_follow(CLI::App& program, FollowArguments& f) {
+  CLI::App* follow = program.add_subcommand("follow", "Tell the life of one ray: its waits, packets, tests and hit");
+  add_config_options(*follow, f);
+  follow->add_option("--pixel", f.pixel, "Pixel, from the left and from the top, both from 0 (default: none)")
+      ->type_name("X,Y");
+  follow->add_option("--sample", f.sample, "Sample of the pixel")->capture_default_str();
+  follow->add_option("--bounce", f.bounce, "Bounce of the path: 0 is the camera ray")->capture_default_str();
+  follow->add_flag("--shadow", f.shadow, "The shadow ray of that bounce (default: the ray that seeks a surface)");
+  follow->add_option("--ray", f.ray, "Number of the ray in hits.csv, in place of a pixel (default: none)")
+      ->type_name("ID");
+  follow->add_flag("--json", f.json, kJsonHelp);
+  follow->add_flag("--quiet", f.quiet, kQuietHelp);
+}
+
 void add_commands(CLI::App& program, Arguments& arguments) {
   program.require_subcommand(1);
   program.set_help_flag("-h,--help", "Print this help and exit");
   program.set_version_flag("--version", version_text, "Print version, commit and compiler, and exit");
   add_run(program, arguments.run);
+  CLI::App* sweep = program.add_subcommand("sweep", "Simulate one configuration with many values of some keys");
+  add_config_options(*sweep, arguments.sweep);
+  add_sweep_options(*sweep, arguments.sweep);
   CLI::App* check = program.add_subcommand(
       "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
   add_config_options(*check, arguments.check);
@@ -238,6 +290,8 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   add_accuracy(program, arguments.accuracy);
   add_inspect(program, arguments.inspect);
   add_compare(program, arguments.compare);
+  add_report(program, arguments.report);
+  add_follow(program, arguments.follow);
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
@@ -264,8 +318,10 @@ int run_command_line(int argc, const char* const* argv) {
     spdlog::error("{}\ncarousel --help prints the usage", hint.empty() ? error.what() : hint);
     return kUsage;
   }
-  start_log(arguments.log, arguments.run.quiet || arguments.accuracy.quiet || arguments.stress.quiet);
+  start_log(arguments.log, arguments.run.quiet || arguments.sweep.quiet || arguments.accuracy.quiet ||
+                               arguments.stress.quiet || arguments.follow.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
+  if (program.got_subcommand("sweep")) return sweep_command(arguments.sweep);
   if (program.got_subcommand("stress")) return stress_command(arguments.stress);
   if (program.got_subcommand("check")) return check_command(arguments.check);
   if (program.got_subcommand("accuracy")) {
@@ -275,6 +331,8 @@ int run_command_line(int argc, const char* const* argv) {
   }
   if (program.got_subcommand("inspect")) return inspect_command(arguments.inspect);
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
+  if (program.got_subcommand("report")) return report_command(arguments.report);
+  if (program.got_subcommand("follow")) return follow_command(arguments.follow);
   return schema_command(arguments.schema);
 }
 

@@ -14,6 +14,7 @@
 #include "app/build_report/build_report.h"
 #include "app/build_report/traffic_report.h"
 #include "app/build_report/verdict.h"
+#include "app/commands/report_command.h"
 #include "app/host/interrupt.h"
 #include "app/host/log.h"
 #include "app/host/output.h"
@@ -65,13 +66,14 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 }
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
-                            const InterruptScope& interrupt, bool quiet) {
+                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
   Phase phase("run");
   CountingWorkload counting(workload);
   ringbus::RunOptions options;
   options.threads = p.threads;
   options.stop = interrupt.token();
   options.samples = static_cast<std::size_t>(p.config().report.samples);
+  if (trace != nullptr) options.timeline = trace->wanted();
   const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
@@ -104,6 +106,13 @@ void finish(const RunArguments& arguments, const report::Report& report, const s
   if (failure) std::rethrow_exception(failure);
 }
 
+/// The report is written last, so that the files it names exist before it does; the page shows the picture beside it.
+void write_report(const std::filesystem::path& folder, const RunArguments& arguments, const report::Report& report) {
+  const nlohmann::ordered_json json = report::report_json(report);
+  if (!arguments.no_html) write_file(folder / "report.html", run_page_of(json, folder));
+  write_file(folder / "report.json", report::json_text(json) + "\n");
+}
+
 /// Simulates the network alone, without rays.
 int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
                         OutputFolder& output) {
@@ -120,7 +129,7 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   const report::Report report = traffic_report(p, result);
   finish(arguments, report, report::traffic_table(report), output, [&] {
     write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
-    write_file(output.staging() / "report.json", report::json_text(report::report_json(report)) + "\n");
+    write_report(output.staging(), arguments, report);
   });
   return verdict(report, interrupt.status());
 }
@@ -131,6 +140,14 @@ void require_no_hits(const RunArguments& arguments) {
       "synthetic traffic has no rays; expected workload: rays, or a run without this option";
   if (arguments.hits) throw ConfigError({{{}, "--hits", kMessage}});
   if (!arguments.dump_rays.empty()) throw ConfigError({{{}, "--dump-rays", kMessage}});
+  if (!arguments.trace.file.empty()) throw ConfigError({{{}, "--trace", kMessage}});
+}
+
+void write_trace(TraceFile& trace, const TraceArguments& arguments, const ringbus::RunResult& result) {
+  const TraceFile::Written written = trace.write(*result.timeline, result.series ? &*result.series : nullptr);
+  if (written.cut)
+    spdlog::warn("{} has {} events and ends before the run; --trace-window, --trace-sample and --trace-events choose",
+                 arguments.file, written.events);
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -142,7 +159,7 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
     if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
     if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
   }
-  write_file(folder / "report.json", report::json_text(report::report_json(report)) + "\n");
+  write_report(folder, arguments, report);
 }
 
 }  // namespace
@@ -172,7 +189,10 @@ int run_command(const RunArguments& arguments) {
   }
   Workload& workload = verifying ? *verifying : job.workload();
 
-  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet);
+  std::optional<TraceFile> trace;
+  if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
+  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet, trace ? &*trace : nullptr);
+  if (trace) write_trace(*trace, arguments.trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {
     report.bound = bound_of(result);

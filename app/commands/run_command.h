@@ -3,13 +3,15 @@
 #include <string>
 
 #include "app/run/prepare.h"
+#include "app/run/trace_events.h"
 
 namespace carousel::app {
 
 struct RunArguments : ConfigArguments {
   std::string out;        ///< folder; empty: out/<name of the configuration>
   std::string dump_rays;  ///< ray CSV to write; empty: none
-  bool hits = false, json = false, quiet = false, force = false;
+  TraceArguments trace;
+  bool hits = false, json = false, quiet = false, force = false, no_html = false;
 };
 
 /// `carousel run`: one simulation. Returns the exit status.

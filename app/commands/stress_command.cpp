@@ -20,6 +20,7 @@
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
+#include "report/html/study_pages.h"
 #include "report/run/report_json.h"
 #include "report/stress/stress_table.h"
 #include "report/text/progress_line.h"
@@ -172,12 +173,14 @@ int stress_command(const StressArguments& arguments) {
   if (folder.empty())
     folder = std::filesystem::path("out") /
              (arguments.config.empty() ? "stress" : std::filesystem::path(arguments.config).stem());
-  const std::string json = report::stress_json(out).dump(2) + "\n";
+  const nlohmann::ordered_json result = report::stress_json(out);
+  const std::string json = result.dump(2) + "\n";
+  write_file(folder / "stress.html", report::html::stress_page(result));
   write_file(folder / "stress.json", json);
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
-    print_text(report::stress_table(out) + "files: " + (folder / "stress.json").string() + "\n");
+    print_text(report::stress_table(out) + "files: " + (folder / "stress.json").string() + ", stress.html\n");
   if (out.broken()) {
     std::string last;  // one message a queue and pattern; the table has the rest
     for (const report::StressRow& row : out.rows)

@@ -52,6 +52,10 @@ void RenderJob::set_recorder(shading::RayRecorder* recorder) {
   if (list_) list_->set_recorder(recorder);
 }
 
+std::pair<std::uint32_t, std::uint32_t> RenderJob::place_of(std::uint32_t path) const {
+  return tracer_ ? tracer_->place_of(path) : std::pair{path, 0u};
+}
+
 std::uint64_t RenderJob::first_rays() const {
   return first_rays_;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/run/prepare.h"
@@ -32,6 +33,8 @@ class RenderJob {
 
   Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);
+  /// Pixel and sample of a path whose rays are in flight; of a ray of a list its number and 0.
+  std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t path) const;
   /// The number of rays that no other ray causes, by which progress is measured.
   std::uint64_t first_rays() const;
 

@@ -1,6 +1,10 @@
 #include "core/numeric/digest.h"
 
+#include <cstring>
+
 #include <fmt/format.h>
+
+#include "core/numeric/bytes_digest.h"
 
 namespace carousel {
 
@@ -43,6 +47,20 @@ HitsDigest hit_term(std::uint32_t pixel, std::uint32_t sample, const RayTag& tag
 
 std::string HitsDigest::hex() const {
   return fmt::format("{:016x}{:016x}", hi, lo);
+}
+
+std::string bytes_digest(std::string_view bytes) {
+  Chain chain;
+  chain.feed(bytes.size());
+  for (; bytes.size() >= 8; bytes.remove_prefix(8)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data(), 8);
+    chain.feed(word);
+  }
+  std::uint64_t rest = 0;
+  for (const char byte : bytes) rest = rest << 8 | static_cast<unsigned char>(byte);
+  chain.feed(rest);
+  return fmt::format("{:016x}{:016x}", chain.b, chain.a);
 }
 
 std::string image_digest(std::span<const float> rgb) {

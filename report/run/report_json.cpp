@@ -171,6 +171,10 @@ Json stress_json(const Stress& stress) {
   return JsonWriter::value_of(stress);
 }
 
+Json ray_life_json(const RayLife& life) {
+  return JsonWriter::value_of(life);
+}
+
 Json report_schema() {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", "Carousel report"},
@@ -181,6 +185,8 @@ Json report_schema() {
   schema.update(SchemaWriter::schema_for(Report{}));
   schema["$defs"]["stress"] = SchemaWriter::schema_for(Stress{});
   schema["$defs"]["stress"]["description"] = "stress.json of carousel stress";
+  schema["$defs"]["ray_life"] = SchemaWriter::schema_for(RayLife{});
+  schema["$defs"]["ray_life"]["description"] = "the life of one ray, as carousel follow --json prints it";
   return schema;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/run/report.h"
+#include "report/sections/ray_life.h"
 #include "report/stress/stress.h"
 
 namespace carousel::report {
@@ -19,5 +20,8 @@ nlohmann::ordered_json stress_json(const Stress& stress);
 
 /// JSON Schema (draft 2020-12) of the report, and of stress.json under $defs.stress: types, units, meanings.
 nlohmann::ordered_json report_schema();
+
+/// What `carousel follow --json` prints, under $defs.ray_life of the schema.
+nlohmann::ordered_json ray_life_json(const RayLife& life);
 
 }  // namespace carousel::report

@@ -24,8 +24,9 @@ class CycleRun {
       : config_(config),
         options_(options),
         link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
-        machine_(config, accel, scene_size, workload, options.statistics,
-                 {options.trace, most_samples(options.samples, series_counters(config))}) {
+        machine_(
+            config, accel, scene_size, workload, options.statistics,
+            {options.trace, most_samples(options.samples, series_counters(config)), options.timeline, options.ray}) {
     machine_.warm(options.warm);
   }
 
@@ -39,6 +40,7 @@ class CycleRun {
     run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle at) {
       stopped = options_.stop.stop_requested();
       note_progress(at);
+      if (machine_.recorder() != nullptr) machine_.recorder()->limit();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
         last_report = now;
@@ -125,6 +127,10 @@ class CycleRun {
     c.epochs = combine(traces);
     c.steps = merge_steps(traces);
     machine_.close(end);
+    if (machine_.recorder() != nullptr) {
+      out.timeline = machine_.recorder()->timeline(end);
+      out.facts = machine_.recorder()->facts();
+    }
     if (options_.samples > 0) out.series = machine_series(machine_, config_);
     for (const auto& tile : machine_.resources()) {
       if (options_.statistics) out.resources.push_back(tile->statistics());

@@ -45,6 +45,7 @@ class NativeRun {
 
   RunResult run() {
     start_ = Clock::now();
+    if (recorder_) recorder_->start(start_);
     for (;;) {
       run_threads();
       if (error_) std::rethrow_exception(error_);
@@ -79,6 +80,10 @@ class NativeRun {
                                       config_.engine.clock_mhz};
     for (std::uint32_t r = 0; r < sinks_.size(); ++r)
       ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, settings, sinks_[r].get()));
+    if (!recorder_ && (options_.timeline.most > 0 || options_.ray != nullptr))
+      recorder_ =
+          std::make_unique<NativeRecorder>(config_, machine_->shared.packets.size(), options_.timeline, options_.ray);
+    for (std::size_t r = 0; recorder_ && r < ports_.size(); ++r) ports_[r]->record(*recorder_);
     for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
     const std::int64_t slots = config_.topology.resources * config_.rays.slots_per_resource;
     for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(shader_workers(config_)); ++w)
@@ -211,7 +216,6 @@ class NativeRun {
   }
 
   void look() { series_.look(Clock::now() - start_, count_, machine_->shared.control, ports_); }
-
   std::string describe_stuck() const {
     std::string text =
         fmt::format("no progress for {} ms with {} rays outstanding; who waits for whom:", options_.stuck_after.count(),
@@ -252,6 +256,9 @@ class NativeRun {
     for (std::size_t i = 0; i < faults_before_.size(); ++i) out.links[i].faults += faults_before_[i];
     out.start = start_;
     if (series_.on()) out.series = series_.finish();
+    if (!recorder_) return out;
+    out.timeline = recorder_->timeline();
+    out.facts = recorder_->facts();
     return out;
   }
 
@@ -278,6 +285,7 @@ class NativeRun {
   std::size_t threads_;
   Clock::time_point start_{};
   NativeSeries series_;
+  std::unique_ptr<NativeRecorder> recorder_;  // null: nothing is recorded
   std::unique_ptr<Progress[]> progress_;
   std::atomic<bool> end_{false};
   bool stuck_ = false;

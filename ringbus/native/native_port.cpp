@@ -35,7 +35,7 @@ NativePort::NativePort(ResourceId id, NativeMachine& machine, const NativePortSe
   const Topology::Ports& ports = machine_.topology.ports(id);
   for (const std::uint32_t wire : ports.in)
     in_ports_.push_back({machine.links[wire].get(), machine_.topology.wires()[wire].direction});
-  for (const std::uint32_t wire : ports.out) out_ports_.push_back({machine.links[wire].get(), {}});
+  for (const std::uint32_t wire : ports.out) out_ports_.push_back({machine.links[wire].get(), wire, {}});
   local_.owner = id;
   local_.owners.resize((machine_.topology.resources() + 63) / 64);
 }
@@ -83,7 +83,11 @@ bool NativePort::send_egress() {
     while (!out.egress.empty()) {
       const std::size_t count = std::min(batch.size(), out.egress.size());
       std::copy_n(out.egress.begin(), count, batch.begin());
+      if (recorder_ != nullptr) [[unlikely]]
+        note_sending({batch.data(), count});
       const std::size_t sent = out.link->try_send({batch.data(), count});
+      if (recorder_ != nullptr && sent > 0) [[unlikely]]
+        note_sent(out, {batch.data(), sent});
       out.egress.erase(out.egress.begin(), out.egress.begin() + static_cast<std::ptrdiff_t>(sent));
       moved |= sent > 0;
       if (sent < count) {
@@ -118,9 +122,11 @@ bool NativePort::receive() {
 
 void NativePort::arrive(PacketId id) {
   Packet& packet = machine_.packet(id);
-  switch (logic_.fate(packet)) {
+  const PacketFate fate = logic_.fate(packet);
+  const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
+  switch (fate) {
     case PacketFate::kRetire:
-      return retire_at_owner(id);
+      return retire_at_owner(id, begin);
     case PacketFate::kDiscard:
       logic_.discard(id);
       return packet_returned();
@@ -137,6 +143,8 @@ void NativePort::arrive(PacketId id) {
     case PacketFate::kForward:
       break;
   }
+  if (recorder_ != nullptr) [[unlikely]]
+    note_visit(id, fate == PacketFate::kTest, begin);
   forward(id);
 }
 
@@ -145,8 +153,10 @@ void NativePort::forward(PacketId id) {
   if (sink_ != nullptr) sink_->record({.kind = EventKind::kHop, .resource = resource_.id(), .packet = id});
 }
 
-void NativePort::retire_at_owner(PacketId id) {
+void NativePort::retire_at_owner(PacketId id, std::uint64_t begin) {
   Packet& packet = machine_.packet(id);
+  if (recorder_ != nullptr) [[unlikely]]
+    note_retired(id, packet);
   if (packet.kind == PacketKind::kRays) {
     // The rays that found no slot wait here and give the packet back, so that rays in flight can go on.
     logic_.admission.add(rounds_.take_slots(packet));
@@ -155,6 +165,8 @@ void NativePort::retire_at_owner(PacketId id) {
   } else {
     logic_.retire(id, packet);
   }
+  if (recorder_ != nullptr) [[unlikely]]
+    note_slice(SliceKind::kRetire, id, begin);
   packet_returned();
 }
 
@@ -175,7 +187,10 @@ bool NativePort::admit() {
   machine_.control.collect(resource_.id(), arrived_);
   for (RayGroup& group : arrived_) wait(std::move(group));
   arrived_.clear();
-  const bool admitted = logic_.admission.admit(resource_, [](std::size_t) {});
+  const bool admitted = logic_.admission.admit(resource_, [this](std::span<const RayId> rays) {
+    if (recorder_ != nullptr) [[unlikely]]
+      note_admitted(rays);
+  });
   if (logic_.admission.short_of_room()) stall(StallReason::kStorage);
   return send_rays_round() || admitted;
 }
@@ -247,7 +262,10 @@ bool NativePort::issue(bool partial) {
       return moved;
     }
     moved = true;
+    const std::uint64_t begin = recorder_ != nullptr ? note_issued(id, packet) : 0;
     if (packet.kind == PacketKind::kTest) test(packet);
+    if (recorder_ != nullptr) [[unlikely]]
+      note_first_test(id, packet, begin);
     if (!id)
       resource_.retire(packet);
     else if (logic_.travels(packet))
@@ -266,32 +284,13 @@ void NativePort::flush_completed(bool all) {
     sink_->record(
         {.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
   rays_completed_ += done.size();
+  if (recorder_ != nullptr) [[unlikely]]
+    note_done(done);
   machine_.control.free(resource_.id(), resource_.freed_slots());
   resource_.freed_slots().clear();
   HitBatch fresh = completed_.fresh();
   done.swap(fresh);
   completed_.push(std::move(fresh));
-}
-
-// ---- the end, good or bad
-
-bool NativePort::drained() const {
-  const bool egress_empty =
-      std::all_of(out_ports_.begin(), out_ports_.end(), [](const OutPort& out) { return out.egress.empty(); });
-  return packets_out() == 0 && egress_empty && logic_.at_rest() && rounds_.empty() &&
-         machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
-}
-
-std::string NativePort::describe() const {
-  std::string text = logic_.describe();
-  if (!rounds_.empty()) text += fmt::format(", {} new rays wait for slots", rounds_.rays());
-  for (const OutPort& out : out_ports_) {
-    if (out.egress.empty()) continue;
-    text += fmt::format("; {} waits for a place in the link to resource {} (depth {}, {} more behind it)",
-                        logic_.describe(out.egress.front()), out.link->to().value, out.link->capacity(),
-                        out.egress.size() - 1);
-  }
-  return text;
 }
 
 }  // namespace carousel::ringbus

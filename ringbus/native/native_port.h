@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ringbus/faults/resource_fault.h"
 #include "ringbus/native/native_machine.h"
+#include "ringbus/native/native_recorder.h"
 #include "ringbus/native/ray_rounds.h"
 #include "ringbus/protocol/port_logic.h"
 #include "ringbus/resource/resource.h"
@@ -28,6 +30,8 @@ class NativePort {
  public:
   /// Keeps references. `sink` may be null.
   NativePort(ResourceId id, NativeMachine& machine, const NativePortSettings& settings, EventSink* sink);
+  /// From now on its packets are noted, or the life of a ray.
+  void record(NativeRecorder& recorder);
 
   /// Does all that can be done now, in the order that keeps the ring moving: send on, receive, admit, issue.
   /// Returns whether anything moved.
@@ -60,8 +64,21 @@ class NativePort {
   /// One link, and the packets that the link has not taken yet.
   struct OutPort {
     Link* link;
+    std::uint32_t wire;
     std::deque<PacketId> egress;
   };
+
+  // With a recorder (native_port_record.cpp).
+  void note_slice(SliceKind kind, PacketId packet, std::uint64_t begin);
+  void note_sending(std::span<const PacketId> packets);
+  void note_sent(const OutPort& out, std::span<const PacketId> packets);
+  void note_visit(PacketId id, bool tested, std::uint64_t begin);
+  void note_admitted(std::span<const RayId> rays);
+  std::uint64_t note_issued(std::optional<PacketId> id, const Packet& packet);
+  void note_first_test(std::optional<PacketId> id, const Packet& packet, std::uint64_t begin);
+  void note_retired(PacketId id, const Packet& packet);
+  void note_done(const HitBatch& done);
+  void note_member(RayFact::Kind kind, std::optional<PacketId> id, const Packet& packet, std::uint64_t at);
 
   bool step_now();
   bool tick_links();
@@ -69,7 +86,7 @@ class NativePort {
   bool receive();
   std::size_t receivable(const InPort& in) const;
   void arrive(PacketId id);
-  void retire_at_owner(PacketId id);
+  void retire_at_owner(PacketId id, std::uint64_t begin);
   void packet_returned();
   void forward(PacketId id);
   void test(Packet& packet) {
@@ -108,8 +125,12 @@ class NativePort {
   std::vector<OutPort> out_ports_;
   std::size_t egress_limit_;
   std::atomic<std::uint32_t> out_{0};  // own packets under way; written by the owner
-  Packet local_;                       // never travels: collections that are tested on the spot
-  std::vector<RayGroup> arrived_;      // scratch of admit() and send_rays_round()
+  NativeRecorder* recorder_ = nullptr;
+  Recording recording_;
+  std::uint64_t sending_since_ = 0;
+  std::vector<std::uint64_t> sending_;  // trips of the packets that are being sent
+  Packet local_;                        // never travels: collections that are tested on the spot
+  std::vector<RayGroup> arrived_;       // scratch of admit() and send_rays_round()
 };
 
 }  // namespace carousel::ringbus

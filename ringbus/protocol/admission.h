@@ -18,7 +18,7 @@ class Admission {
   void add(std::vector<RayId>&& ids) {
     if (!ids.empty()) waiting_.push_back(std::move(ids));
   }
-  /// Admits as many rays as there is room for and calls `admitted(count)` after each group or part of one. Returns
+  /// Admits as many rays as there is room for and calls `admitted(rays)` after each group or part of one. Returns
   /// whether any were.
   template <class Admitted>
   bool admit(Resource& resource, const Admitted& admitted) {
@@ -29,7 +29,7 @@ class Admission {
       short_of_room_ = count < ids.size();
       if (count == 0) break;
       resource.admit(std::span(ids).first(count));
-      admitted(count);
+      admitted(std::span<const RayId>(ids).first(count));
       moved = true;
       if (short_of_room_)
         ids.erase(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));

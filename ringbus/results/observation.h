@@ -2,14 +2,18 @@
 
 #include <cstddef>
 
+#include "ringbus/results/ray_log.h"
+#include "ringbus/results/slice_log.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
 
 /// Parts of a simulated run that are recorded beside its counts.
 struct Observation {
-  TraceWindow steps{};      ///< the steps of these cycles
-  std::size_t samples = 0;  ///< most samples of the time series; 0: none
+  TraceWindow steps{};         ///< the steps of these cycles
+  std::size_t samples = 0;     ///< most samples of the time series; 0: none
+  TimelineOptions timeline{};  ///< slices of time
+  FollowedRay* ray = nullptr;  ///< the life of this ray, in place of the timeline
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -14,6 +14,8 @@
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/link_statistics.h"
 #include "ringbus/results/occupancy_series.h"
+#include "ringbus/results/ray_log.h"
+#include "ringbus/results/slice_log.h"
 #include "ringbus/results/time_series.h"
 
 namespace carousel::ringbus {
@@ -25,6 +27,8 @@ struct RunOptions {
   std::stop_token stop;                          ///< ends the run early; it is then incomplete
   std::chrono::milliseconds stuck_after{10000};  ///< native: a SimulationError after no progress for so long
   std::size_t samples = 0;                       ///< most samples of the time series; 0: there is none
+  TimelineOptions timeline{};                    ///< slices of time that are recorded
+  FollowedRay* ray = nullptr;                    ///< its life is recorded, in place of the timeline
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
@@ -55,6 +59,8 @@ struct RunResult {
   std::vector<CollectionStore::Statistics> collections;
   std::vector<LinkResult> links;
   std::optional<TimeSeries> series;         ///< with RunOptions::samples
+  std::optional<Timeline> timeline;         ///< with RunOptions::timeline; with RunOptions::ray of its packets
+  std::vector<RayFact> facts;               ///< with RunOptions::ray, by time
   std::optional<cycle::CycleResult> cycle;  ///< of the cycle engine
 };
 

@@ -56,20 +56,27 @@ struct TimelineOptions {
 /// Slices of one agent or thread, in the order in which they ended.
 class SliceLog {
  public:
-  explicit SliceLog(const TimelineOptions& options) : options_(options) {}
+  /// At most `room` slices.
+  explicit SliceLog(const TimelineOptions& options, std::size_t room = std::numeric_limits<std::size_t>::max())
+      : options_(options), room_(room) {}
 
   void add(const Slice& slice) {
-    if (recording_ && slice.begin >= options_.first && slice.begin < options_.end) slices_.push_back(slice);
+    if (!recording_ || slice.begin < options_.first || slice.begin >= options_.end) return;
+    if (slice.trip == 0 && options_.every != 1) return;
+    slices_.push_back(slice);
+    recording_ = slices_.size() < room_;
   }
-  bool keeps_units() const { return options_.every == 1; }
   /// Tells whether the next packet that is issued here is to be recorded.
-  bool wants_next() { return issued_++ % options_.every == 0; }
+  bool wants_next() { return options_.every > 0 && issued_++ % options_.every == 0; }
   /// Nothing is added any more.
   void stop() { recording_ = false; }
+  /// Some may be missing.
+  bool stopped() const { return !recording_; }
   const std::vector<Slice>& slices() const { return slices_; }
 
  private:
   TimelineOptions options_;
+  std::size_t room_;
   std::vector<Slice> slices_;
   std::uint64_t issued_ = 0;
   bool recording_ = true;

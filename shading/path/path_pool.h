@@ -40,6 +40,7 @@ class PathPool {
   void release(std::span<const std::uint32_t> indices);
 
   PathState& state(std::uint32_t index) { return states_[index]; }
+  const PathState& state(std::uint32_t index) const { return states_[index]; }
   Vec3& shadow_contribution(std::uint32_t index, std::size_t bounce) {
     return shadow_[std::size_t{index} * shadow_slots_ + bounce];
   }

@@ -24,6 +24,12 @@ CameraConfig lens(CameraConfig camera, const EffectsPlan& plan) {
   return camera;
 }
 
+/// With `effects: all` the effect is on without a pane, and shadow rays are to be those of other scenes.
+bool has_panes(const EffectsPlan& plan) {
+  const PlannedEffect& effect = plan.of(Effect::kTransparentShadows);
+  return effect.on && effect.called_for;
+}
+
 std::uint8_t flags_of(const RayFlags& ray_flags) {
   const int cull = ray_flags.cull == RayFlags::Cull::kBack    ? kRayCullBack
                    : ray_flags.cull == RayFlags::Cull::kFront ? kRayCullFront
@@ -41,16 +47,16 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
              static_cast<std::uint64_t>(config.image.samples)),
       max_depth_(plan_.on(Effect::kBounceRays) ? u32(config.image.max_depth) : 1),
       spawn_(config.accuracy.spawn),
-      ray_flags_{flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays),
-                 static_cast<std::uint8_t>(flags_of(config.shading.shadow_rays) |
-                                           (plan_.on(Effect::kTransparentShadows) ? kRayClosest : 0))},
+      ray_flags_{
+          flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays),
+          static_cast<std::uint8_t>(flags_of(config.shading.shadow_rays) | (has_panes(plan_) ? kRayClosest : 0))},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
       order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
               u32(config.image.width), u32(config.image.height)),
       lights_(scene, plan_.on(Effect::kShadowRays), plan_.on(Effect::kShadowRays) && plan_.on(Effect::kAreaLights)),
       media_(plan_.on(Effect::kVolume)),
-      panes_(plan_.on(Effect::kTransparentShadows)),
+      panes_(has_panes(plan_)),
       pool_(max_paths_in_flight, paths_, plan_.on(Effect::kShadowRays) ? max_depth_ : 0, media_),
       film_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       workers_(std::make_unique<Worker[]>(workers)),

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
@@ -60,6 +61,11 @@ class PathTracer : public Workload {
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
   ShadeWork extra_work(const RayResult& result) const override;
+
+  /// Pixel and sample of a path whose rays are in flight.
+  std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t path) const {
+    return {pool_.state(path).pixel, pool_.state(path).sample};
+  }
 
   const EffectsPlan& plan() const { return plan_; }
 

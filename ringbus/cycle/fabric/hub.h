@@ -21,6 +21,7 @@ class Hub : public Agent {
   const std::vector<OutPort>& out() const { return out_; }
   /// From now on the counters of its links are read over time, at most so often (resource_samples.h).
   void sample(std::size_t most) { samples_ = CounterSamples(most, counter_index(PortCounter::kBusy, out_.size(), 0)); }
+  void record(std::size_t port, const LinkRecorder& recorder) { out_[port].record(recorder); }
   void close(Cycle end) {
     samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read_ports(out_, at, 0, row); });
   }

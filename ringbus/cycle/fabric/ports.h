@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
+#include "ringbus/cycle/fabric/link_recorder.h"
 #include "ringbus/cycle/fabric/token.h"
 #include "ringbus/cycle/time/channel.h"
 #include "ringbus/cycle/time/fifo.h"
@@ -58,6 +60,8 @@ class OutPortOf {
       : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
   /// From now on the link has faults.
   void fail(const LinkFaultTimer& faults) { faults_ = faults; }
+  /// From now on the packets that it sends are noted.
+  void record(const LinkRecorder& recorder) { recorder_ = recorder; }
 
   bool has_place() const { return queue_.size() + reserved_ < places_; }
   void reserve() { ++reserved_; }
@@ -167,8 +171,15 @@ class OutPortOf {
       free_at_ = delivery.link_free;
     }
     // In order even where a head overtakes the tail before it.
-    last_arrival_ = std::max(last_arrival_, arrival + (entry.cut_through ? 0 : cycles - 1));
-    wire_->packets.send(faults_ ? last_arrival_ : arrival + (entry.cut_through ? 0 : cycles - 1), entry.token);
+    arrival += entry.cut_through ? 0 : cycles - 1;
+    last_arrival_ = std::max(last_arrival_, arrival);
+    if (faults_) [[unlikely]]
+      arrival = last_arrival_;
+    wire_->packets.send(arrival, entry.token);
+    if constexpr (std::is_same_v<T, Token>) {
+      if (recorder_.slices != nullptr) [[unlikely]]
+        recorder_.note(entry.token, now, free_at_, arrival);
+    }
     --credits_;
     busy_ += busy;
     ++packets_;
@@ -183,6 +194,7 @@ class OutPortOf {
   std::uint64_t packets_ = 0;
   Cycle last_arrival_ = 0;
   std::optional<LinkFaultTimer> faults_;
+  LinkRecorder recorder_;
 };
 
 using Wire = WireOf<Token>;

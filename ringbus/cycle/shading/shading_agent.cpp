@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "core/system/error.h"
-#include "ringbus/faults/unfinished_rays.h"
-
 namespace carousel::ringbus::cycle {
 
 ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload,
@@ -82,6 +79,8 @@ void ShadingAgent::take_completed(Cycle now) {
       machine_.control.free(ResourceId(r), done.slots);
       held_[r].change(now, -static_cast<std::int64_t>(done.slots.size()));
       if (ledger_) ledger_->remove(done.rays);
+      if (recording_.ray != nullptr) [[unlikely]]
+        note_taken(done.rays, now);
       for (const RayResult& ray : done.rays) queues_.push(ray);
     }
   }
@@ -117,12 +116,18 @@ bool ShadingAgent::finish_jobs(Cycle now) {
     making_ -= job.made;
     outstanding_ += job.made;
     emitted_ += job.made;
+    if (recording_.ray != nullptr) [[unlikely]]
+      note_made(made_[worker], job.began, now);
     gathered_.insert(gathered_.end(), made_[worker].begin(), made_[worker].end());
     made_[worker].clear();
   }
   if (shaded_.empty()) return any;
   const std::size_t before = gathered_.size();
+  if (recording_.ray != nullptr) [[unlikely]]
+    note_shaded(now);
   workload_.shade(WorkerId(0), shaded_, gathered_);
+  if (recording_.ray != nullptr) [[unlikely]]
+    note_made(std::span(gathered_).subspan(before), now, now);
   trace_.note(now, StepKind::kShade, 0, shaded_.size());
   outstanding_ += gathered_.size() - before;
   emitted_ += gathered_.size() - before;
@@ -151,6 +156,8 @@ bool ShadingAgent::start_jobs(Cycle now) {
   while (helpers_.any()) {
     const std::optional<RayResult> ray = queues_.take_any();
     if (!ray) break;
+    if (recording_.ray != nullptr && recording_.ray->ray->is(ray->tag)) [[unlikely]]
+      shade_began_ = now;
     helpers_.give(*ray, cycles_for(*ray), now);
     any = true;
   }
@@ -184,6 +191,8 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
     done += any_hit_cycles_ * job.question->rays.times;
   } else if (const std::optional<RayResult> ray = queues_.take(worker)) {
     job.ray = *ray;
+    if (recording_.ray != nullptr && recording_.ray->ray->is(ray->tag)) [[unlikely]]
+      shade_began_ = now;
     done += cycles_for(*ray);
   } else if (job.made = take_camera_rays(worker); job.made > 0) {
     done += shade_cycles_ * job.made;
@@ -225,58 +234,16 @@ void ShadingAgent::send_groups(Cycle now) {
         port = std::max(port, now) + load_cycles_ * records;
         loaded = std::max(loaded, port);
         loads += records;
+        if (recording_.ray != nullptr) [[unlikely]]
+          note_placed(id, r, now);
         held_[layout.owner(id).value].change(now, static_cast<std::int64_t>(records));
       }
       trace_.note(now, StepKind::kPlace, 0, group.ids.size());
       const Cycle arrival = id_wires_[r].send(4 * group.ids.size(), loaded);
+      if (recording_.ray != nullptr) [[unlikely]]
+        note_arrival(arrival);
       clients_[r].new_rays->send(arrival, {std::move(group.ids), NewRays::Order::kTake, loads});
     }
-  }
-}
-
-// ---- a resource that has stopped
-
-void ShadingAgent::on_note(std::uint32_t resource, CompletedRays::Note note, Cycle now) {
-  if (note == CompletedRays::Note::kLastBeat) {
-    stop_ = {resource, now - latency_, 0, 0};
-    give_up_at_ = now + static_cast<Cycle>(fault_.silence_cycles);
-  } else if (--draining_ == 0) {
-    restart(now);
-  }
-}
-
-void ShadingAgent::give_up(Cycle now) {
-  give_up_at_ = kNever;
-  stop_->noticed = now;
-  const ResourceId stopped(stop_->resource);
-  if (!fault_.recover) throw SimulationError(unfinished_rays(stopped, ledger_->open(), completed_));
-  if (const std::optional<RayResult> ray = helpers_.exclude(clients_[stopped.value].jobs)) queues_.push(*ray);
-  draining_ = clients_.size();
-  order_all(NewRays::Order::kDiscard, now);
-}
-
-/// Begins again, when no packet is under way and no resource holds an ID.
-void ShadingAgent::restart(Cycle now) {
-  stop_->restarted = now;
-  machine_.control.discard();
-  for (Level& held : held_) held.clear(now);
-  machine_.control.exclude(ResourceId(stop_->resource));
-  slots_ -= machine_.stores.front()->slots();
-  order_all(NewRays::Order::kGoOn, now);
-  const RayBatch rays = ledger_->open();
-  rays_restarted_ = rays.size();
-  paths_restarted_ = OutstandingRays::paths_of(rays);
-  if (rays.empty()) return;
-  if (bundled_) builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
-  machine_.control.submit(rays);
-  send_groups(now);
-}
-
-/// Sends an order to all resources, behind the rays that were sent before it.
-void ShadingAgent::order_all(NewRays::Order order, Cycle now) {
-  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
-    const NewRays message{{}, order, 0};
-    clients_[r].new_rays->send(id_wires_[r].send(message.bytes(), now), message);
   }
 }
 

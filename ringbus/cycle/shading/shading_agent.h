@@ -22,6 +22,7 @@
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/observation.h"
+#include "ringbus/results/recording.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -68,6 +69,8 @@ class ShadingAgent final : public Agent {
   /// Its counters over time (shading_samples.h), after close().
   const CounterSamples& samples() const { return samples_; }
   void close(Cycle end);
+  /// From now on the life of a ray is noted.
+  void record(const Recording& recording) { recording_ = recording; }
   /// The times at which a resource stopped and work began anew; absent if no stop was noted.
   const std::optional<StopTimes>& stop() const { return stop_; }
   std::uint64_t rays_restarted() const { return rays_restarted_; }
@@ -95,6 +98,12 @@ class ShadingAgent final : public Agent {
 
   void step(Cycle now);
   void sample(Cycle now);
+  // With a recording (shading_record.cpp).
+  void note_made(std::span<const RayRequest> rays, Cycle at, Cycle end);
+  void note_taken(const HitBatch& rays, Cycle now);
+  void note_shaded(Cycle now);
+  void note_placed(RayId id, std::uint32_t home, Cycle now);
+  void note_arrival(Cycle arrival);
   void read(Cycle at, std::span<std::uint64_t> row) const;
   void take_completed(Cycle now);
   void take_questions(Cycle now);
@@ -145,6 +154,8 @@ class ShadingAgent final : public Agent {
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;
+  Recording recording_;
+  Cycle shade_began_ = 0;  // of the followed ray
   CounterSamples samples_;
   LevelSum waiting_, working_;  // over time
   std::vector<Level> held_;     // by resource: slots in use

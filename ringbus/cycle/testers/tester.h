@@ -101,6 +101,16 @@ class Tester {
   }
   Cycle reads_before(Cycle at) { return store_.busy_before(at); }
 
+  /// Tracks from `track` on: one a kind of unit, and one of the ray store's port.
+  void record(SliceLog& slices, std::uint32_t track) {
+    for (const auto [kind, bank] : banks_) bank.record(slices, track + static_cast<std::uint32_t>(unit_index(kind)));
+    store_.record(slices, track + static_cast<std::uint32_t>(kUnitKinds.size()));
+  }
+  void close(Cycle end) {
+    for (const auto [kind, bank] : banks_) bank.close(end);
+    store_.close(end);
+  }
+
   const UnitBank& bank(UnitKind kind) const { return banks_[kind]; }
   const UnitBank& store() const { return store_; }  ///< the port of the ray store
 

@@ -5,6 +5,7 @@
 #include "core/config/config.h"
 #include "ringbus/cycle/time/clock.h"
 #include "ringbus/cycle/time/fifo.h"
+#include "ringbus/results/slice_log.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -49,10 +50,26 @@ class UnitBank {
 
   /// Cycles before `now` in which a test was started or could not be. Times of calls must not decrease.
   Cycle busy_before(Cycle now) {
-    for (; !spans_.empty() && spans_.front().end <= now; spans_.pop_front())
+    for (; !spans_.empty() && spans_.front().end <= now; spans_.pop_front()) {
       past_ += spans_.front().end - spans_.front().begin;
+      if (slices_ != nullptr) [[unlikely]]
+        slices_->add({.begin = spans_.front().begin, .end = spans_.front().end, .track = track_});
+    }
     const Span next = spans_.empty() ? Span{begun_, free_at_} : spans_.front();
     return past_ + (now > next.begin ? std::min(now, next.end) - next.begin : 0);
+  }
+
+  /// From now on the spans of time in which it is busy are noted: those that busy_before() has passed, and the rest at
+  /// the end of the run.
+  void record(SliceLog& slices, std::uint32_t track) {
+    slices_ = &slices;
+    track_ = track;
+  }
+  void close(Cycle end) {
+    busy_before(end);
+    const Span last = spans_.empty() ? Span{begun_, free_at_} : spans_.front();
+    if (slices_ != nullptr && last.begin < std::min(last.end, end))
+      slices_->add({.begin = last.begin, .end = std::min(last.end, end), .track = track_});
   }
 
   Cycle latency() const { return latency_; }
@@ -69,6 +86,8 @@ class UnitBank {
   // For busy_before(): busy times that may end in the future, of which [begun_, free_at_) is the last.
   Fifo<Span> spans_;
   Cycle begun_ = 0, past_ = 0;
+  SliceLog* slices_ = nullptr;
+  std::uint32_t track_ = 0;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -26,7 +26,11 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       transforms_(settings.accuracy, machine.accel, store_.slots()),
       threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, 0}),
       ledger_(tester_),
-      samples_(settings.observed.samples, kFirstPortCounter) {}
+      samples_(settings.observed.samples, kFirstPortCounter),
+      recording_(settings.recording) {
+  if (recording_.slices != nullptr && recording_.ray == nullptr)
+    tester_.record(*recording_.slices, recording_.track + 1 + static_cast<std::uint32_t>(settings.testers.contexts));
+}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
@@ -85,6 +89,8 @@ void IndependentTile::take_new_rays(Cycle now) {
       ++active_;
       threads_[slot].ray = id;
       threads_[slot].walk.start(accel_.root_key());
+      if (follows(slot)) [[unlikely]]
+        note(RayFact::Kind::kAdmitted, now, now);
       keep_running(slot, now);
     }
   }
@@ -102,6 +108,8 @@ void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
     return;
   }
   thread.strip = *next;
+  if (follows(slot)) [[unlikely]]
+    waits_since_ = now;
   ShapeNeed need{memory_.strip(*next), {}};
   if (thread.walk.enters(next->instance)) need[1] = memory_.transform(next->instance);
   if (shapes_.take(slot, need, now)) test(slot, now);
@@ -132,7 +140,13 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   stack_held_ += held;
   stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);
   stack_.ray_peak_bytes = std::max(stack_.ray_peak_bytes, held);
-  tests_.push({tester_.ray(tester_.read(now, 1), counts), next_turn_++, slot});
+  const Cycle done = tester_.ray(tester_.read(now, 1), counts);
+  tests_.push({done, next_turn_++, slot});
+  if (follows(slot)) [[unlikely]] {
+    note(RayFact::Kind::kFetched, waits_since_, now, thread.strip);
+    note(RayFact::Kind::kWalked, now, done, thread.strip);
+    recording_.ray->facts.back().hit = store_.record(slot).hit;
+  }
   const PacketMember member{thread.ray, 0};
   record({.kind = EventKind::kTest,
           .resource = id_,
@@ -155,9 +169,20 @@ void IndependentTile::complete(std::uint32_t slot) {
 
 void IndependentTile::hand_over(Cycle now) {
   if (completed_.empty()) return;
+  if (recording_.ray != nullptr) [[unlikely]]
+    note_done(now);
   trace_.note(now, StepKind::kComplete, 0, completed_.size());
   record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(completed_.size())});
   completed_port_.send(completed_, freed_slots_, now);
+}
+
+void IndependentTile::note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key) {
+  recording_.ray->facts.push_back({.kind = kind, .at = at, .end = end, .resource = id_.value, .key = key});
+}
+
+void IndependentTile::note_done(Cycle now) {
+  for (const RayResult& ray : completed_)
+    if (recording_.ray->ray->is(ray.tag)) note(RayFact::Kind::kDone, now, now);
 }
 
 // ---- the end, good or bad
@@ -171,6 +196,7 @@ void IndependentTile::read(Cycle at, std::span<std::uint64_t> row) {
 void IndependentTile::close(Cycle end) {
   samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   ledger_.close(end);
+  tester_.close(end);
 }
 
 TileResult IndependentTile::result() const {

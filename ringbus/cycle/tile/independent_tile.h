@@ -73,6 +73,11 @@ class IndependentTile final : public ResourceAgent {
   void serve(Cycle now);
   void test_held_back(Cycle now);
   void complete(std::uint32_t slot);
+  bool follows(std::uint32_t slot) const {
+    return recording_.ray != nullptr && recording_.ray->ray->is(threads_[slot].ray);
+  }
+  void note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key = {});
+  void note_done(Cycle now);
   void hand_over(Cycle now);
   TileState classify() const;
   void read(Cycle at, std::span<std::uint64_t> row);
@@ -107,6 +112,8 @@ class IndependentTile final : public ResourceAgent {
   Cycle now_ = 0;
   TileLedger ledger_;
   CounterSamples samples_;
+  Recording recording_;
+  Cycle waits_since_ = 0;  // the followed ray
   std::vector<OutPort> no_links_;
 };
 

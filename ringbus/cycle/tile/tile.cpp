@@ -48,7 +48,9 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       answers_due_(broadcasts_ ? machine.packets_per_direction : 0),
       trips_(machine.first_packet(id).value, machine.topology.directions() * machine.packets_per_direction),
       ledger_(tester_),
+      recording_(settings.recording),
       samples_(settings.observed.samples, counter_index(PortCounter::kBusy, ports_.out.size(), kFirstPortCounter)) {
+  record_parts();
   using Kind = FaultsConfig::Resource::Kind;
   pauses_ = fault_.kind == Kind::kPause && fault_.number == id.value;
   stops_ = fault_.kind == Kind::kStop && fault_.number == id.value;
@@ -209,8 +211,11 @@ void Tile::take_new_rays(Cycle now) {
 
 bool Tile::admit() {
   if (logic_.admission.empty()) return false;
-  const bool moved =
-      logic_.admission.admit(resource_, [this](std::size_t count) { trace_.note(now_, StepKind::kNewRays, 0, count); });
+  const bool moved = logic_.admission.admit(resource_, [this](std::span<const RayId> rays) {
+    trace_.note(now_, StepKind::kNewRays, 0, rays.size());
+    if (recording_.ray != nullptr) [[unlikely]]
+      note_admitted(rays);
+  });
   write_spilled(now_);
   storage_full_ = logic_.admission.short_of_room();
   return moved;
@@ -226,6 +231,8 @@ bool Tile::send(Cycle now) {
 
 void Tile::hand_over(Cycle now) {
   if (done_.empty()) return;
+  if (recording_.ray != nullptr) [[unlikely]]
+    note_done(now);
   sink_.record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(done_.size())});
   trace_.note(now, StepKind::kComplete, 0, done_.size());
   completed_port_.send(done_, done_slots_, now);

@@ -86,6 +86,7 @@ class Tile final : public ResourceAgent {
     std::vector<std::uint32_t> tested;  // slots of its rays, for RaysInTest
     HitBatch completed;                 // rays handed over then, with the slots they leave
     std::vector<std::uint32_t> freed_slots;
+    Cycle since = 0, begun = 0;  // the packet holds it; its tests began
     bool subtree = false;
     bool has_data = false;  // it came from the issue queue with its shapes
   };
@@ -95,6 +96,17 @@ class Tile final : public ResourceAgent {
     bool takes_data = false;    // it waits for its shapes
     std::uint32_t spilled = 0;  // reads of spilled entries that it waits for
   };
+
+  // With recordings (tile_record.cpp).
+  void record_parts();
+  void note_dispatch(Cycle begin, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
+  void note_issued(PacketId id, Cycle now);
+  void note_test(const Context& context, Cycle now);
+  void note_admitted(std::span<const RayId> rays);
+  void note_tested(const Packet& packet, PacketId id, Cycle at);
+  Hit hit_of(RayId ray) const;
+  void note_retired(PacketId id);
+  void note_done(Cycle now);
 
   std::uint64_t hops() const;
   void sample(Cycle now);
@@ -162,7 +174,7 @@ class Tile final : public ResourceAgent {
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
   Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
-  void occupy_dispatch(Cycle now, std::size_t ids);
+  void occupy_dispatch(Cycle now, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip = true);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
   bool may_inject(const Packet& packet) const;
   bool dispatch_wanted() const;
@@ -224,6 +236,7 @@ class Tile final : public ResourceAgent {
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
   IdCensus census_;
+  Recording recording_;
   CounterSamples samples_;
   LevelSum ids_, collections_;  // over time
 };

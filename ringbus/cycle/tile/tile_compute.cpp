@@ -22,6 +22,9 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   Packet& packet = machine_.packet(id);
   const bool answers = broadcasts_ && packet.owner != id_;
   const TestOutcome outcome = resource_.test(answers ? begin_answer(machine_, id_, id) : packet);
+  if (recording_.ray != nullptr) [[unlikely]]
+    note_tested(answers ? machine_.answer(id_, id) : packet, id, at);
+  context.since = now_;
   context.packet = id;
   context.counts = outcome.counts;
   context.reads = outcome.reads;
@@ -50,6 +53,7 @@ void Tile::start_tests(Cycle now) {
 void Tile::start(Context& context, Cycle now) {
   if (context.subtree) {
     enter(context, ContextPhase::kWalking);
+    context.begun = now;
     visits_.begin(user_of(context), context.reads, now);
     if (context.has_data) shapes_.release(user_of(context), now);  // its rays have taken it
     return;
@@ -63,6 +67,7 @@ void Tile::start(Context& context, Cycle now) {
 }
 
 void Tile::compute(Context& context, Cycle at) {
+  context.begun = at;
   enter(context, ContextPhase::kComputing, tester_.strip(at, context.counts, context.reads, context.bundle_passes));
 }
 
@@ -93,6 +98,8 @@ void Tile::end_test(Context& context, Cycle now) {
   const PacketId id = context.packet;
   const Packet& packet = machine_.packet(id);
   trace_.note(now, StepKind::kTested, id.value, packet.members.size());
+  if (recording_.slices != nullptr) [[unlikely]]
+    note_test(context, now);
   if (!context.subtree) shapes_.release(user_of(context), now);
   enter(context, ContextPhase::kFree);
   context.subtree = false;
@@ -100,7 +107,7 @@ void Tile::end_test(Context& context, Cycle now) {
   in_test_.end(context.tested);
   take_completed(context.completed, context.freed_slots);
   if (packet.owner == id_ && !logic_.travels(packet)) {
-    occupy_dispatch(now, packet.members.size());
+    occupy_dispatch(now, packet.members.size(), SliceKind::kRetire, id);
     retire_at_owner(id);
   } else {
     depart(id, now, true);

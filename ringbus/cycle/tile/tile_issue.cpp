@@ -25,7 +25,7 @@ bool Tile::handle_issue(Cycle now) {
   if (issue.takes_data) shapes_.leave_queue(issue.user);
   trips_.inject(id.value, now);
   trace_.note(now, StepKind::kIssue, id.value, packet.members.size());
-  occupy_dispatch(now, packet.members.size());
+  occupy_dispatch(now, packet.members.size(), SliceKind::kIssue, id);
   if (tested) {
     if (travels) out_for(packet).reserve();
     if (issue.takes_data) shapes_.hand_over(issue.user, user_of(*context));
@@ -126,6 +126,8 @@ bool Tile::fill_issue(Cycle now) {
     }
     logic_.free.take();
     moved = true;
+    if (recording_.slices != nullptr) [[unlikely]]
+      note_issued(*id, now);
     Issue issue{*id, static_cast<ShapeBuffer::User>(contexts_.size() + issued_++ % issue_places_)};
     issue.takes_data = fetches_ahead(packet);
     // The issuer cannot know whether all rays have their copies, so it takes the transform in any case.

@@ -26,7 +26,7 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
 /// One of the resources that have heard a packet of this one has answered.
 void Tile::take_answer(std::size_t d, Cycle now) {
   const Token token = ports_.in[d].take(now);
-  occupy_dispatch(now, token.rays);
+  occupy_dispatch(now, token.rays, SliceKind::kRetire, token.packet);
   if (--answers_due_[token.packet.value - machine_.first_packet(id_).value] > 0) return;
   if (logic_.only_forwards()) return discard_at_owner(token.packet);
   collect_answers(machine_, token.packet);
@@ -36,17 +36,21 @@ void Tile::take_answer(std::size_t d, Cycle now) {
 void Tile::retire_at_owner(PacketId id) {
   Packet& packet = machine_.packet(id);
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
+  if (recording_.ray != nullptr) [[unlikely]]
+    note_retired(id);
   trips_.return_home(id.value, now_);
   logic_.retire(id, packet);
   write_spilled(now_);
 }
 
-void Tile::occupy_dispatch(Cycle now, std::size_t ids) {
+void Tile::occupy_dispatch(Cycle now, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip) {
   const Cycle cycles = dispatch_cycles(ids);
   const Cycle start = std::max(dispatch_free_, now);
   if (start != dispatch_ends_) dispatch_since_ = start;
   dispatch_ends_ = dispatch_free_ = start + cycles;
   dispatch_busy_ += cycles;
+  if (recording_.slices != nullptr) [[unlikely]]
+    note_dispatch(start, ids, kind, packet, has_trip);
 }
 
 bool Tile::cut_through(Cycle now, bool at_once) {
@@ -85,7 +89,7 @@ bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
   --token.skip;
   ++passed_;
   passed_rays_ += token.rays;
-  occupy_dispatch(now, token.rays);
+  occupy_dispatch(now, token.rays, SliceKind::kPass, token.packet);
   ports_.out[d].push(token, dispatch_free_, false);
   return true;
 }
@@ -102,7 +106,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
     const Token token = in.take(now);
     ++passed_;
     passed_rays_ += token.rays;
-    occupy_dispatch(now, token.rays);
+    occupy_dispatch(now, token.rays, SliceKind::kPass, token.packet, false);
     return true;
   }
   const PacketId id = in.front().packet;
@@ -111,7 +115,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   if (fate == PacketFate::kRetire || fate == PacketFate::kDiscard) {
     const bool retires = fate == PacketFate::kRetire;
     in.take(now);
-    occupy_dispatch(now, retires ? packet.members.size() : 0);
+    occupy_dispatch(now, retires ? packet.members.size() : 0, SliceKind::kRetire, id);
     retires ? retire_at_owner(id) : discard_at_owner(id);
     return true;
   }
@@ -121,7 +125,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   const bool heard = broadcasts_ && packet.kind == PacketKind::kTest;
   if (logic_.only_forwards()) {
     in.take(now);
-    occupy_dispatch(now, 0);
+    occupy_dispatch(now, 0, SliceKind::kPass, id);
     if (heard) begin_answer(machine_, id_, id);
     depart(id, dispatch_free_, false);
     return true;
@@ -130,7 +134,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   if (fate == PacketFate::kTest && context == nullptr) return false;
   in.take(now);
   trace_.note(now, StepKind::kTake, id.value, packet.members.size());
-  occupy_dispatch(now, packet.members.size());
+  occupy_dispatch(now, packet.members.size(), fate == PacketFate::kTest ? SliceKind::kVisit : SliceKind::kPass, id);
   if (fate == PacketFate::kTest) {
     out.reserve();
     begin_test(*context, id, dispatch_free_, false);

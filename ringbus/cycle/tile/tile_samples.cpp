@@ -30,6 +30,7 @@ void Tile::close(Cycle end) {
   samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   ledger_.close(end);
   census_.until(end, resource_.collections().memberships());
+  tester_.close(end);
   // The dispatch stage may still look through the IDs of the last packet.
   if (dispatch_ends_ > end) dispatch_busy_ -= dispatch_ends_ - std::max(end, dispatch_since_);
 }

@@ -4,6 +4,7 @@
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/resource/settings.h"
 #include "ringbus/results/observation.h"
+#include "ringbus/results/recording.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -19,6 +20,7 @@ struct TileSettings {
   FaultsConfig::Resource fault;
   bool statistics = true;
   Observation observed;
+  Recording recording{};
 };
 
 inline TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
@@ -32,7 +34,8 @@ inline TileSettings tile_settings(const Config& config, ResourceId id, float sce
           config.topology.link,
           config.faults.resource,
           statistics,
-          observed};
+          observed,
+          {}};
 }
 
 }  // namespace carousel::ringbus::cycle

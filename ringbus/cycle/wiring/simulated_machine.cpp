@@ -29,6 +29,8 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
       shared_(config, accel, scene_size, local_packets(config)),
       shape_memory_(accel, config.accuracy),
       network_(shared_, config.topology.link, config.faults, config.testers.contexts) {
+  if (observed.timeline.most > 0 || observed.ray != nullptr)
+    recorder_ = std::make_unique<Recorder>(config, shared_, observed);
   std::vector<SidePorts> sides;
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
@@ -37,9 +39,11 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
         std::make_unique<SideChannels>(config.shading.idle_resources_shade, calls_shader(config, accel)));
     const SidePorts& side = sides.emplace_back(channels_.back()->ports());
     cache_clients.push_back({side.fetch, side.fetched});
-    const TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
+    TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
+    if (recorder_) settings.recording = recorder_->of_resource(id);
     if (shared_.topology.has_packets()) {
       Network::NodePorts links = network_.ports_at(id);
+      record_links(id, [&](std::size_t port, const LinkRecorder& to) { links.out[port].record(to); });
       resources_.push_back(std::make_unique<Tile>(id, shared_, shape_memory_, settings,
                                                   Tile::Ports{side, std::move(links.in), std::move(links.out)}));
     } else {
@@ -47,9 +51,15 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     }
   }
   shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
+  if (recorder_) shading_->record(recorder_->of_shading());
   memory_ = std::make_unique<MemorySystem>(config.memory, cache_clients);
   memory_->memory().sample(observed.samples);
-  for (const auto& hub : network_.hubs()) hub->sample(observed.samples);
+  for (std::uint32_t h = 0; h < network_.hubs().size(); ++h) {
+    Hub& hub = *network_.hubs()[h];
+    hub.sample(observed.samples);
+    record_links(ResourceId(static_cast<std::uint32_t>(resources_.size()) + h),
+                 [&](std::size_t port, const LinkRecorder& to) { hub.record(port, to); });
+  }
 }
 
 std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads) const {

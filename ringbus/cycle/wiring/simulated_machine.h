@@ -12,6 +12,7 @@
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/wiring/memory_system.h"
 #include "ringbus/cycle/wiring/network.h"
+#include "ringbus/cycle/wiring/recorder.h"
 #include "ringbus/cycle/wiring/side_channels.h"
 #include "ringbus/protocol/machine.h"
 
@@ -29,6 +30,8 @@ class SimulatedMachine {
   const MemorySystem& memory() const { return *memory_; }
   /// Before the start.
   void warm(const WarmCaches& caches) { memory_->warm(caches); }
+  /// Null unless a timeline or the life of a ray is recorded.
+  Recorder* recorder() const { return recorder_.get(); }
   const ShadingAgent& shading() const { return *shading_; }
   const std::vector<std::unique_ptr<ResourceAgent>>& resources() const { return resources_; }
   const std::vector<std::unique_ptr<SideChannels>>& channels() const { return channels_; }  ///< by resource
@@ -58,12 +61,21 @@ class SimulatedMachine {
   }
 
  private:
+  /// Calls `record` with each port of a node and where its packets are to be noted, if they are.
+  template <class Record>
+  void record_links(ResourceId node, const Record& record) {
+    const auto& out = shared_.topology.ports(node).out;
+    for (std::size_t port = 0; recorder_ && port < out.size(); ++port)
+      record(port, recorder_->of_link(node, out[port]));
+  }
+
   const Config& config_;
   Machine shared_;
   ShapeMemory shape_memory_;
   Network network_;
   std::vector<std::unique_ptr<SideChannels>> channels_;  // by resource
   std::vector<std::unique_ptr<ResourceAgent>> resources_;
+  std::unique_ptr<Recorder> recorder_;  // null: nothing is recorded
   std::unique_ptr<MemorySystem> memory_;
   std::unique_ptr<ShadingAgent> shading_;
 };

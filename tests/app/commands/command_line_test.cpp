@@ -48,7 +48,7 @@ TEST(CommandLine, HelpSaysWhatEachOptionDoesAndItsDefault) {
   EXPECT_THAT(undescribed_options("  --seed UINT  of pauses\n"), testing::SizeIs(1));
   EXPECT_THAT(undescribed_options("  --seed UINT=1               Seed of the random pauses\n"), IsEmpty());
   const Program program;
-  for (const char* command : {"run", "check", "stress", "accuracy", "inspect", "compare", "schema"})
+  for (const char* command : {"run", "check", "stress", "accuracy", "inspect", "compare", "follow", "schema"})
     EXPECT_THAT(undescribed_options(program.run({command, "--help"}).out), IsEmpty()) << command;
 }
 
@@ -59,18 +59,19 @@ struct BadUsage {
 
 TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
-  for (const BadUsage& bad :
-       std::vector<BadUsage>{{{}, "error: expected a command: run, check, stress, accuracy, inspect, compare, schema"},
-                             {{"rnu", "a.yaml"},
-                              "error: unknown command rnu; did you mean run?; known are run, check, stress, accuracy, "
-                              "inspect, compare, schema"},
-                             {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
-                             {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},
-                             {{"run"}, "error: config is required"},
-                             {{"run", "a.yaml", "--set"}, "--set"},
-                             {{"accuracy", "--cases", "3"}, "--cases requires --certify"},
-                             {{"accuracy", "--certify", "--cases", "3", "--seconds", "2"}, "excludes"},
-                             {{"schema", "repot"}, "repot not in {config,report}"}}) {
+  for (const BadUsage& bad : std::vector<BadUsage>{
+           {{},
+            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, follow, report, schema"},
+           {{"rnu", "a.yaml"},
+            "error: unknown command rnu; did you mean run?; known are run, sweep, check, stress, accuracy, "
+            "inspect, compare, follow, report, schema"},
+           {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
+           {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},
+           {{"run"}, "error: config is required"},
+           {{"run", "a.yaml", "--set"}, "--set"},
+           {{"accuracy", "--cases", "3"}, "--cases requires --certify"},
+           {{"accuracy", "--certify", "--cases", "3", "--seconds", "2"}, "excludes"},
+           {{"schema", "repot"}, "repot not in {config,report}"}}) {
     const Outcome outcome = program.run(bad.arguments);
     EXPECT_EQ(outcome.status, 2) << bad.message;
     EXPECT_THAT(outcome.err, HasSubstr(bad.message));

@@ -193,11 +193,11 @@ void MachineSpace::learn(const Row& refused, const std::vector<std::string>& com
     with_these[f] = {refused[f]};
   }
   bool believed = !together.empty();
-  for (int trial = 0; believed && trial < 5; ++trial) {
+  for (int trial = 0; believed && trial < 20; ++trial) {
     const Row other = draw_any(random, with_these);
     const bool holds =
         std::all_of(together.begin(), together.end(), [&](const Level& l) { return other[l.factor] == l.level; });
-    believed = !holds || !complaints(other).empty();
+    believed = !holds || how_often(complaints(other)) > 0;  // most random rows are refused, for other reasons
   }
   if (!believed) {
     together.clear();

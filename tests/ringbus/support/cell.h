@@ -16,6 +16,7 @@ struct Cell {
   bool tight_storage = false;  ///< bounded collection storage at its least
   cycle::TraceWindow trace{};  ///< of the cycle engine
   std::size_t samples = 0;     ///< of the time series
+  TimelineOptions timeline{};  ///< slices of time that are recorded
   std::stop_token stop{};      ///< ends the run, which is then incomplete
   bool non_opaque = false;     ///< half of the scene's triangles, and spheres; rays have flags
   float away = 0.5f;           ///< rays start within so many extents of the scene around it

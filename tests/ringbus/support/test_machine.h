@@ -58,6 +58,7 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   options.threads = cell.threads;
   options.trace = cell.trace;
   options.samples = cell.samples;
+  options.timeline = cell.timeline;
   options.stop = cell.stop;
   Outcome out;
   try {

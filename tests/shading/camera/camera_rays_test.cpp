@@ -52,7 +52,9 @@ TEST(CameraRays, OrthographicRaysAreParallelAndKeepTheWindow) {
 }
 
 TEST(CameraRays, LensRaysMeetInTheFocalPlane) {
-  const CameraConfig lens{0.5f, 3.0f};
+  CameraConfig lens;
+  lens.aperture = 0.5f;
+  lens.focus_distance = 3;
   const CameraRays rays(scene::Camera{}, lens, 64, 64);
   const Ray a = rays.ray(10, 20, {{0.5f, 0.5f}, {0.1f, 0.9f}}), b = rays.ray(10, 20, {{0.5f, 0.5f}, {0.8f, 0.3f}});
   EXPECT_NE(a.origin, b.origin);

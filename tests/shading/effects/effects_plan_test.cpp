@@ -48,7 +48,10 @@ std::vector<std::string> all_but(Effect effect) {
 
 Config config_for(Effect effect) {
   Config config = small_image();
-  if (effect == Effect::kDepthOfField) config.camera = {0.8f, 3.0f};
+  if (effect == Effect::kDepthOfField) {
+    config.camera.aperture = 0.8f;
+    config.camera.focus_distance = 3;
+  }
   return config;
 }
 

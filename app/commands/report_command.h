@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace carousel::app {
+
+struct ReportArguments {
+  std::string folder;  ///< of a run, or a JSON file that a command wrote
+  std::string out;     ///< page to write; empty: beside that file
+};
+
+/// report.html of a run whose picture, if it has one, is `folder`/image.png.
+std::string run_page_of(const nlohmann::ordered_json& report, const std::filesystem::path& folder);
+
+/// `carousel report`: makes a page again from report.json and image.png of a run, or of another command's JSON. Returns
+/// the exit status.
+int report_command(const ReportArguments& arguments);
+
+}  // namespace carousel::app

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/prepare.h"
+
+namespace CLI {
+class App;
+}
+
+namespace carousel::app {
+
+struct SweepArguments : ConfigArguments {
+  std::vector<std::string> vary, exclude, scenes;
+  std::optional<std::size_t> points;  ///< of a Latin hypercube; absent: the whole grid
+  std::uint64_t seed = 1;
+  std::int64_t repeat = 1;
+  std::size_t jobs = 0;  ///< 0: as many as cores
+  std::string shard;     ///< "I/N"; empty: all points
+  std::vector<std::string> merge;
+  std::vector<std::string> results;
+  std::string pareto, out;
+  bool dry_run = false, retry_failed = false, ask = false, tell = false, json = false, quiet = false;
+};
+
+/// Adds the options of `carousel sweep`.
+void add_sweep_options(CLI::App& command, SweepArguments& arguments);
+
+/// `carousel sweep`: many runs of one configuration with other values of some keys. Returns the exit status: kBroken if
+/// a point failed.
+int sweep_command(const SweepArguments& arguments);
+
+}  // namespace carousel::app

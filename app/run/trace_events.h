@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/system/atomic_file.h"
+#include "ringbus/results/slice_log.h"
+#include "ringbus/results/time_series.h"
+
+namespace carousel::app {
+
+/// The parts of a run that --trace asks for.
+struct TraceArguments {
+  std::string file;                ///< empty: none
+  std::string window;              ///< A:B in cycles, or seconds of a native run; empty: the whole run
+  std::uint64_t every = 1;         ///< of the packets of each resource
+  std::size_t events = 1'000'000;  ///< most events
+};
+
+/// A file of events in Chrome's JSON, which ui.perfetto.dev and chrome://tracing open. A cycle stands for a
+/// microsecond.
+class TraceFile {
+ public:
+  /// Makes the file, so that nothing is simulated for a file that cannot be written. Throws FileError, and a
+  /// ConfigError for a window that is none. `native`: times are nanoseconds of the host.
+  TraceFile(const TraceArguments& arguments, bool native);
+
+  /// For the engine.
+  ringbus::TimelineOptions wanted() const;
+
+  struct Written {
+    std::size_t events = 0;
+    bool cut = false;  ///< events were left out, for there were too many
+  };
+  /// `series` may be null. Occupancies become counters, packets flows from part to part.
+  Written write(const ringbus::Timeline& timeline, const ringbus::TimeSeries* series);
+
+ private:
+  AtomicFile file_;
+  ringbus::TimelineOptions wanted_;
+  std::size_t most_;
+  bool native_;
+};
+
+}  // namespace carousel::app

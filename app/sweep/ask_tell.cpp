@@ -1,0 +1,111 @@
+#include "app/sweep/ask_tell.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <map>
+
+#include <poll.h>
+#include <unistd.h>
+
+#include "app/host/output.h"
+#include "app/sweep/sweep_files.h"
+#include "core/system/error.h"
+
+namespace carousel::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kAskWaitMs = 200;
+
+/// The lines of standard input, without waiting for them.
+class Lines {
+ public:
+  bool open() const { return open_; }
+  std::vector<std::string> read_some() {
+    std::vector<std::string> out;
+    for (pollfd in{STDIN_FILENO, POLLIN, 0}; open_ && poll(&in, 1, 0) > 0;) {
+      char buffer[4096];
+      const ssize_t count = ::read(STDIN_FILENO, buffer, sizeof buffer);
+      if (count < 0 && errno == EINTR) continue;
+      open_ = count > 0;
+      if (open_) rest_.append(buffer, static_cast<std::size_t>(count));
+      if (!open_ && !rest_.empty()) rest_ += '\n';
+    }
+    for (std::size_t end; (end = rest_.find('\n')) != std::string::npos; rest_.erase(0, end + 1))
+      if (rest_.find_first_not_of(" \t\r") < end) out.push_back(rest_.substr(0, end));
+    return out;
+  }
+
+ private:
+  std::string rest_;
+  bool open_ = true;
+};
+
+void tell(const Json& json) {
+  print_result(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+/// The point of a line. Throws ConfigError.
+SweepPoint asked(const std::string& line, PointMaker& maker, SweepRows& rows) {
+  const Json json = Json::parse(line, nullptr, false);
+  const auto fail = [&](const std::string& message) { throw ConfigError({{{"--ask", 0, 0}, "", message}}); };
+  if (!json.is_object()) fail("expected a JSON object of keys and values in a line");
+  Choice choice;
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) {
+    choice.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
+    keys.push_back(key);
+  }
+  if (rows.rows.empty()) rows.keys = keys;
+  if (!std::is_permutation(keys.begin(), keys.end(), rows.keys.begin(), rows.keys.end()))
+    fail("expected the same keys in every line");
+  std::sort(choice.begin(), choice.end(), [&](const KeyValue& a, const KeyValue& b) {
+    const auto place = [&](const KeyValue& k) { return std::find(rows.keys.begin(), rows.keys.end(), k.first); };
+    return place(a) < place(b);
+  });
+  return maker.make(choice);
+}
+
+}  // namespace
+
+void ask_and_tell(const SweepSetup& setup, const SweepOptions& options, PointMaker& maker, SweepRows& rows,
+                  Ledger& ledger, const InterruptScope& interrupt) {
+  WorkerPool pool(setup, options.jobs);
+  Lines lines;
+  std::map<std::string, std::size_t> by_digest;
+  const auto ask = [&](const std::string& line) {
+    SweepPoint point;
+    try {
+      point = asked(line, maker, rows);
+    } catch (const ConfigError&) {
+      const PointError error = current_error();
+      const Json keys = Json::parse(line, nullptr, false);
+      return tell({{"status", "invalid"},
+                   {"keys", keys.is_discarded() ? Json(line) : keys},
+                   {"error", {{"kind", error.kind}, {"text", error.text}}}});
+    }
+    const auto [at, is_new] = by_digest.emplace(point.digest, rows.rows.size());
+    if (is_new) {
+      SweepRows one{rows.keys, rows.columns, {{point, false, {}, 0, {}}}};
+      read_finished(setup, one, options.retry_failed);
+      rows.rows.push_back(std::move(one.rows[0]));
+    }
+    SweepRow& row = rows.rows[at->second];
+    if (row.finished) return tell(row_json(rows, row));
+    if (is_new) pool.add(std::move(point));  // one that runs already is told once
+  };
+  while ((lines.open() || pool.busy()) && !interrupt.interrupted()) {
+    for (const std::string& line : lines.read_some()) ask(line);
+    const auto started = [&](const SweepPoint& point) { ledger.set(point, "running"); };
+    for (const WorkerPool::Finished& finished : pool.step(kAskWaitMs, lines.open() ? STDIN_FILENO : -1, started)) {
+      SweepRow& row = rows.rows[by_digest.at(finished.point.digest)];
+      settle(setup, finished, row, rows.columns);
+      ledger.set(row.point, row.error ? "failed" : "done", row.seconds, row.error ? &*row.error : nullptr);
+      tell(row_json(rows, row));
+    }
+  }
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,98 @@
+#include "app/sweep/plan/content.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "app/host/program_info.h"
+#include "app/run/prepare.h"
+#include "core/numeric/bytes_digest.h"
+#include "core/system/error.h"
+
+namespace carousel::app {
+
+namespace {
+
+std::string read_all(const std::filesystem::path& path) {
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad() || std::filesystem::is_directory(path))
+    throw FileError("cannot read " + path.string() + ": " + std::strerror(errno != 0 ? errno : EISDIR));
+  return bytes;
+}
+
+std::string percent_decoded(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool coded = text[i] == '%' && i + 2 < text.size() &&
+                       std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
+                       std::isxdigit(static_cast<unsigned char>(text[i + 2]));
+    out += coded ? static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16)) : text[i];
+    if (coded) i += 2;
+  }
+  return out;
+}
+
+/// The JSON of a glTF file: the file itself, or the first chunk of a binary one (glTF 2.0, section 4.4).
+nlohmann::json gltf_json(const std::string& bytes) {
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, 4);
+    return value;
+  };
+  std::string text = bytes;
+  if (bytes.size() >= 20 && bytes.compare(0, 4, "glTF") == 0)
+    text = bytes.substr(20, std::min<std::size_t>(word(12), bytes.size() - 20));
+  return nlohmann::json::parse(text, nullptr, false);  // the import reports what is wrong with it
+}
+
+}  // namespace
+
+const std::string& ContentDigests::of_file(const std::string& name) {
+  std::string& digest = files_[name];
+  if (digest.empty()) digest = bytes_digest(read_all(find_beside(folder_, name)));
+  return digest;
+}
+
+const std::string& ContentDigests::of_scene(const std::string& name) {
+  std::string& digest = scenes_[name];
+  if (!digest.empty()) return digest;
+  const std::filesystem::path path = find_beside(folder_, name);
+  const std::string bytes = read_all(path);
+  std::string all = bytes_digest(bytes);
+  const nlohmann::json json = gltf_json(bytes);
+  for (const char* list : {"buffers", "images"}) {
+    if (!json.is_object() || !json.contains(list) || !json[list].is_array()) continue;
+    for (const nlohmann::json& entry : json[list]) {
+      if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
+      const std::string uri = entry["uri"];
+      if (uri.rfind("data:", 0) == 0) continue;
+      const std::filesystem::path file = path.parent_path() / percent_decoded(uri);
+      // A file that is missing is the import's to judge: of images it may need none.
+      std::error_code ignored;
+      all += std::filesystem::is_regular_file(file, ignored) ? bytes_digest(read_all(file)) : "missing";
+    }
+  }
+  return digest = bytes_digest(all);
+}
+
+std::string ContentDigests::of(const Config& config) {
+  std::string out;
+  if (config.workload.kind == WorkloadConfig::Kind::kTraffic) return out;
+  if (!config.scene.file.empty()) out += of_scene(config.scene.file);
+  if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) out += of_file(config.workload.rays_from);
+  return out;
+}
+
+std::string program_identity() {
+  const report::Program program = program_info();
+  std::string out = program.version + " " + program.commit + (program.checked ? " checked" : "");
+  const bool unknown = program.commit == "unknown" || program.commit.find("dirty") != std::string::npos;
+  return unknown ? out + " " + bytes_digest(read_all("/proc/self/exe")) : out;
+}
+
+}  // namespace carousel::app

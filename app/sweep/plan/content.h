@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/config/config.h"
+
+namespace carousel::app {
+
+/// The digests of the files that configurations name, each file read once.
+class ContentDigests {
+ public:
+  /// `config_folder`: where files are looked for before the working folder.
+  explicit ContentDigests(std::filesystem::path config_folder) : folder_(std::move(config_folder)) {}
+
+  /// Of the scene's file with the files that it names, and of a list of rays; empty if the configuration names none.
+  /// Throws FileError for files that cannot be read.
+  std::string of(const Config& config);
+
+ private:
+  const std::string& of_file(const std::string& name);
+  const std::string& of_scene(const std::string& name);
+
+  std::filesystem::path folder_;
+  std::map<std::string, std::string> files_, scenes_;  ///< by name, as configurations give it
+};
+
+/// Version and commit of this program. A program that was built from changed sources, of which the commit says nothing,
+/// is told apart by its own content.
+std::string program_identity();
+
+}  // namespace carousel::app

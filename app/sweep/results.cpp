@@ -1,0 +1,125 @@
+#include "app/sweep/results.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/config/edit_distance.h"
+#include "core/system/error.h"
+
+namespace carousel::app {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// A name of an object or an index of a list, step by step.
+const Json* at_path(const Json& report, const std::string& path) {
+  const Json* at = &report;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const std::string name = path.substr(begin, end - begin);
+    begin = end + 1;
+    if (at->is_object() && at->contains(name)) {
+      at = &(*at)[name];
+    } else if (at->is_array() && !name.empty() && name.size() < 8 &&
+               name.find_first_not_of("0123456789") == name.npos && std::stoul(name) < at->size()) {
+      at = &(*at)[std::stoul(name)];
+    } else {
+      return nullptr;
+    }
+  }
+  return at;
+}
+
+/// The gain of the class that limits the machine.
+Json gain_of_verdict(const Json& report) {
+  const Json *limits = at_path(report, "bottleneck.limits"), *gains = at_path(report, "bottleneck.gains");
+  if (limits == nullptr || gains == nullptr) return nullptr;
+  for (const Json& gain : *gains)
+    if (gain["name"] == *limits) return gain["gain"];
+  return nullptr;
+}
+
+Json all_bytes(const Json& report) {
+  const Json* bytes = at_path(report, "bytes");
+  if (bytes == nullptr) return nullptr;
+  std::uint64_t sum = 0;
+  for (const Json& row : *bytes) sum += row["bytes"].get<std::uint64_t>();
+  return sum;
+}
+
+}  // namespace
+
+std::vector<ResultColumn> result_columns(const std::vector<std::string>& paths) {
+  std::vector<ResultColumn> out{{"cycles", "engine.cycles"},
+                                {"rays_per_kilocycle", "throughput.whole.rays_per_kilocycle", true},
+                                {"mrays_per_second", "throughput.whole.mrays_per_second_at_clock", true},
+                                {"limits", "bottleneck.limits"},
+                                {"gain", ""},
+                                {"bytes", ""},
+                                {"tests_per_ray", "throughput.tests_per_ray"},
+                                {"host_rays_per_second", "host.rays_per_second", true}};
+  for (const std::string& path : paths) out.push_back({path, path, path.find("rays_per") != path.npos});
+  return out;
+}
+
+Json result_of(const ResultColumn& column, const Json& report) {
+  if (column.path.empty()) return column.name == "gain" ? gain_of_verdict(report) : all_bytes(report);
+  const Json* at = at_path(report, column.path);
+  if (at == nullptr) return nullptr;
+  // The host's rate is the result of a native run, and noise beside simulated cycles.
+  if (column.name == "host_rays_per_second" && at_path(report, "engine.cycles") != nullptr) return nullptr;
+  return at->is_object() || at->is_array() ? Json(at->dump()) : *at;
+}
+
+std::size_t SweepRows::column(const std::string& name, const std::string& option) const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].name == name) return i;
+    names.push_back(columns[i].name);
+  }
+  const auto near = nearest_name(name, names);
+  throw ConfigError({{{option, 0, 0},
+                      name,
+                      fmt::format("no such result{}; known are {}; --result adds one of the report",
+                                  near ? ", did you mean " + *near + "?" : "", fmt::join(names, ", "))}});
+}
+
+std::optional<double> SweepRows::number(const SweepRow& row, std::size_t column) const {
+  if (row.error || column >= row.results.size() || !row.results[column].is_number()) return std::nullopt;
+  return row.results[column].get<double>();
+}
+
+void SweepRows::drop_empty() {
+  for (std::size_t i = columns.size(); i-- > 0;) {
+    const bool any = std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) {
+      return i < row.results.size() && !row.results[i].is_null();
+    });
+    if (any) continue;
+    columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(i));
+    for (SweepRow& row : rows)
+      if (i < row.results.size()) row.results.erase(row.results.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+std::size_t SweepRows::failed() const {
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [](const SweepRow& row) { return row.finished && row.error; }));
+}
+
+std::size_t SweepRows::done() const {
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [](const SweepRow& row) { return row.finished && !row.error; }));
+}
+
+void fill_row(SweepRow& row, const std::vector<ResultColumn>& columns, const PointFile& file) {
+  row.finished = true;
+  row.error = file.error;
+  row.seconds = file.seconds;
+  row.results.clear();
+  if (!file.report.is_object()) return;
+  for (const ResultColumn& column : columns) row.results.push_back(result_of(column, file.report));
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,186 @@
+#include "report/html/html.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "report/text/number_text.h"
+
+namespace carousel::report::html {
+
+namespace {
+
+constexpr std::size_t kFoldedRows = 12;
+
+std::string with_sign(std::int64_t value) {
+  return value < 0 ? "−" + grouped(static_cast<std::uint64_t>(-value)) : grouped(static_cast<std::uint64_t>(value));
+}
+
+std::string real_text(double value) {
+  const double size = std::abs(value);
+  if (size >= 1000) return with_sign(std::llround(value));
+  return fmt::format("{:.{}f}", value, size >= 100 || size == 0 ? 1 : size >= 0.1 ? 2 : 5);
+}
+
+void add_values(Table& table, const std::string& path, const Json& value, const Json& schema) {
+  const auto properties = schema.find("properties");
+  for (const auto& [key, below] : value.items()) {
+    const bool known = properties != schema.end() && properties->contains(key);
+    const Json& about = known ? (*properties)[key] : Json::object();
+    const std::string name = path.empty() ? key : path + "." + key;
+    if (below.is_object()) add_values(table, name, below, about);
+    if (below.is_structured()) continue;
+    const std::string unit = about.value("unit", "");
+    table.rows.push_back({cell(name), cell(below, unit), cell(unit), cell(about.value("description", ""))});
+  }
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n')
+      out += c;
+  }
+  return out;
+}
+
+std::string words(std::string_view key) {
+  std::string out(key);
+  for (char& c : out)
+    if (c == '_') c = ' ';
+  return out;
+}
+
+std::string value_text(const Json& value, std::string_view unit) {
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number() && unit == "fraction") return percent(value.get<double>());
+  if (value.is_number_unsigned()) return grouped(value.get<std::uint64_t>());
+  if (value.is_number_integer()) return with_sign(value.get<std::int64_t>());
+  if (value.is_number()) return real_text(value.get<double>());
+  return value.dump();
+}
+
+const Json* find(const Json& json, std::string_view path) {
+  const Json* at = &json;
+  while (!path.empty()) {
+    const std::size_t dot = std::min(path.find('.'), path.size());
+    if (!at->is_object()) return nullptr;
+    const auto found = at->find(path.substr(0, dot));
+    if (found == at->end()) return nullptr;
+    at = &*found;
+    path.remove_prefix(std::min(dot + 1, path.size()));
+  }
+  return at;
+}
+
+double number_at(const Json& json, std::string_view path, double otherwise) {
+  const Json* value = find(json, path);
+  return value && value->is_number() ? value->get<double>() : otherwise;
+}
+
+std::string text_at(const Json& json, std::string_view path, std::string_view otherwise) {
+  const Json* value = find(json, path);
+  return value && value->is_string() ? value->get<std::string>() : std::string(otherwise);
+}
+
+Cell cell(std::string_view text) {
+  return {std::string(text)};
+}
+
+Cell value_cell(const Json& value, std::string_view unit) {
+  return {value_text(value, unit), value.is_number() ? value : Json(nullptr)};
+}
+
+Cell share(double fraction) {
+  return {percent(fraction), fraction};
+}
+
+std::string Table::html() const {
+  if (rows.empty()) return "";
+  std::vector<bool> numbers(columns.size(), false);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (const auto& row : rows) numbers[c] = numbers[c] || !row[c].number.is_null();
+  const std::string name = escaped(caption);
+  std::string out;
+  const bool folded = rows.size() > kFoldedRows;
+  if (folded) out += fmt::format("<details><summary>Table: {} ({} rows)</summary>\n", name, rows.size());
+  out += fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table "
+      "id=\"table-{}\"><caption>{}</caption>\n"
+      "<thead><tr>",
+      name, id, name);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const Column& column = columns[c];
+    out +=
+        fmt::format("<th scope=\"col\"{}{}>{}", numbers[c] ? " class=\"n\"" : "",
+                    column.meaning.empty() ? "" : " title=\"" + escaped(column.meaning) + "\"", escaped(column.title));
+    if (!column.unit.empty()) out += " <small>" + escaped(column.unit) + "</small>";
+    out += "</th>";
+  }
+  out += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : rows) {
+    out += "<tr>";
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const char* tag = c == 0 ? "th" : "td";
+      out += fmt::format("<{}{}", tag, c == 0 ? " scope=\"row\"" : "");
+      if (!row[c].number.is_null()) out += " class=\"n\" data-v=\"" + row[c].number.dump() + "\"";
+      out += fmt::format(">{}</{}>", escaped(row[c].text), tag);
+    }
+    out += "</tr>\n";
+  }
+  out += "</tbody></table></div>\n";
+  if (folded) out += "</details>\n";
+  return out;
+}
+
+Table table_of(std::string id, std::string caption, const Json& list, const Json& item_schema,
+               const std::vector<std::string>& left_out) {
+  Table table{std::move(id), std::move(caption)};
+  if (list.empty()) return table;
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : list.front().items()) {
+    if (value.is_structured() || std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;
+    const Json* about = find(item_schema, "properties." + key);
+    const std::string unit = about ? about->value("unit", "") : "";
+    keys.push_back(key);
+    table.columns.push_back({words(key), unit == "fraction" ? "" : unit, about ? about->value("description", "") : ""});
+  }
+  for (const Json& item : list) {
+    auto& row = table.rows.emplace_back();
+    for (const std::string& key : keys) {
+      const Json* about = find(item_schema, "properties." + key);
+      row.push_back(item.contains(key) ? cell(item[key], about ? about->value("unit", "") : "") : cell("–"));
+    }
+  }
+  return table;
+}
+
+Table values_of(std::string id, std::string caption, const Json& object, const Json& schema) {
+  Table table{std::move(id), std::move(caption), {{"key"}, {"value"}, {"unit"}, {"meaning"}}};
+  add_values(table, "", object, schema);
+  return table;
+}
+
+std::string Figure::html() const {
+  return fmt::format(
+      "<figure id=\"{}\" data-chart=\"{}\" data-tables=\"{}\"><figcaption>{}{}</figcaption>"
+      "<div class=\"plot\" role=\"img\" aria-label=\"{}\" style=\"height:{}px\"></div></figure>\n",
+      id, kind, tables, escaped(title), note.empty() ? "" : " <small>" + escaped(note) + "</small>", escaped(label),
+      height);
+}
+
+}  // namespace carousel::report::html

@@ -1,0 +1,84 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "report/html/html.h"
+#include "report/html/run_sections.h"
+
+namespace carousel::report::html {
+
+namespace {
+
+/// The greatest share of the cycles that a kind of unit of the resource was busy; without a clock, the rays that it
+/// tested over those of the resource that tested most.
+double use_of(const Json& resource, double cycles, double most_tested) {
+  const Json* units = find(resource, "units");
+  if (!units) return most_tested > 0 ? number_at(resource, "rays_tested") / most_tested : 0;
+  double busy = 0;
+  for (const auto& [kind, unit] : units->items())
+    if (unit.is_object()) busy = std::max(busy, number_at(unit, "busy"));
+  return cycles > 0 ? busy / cycles : 0;
+}
+
+}  // namespace
+
+std::string machine_section(const Json& report, const Json& schema) {
+  const Json* resources = find(report, "resources");
+  const Json* links = find(report, "links");
+  const double cycles = number_at(report, "engine.cycles");
+  std::string out;
+  std::string tables;
+  double most = 0;
+  std::string busiest;
+  if (resources && !resources->empty()) {
+    double most_tested = 0;
+    for (const Json& r : *resources) most_tested = std::max(most_tested, number_at(r, "rays_tested"));
+    const bool timed = resources->front().contains("units");
+    Table table = table_of("resources", "Resources", *resources, *find(schema, "properties.resources.items"));
+    table.columns.insert(table.columns.begin() + 1,
+                         Column{timed ? "busiest unit" : "load", "",
+                                timed ? "greatest share of the cycles in which a kind of its units was busy"
+                                      : "rays tested, over those of the resource that tested most"});
+    for (std::size_t i = 0; i < resources->size(); ++i) {
+      const double use = use_of((*resources)[i], cycles, most_tested);
+      table.rows[i].insert(table.rows[i].begin() + 1, share(use));
+      if (use > most) busiest = fmt::format("resource {}", table.rows[i][0].text);
+      most = std::max(most, use);
+    }
+    out += fmt::format("<p>The colour of a resource is {}. Of all, {} is highest, with {}.</p>\n",
+                       timed ? "the share of the cycles in which its busiest kind of unit was testing"
+                             : "the number of rays that it tested, over that of the resource that tested most",
+                       busiest.empty() ? "none" : busiest, share(most).text);
+    tables += table.html();
+  }
+  if (links && !links->empty()) {
+    Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"), {"utilisation"});
+    double carried = 0;
+    for (const Json& link : *links) carried = std::max(carried, number_at(link, "packets"));
+    const bool timed = links->front().contains("utilisation");
+    table.columns.insert(table.columns.begin() + 2,
+                         Column{timed ? "use" : "load", "",
+                                timed ? "share of the cycles in which it moved a packet"
+                                      : "packets, over those of the link that carried most"});
+    for (std::size_t i = 0; i < links->size(); ++i) {
+      const Json& link = (*links)[i];
+      const double use = timed         ? number_at(link, "utilisation")
+                         : carried > 0 ? number_at(link, "packets") / carried
+                                       : 0;
+      table.rows[i].insert(table.rows[i].begin() + 2, share(use));
+    }
+    tables += table.html();
+  }
+  if (tables.empty()) return "";
+  out += Figure{.id = "fig-machine",
+                .kind = "machine",
+                .tables = "resources links",
+                .title = "The machine, coloured by use",
+                .label = fmt::format("Drawing of the machine: {}. The tables below have the use of each part.",
+                                     machine_words(report)),
+                .height = 460}
+             .html();
+  return out + tables;
+}
+
+}  // namespace carousel::report::html

@@ -1,0 +1,181 @@
+#include "report/html/study_pages.h"
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "report/html/html.h"
+#include "report/html/page.h"
+
+namespace carousel::report::html {
+
+namespace {
+
+/// Numbers and texts of an object and those inside it, by their paths.
+void flatten(const Json& object, const std::string& path, std::vector<std::pair<std::string, Json>>& out) {
+  for (const auto& [key, value] : object.items()) {
+    const std::string name = path.empty() ? key : path + "." + key;
+    if (value.is_object())
+      flatten(value, name, out);
+    else if (!value.is_array())
+      out.emplace_back(name, value);
+  }
+}
+
+/// A row for each object of a list: its name, then the columns `first`, then all others in their order.
+Table table_of_rows(std::string id, std::string caption, const Json& list,
+                    const std::function<std::string(const Json&)>& name, const std::vector<std::string>& first) {
+  Table table{std::move(id), std::move(caption), {{"name"}}};
+  std::vector<std::string> keys = first;
+  for (const Json& row : list) {
+    std::vector<std::pair<std::string, Json>> values;
+    flatten(row, "", values);
+    for (const auto& [key, value] : values)
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  }
+  for (const std::string& key : keys) {
+    std::string title = words(key);
+    std::replace(title.begin(), title.end(), '.', ' ');
+    table.columns.push_back({title});
+  }
+  for (const Json& row : list) {
+    auto& cells = table.rows.emplace_back();
+    cells.push_back(cell(name(row)));
+    for (const std::string& key : keys) {
+      const Json* value = find(row, key);
+      cells.push_back(value && !value->is_null() ? cell(*value) : cell("–"));
+    }
+  }
+  return table;
+}
+
+std::string bars_of(const Table& table, const std::string& title) {
+  if (table.rows.empty()) return "";
+  return Figure{.id = "fig-" + table.id,
+                .kind = "bars",
+                .tables = table.id,
+                .title = title,
+                .label = "Bars, a bar a row of the table below.",
+                .height = 90 + 26 * static_cast<int>(std::min<std::size_t>(table.rows.size(), 24))}
+             .html() +
+         table.html();
+}
+
+std::string interrupted(const Json& report) {
+  return report.value("incomplete", false)
+             ? "<p class=\"notice\"><strong>Incomplete:</strong> it was interrupted.</p>\n"
+             : "";
+}
+
+}  // namespace
+
+std::string stress_page(const Json& stress) {
+  const auto text = [](const Json& row, const char* key) { return words(text_at(row, key)); };
+  const Table rows = table_of_rows("queues", "Queues by themselves, messages a second", stress["rows"],
+                                   [&](const Json& row) {
+                                     return fmt::format("{}, {}, {} bytes", text(row, "queue"), text(row, "pattern"),
+                                                        number_at(row, "message_bytes"));
+                                   },
+                                   {"rate_median", "rate_least", "rate_most"});
+  const Table ring = table_of_rows(
+      "ring", "Queues in the links of the configuration's machine, rays a second",
+      stress.contains("ring") ? stress["ring"] : Json::array(),
+      [&](const Json& row) { return fmt::format("{} of depth {}", text(row, "queue"), number_at(row, "depth")); },
+      {"rate_median", "rate_least", "rate_most"});
+  std::uint64_t faulty = 0;
+  for (const Json& row : stress["rows"]) faulty += text_at(row, "found").empty() ? 0 : 1;
+  std::string glance = interrupted(stress);
+  glance += fmt::format("<p class=\"verdict\">{}</p>\n",
+                        faulty == 0 ? "No queue lost, doubled, reordered or tore a message."
+                                    : fmt::format("{} rows of the table show faults of queues.", faulty));
+  if (const std::string verdict = text_at(stress, "ring_verdict"); !verdict.empty())
+    glance += fmt::format("<p>{}</p>\n", escaped(verdict));
+  glance += fmt::format("<p>{} repetitions on a host of {} hardware threads. Rates of queues are the host's.</p>\n",
+                        number_at(stress, "repetitions"), number_at(stress, "cores"));
+  return page_of("Carousel: stress of queues", "carousel stress",
+                 {{"verdict", "At a glance", glance},
+                  {"alone", "Queues by themselves", bars_of(rows, rows.caption)},
+                  {"inside", "Queues in the machine", bars_of(ring, ring.caption)}},
+                 Json::object(), "");
+}
+
+std::string accuracy_page(const Json& accuracy) {
+  Json levels = accuracy["levels"];
+  for (Json& row : levels) {
+    double wrong = number_at(row, "scene.missed") + number_at(row, "scene.extra");
+    if (row.contains("hard"))
+      for (const Json& hard : row["hard"]) wrong += number_at(hard, "missed") + number_at(hard, "extra");
+    row["wrong_answers"] = static_cast<std::uint64_t>(wrong);
+  }
+  const auto name = [](const Json& row) {
+    return fmt::format("{} / {} / {}", text_at(row, "triangle"), text_at(row, "box"), text_at(row, "transform"));
+  };
+  const Table table =
+      table_of_rows("levels", "Levels of accuracy: triangle / box / transform", levels, name,
+                    {"ns_per_ray.median", "wrong_answers", "ns_per_ray.least", "ns_per_ray.most", "frontier.host"});
+  const Table spawn = table_of_rows("spawn", "Offset of new rays", accuracy["spawn"],
+                                    [](const Json& row) { return text_at(row, "spawn"); }, {});
+  const Table sampling =
+      table_of_rows("sampling", "Error of the picture over the number of samples", accuracy["sampling"]["rows"],
+                    [](const Json& row) { return fmt::format("{} samples", number_at(row, "samples")); }, {"rmse"});
+  std::string glance = interrupted(accuracy);
+  glance += fmt::format("<p class=\"verdict\">{}</p>\n", escaped(text_at(accuracy, "verdict")));
+  glance += fmt::format(
+      "<p>{} rays of the scene {} were compared with exact arithmetic, each time measured {} times.</p>\n",
+      value_text(accuracy["rays"]), escaped(text_at(accuracy, "scene")), number_at(accuracy, "repetitions"));
+  std::string body = Figure{.id = "fig-levels",
+                            .kind = "scatter",
+                            .tables = "levels",
+                            .title = "Wrong answers against time a ray on the host",
+                            .label =
+                                "Scatter plot of the levels: time a ray against wrong answers. The table below "
+                                "has the numbers.",
+                            .height = 420}
+                         .html() +
+                     table.html();
+  return page_of("Carousel: levels of accuracy", "carousel accuracy, scene " + text_at(accuracy, "scene"),
+                 {{"verdict", "At a glance", glance},
+                  {"levels", "Time and errors of the levels", body},
+                  {"spawn", "Offset of new rays", spawn.html()},
+                  {"sampling", "Samples", bars_of(sampling, sampling.caption)}},
+                 Json::object(), "");
+}
+
+std::string ray_life_page(const Json& life) {
+  const std::string unit = text_at(life, "unit");
+  const auto list = [&](const char* key) { return life.contains(key) ? life[key] : Json::array(); };
+  const Table stages = table_of_rows("stages", "Time by stage", list("stages"),
+                                     [](const Json& row) { return text_at(row, "stage"); }, {"length", "share"});
+  const Json rows = list("spans");
+  std::size_t number = 0;
+  const Table spans =
+      table_of_rows("spans", "Stretches of its time", rows, [&](const Json&) { return std::to_string(++number); }, {});
+  number = 0;
+  const Table tests =
+      table_of_rows("tests", "Tests", list("tests"), [&](const Json&) { return std::to_string(++number); }, {});
+  const Table caused = table_of_rows("caused", "Rays that came of it", list("caused"),
+                                     [](const Json& row) { return text_at(row, "kind"); }, {});
+  std::string glance = fmt::format(
+      "<p class=\"verdict\">The ray took {} {}{}.</p>\n", value_text(life.value("latency", Json(0))), unit,
+      stages.rows.empty() ? ""
+                          : fmt::format(", most of it in the stage: {}", escaped(stages.rows.front().front().text)));
+  glance += values_of("ray", "The ray", life, Json::object()).html();
+  std::string where = Figure{.id = "fig-spans",
+                             .kind = "spans",
+                             .tables = "spans",
+                             .title = "Its time, stage by stage",
+                             .label = "Bars over time, a line a stage; the table below has each stretch.",
+                             .height = 320}
+                          .html();
+  return page_of("Carousel: the life of a ray", "carousel follow, " + text_at(life, "engine") + " engine",
+                 {{"verdict", "At a glance", glance},
+                  {"where", "Use of its time", bars_of(stages, stages.caption)},
+                  {"stretches", "Its time in order", spans.rows.empty() ? "" : where + spans.html()},
+                  {"tested", "Tests", tests.html()},
+                  {"next", "Rays that came of it", caused.html()}},
+                 Json::object(), "");
+}
+
+}  // namespace carousel::report::html

@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include "report/html/html.h"
+#include "report/html/packed_series.h"
+#include "report/html/run_sections.h"
+#include "report/text/number_text.h"
+
+namespace carousel::report::html {
+
+namespace {
+
+/// The class of parts that limits the machine, with the interval of its gain; in the native engine, why there is none.
+std::string verdict_sentence(const Json& report) {
+  const Json* bottleneck = find(report, "bottleneck");
+  const std::string limits = bottleneck ? text_at(*bottleneck, "limits") : "";
+  if (!limits.empty() && !(*bottleneck)["gains"].empty()) {
+    for (const Json& gain : (*bottleneck)["gains"]) {
+      if (text_at(gain, "name") != limits) continue;
+      const double low = number_at(gain, "low"), high = number_at(gain, "high");
+      std::string out = fmt::format("{} limits this machine: {} gains {:+.1f} %", words(limits),
+                                    text_at(gain, "action"), 100 * number_at(gain, "gain"));
+      if (bottleneck->value("whole_frame", false))
+        out += " (measured on the whole frame, so without an error of sampling)";
+      else
+        out += fmt::format(" (95 % of confidence: {:+.1f} % to {:+.1f} %)", 100 * low, 100 * high);
+      if (const Json& rivals = (*bottleneck)["rivals"]; !rivals.empty()) {
+        out += "; as much may be gained with";
+        for (std::size_t i = 0; i < rivals.size(); ++i)
+          out += (i == 0 ? " " : ", ") + words(rivals[i].get<std::string>());
+      }
+      out[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(out[0])));
+      return out + ".";
+    }
+  }
+  if (bottleneck) return words(text_at(*bottleneck, "verdict")) + ".";
+  if (find(report, "traffic"))
+    return fmt::format(
+        "The network accepted {:.4f} of {:.4f} offered packets a resource and cycle, with a mean latency of "
+        "{:.1f} cycles.",
+        number_at(report, "traffic.accepted"), number_at(report, "traffic.offered"),
+        number_at(report, "traffic.latency.mean"));
+  if (find(report, "engine.cycles"))
+    return "The search for the limiting part was switched off; engine.what_if: true turns it on.";
+  return "A run of the native engine shows the queues of this host and no simulated time, so that no part of the "
+         "machine "
+         "can be named as its limit. The cycle engine names it: --set engine.kind=cycle.";
+}
+
+void fact(std::string& out, std::string_view name, const std::string& value) {
+  if (!value.empty()) out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(name), escaped(value));
+}
+
+std::string throughput_text(const Json& report) {
+  if (find(report, "throughput.whole")) {
+    std::string text = fmt::format("{:.2f} rays per 1,000 cycles, {:.1f} Mrays/s at {} MHz",
+                                   number_at(report, "throughput.whole.rays_per_kilocycle"),
+                                   number_at(report, "throughput.whole.mrays_per_second_at_clock"),
+                                   number_at(report, "config.engine.clock_mhz"));
+    if (find(report, "throughput.steady"))
+      text += fmt::format("; steady {:.2f}", number_at(report, "throughput.steady.rays_per_kilocycle"));
+    return text;
+  }
+  if (find(report, "traffic")) return "";
+  return scaled(number_at(report, "host.rays_per_second")) + "rays/s on this host";
+}
+
+std::string picture_html(const Json& report, const Picture& picture) {
+  if (picture.mime_type.empty()) return "";
+  const auto side = [&](const char* key) {
+    return static_cast<int>(number_at(report, std::string("config.image.") + key));
+  };
+  return fmt::format(
+      "<img src=\"data:{};base64,{}\" width=\"{}\" height=\"{}\" alt=\"Picture of the scene {} that this run rendered, "
+      "{} "
+      "by {} pixels with {} samples each\">\n",
+      picture.mime_type, base64(picture.bytes), side("width"), side("height"), escaped(text_at(report, "scene.name")),
+      side("width"), side("height"), side("samples"));
+}
+
+}  // namespace
+
+std::string machine_words(const Json& report) {
+  const std::string shape = words(text_at(report, "config.topology.shape", "ring"));
+  const auto count = static_cast<std::uint64_t>(number_at(report, "config.topology.resources"));
+  std::string out = fmt::format("{} resources, {}", grouped(count), shape);
+  if (shape == "multi ring") out += fmt::format(" of {}", number_at(report, "config.topology.rings"));
+  if (shape == "hierarchical") out += fmt::format(" of {} groups", number_at(report, "config.topology.groups"));
+  return out + fmt::format(", {} engine", text_at(report, "engine.kind"));
+}
+
+std::string verdict_section(const Json& report, const Picture& picture) {
+  std::string out;
+  if (report.value("incomplete", false))
+    out +=
+        "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n";
+  out += "<div class=\"glance\">\n" + picture_html(report, picture) + "<div>\n";
+  out += fmt::format("<p class=\"verdict\">{}</p>\n<dl>\n", escaped(verdict_sentence(report)));
+  fact(out, "Throughput", throughput_text(report));
+  if (const Json* cycles = find(report, "engine.cycles"))
+    fact(out, "Simulated", fmt::format("{} cycles", value_text(*cycles)));
+  if (const Json* rays = find(report, "rays"); rays && number_at(*rays, "emitted") > 0)
+    fact(out, "Rays",
+         fmt::format("{} emitted, {} completed, {} lost", value_text((*rays)["emitted"]),
+                     value_text((*rays)["completed"]), value_text((*rays)["lost"])));
+  if (const Json* traffic = find(report, "traffic"))
+    fact(out, "Packets",
+         fmt::format("{} created, {} delivered", value_text((*traffic)["packets"]),
+                     value_text((*traffic)["delivered"])));
+  if (find(report, "scene.triangles") && number_at(report, "scene.triangles") > 0)
+    fact(out, "Scene",
+         fmt::format("{}: {} triangles, {} instances", text_at(report, "scene.name"),
+                     value_text(report["scene"]["triangles"]), value_text(report["scene"]["instances"])));
+  if (find(report, "verify"))
+    fact(out, "Verified",
+         fmt::format("{} rays traced again, {} mismatches", value_text(report["verify"]["compared"]),
+                     value_text(report["verify"]["mismatches"])));
+  if (text_at(report, "digest.hits") != "") fact(out, "Digest of the hits", text_at(report, "digest.hits"));
+  fact(out, "Digest of the picture", text_at(report, "digest.image"));
+  fact(out, "Host",
+       fmt::format("{}, {} threads, {}", text_at(report, "host.machine.cpu"), number_at(report, "host.threads"),
+                   seconds_text(number_at(report, "host.wall_seconds"))));
+  fact(out, "Program",
+       fmt::format("Carousel {} ({}, {})", text_at(report, "carousel.version"), text_at(report, "carousel.commit"),
+                   text_at(report, "carousel.compiler")));
+  out += "</dl>\n</div>\n</div>\n<h3>To reproduce this run</h3>\n";
+  out +=
+      "<pre tabindex=\"0\"><code>carousel run config.resolved.yaml --out again\ncarousel compare . "
+      "again</code></pre>\n";
+  out += find(report, "engine.deterministic") && report["engine"].value("deterministic", false)
+             ? "<p>Everything outside of the section <i>host</i> is the same in every run of this configuration.</p>\n"
+             : "<p>Rays, hits and picture are the same in every run of this configuration; counts that depend on the "
+               "timing of threads are not.</p>\n";
+  return out;
+}
+
+}  // namespace carousel::report::html

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "ringbus/cycle/fabric/token.h"
+#include "ringbus/cycle/time/clock.h"
+#include "ringbus/results/slice_log.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Notes the packets that leave by a link, where that is asked for.
+struct LinkRecorder {
+  SliceLog* slices = nullptr;
+  const TripTable* trips = nullptr;
+  std::uint32_t track = 0;
+
+  void note(const Token& token, Cycle begin, Cycle end, Cycle arrival) const {
+    // The owner does not wait for a resource that only hears a packet, and may have issued it anew.
+    const std::uint64_t trip = token.passes ? 0 : trips->of(token.packet.value);
+    slices->add({begin, end, trip, arrival, track, token.packet.value, token.rays, SliceKind::kLink});
+  }
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,29 @@
+// The work that a port holds and waits for, at the end of a run, good or bad.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "ringbus/native/native_port.h"
+
+namespace carousel::ringbus {
+
+bool NativePort::drained() const {
+  const bool egress_empty =
+      std::all_of(out_ports_.begin(), out_ports_.end(), [](const OutPort& out) { return out.egress.empty(); });
+  return packets_out() == 0 && egress_empty && logic_.at_rest() && rounds_.empty() &&
+         machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
+}
+
+std::string NativePort::describe() const {
+  std::string text = logic_.describe();
+  if (!rounds_.empty()) text += fmt::format(", {} new rays wait for slots", rounds_.rays());
+  for (const OutPort& out : out_ports_) {
+    if (out.egress.empty()) continue;
+    text += fmt::format("; {} waits for a place in the link to resource {} (depth {}, {} more behind it)",
+                        logic_.describe(out.egress.front()), out.link->to().value, out.link->capacity(),
+                        out.egress.size() - 1);
+  }
+  return text;
+}
+
+}  // namespace carousel::ringbus

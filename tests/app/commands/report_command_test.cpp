@@ -1,0 +1,82 @@
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/support/program.h"
+
+namespace carousel {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kConfig =
+    "schema_version: 1\nscene: {builtin: spheres, triangles: 500}\nimage: {width: 8, height: 8, samples: 1}\n"
+    "engine: {kind: cycle, what_if: false}\ntopology: {resources: 3}\n";
+
+class RunPage : public testing::Test {
+ protected:
+  RunPage() { program_.write("small.yaml", kConfig); }
+  Outcome run(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"run", "small.yaml", "--quiet", "--out", "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return program_.run(arguments);
+  }
+  bool exists(const char* name) const { return std::filesystem::exists(program_.folder() / name); }
+
+  Program program_;
+};
+
+TEST_F(RunPage, IsWrittenByRunAndMadeAgainByReport) {
+  ASSERT_EQ(run({}).status, 0);
+  const std::string page = program_.read("out/report.html");
+  EXPECT_THAT(page, HasSubstr("<!DOCTYPE html>"));
+  EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+  std::filesystem::remove(program_.folder() / "out/report.html");
+  const Outcome again = program_.run({"report", "out"});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(program_.read("out/report.html"), page);
+}
+
+TEST_F(RunPage, IsLeftOutOnRequest) {
+  ASSERT_EQ(run({"--no-html"}).status, 0);
+  EXPECT_TRUE(exists("out/report.json"));
+  EXPECT_FALSE(exists("out/report.html"));
+}
+
+TEST_F(RunPage, ShowsTheNumbersOfTheReportInItsTables) {
+  ASSERT_EQ(run({}).status, 0);
+  const auto report = nlohmann::json::parse(program_.read("out/report.json"));
+  const std::string page = program_.read("out/report.html");
+  for (const auto& resource : report["resources"])
+    EXPECT_THAT(page, HasSubstr(" data-v=\"" + resource["box_tests"].dump() + "\""));
+  EXPECT_THAT(page, HasSubstr(report["digest"]["hits"].get<std::string>()));
+}
+
+TEST_F(RunPage, TextOfAReportIsNoMarkup) {
+  ASSERT_EQ(run({}).status, 0);
+  auto report = nlohmann::ordered_json::parse(program_.read("out/report.json"));
+  report["scene"]["name"] = "<script>alert(1)</script>";
+  report["time_series"]["rows"][0]["quantity"] = "</script><b>";
+  program_.write("out/report.json", report.dump());
+  ASSERT_EQ(program_.run({"report", "out"}).status, 0);
+  const std::string page = program_.read("out/report.html");
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(1)"));
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert(1)")));
+  EXPECT_THAT(page, Not(HasSubstr("</script><b>")));
+}
+
+TEST_F(RunPage, NeedsAReport) {
+  program_.write("other.json", "{\"a\": 1}");
+  const Outcome outcome = program_.run({"report", "other.json"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("other.json: expected the report.json of carousel run"));
+  EXPECT_EQ(program_.run({"report", "nowhere"}).status, 2);
+}
+
+}  // namespace
+}  // namespace carousel

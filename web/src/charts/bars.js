@@ -1,0 +1,56 @@
+// Bars of one column, a bar a row. Parts that have too many rows get a slider.
+import {axis, base, full, kHues, names, short} from '../look.js';
+
+export function bars({tables: [table], colours, width}) {
+  const value = table.rows[0].findIndex((cell, c) => c > 0 && typeof cell === 'number' && table.columns[c] !== 'width bytes per cycle');
+  const rows = table.rows;
+  const few = 24;
+  return {
+    ...base(colours),
+    legend: {show: false},
+    grid: {left: 10, right: 70, top: 10, bottom: 40, containLabel: true},
+    tooltip: {...base(colours).tooltip, trigger: 'axis', axisPointer: {type: 'shadow'}, valueFormatter: full},
+    xAxis: axis(colours, {type: 'value', name: table.columns[value], nameLocation: 'middle', nameGap: 26,
+      splitNumber: width < 600 ? 3 : 6, axisLabel: {formatter: short}}),
+    yAxis: names(colours, rows.map((r) => r[0]), width),
+    dataZoom: rows.length > few
+      ? [{type: 'slider', yAxisIndex: 0, startValue: 0, endValue: few - 1, right: 4, width: 14, showDetail: false,
+          brushSelect: false}]
+      : [],
+    series: [{
+      type: 'bar', name: table.columns[value], data: rows.map((r) => r[value]), itemStyle: {color: kHues[0]}, barMaxWidth: 26,
+      label: {show: true, position: 'right', color: colours.ink, formatter: ({value: v}) => short(v)},
+    }],
+  };
+}
+
+/** Bars with their intervals of confidence: columns gain, low and high. */
+export function intervals({tables: [table], colours, width}) {
+  const [gain, low, high] = ['gain', 'low', 'high'].map(table.column);
+  const rows = table.rows;
+  const text = (v) => `${(100 * v).toFixed(1)} %`;
+  return {
+    ...base(colours),
+    legend: {show: false},
+    grid: {left: 10, right: 30, top: 10, bottom: 40, containLabel: true},
+    tooltip: {...base(colours).tooltip, trigger: 'axis', axisPointer: {type: 'shadow'},
+      formatter: ([p]) => `${p.name}: ${text(rows[p.dataIndex][gain])} (${text(rows[p.dataIndex][low])} to ${text(rows[p.dataIndex][high])})`},
+    xAxis: axis(colours, {type: 'value', name: 'gain', nameLocation: 'middle', nameGap: 26,
+      splitNumber: width < 600 ? 3 : 6, axisLabel: {formatter: (v) => `${Math.round(100 * v)} %`}}),
+    yAxis: names(colours, rows.map((r) => r[0]), width),
+    series: [
+      {type: 'bar', name: 'gain', data: rows.map((r) => r[gain]), itemStyle: {color: kHues[0]}, barMaxWidth: 20},
+      {
+        type: 'custom', name: 'interval', silent: true, z: 5, data: rows.map((r, i) => [r[low], r[high], i]),
+        encode: {x: [0, 1], y: 2},
+        renderItem: (params, api) => {
+          const [x0, y] = api.coord([api.value(0), api.value(2)]);
+          const [x1] = api.coord([api.value(1), api.value(2)]);
+          const line = (a, b, c, d) => ({type: 'line', shape: {x1: a, y1: b, x2: c, y2: d},
+            style: {stroke: colours.ink, lineWidth: 1.5}});
+          return {type: 'group', children: [line(x0, y, x1, y), line(x0, y - 4, x0, y + 4), line(x1, y - 4, x1, y + 4)]};
+        },
+      },
+    ],
+  };
+}

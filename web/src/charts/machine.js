@@ -1,0 +1,110 @@
+// The machine as it is: every resource and link, coloured by its use; with time series, at any time of the run.
+import {base, full, kScale, percent, roundMost, scaleColour} from '../look.js';
+import {hasSeries, series} from '../series.js';
+import {bends, places} from './layout.js';
+
+const luminance = (rgb) => {
+  const [r, g, b] = rgb.match(/[\d.]+/g).map(Number);
+  return (0.299 * r + 0.587 * g + 0.114 * b) / 255;
+};
+
+export function machine(context) {
+  const {tables: [resources, links], colours, facts, width, height} = context;
+  const useOf = (table) => table.columns.findIndex((c) => ['busiest unit', 'load', 'use'].includes(c));
+  const of = resources ? resources.columns[useOf(resources)] : 'use';
+  const resourceUse = resources ? resources.rows.map((r) => r[useOf(resources)]) : new Array(facts.resources).fill(0);
+  const from = links ? links.column('from') : 0, to = links ? links.column('to') : 0;
+  const ends = links ? links.rows.map((r) => [r[from], r[to]]) : [];
+  const linkUse = links ? links.rows.map((r) => r[useOf(links)]) : [];
+  const hubs = Math.max(0, ...ends.flat().map((node) => node + 1 - facts.resources));
+  const all = facts.resources + hubs;
+  const at = places(facts, hubs);
+  const bent = bends(ends, facts);
+  const bus = facts.shape === 'bus';
+  const most = context.most ?? roundMost([...resourceUse, ...linkUse]);
+  const now = context.now ?? {resources: resourceUse, links: linkUse};
+  const room = Math.min(width, height) * (facts.shape === 'independent' || bus ? 1.2 : 2.2);
+  const size = Math.max(5, Math.min(46, room / Math.max(4, all)));
+  const named = size >= 24, valued = size >= 38;
+  const node = (i) => {
+    const hub = i >= facts.resources;
+    const colour = hub ? colours.panel : scaleColour((now.resources[i] ?? 0) / most);
+    const name = hub ? (bus ? 'bus' : `bridge ${i - facts.resources}`) : `resource ${i}`;
+    const short = hub ? (bus ? 'bus' : `B${i - facts.resources}`) : `${i}`;
+    const ink = hub ? colours.ink : luminance(colour) > 0.5 ? '#000' : '#fff';
+    return {
+      id: `${i}`, name, x: at[i][0], y: at[i][1], value: hub ? undefined : now.resources[i],
+      symbol: hub ? (bus ? 'rect' : 'diamond') : resources ? 'roundRect' : 'circle',
+      symbolSize: hub && bus ? [width * 0.8, 22] : size,
+      itemStyle: {color: colour, borderColor: colours.soft, borderWidth: 1},
+      label: {show: named || (hub && bus), color: ink, fontSize: 12, lineHeight: 14,
+        formatter: valued && !hub ? `${short}\n${Math.round(100 * (now.resources[i] ?? 0))} %` : short},
+    };
+  };
+  const thick = ends.length > 200 ? 1 : ends.length > 60 ? 2 : 4;
+  const data = Array.from({length: all}, (_, i) => node(i));
+  const edges = ends.map(([a, b], i) => ({
+    source: `${a}`, target: `${b}`, value: now.links[i],
+    lineStyle: {color: scaleColour((now.links[i] ?? 0) / most), width: thick, curveness: bent[i],
+      opacity: ends.length > 30 ? 0.25 + 0.75 * Math.min(1, (now.links[i] ?? 0) / most) : 1},
+  }));
+  if (bus) {
+    // Each resource meets the bus where it stands, not in the middle of the bus.
+    const place = (i) => `tap ${i}`;
+    for (let i = 0; i < facts.resources; ++i)
+      data.push({id: place(i), name: `bus at resource ${i}`, x: at[i][0], y: 0, symbolSize: 1, label: {show: false}});
+    for (const edge of edges) {
+      const up = Number(edge.source) < facts.resources;
+      const hubEnd = up ? 'target' : 'source';
+      edge[hubEnd] = place(up ? edge.source : edge.target);
+      edge.lineStyle.curveness = 0.12;
+    }
+  }
+  return {
+    ...base(colours),
+    legend: {show: false},
+    tooltip: {...base(colours).tooltip, formatter: ({dataType, data: d, dataIndex}) => {
+      if (dataType === 'edge')
+        return `link from ${data[ends[dataIndex][0]].name} to ${data[ends[dataIndex][1]].name}<br>use ${percent(now.links[dataIndex])}` +
+          linkDetails(links, dataIndex);
+      const i = Number(d.id);
+      if (!(i < facts.resources)) return d.name;
+      return `${d.name}<br>${of} ${percent(now.resources[i] ?? 0)}` + resourceDetails(resources, i);
+    }},
+    visualMap: {type: 'continuous', min: 0, max: most, calculable: false, seriesIndex: 9, inRange: {color: kScale},
+      orient: 'horizontal', left: 'center', bottom: 0, itemHeight: Math.min(200, width * 0.4),
+      text: [percent(most), 'not used'], textStyle: {color: colours.ink}},
+    series: [{
+      type: 'graph', layout: 'none', left: bus ? '10%' : 40, right: bus ? '10%' : 40, top: 36, bottom: 70,
+      edgeSymbol: ['none', ends.length > 200 ? 'none' : 'arrow'], edgeSymbolSize: thick * 2 + 3,
+      data, links: edges, roam: false, emphasis: {focus: all > 2 ? 'adjacency' : 'none'}, preserveAspect: !bus,
+    }],
+  };
+}
+
+function details(table, row, shown) {
+  if (!table) return '';
+  return shown.map((name) => [name, table.column(name)]).filter(([, c]) => c >= 0)
+    .map(([name, c]) => `<br>${name} ${full(table.rows[row][c])}`).join('');
+}
+const resourceDetails = (table, i) =>
+  details(table, i, ['rays completed', 'rays tested', 'box tests', 'triangle tests', 'packets issued', 'packets seen']);
+const linkDetails = (table, i) => details(table, i, ['packets', 'bytes', 'occupancy mean', 'occupancy max', 'stalled']);
+
+/** The use of every part in each sample, for the slider; null where the series do not have it. */
+export async function machineOverTime(facts, linkCount) {
+  if (!hasSeries()) return null;
+  const head = await series();
+  const found = (part, fits) => head.rows.filter((r) => r.part === part && r.unit === 'share' && fits(r.quantity));
+  const units = (q) => q.endsWith(' busy') && !q.startsWith('dispatch') && !q.startsWith('ray reads');
+  const ofResources = Array.from({length: facts.resources}, (_, i) => found(`resource ${i}`, units));
+  const ofLinks = Array.from({length: linkCount}, (_, i) => found(`link ${i}`, (q) => q === 'busy'));
+  if (![...ofResources, ...ofLinks].some((rows) => rows.length)) return null;
+  const value = (rows, t) => Math.max(0, ...rows.map((r) => r.values[t]));
+  let most = 0;
+  for (const row of [...ofResources, ...ofLinks].flat()) for (const v of row.values) most = Math.max(most, v);
+  return {
+    samples: head.samples, interval: head.interval, unit: head.unit, most: roundMost([most]),
+    at: (t) => ({resources: ofResources.map((rows) => value(rows, t)), links: ofLinks.map((rows) => value(rows, t))}),
+  };
+}

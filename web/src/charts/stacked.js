@@ -1,0 +1,30 @@
+// Shares that add up to 100 %: a bar a row, a piece a column.
+import {axis, base, kHues, names, percent} from '../look.js';
+
+export function stacked({tables: [table], colours, width}) {
+  const rows = table.rows;
+  const used = table.columns.map((_, c) => c).filter((c) => c > 0 && rows.some((r) => r[c] > 0));
+  const few = 32;
+  const idle = colours.line;
+  return {
+    ...base(colours),
+    grid: {left: 10, right: rows.length > few ? 40 : 24, top: 36, bottom: 10, containLabel: true},
+    tooltip: {...base(colours).tooltip, trigger: 'axis', axisPointer: {type: 'shadow'}, valueFormatter: percent},
+    xAxis: axis(colours, {type: 'value', max: 1, splitNumber: width < 600 ? 2 : 5,
+      axisLabel: {formatter: (v) => `${Math.round(100 * v)} %`}}),
+    yAxis: names(colours, rows.map((r) => r[0]), width),
+    dataZoom: rows.length > few
+      ? [{type: 'slider', yAxisIndex: 0, startValue: 0, endValue: few - 1, right: 4, width: 14, showDetail: false,
+          brushSelect: false}]
+      : [],
+    series: used.map((c) => {
+      const nothing = c === table.columns.length - 1;
+      return {
+        type: 'bar', name: table.columns[c], stack: 'cycles', barMaxWidth: 22, data: rows.map((r) => r[c]),
+        itemStyle: {color: nothing ? idle : kHues[(c - 1) % kHues.length], borderColor: colours.page, borderWidth: 1},
+        label: {show: true, color: nothing ? colours.ink : c === 1 ? '#fff' : '#000', fontSize: 11,
+          formatter: ({value}) => (value * width * 0.6 > 44 ? percent(value) : '')},
+      };
+    }),
+  };
+}
