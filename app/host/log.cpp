@@ -37,28 +37,26 @@ const std::vector<std::string>& log_levels() {
 }
 
 void start_log(const LogArguments& arguments, bool quiet) {
-  // Replaces the logger, so that tests may call main() again.
-  spdlog::drop("carousel");
   const bool to_file = !arguments.file.empty();
   auto terminal = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
   terminal->set_pattern("%^%l%$: %v");
   const spdlog::level::level_enum level = spdlog::level::from_str(arguments.level.empty() ? "info" : arguments.level);
   terminal->set_level(quiet ? spdlog::level::err : to_file || arguments.level.empty() ? spdlog::level::warn : level);
-  std::vector<spdlog::sink_ptr> sinks{terminal};
-  if (to_file) {
-    try {
-      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(arguments.file, true));
-    } catch (const spdlog::spdlog_ex&) {
-      throw FileError("--log-file: cannot write " + arguments.file);
-    }
-    sinks.back()->set_pattern("%Y-%m-%d %H:%M:%S.%e %l: %v");
-    sinks.back()->set_level(level);
-  }
-  auto logger = std::make_shared<PlainLogger>("carousel", sinks.begin(), sinks.end());
+  auto logger = std::make_shared<PlainLogger>("carousel", std::move(terminal));
   logger->set_level(spdlog::level::debug);
   logger->flush_on(spdlog::level::info);
   logger->set_error_handler([](const std::string&) {});  // a full disk must not end a run, nor print at every message
-  spdlog::set_default_logger(std::move(logger));
+  spdlog::set_default_logger(logger);
+  if (!to_file) return;
+  // After the terminal's, which tells that the file cannot be written.
+  try {
+    auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(arguments.file, true);
+    file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l: %v");
+    file->set_level(level);
+    logger->sinks().push_back(std::move(file));
+  } catch (const spdlog::spdlog_ex&) {
+    throw FileError("--log-file: cannot write " + arguments.file);
+  }
 }
 
 Phase::Phase(std::string name) : name_(std::move(name)), exceptions_(std::uncaught_exceptions()) {

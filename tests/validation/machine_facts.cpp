@@ -17,6 +17,7 @@
 #include "accel/box/slab.h"
 #include "accel/traverse/kernels.h"
 #include "accel/traverse/ray_check.h"
+#include "app/host/log.h"
 #include "app/run/prepare.h"
 #include "app/run/render_job.h"
 #include "core/config/write.h"
@@ -257,6 +258,7 @@ Json run(const std::string& file) {
 }  // namespace carousel
 
 int main(int count, char** arguments) {
+  carousel::app::start_log({}, true);  // on stderr: the facts are on stdout
   for (int i = 1; i < count; ++i) {
     try {
       std::cout << carousel::run(arguments[i]).dump() << std::endl;

@@ -58,8 +58,8 @@ TEST(EffectsRun, AProofRunsItAgainWithAllAndSaysWhatDiffers) {
   EXPECT_EQ(proof["auto"]["cycles"], report["engine"]["cycles"]);
   EXPECT_EQ(proof["auto"]["products_per_ray"], 0);  // plain walls call for nothing that they do not have
   EXPECT_GT(proof["all"]["products_per_ray"], 0);
-  // Shadow rays have room in both; the volume that `all` leaves room for takes 4 bytes a path.
-  EXPECT_EQ(proof["all"]["path_state_bytes"].get<int>() - proof["auto"]["path_state_bytes"].get<int>(), 4 * 16 * 12);
+  // Shadow rays have room in both; the volumes that `all` leaves room for take 16 bytes a path.
+  EXPECT_EQ(proof["all"]["path_state_bytes"].get<int>() - proof["auto"]["path_state_bytes"].get<int>(), 16 * 16 * 12);
   EXPECT_EQ(proof["auto"]["texture_bytes"], 0);
   EXPECT_EQ(proof["repetitions"], 7);
   EXPECT_EQ(proof["paths"], 16 * 12);

@@ -32,7 +32,7 @@ TEST(Log, NamesThePhasesWithTheirTimes) {
   ASSERT_EQ(outcome.status, 0);
   for (const char* phase : {"scene: ", "build: ", "run: ", "search: ", "files: "})
     EXPECT_THAT(outcome.err, HasSubstr(std::string("info: ") + phase));
-  EXPECT_THAT(outcome.err, testing::ContainsRegex("run: [0-9.]+ m?s, cycle engine, [0-9]+ rays"));
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("run: [0-9.]+ m?s, cycle engine, [0-9.]+ k rays"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("debug")));
   EXPECT_THAT(program.run({"run", "a.yaml", "--log-level", "debug"}).err,
               AllOf(HasSubstr("debug: threads: "), HasSubstr("debug: memory: about "), HasSubstr("run begins")));
