@@ -10,8 +10,8 @@ namespace carousel::shading {
 /// shadow ray may pass as well. Not with a clearcoat, sheen or grain.
 bool is_pane(const scene::Material& material);
 
-/// The share of light that passes a pane straight on, by channel: what its boundary, as rough as it is taken to be, does
-/// not reflect. `cosine`: of its direction to the normal, of either sign.
+/// The share of light that passes a pane straight on, by channel: what its boundary, as rough as it is taken to be,
+/// does not reflect. `cosine`: of its direction to the normal, of either sign.
 Vec3 passing_share(const InterfacePoint& pane, float cosine);
 
 /// The probability with which a path goes straight on at a pane rather than leaving it by its other lobes: about the
