@@ -15,6 +15,7 @@ Cell series_machine(std::uint32_t seed, const std::string& shape = "") {
   std::mt19937 random(seed);
   std::vector<std::string> with{"engine.kind=cycle", "faults.resource.kind=none"};
   if (!shape.empty()) with.push_back("topology.shape=" + shape);
+  if (shape == "hierarchical") with.insert(with.end(), {"topology.groups=3", "collections.home!=local"});  // bridges
   Cell cell = all_machines().draw_cell(random, with);
   cell.samples = 16 + seed % 100;
   return cell;
