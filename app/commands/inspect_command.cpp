@@ -49,7 +49,7 @@ void check_name(const std::string& name) {
                    fmt::join(config::enum_values("scene.builtin"), ", ")));
 }
 
-/// What the file has, without what was added to it.
+/// Lists the contents of the file, without the camera and the lights that the program adds.
 struct Holdings {
   std::uint64_t triangles = 0, instanced = 0, spheres = 0, image_bytes = 0, materials = 0, lights = 0, cameras = 0;
 };

@@ -48,7 +48,7 @@ std::filesystem::path out_folder(const RunArguments& arguments) {
   return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
 }
 
-/// What a run came to, and what went wrong on request.
+/// The result of a run in one line, with the faults that happened on request.
 std::string run_text(const Config& config, const ringbus::RunResult& result) {
   std::string out = fmt::format("{} engine, {} rays, {} threads", enum_name(config.engine.kind),
                                 report::scaled(double(result.rays_completed)), result.threads);

@@ -27,7 +27,7 @@ class Phase {
   Phase(const Phase&) = delete;
   Phase& operator=(const Phase&) = delete;
 
-  /// What the phase came to, for the message of its end.
+  /// Sets the result of the phase, for the message of its end.
   void result(std::string text) { result_ = std::move(text); }
   double seconds() const;
 

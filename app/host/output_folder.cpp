@@ -160,7 +160,7 @@ void OutputFolder::remove_left_overs(const fs::path& in) const {
   }
 }
 
-/// Moves the files one by one. Who finds a report finds all that belongs to it.
+/// Moves the files one by one, the report last: where there is a report, all that belongs to it is there.
 void OutputFolder::move_each() const {
   std::error_code error;
   fs::remove(target_ / kReport, error);

@@ -26,7 +26,7 @@ class OutputFolder {
   const std::filesystem::path& staging() const { return staging_; }
   /// The folder where they will be.
   const std::filesystem::path& folder() const { return folder_; }
-  /// Makes the files appear. Those of an earlier run disappear. Throws FileError.
+  /// Makes the files appear, and the files of an earlier run disappear. Throws FileError.
   void commit();
 
  private:

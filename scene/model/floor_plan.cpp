@@ -120,7 +120,7 @@ double length_in_box(const Sight& sight, const DVec2& from, const DVec2& to, con
   return out;
 }
 
-/// What is seen from places all over the plan: shares of the sight lines, and the place that overlooks most.
+/// The view from places all over the plan: shares of the sight lines, and the place that overlooks most.
 struct Survey {
   double hits = 0, fronts = 0;
   std::optional<Place> best;

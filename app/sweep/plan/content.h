@@ -14,8 +14,8 @@ class ContentDigests {
   /// `config_folder`: where files are looked for before the working folder.
   explicit ContentDigests(std::filesystem::path config_folder) : folder_(std::move(config_folder)) {}
 
-  /// Of the scene's file with the files that it names, and of a list of rays; empty if the configuration names none.
-  /// Throws FileError for files that cannot be read.
+  /// The digest of the scene's file, the files that it names, and a list of rays; empty if the configuration names
+  /// none. Throws FileError for files that cannot be read.
   std::string of(const Config& config);
 
  private:

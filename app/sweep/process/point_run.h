@@ -8,7 +8,7 @@
 
 namespace carousel::app {
 
-/// What every point of a sweep is run with.
+/// The settings that all points of a sweep share.
 struct SweepSetup {
   std::filesystem::path config;  ///< the file of `source`, which says where to look for the files that it names
   ConfigText source;
