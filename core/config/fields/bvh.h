@@ -12,6 +12,7 @@ struct BvhConfig {
   std::int64_t treelet_triangles = 2048;
   enum class Elements { kBoxes, kSpheres } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
+  std::int64_t top_triangles = 0;
 };
 
 template <>
@@ -34,6 +35,11 @@ void describe(V& v, BvhConfig& c) {
       "mixed_triangles", c.mixed_triangles, IntRange{0, 16}, "triangles",
       "Leaves of at most this size have no box; their triangles are tested with the other children of their parent. "
       "With 0 there are none.");
+  v.field(
+      "top_triangles", c.top_triangles, IntRange{0, 16}, "triangles",
+      "A mesh that stands in the world without a transform and is one leaf of at most this size has no structure of "
+      "its "
+      "own; its triangles are tested with the other children of their parent in the top level. With 0 there are none.");
 }
 
 }  // namespace config
