@@ -13,6 +13,7 @@ struct BvhConfig {
   enum class Elements { kBoxes, kSpheres } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
   enum class Storage { kFull, kQuantised } storage = Storage::kFull;
+  std::int64_t top_triangles = 0;
 };
 
 template <>
@@ -45,6 +46,11 @@ void describe(V& v, BvhConfig& c) {
       "storage", c.storage,
       "Nodes hold their children's boxes as floats, or in 8 bits a plane, outward; these have 64 bytes up to a width "
       "of 6, and 80 above.");
+  v.field(
+      "top_triangles", c.top_triangles, IntRange{0, 16}, "triangles",
+      "A mesh that stands in the world without a transform and is one leaf of at most this size has no structure of "
+      "its "
+      "own; its triangles are tested with the other children of their parent in the top level. With 0 there are none.");
 }
 
 }  // namespace config
