@@ -112,14 +112,17 @@ class SchemaWriter {
                   {"required", {name}},
                   {"additionalProperties", false}};
     };
-    Json from =
+    const auto file = [](const char* text) {
+      return Json{{"type", "string"}, {"minLength", 1}, {"description", text}};
+    };
+    Json rays =
         one_key("rays_from",
-                {{"type", "string"},
-                 {"minLength", 1},
-                 {"description",
-                  "A file of rays in CSV. Its path is relative to the config's folder, then to the working one."}});
+                file("A file of rays in CSV. Its path is relative to the config's folder, then to the working one."));
+    Json trace = one_key("memory_trace",
+                         file("A file of requests to the memory in CSV (docs/memory.md); the memory runs alone."));
     put(key,
-        {{"anyOf", {Json{{"const", "rays"}}, from, one_key("traffic", object(value.traffic, "Synthetic packets."))}},
+        {{"anyOf",
+          {Json{{"const", "rays"}}, rays, trace, one_key("traffic", object(value.traffic, "Synthetic packets."))}},
          {"default", "rays"}},
         "", meaning);
   }
