@@ -74,7 +74,8 @@ install(FILES ${written}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/c
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME carousel)
 set(CPACK_PACKAGE_VENDOR "The Carousel project")
-set(CPACK_PACKAGE_CONTACT "The Carousel project <carousel@localhost>")
+# The domain .invalid belongs to nobody (RFC 2606): who publishes packages puts an address of their own here.
+set(CPACK_PACKAGE_CONTACT "The Carousel project <carousel@carousel.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulator of ray-tracing hardware in which shapes travel")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -90,10 +91,10 @@ set(CPACK_DEBIAN_CAROUSEL_PACKAGE_RECOMMENDS "python3")
 set(CPACK_DEBIAN_CAROUSEL_PACKAGE_SUGGESTS "carousel-dev, python3-numpy, python3-pandas")
 set(CPACK_COMPONENT_CAROUSEL_DESCRIPTION
     "Carousel simulates ray-tracing hardware in which rays stay put and packets
- of shapes travel a ring of queues: on worker threads and real queues, or
- under virtual time with a report of cycles, bytes and the parts that limit
- the machine. The package holds the program, its manual, example
- configurations and a Python module.")
+of shapes travel a ring of queues: on worker threads and real queues, or
+under virtual time with a report of cycles, bytes and the parts that limit
+the machine. The package holds the program, its manual, example
+configurations and a Python module.")
 # The libraries are those that script/bootstrap installs to build with: one list.
 file(STRINGS script/bootstrap bootstrap REGEX "^release=|^  lib|^  .*-dev")
 list(JOIN bootstrap " " bootstrap)
@@ -106,6 +107,6 @@ set(CPACK_DEBIAN_CAROUSEL-DEV_PACKAGE_DEPENDS "${development_packages}, pkg-conf
 set(CPACK_DEBIAN_CAROUSEL-DEV_PACKAGE_RECOMMENDS "carousel, cmake, g++")
 set(CPACK_COMPONENT_CAROUSEL-DEV_DESCRIPTION
     "Headers, static libraries and the CMake package of Carousel, a simulator of
- ray-tracing hardware, for programs with queues, policies or workloads of
- their own. Examples are included.")
+ray-tracing hardware, for programs with queues, policies or workloads of
+their own. Examples are included.")
 include(CPack)
