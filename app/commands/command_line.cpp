@@ -252,8 +252,8 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   add_accuracy(program, arguments.accuracy);
   add_inspect(program, arguments.inspect);
   add_compare(program, arguments.compare);
-  add_report(program, arguments.report);
   add_follow(program, arguments.follow);
+  add_report(program, arguments.report);
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
