@@ -12,6 +12,7 @@
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
+#include "app/build_report/ring_sections.h"
 #include "app/build_report/traffic_report.h"
 #include "app/build_report/verdict.h"
 #include "app/commands/report_command.h"
@@ -24,6 +25,8 @@
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
 #include "app/run/hit_recorder.h"
+#include "app/run/machine_log.h"
+#include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
 #include "app/run/render_job.h"
 #include "core/config/write.h"
@@ -67,6 +70,7 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
                             const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
+  log_machine(p);
   Phase phase("run");
   CountingWorkload counting(workload);
   ringbus::RunOptions options;
@@ -94,14 +98,10 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
 template <class WriteFiles>
 void finish(const RunArguments& arguments, const report::Report& report, const std::string& table, OutputFolder& output,
             const WriteFiles& write_files) {
-  std::exception_ptr failure;
-  try {
+  const std::exception_ptr failure = output.write([&](const std::filesystem::path&) {
     const Phase phase("files");
     write_files();
-    output.commit();
-  } catch (const FileError&) {
-    failure = std::current_exception();
-  }
+  });
   print_report(arguments, report, table, failure ? "none, they cannot be written" : output.folder().string());
   if (failure) std::rethrow_exception(failure);
 }
@@ -169,7 +169,8 @@ int run_command(const RunArguments& arguments) {
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
   std::optional<OutputFolder> output;
   const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits, [&](const Config& config) {
-    output.emplace(out_folder(arguments), config, arguments.force);  // before any work that could be lost
+    output.emplace(out_folder(arguments), &config, arguments.force,
+                   Results::kRun);  // before any work that could be lost
   });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
@@ -187,13 +188,18 @@ int run_command(const RunArguments& arguments) {
     if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
     verifying.emplace(job.workload(), plain ? *plain : p.accel);
   }
-  Workload& workload = verifying ? *verifying : job.workload();
+  const bool picture = p.config().workload.kind == WorkloadConfig::Kind::kRays;
+  const auto rays_a_path = static_cast<std::uint64_t>(picture ? 2 * p.config().image.max_depth : 1);
+  RayCensus census(verifying ? static_cast<Workload&>(*verifying) : job.workload(),
+                   static_cast<std::size_t>(shader_workers(p.config())),
+                   RayCensus::one_in(job.first_rays() * rays_a_path));
 
   std::optional<TraceFile> trace;
   if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
-  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet, trace ? &*trace : nullptr);
+  const ringbus::RunResult result = simulate(p, job, census, interrupt, arguments.quiet, trace ? &*trace : nullptr);
   if (trace) write_trace(*trace, arguments.trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
+  add_census(report, census, p.accel);
   if (result.cycle) {
     report.bound = bound_of(result);
     if (p.config().engine.what_if) {
