@@ -102,7 +102,8 @@ void describe(V& v, Config& c) {
   v.choice("verify", c.verify,
            "With reference every ray is traced again, depth first, and compared. With effects the picture is computed "
            "again with all effects and compared.");
-  v.workload("workload", c.workload, "The rays of the picture, the rays of a file, or synthetic traffic.");
+  v.workload("workload", c.workload,
+             "The rays of the picture, the rays of a file, synthetic traffic, or requests to the memory alone.");
   v.vary("vary", c.vary, "The values of keys for sweep, as in key.path: [a, b, c].");
 }
 

@@ -231,20 +231,22 @@ void Reader::workload(std::string_view key, WorkloadConfig& value, const char*) 
   const Visit visit(*this, key);
   if (!visit.node) return;
   const Node& node = *visit.node;
-  const std::string expected = "rays, {rays_from: FILE} or {traffic: {...}}";
+  const std::string expected = "rays, {rays_from: FILE}, {memory_trace: FILE} or {traffic: {...}}";
   if (node.kind == Node::Kind::kString && node.text == "rays") {
     value.kind = WorkloadConfig::Kind::kRays;
   } else if (node.kind == Node::Kind::kMap) {
     scopes_.push_back({&node, {}});
     field("rays_from", value.rays_from, "", "");
+    field("memory_trace", value.memory_trace, "", "");
     section("traffic", value.traffic, "");
     report_unknown(scopes_.back());
     scopes_.pop_back();
-    const bool from_file = node.find("rays_from"), traffic = node.find("traffic");
-    if (from_file == traffic)
+    const bool from_file = node.find("rays_from"), traffic = node.find("traffic"), trace = node.find("memory_trace");
+    using enum WorkloadConfig::Kind;
+    if (from_file + traffic + trace != 1)
       issues_.push_back({node.position, path(), "expected " + expected});
     else
-      value.kind = traffic ? WorkloadConfig::Kind::kTraffic : WorkloadConfig::Kind::kRaysFrom;
+      value.kind = traffic ? kTraffic : trace ? kMemoryTrace : kRaysFrom;
   } else {
     wrong(node, expected);
   }

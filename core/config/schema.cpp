@@ -112,14 +112,17 @@ class SchemaWriter {
                   {"required", {name}},
                   {"additionalProperties", false}};
     };
-    Json from =
+    const auto file = [](const char* text) {
+      return Json{{"type", "string"}, {"minLength", 1}, {"description", text}};
+    };
+    Json rays =
         one_key("rays_from",
-                {{"type", "string"},
-                 {"minLength", 1},
-                 {"description",
-                  "A file of rays in CSV. Its path is relative to the config's folder, then to the working one."}});
+                file("A file of rays in CSV. Its path is relative to the config's folder, then to the working one."));
+    Json trace = one_key("memory_trace",
+                         file("A file of requests to the memory in CSV (docs/memory.md); the memory runs alone."));
     put(key,
-        {{"anyOf", {Json{{"const", "rays"}}, from, one_key("traffic", object(value.traffic, "Synthetic packets."))}},
+        {{"anyOf",
+          {Json{{"const", "rays"}}, rays, trace, one_key("traffic", object(value.traffic, "Synthetic packets."))}},
          {"default", "rays"}},
         "", meaning);
   }
@@ -241,6 +244,8 @@ std::optional<std::string> config_path_ending_in(std::string_view key) {
 Json config_schema() {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Carousel configuration"}};
   schema.update(config::SchemaWriter::object(Config{}, ""));
+  // Not a key of the configuration: the line that tells editors of this schema.
+  schema["patternProperties"] = {{"^\\$schema$", {{"type", "string"}}}};
   schema["required"] = {"scene"};
   Json& scene = schema["properties"]["scene"];
   scene["oneOf"] = {Json{{"required", {"file"}}}, Json{{"required", {"builtin"}}}};

@@ -25,6 +25,7 @@ class Rules {
 
   std::vector<ConfigIssue> check() {
     one_scene();
+    trace_is_built();
     camera_has_a_view();
     raster_needs_a_pinhole();
     all_is_built();
@@ -87,6 +88,11 @@ class Rules {
             fmt::format("primary: raster needs a pinhole; expected 0, or primary: rays, found {}", c.camera.aperture));
     if (c.workload.kind != WorkloadConfig::Kind::kRays)
       issue("primary", "this workload has no camera; expected rays, found raster");
+  }
+
+  void trace_is_built() {
+    if (c.workload.kind == WorkloadConfig::Kind::kMemoryTrace)
+      issue("workload", "memory_trace is not built yet; expected rays, {rays_from: FILE} or {traffic: {...}}");
   }
 
   bool cycle() const { return c.engine.kind == EngineKind::kCycle; }

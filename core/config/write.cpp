@@ -86,6 +86,8 @@ class JsonWriter {
         return put(key, "rays");
       case WorkloadConfig::Kind::kRaysFrom:
         return put(key, {{"rays_from", value.rays_from}});
+      case WorkloadConfig::Kind::kMemoryTrace:
+        return put(key, {{"memory_trace", value.memory_trace}});
       case WorkloadConfig::Kind::kTraffic:
         return put(key, {{"traffic", object(value.traffic)}});
     }

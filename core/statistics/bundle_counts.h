@@ -10,7 +10,8 @@ struct BundleCounts {
   std::uint64_t lane_rays = 0, split_rays = 0;
   std::uint64_t visits = 0, visit_rays = 0, touched = 0, taken_apart = 0;
   std::uint64_t formed = 0, formed_rays = 0, loaded = 0, loaded_rays = 0;
-  std::uint64_t edges = 0, regrouped = 0;
+  std::uint64_t edges = 0, regrouped = 0, returned = 0;
+  std::uint64_t leaf_tests = 0, leaf_misses = 0, leaf_tests_spared = 0;
 
   static constexpr auto counters() {
     using C = BundleCounts;
@@ -36,7 +37,14 @@ struct BundleCounts {
         Counter{"loaded_rays", &C::loaded_rays, "rays", "rays of the bundles formed of new rays", Shown::kNever},
         Counter{"edges", &C::edges, "edges", "edges of silhouettes that bundles were tested against"},
         Counter{"regrouped", &C::regrouped, "rays",
-                "rays that left a bundle and passed the builder again, with lifetime: reformed or split: builder"},
+                "rays that left a bundle and passed the builder again, with lifetime: reformed or another split than "
+                "tester"},
+        Counter{"returned", &C::returned, "bundles",
+                "bundles that went back to the builder untested, with split: untested"},
+        Counter{"leaf_tests", &C::leaf_tests, "tests", "tests of a bundle against a primitive, with leaf: primitives"},
+        Counter{"leaf_misses", &C::leaf_misses, "tests", "those of them that showed that every ray misses"},
+        Counter{"leaf_tests_spared", &C::leaf_tests_spared, "tests",
+                "tests of a ray against a primitive that these misses made unnecessary"},
     };
   }
   /// Tests of a ray against a box that bundles made unnecessary.

@@ -20,7 +20,7 @@ struct IntersectionCounts {
         Counter{"refined", &C::refined, "tests",
                 "triangles that a ray met in 32 bits and whose distance was computed in 64, with accuracy.triangle: "
                 "watertight"},
-        Counter{"bundle", &C::bundle, "tests", "tests of a bundle of rays against a box"},
+        Counter{"bundle", &C::bundle, "tests", "tests of a bundle of rays against a box, or the box of a primitive"},
         Counter{"transforms", &C::transforms, "tests", "transformations of a ray from world to model space"},
         Counter{"transforms_in_double", &C::transforms_in_double, "tests",
                 "those of the transformations that are made in 64 bits because the instance's matrix is nearly "

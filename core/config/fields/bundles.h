@@ -21,7 +21,7 @@ struct BundlesConfig {
     bool same_origin = false, same_signs = true;
   } builder;
   enum class Sources { kAll, kCamera, kShader } sources = Sources::kAll;
-  enum class Split { kTester, kBuilder } split = Split::kTester;
+  enum class Split { kTester, kBuilder, kUntested } split = Split::kTester;
   std::int64_t min_rays = 2;
   struct SplitBelow {
     std::int64_t depth = 255;
@@ -31,6 +31,7 @@ struct BundlesConfig {
     double spread = 0, silhouette_area = 0;
   } split_above;
   enum class AtInstances { kSplit, kRebound } at_instances = AtInstances::kSplit;
+  enum class Leaf { kRays, kPrimitives } leaf = Leaf::kRays;
   enum class Hint { kIgnore, kObey } hint = Hint::kIgnore;
 };
 
@@ -86,13 +87,19 @@ inline constexpr auto kEnumNames<BundlesConfig::Sources> = [] {
 template <>
 inline constexpr auto kEnumNames<BundlesConfig::Split> = [] {
   using enum BundlesConfig::Split;
-  return names<BundlesConfig::Split>({{kTester, "tester"}, {kBuilder, "builder"}});
+  return names<BundlesConfig::Split>({{kTester, "tester"}, {kBuilder, "builder"}, {kUntested, "untested"}});
 }();
 
 template <>
 inline constexpr auto kEnumNames<BundlesConfig::AtInstances> = [] {
   using enum BundlesConfig::AtInstances;
   return names<BundlesConfig::AtInstances>({{kSplit, "split"}, {kRebound, "rebound"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<BundlesConfig::Leaf> = [] {
+  using enum BundlesConfig::Leaf;
+  return names<BundlesConfig::Leaf>({{kRays, "rays"}, {kPrimitives, "primitives"}});
 }();
 
 template <>
@@ -145,12 +152,19 @@ void describe(V& v, BundlesConfig& c) {
   v.choice("lifetime", c.lifetime, "Bundles stay together from node to node, or are formed anew at each node.");
   v.section("builder", c.builder, "The part that makes bundles of similar rays.");
   v.choice("sources", c.sources, "Bundles are made of all rays, of camera rays only, or of the shaders' rays only.");
-  v.choice("split", c.split, "The rays of a split bundle are tested one by one, or go back to the builder.");
+  v.choice(
+      "split", c.split,
+      "The rays of a split bundle are tested one by one and go on alone, or are tested and go on in bundles that "
+      "the builder makes of them, or go back to the builder untested and come to the same node in smaller bundles.");
   v.field("min_rays", c.min_rays, IntRange{2, 64}, "rays", "Bundles of fewer rays than this are not made.");
   v.section("split_below", c.split_below, "Places in the tree where bundles split, hit or not.");
   v.section("split_above", c.split_above, "Widths above which bundles split, hit or not.");
   v.choice("at_instances", c.at_instances,
            "At an instance with a transform a bundle splits, or its bounds are computed anew in model space.");
+  v.choice(
+      "leaf", c.leaf,
+      "At a leaf each ray of a bundle is tested against each primitive, or the bundle is tested first, and its rays "
+      "only against the primitives that one of them may hit.");
   v.choice("hint", c.hint,
            "The shaders mark rays that left by a wide lobe. Bundles ignore the mark, or leave such rays out.");
 }

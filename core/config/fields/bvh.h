@@ -12,12 +12,20 @@ struct BvhConfig {
   std::int64_t treelet_triangles = 2048;
   enum class Elements { kBoxes, kSpheres } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
+  enum class Storage { kFull, kQuantised } storage = Storage::kFull;
+  std::int64_t top_triangles = 0;
 };
 
 template <>
 inline constexpr auto kEnumNames<BvhConfig::Elements> = [] {
   using enum BvhConfig::Elements;
   return names<BvhConfig::Elements>({{kBoxes, "boxes"}, {kSpheres, "spheres"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<BvhConfig::Storage> = [] {
+  using enum BvhConfig::Storage;
+  return names<BvhConfig::Storage>({{kFull, "full"}, {kQuantised, "quantised"}});
 }();
 
 namespace config {
@@ -34,6 +42,15 @@ void describe(V& v, BvhConfig& c) {
       "mixed_triangles", c.mixed_triangles, IntRange{0, 16}, "triangles",
       "Leaves of at most this size have no box; their triangles are tested with the other children of their parent. "
       "With 0 there are none.");
+  v.choice(
+      "storage", c.storage,
+      "Nodes hold their children's boxes as floats, or in 8 bits a plane, outward; these have 64 bytes up to a width "
+      "of 6, and 80 above.");
+  v.field(
+      "top_triangles", c.top_triangles, IntRange{0, 16}, "triangles",
+      "A mesh that stands in the world without a transform and is one leaf of at most this size has no structure of "
+      "its "
+      "own; its triangles are tested with the other children of their parent in the top level. With 0 there are none.");
 }
 
 }  // namespace config

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "core/config/fields/dram.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
@@ -11,12 +13,22 @@ struct MemoryConfig {
   std::int64_t l2_lines_per_cycle = 4, l2_latency_cycles = 160, dram_latency_cycles = 200, dram_bytes_per_cycle = 64;
   enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kResource;
   std::int64_t fetch_ahead = 2, shape_buffer_kib = 32;
+  std::int64_t l2_banks = 1, l2_mshrs = 0;
+  std::optional<std::int64_t> l2_sector_bytes;  ///< absent: a whole line
+  enum class Write { kThrough, kBack } l2_write = Write::kThrough;
+  DramConfig dram;
 };
 
 template <>
 inline constexpr auto kEnumNames<MemoryConfig::Fetch> = [] {
   using enum MemoryConfig::Fetch;
   return names<MemoryConfig::Fetch>({{kPacket, "packet"}, {kResource, "resource"}, {kMulticast, "multicast"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<MemoryConfig::Write> = [] {
+  using enum MemoryConfig::Write;
+  return names<MemoryConfig::Write>({{kThrough, "through"}, {kBack, "back"}});
 }();
 
 namespace config {
@@ -29,11 +41,20 @@ void describe(V& v, MemoryConfig& c) {
   v.field("shared_by", c.shared_by, IntRange{1, kMaxResources}, "resources",
           "The number of resources that share one cache.");
   v.field("l2_lines_per_cycle", c.l2_lines_per_cycle, IntRange{1, 64}, "lines/cycle",
-          "The number of lines that a shared cache looks up in a cycle.");
+          "The number of lines that a bank of a shared cache looks up in a cycle.");
+  v.field("l2_banks", c.l2_banks, IntRange{1, 64}, "banks",
+          "The number of banks of a shared cache, which hold its lines in turn.");
+  v.field("l2_mshrs", c.l2_mshrs, IntRange{0, 65536}, "lines",
+          "The number of lines that a bank can have on their way from memory. With 0 there is no bound.");
+  v.field_or_auto("l2_sector_bytes", c.l2_sector_bytes, IntRange{16, 1024}, "bytes",
+                  "The part of a line that is fetched by itself. With auto it is the whole line.");
+  v.choice("l2_write", c.l2_write,
+           "A line that is written goes on to memory at once, or when it is replaced in the shared cache.");
   v.field("l2_latency_cycles", c.l2_latency_cycles, kCycles, "cycles", "The time of a hit in the shared cache.");
-  v.field("dram_latency_cycles", c.dram_latency_cycles, kCycles, "cycles", "The time of a miss.");
+  v.field("dram_latency_cycles", c.dram_latency_cycles, kCycles, "cycles",
+          "The time of a miss; of DRAM with banks the way there and back.");
   v.field("dram_bytes_per_cycle", c.dram_bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle",
-          "The bandwidth of the memory.");
+          "The bandwidth of the pipe.");
   v.choice(
       "fetch", c.fetch,
       "Shape data is fetched by the issuer of a packet, which brings it along, by each resource, or once for all.");
@@ -41,6 +62,7 @@ void describe(V& v, MemoryConfig& c) {
           "The number of packets whose shapes are fetched in advance.");
   v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB",
           "The shape data that a resource holds, in places of 64 bytes.");
+  v.section("dram", c.dram, "The memory behind the shared caches.");
 }
 
 }  // namespace config

@@ -37,8 +37,9 @@ inline constexpr auto kEnumNames<TrafficConfig::SourceQueues> = [] {
 }();
 
 struct WorkloadConfig {
-  enum class Kind { kRays, kRaysFrom, kTraffic } kind = Kind::kRays;
-  std::string rays_from;  ///< ray CSV; its path is relative to the config's folder, then to the working one
+  enum class Kind { kRays, kRaysFrom, kTraffic, kMemoryTrace } kind = Kind::kRays;
+  std::string rays_from;     ///< ray CSV; its path is relative to the config's folder, then to the working one
+  std::string memory_trace;  ///< CSV of memory requests, likewise
   TrafficConfig traffic;
 };
 

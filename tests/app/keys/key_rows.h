@@ -83,6 +83,8 @@ inline std::vector<KeyRow> key_rows() {
       {"bvh.treelet_triangles", kTerrain, {"collections.traversal=treelet"}, {"64"}},
       {"bvh.elements", kTerrain},
       {"bvh.mixed_triangles", kTerrain, {}, {"4"}},
+      {"bvh.storage", kTerrain},
+      {"bvh.top_triangles", kCornell, {}, {"16"}},
       {"accuracy.triangle", kInstances},
       {"accuracy.box", kCornell},
       {"accuracy.transform", kLayers},
@@ -127,6 +129,7 @@ inline std::vector<KeyRow> key_rows() {
       {"bundles.split_above.spread", kBundles, {}, {"0.01"}},
       {"bundles.split_above.silhouette_area", kBundles, {}, {"0.001"}},
       {"bundles.at_instances", kBundles},
+      {"bundles.leaf", kBundles},
       {"bundles.hint", kBundles},
       {"testers.box.units", kTerrain, {"testers.box.units=8", "testers.box.interval_cycles=4"}, {"1"}},
       {"testers.box.interval_cycles", kTerrain, {"testers.box.units=1"}, {"40"}},
@@ -171,6 +174,18 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.l2_latency_cycles", kTerrain, {}, {"90"}},
       {"memory.dram_latency_cycles", kTerrain, {}, {"500"}},
       {"memory.dram_bytes_per_cycle", kTerrain, {}, {"1"}},
+      {"memory.l2_banks", kTerrain, {"memory.l2_lines_per_cycle=1"}, {"2"}},
+      {"memory.l2_mshrs", kTerrain, {}, {"1"}},
+      {"memory.l2_sector_bytes", kTerrain, {"memory.line_bytes=128"}, {"32"}},
+      {"memory.l2_write", kTerrain},
+      {"memory.dram.preset", kTerrain},
+      {"memory.dram.mapping", kTerrain},
+      {"memory.dram.channels", kTerrain, {}, {"1"}},
+      {"memory.dram.interleave_bytes", kTerrain, {}, {"4096"}},
+      {"memory.dram.queue", kTerrain, {}, {"1"}},
+      {"memory.dram.period_ps", kTerrain, {}, {"5000"}},
+      {"memory.dram.refresh", kTerrain},
+      {"memory.dram.refresh_cycles", kTerrain, {}, {"1500"}},
       {"memory.fetch", kTerrain, {"memory.fetch=resource"}, {"packet", "multicast"}, {"packets.carry=data"}},
       {"memory.fetch_ahead", kTerrain, {}, {"0"}},
       {"memory.shape_buffer_kib", kTerrain, {"memory.fetch=resource", "memory.shape_buffer_kib=64"}, {"1"}},
@@ -227,8 +242,9 @@ inline std::vector<KeyRow> key_rows() {
 /// Keys without a row, for a reason.
 inline std::vector<std::string> keys_without_a_row() {
   return {
-      "schema_version",  // it has one value
-      "vary",            // it is for sweeps; `run` warns of it
+      "schema_version",         // it has one value
+      "vary",                   // it is for sweeps; `run` warns of it
+      "workload.memory_trace",  // it replaces the machine; tests/app/commands/memory_trace_test.cpp
   };
 }
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "app/host/interrupt.h"
+#include "app/run/prepare.h"
+#include "app/run/render_job.h"
+#include "app/run/trace_events.h"
+#include "report/run/report.h"
+
+namespace carousel::app {
+
+/// Simulates the rays of `job`, and all that the configuration asks for besides: the verification of the hits, the
+/// search for the bottleneck, the run without faults, the run with all effects. An interrupted part marks the report as
+/// incomplete. `trace`, if not null, gets the events of the run and is written as soon as they are there. Shows its
+/// progress on a terminal unless `quiet`. Throws ConfigError and FileError.
+report::Report run_rays(const ConfigArguments& arguments, const Prepared& prepared, RenderJob& job,
+                        const InterruptScope& interrupt, bool quiet, TraceFile* trace = nullptr);
+
+/// Simulates the network alone, without rays.
+report::Report run_traffic(const Prepared& prepared, const InterruptScope& interrupt, bool quiet);
+
+}  // namespace carousel::app
