@@ -99,6 +99,10 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i)
     add_to_resource((*r.resources)[i], c.tiles[i], c.cycles, config, accel);
   for (std::size_t i = 0; r.links && i < r.links->size(); ++i) add_to_link((*r.links)[i], c.links[i], c.cycles);
+  r.rays.residence = report::distribution_of(c.residence);
+  Log2Histogram ages;
+  for (const ringbus::cycle::TileResult& tile : c.tiles) ages += tile.collection_ages;
+  if (r.collections && ages.count() > 0) r.collections->age = report::distribution_of(ages);
   LatencyHistogram trips;
   for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
   if (r.packets && trips.count() > 0) r.packets->latency = report::latency_of(trips);

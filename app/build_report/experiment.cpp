@@ -9,12 +9,15 @@
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
+#include "app/build_report/ring_sections.h"
 #include "app/build_report/traffic_report.h"
 #include "app/host/log.h"
 #include "app/run/bottleneck.h"
 #include "app/run/counting_workload.h"
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
+#include "app/run/machine_log.h"
+#include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
 #include "report/text/number_text.h"
 #include "report/text/progress_line.h"
@@ -46,6 +49,7 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
                             const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
+  log_machine(p);
   Phase phase("run");
   CountingWorkload counting(workload);
   ringbus::RunOptions options;
@@ -88,10 +92,15 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
     verifying.emplace(job.workload(), plain ? *plain : p.accel);
   }
-  Workload& workload = verifying ? *verifying : job.workload();
-  const ringbus::RunResult result = simulate(p, job, workload, interrupt, quiet, trace);
+  const bool picture = p.config().workload.kind == WorkloadConfig::Kind::kRays;
+  const auto rays_a_path = static_cast<std::uint64_t>(picture ? 2 * p.config().image.max_depth : 1);
+  RayCensus census(verifying ? static_cast<Workload&>(*verifying) : job.workload(),
+                   static_cast<std::size_t>(shader_workers(p.config())),
+                   RayCensus::one_in(job.first_rays() * rays_a_path));
+  const ringbus::RunResult result = simulate(p, job, census, interrupt, quiet, trace);
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
+  add_census(report, census, p.accel);
   if (result.cycle) find_limits(p, job, result, interrupt, quiet, report);
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, quiet, report);

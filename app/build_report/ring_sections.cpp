@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "app/build_report/nodes_section.h"
 #include "core/config/config.h"
 #include "core/types/enum_names.h"
 #include "core/types/ray.h"
@@ -45,6 +46,7 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Config&
   collections.fullness_mean =
       ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.packets.rays));
   r.tests = report::Tests{sum.tests, sum.reads, rays, ringbus::features_of(config, accel)};
+  if (!sum.nodes.empty()) r.nodes = nodes_section(accel, sum.nodes);
   if (!sum.bundles.empty()) r.tests->bundles = report::Bundles{sum.bundles, sizeof(RayRecord)};
   if (!accel.planes.empty())
     r.cull_planes = report::CullPlanes{accel.planes.size(), accel.plane_bytes,
@@ -52,6 +54,11 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Config&
   r.packets = report::Packets{sum};
   r.throughput =
       report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(sum.tests.tests(), rays)};
+}
+
+void add_census(report::Report& r, const RayCensus& census, const accel::Accel& accel) {
+  r.rays.by_bounce = census.by_bounce();
+  if (r.tests) r.tests->depth_first = census.depth_first(accel);
 }
 
 void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "accel/structure/accel.h"
+#include "app/run/ray_census.h"
 #include "core/config/config.h"
 #include "report/run/report.h"
 #include "ringbus/results/run_result.h"
@@ -11,6 +12,9 @@ namespace carousel::app {
 /// resources and throughput. `result` has statistics; `report` has its rays.
 void add_ring(report::Report& report, const ringbus::RunResult& result, const Config& config,
               const accel::Accel& accel);
+
+/// Fills in the way of the rays and the depth-first baseline, for which it traces rays.
+void add_census(report::Report& report, const RayCensus& census, const accel::Accel& accel);
 
 /// Fills in the section of the links.
 void add_links(report::Report& report, const ringbus::RunResult& result, const Config& config);

@@ -16,10 +16,11 @@
 #include "app/host/interrupt.h"
 #include "app/host/machine_info.h"
 #include "app/host/output.h"
+#include "app/host/output_folder.h"
 #include "core/config/config.h"
+#include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/types/enum_names.h"
-#include "report/accuracy/accuracy_plot.h"
 #include "report/accuracy/accuracy_table.h"
 #include "report/html/study_pages.h"
 #include "report/text/progress_line.h"
@@ -213,25 +214,34 @@ class Trial {
 
 int accuracy_command(const AccuracyArguments& arguments) {
   const InterruptScope interrupt;
-  const Prepared p = arguments.config.empty() ? prepare_config(kBuiltInConfig, "built-in", arguments.sets)
-                                              : prepare(arguments, {}, false);
-  if (p.config().workload.kind != WorkloadConfig::Kind::kRays)
-    throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});
-  const report::Accuracy accuracy = Trial(p, arguments, interrupt).run();
   std::filesystem::path folder = arguments.out;
   if (folder.empty())
     folder = std::filesystem::path("out") /
              (arguments.config.empty() ? "accuracy" : std::filesystem::path(arguments.config).stem());
+  std::optional<OutputFolder> output;
+  const auto open_output = [&](const Config& config) {
+    output.emplace(folder, &config, arguments.force, Results::kAccuracy);
+  };
+  const Prepared p = arguments.config.empty() ? prepare_config(kBuiltInConfig, "built-in", arguments.sets)
+                                              : prepare(arguments, {}, false, open_output);
+  if (!output) open_output(p.config());
+  if (p.config().workload.kind != WorkloadConfig::Kind::kRays)
+    throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});
+  const report::Accuracy accuracy = Trial(p, arguments, interrupt).run();
   const nlohmann::ordered_json result = report::accuracy_json(accuracy);
   const std::string json = result.dump(2) + "\n";
-  write_file(folder / "accuracy.html", report::html::accuracy_page(result));
-  write_file(folder / "accuracy.json", json);
-  write_file(folder / "accuracy.svg", report::accuracy_plot(accuracy));
+  const std::exception_ptr failure = output->write([&](const std::filesystem::path& staging) {
+    write_file(staging / "config.resolved.yaml", resolved_yaml(p.config()));
+    write_file(staging / "accuracy.html", report::html::accuracy_page(result));
+    write_file(staging / "accuracy.json", json);
+  });
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
-    print_text(report::accuracy_table(accuracy) + "files: " + folder.string() +
-               "/accuracy.json, accuracy.html, accuracy.svg\n");
+    print_text(report::accuracy_table(accuracy) +
+               (failure ? "files: none, they cannot be written\n"
+                        : "files: " + folder.string() + "/accuracy.json, accuracy.html\n"));
+  if (failure) std::rethrow_exception(failure);
   return accuracy.incomplete ? interrupt.status() : kDone;
 }
 

@@ -149,7 +149,7 @@ void add_run(CLI::App& program, RunArguments& r) {
 void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   CLI::App* accuracy = program.add_subcommand("accuracy", "Measure the time and the errors of every level of accuracy");
   add_config_options(*accuracy, a, "a built-in scene of instances");
-  accuracy->add_option("--out", a.out, "Folder for accuracy.json, .html and .svg (default: out/<config name>)")
+  accuracy->add_option("--out", a.out, "Folder for accuracy.json and accuracy.html (default: out/<config name>)")
       ->type_name("DIR");
   accuracy->add_option("--rays", a.rays, "Most rays of the scene to compare with exact arithmetic")
       ->check(CLI::Range(1u, 10'000'000u))
@@ -163,6 +163,8 @@ void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   accuracy->add_option("--seed", a.seed, "Seed of the hard cases")->capture_default_str();
   accuracy->add_flag("--json", a.json, kJsonHelp);
   accuracy->add_flag("--quiet", a.quiet, kQuietHelp);
+  accuracy->add_flag("--force", a.force,
+                     "Replace the results of another configuration in the folder (default: refused)");
 
   CLI::Option* certify = accuracy->add_flag(
       "--certify", a.certify,
@@ -205,6 +207,8 @@ void add_compare(CLI::App& program, CompareArguments& c) {
                    "Show only rows, keys and values whose names contain this; * is any text (default: all)")
       ->type_name("PATTERN");
   compare->add_flag("--json", c.json, kJsonHelp);
+  compare->add_option("--html", c.html, "Write a page with the comparison as tables and charts (default: none)")
+      ->type_name("FILE");
   compare->add_option("--expect", "With `identical`: exit status 1 if the reports differ (default: 0 in any case)")
       ->check(CLI::IsMember({"identical"}))
       ->each([&c](const std::string&) { c.expect_identical = true; });

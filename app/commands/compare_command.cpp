@@ -10,8 +10,10 @@
 #include "app/host/output.h"
 #include "app/run/prepare.h"
 #include "app/run/render_job.h"
+#include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "report/compare/comparison.h"
+#include "report/html/compare_page.h"
 #include "report/run/report_difference.h"
 #include "ringbus/cycle/cycle_engine.h"
 
@@ -63,6 +65,7 @@ int compare_command(const CompareArguments& arguments) {
   for (const std::string& name : arguments.runs) runs.push_back({name, read_report(name)});
   const report::Comparison comparison = report::compare_runs(runs, arguments.only);
   const bool all = arguments.all || !arguments.only.empty();
+  if (!arguments.html.empty()) write_file(arguments.html, report::html::compare_page(comparison, all));
   if (arguments.json) {
     print_result(report::comparison_json(comparison, all).dump(2) + "\n");
   } else {

@@ -9,6 +9,7 @@ struct CompareArguments {
   std::vector<std::string> runs;  ///< two or more report.json files, or folders that hold one
   std::string only;               ///< pattern of rows and keys to show; empty: all
   bool expect_identical = false, all = false, json = false;
+  std::string html;  ///< page to write; empty: none
 };
 
 /// `carousel compare`: prints "identical" if everything outside of `host` is equal; otherwise the runs side by side

@@ -46,14 +46,10 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
 template <class WriteFiles>
 void finish(const RunArguments& arguments, const report::Report& report, const std::string& table, OutputFolder& output,
             const WriteFiles& write_files) {
-  std::exception_ptr failure;
-  try {
+  const std::exception_ptr failure = output.write([&](const std::filesystem::path&) {
     const Phase phase("files");
     write_files();
-    output.commit();
-  } catch (const FileError&) {
-    failure = std::current_exception();
-  }
+  });
   print_report(arguments, report, table, failure ? "none, they cannot be written" : output.folder().string());
   if (failure) std::rethrow_exception(failure);
 }
@@ -104,7 +100,8 @@ int run_command(const RunArguments& arguments) {
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
   std::optional<OutputFolder> output;
   const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits, [&](const Config& config) {
-    output.emplace(out_folder(arguments), config, arguments.force);  // before any work that could be lost
+    output.emplace(out_folder(arguments), &config, arguments.force,
+                   Results::kRun);  // before any work that could be lost
   });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");

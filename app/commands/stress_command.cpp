@@ -14,9 +14,11 @@
 #include "app/host/exit_status.h"
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
+#include "app/host/output_folder.h"
 #include "app/stress/ring_queues.h"
 #include "core/config/config.h"
 #include "core/config/edit_distance.h"
+#include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
@@ -123,12 +125,21 @@ int stress_command(const StressArguments& arguments) {
                      [&](const auto& queue) { return stress::pattern_fits(queue, pattern); }) &&
         !arguments.patterns.empty())
       ringbus::require_parties(kinds[0], "--queue", ringbus::Parties::kMany, ringbus::Parties::kMany);
+  std::filesystem::path folder = arguments.out;
+  if (folder.empty())
+    folder = std::filesystem::path("out") /
+             (arguments.config.empty() ? "stress" : std::filesystem::path(arguments.config).stem());
+  std::optional<OutputFolder> output;
   std::unique_ptr<const Prepared> prepared;
   if (!arguments.config.empty()) {
-    prepared.reset(new Prepared(prepare(arguments, {}, false)));
+    prepared.reset(new Prepared(prepare(arguments, {}, false, [&](const Config& config) {
+      output.emplace(folder, &config, arguments.force, Results::kStress);
+    })));
     if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic)
       throw ConfigError(
           {{prepared->located.positions.find("workload"), "workload", "stress tests queues with rays; expected rays"}});
+  } else {
+    output.emplace(folder, nullptr, arguments.force, Results::kStress);
   }
 
   std::optional<report::ProgressLine> line;
@@ -169,18 +180,20 @@ int stress_command(const StressArguments& arguments) {
   out.incomplete = interrupt.interrupted();
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  std::filesystem::path folder = arguments.out;
-  if (folder.empty())
-    folder = std::filesystem::path("out") /
-             (arguments.config.empty() ? "stress" : std::filesystem::path(arguments.config).stem());
   const nlohmann::ordered_json result = report::stress_json(out);
   const std::string json = result.dump(2) + "\n";
-  write_file(folder / "stress.html", report::html::stress_page(result));
-  write_file(folder / "stress.json", json);
+  const std::exception_ptr failure = output->write([&](const std::filesystem::path& staging) {
+    if (prepared) write_file(staging / "config.resolved.yaml", resolved_yaml(prepared->config()));
+    write_file(staging / "stress.html", report::html::stress_page(result));
+    write_file(staging / "stress.json", json);
+  });
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
-    print_text(report::stress_table(out) + "files: " + (folder / "stress.json").string() + ", stress.html\n");
+    print_text(report::stress_table(out) + (failure
+                                                ? "files: none, they cannot be written\n"
+                                                : "files: " + (folder / "stress.json").string() + ", stress.html\n"));
+  if (failure) std::rethrow_exception(failure);
   if (out.broken()) {
     std::string last;  // one message a queue and pattern; the table has the rest
     for (const report::StressRow& row : out.rows)

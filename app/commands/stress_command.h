@@ -24,15 +24,15 @@ struct StressArguments : ConfigArguments {  // without a configuration the queue
   std::size_t capacity = 64;
   std::uint64_t seed = 1;
   std::string out;  ///< folder; empty: out/stress, or out/<name of the configuration>
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, force = false;
 };
 
 /// Adds the options of `carousel stress`.
 void add_stress_options(CLI::App& command, StressArguments& arguments);
 
 /// `carousel stress`: tests queue designs under load, by themselves and, with a configuration, inside its ring; prints
-/// a table and writes stress.json. Returns the exit status: 1 if a queue lost, duplicated, reordered or corrupted a
-/// message, got stuck, or changed the results of a ring.
+/// a table and writes stress.json and stress.html. Returns the exit status: 1 if a queue lost, duplicated, reordered or
+/// corrupted a message, got stuck, or changed the results of a ring.
 int stress_command(const StressArguments& arguments);
 
 }  // namespace carousel::app

@@ -71,6 +71,7 @@ void add_stress_options(CLI::App& command, StressArguments& s) {
   command.add_flag("--json", s.json, "Print the result as JSON instead of a table (default: table)");
   command.add_flag("--quiet", s.quiet,
                    "Print errors only, and the result if --json is given (default: progress and table)");
+  command.add_flag("--force", s.force, "Replace the results of another configuration in the folder (default: refused)");
 }
 
 }  // namespace carousel::app

@@ -25,10 +25,28 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kRunFiles{
-    "report.json", "config.resolved.yaml", "report.html", "image.png", "image.exr", "hits.csv"};
-constexpr const char* kConfigFile = "config.resolved.yaml";
-constexpr const char* kReport = "report.json";
+constexpr const char* kConfigFile = "config.resolved.yaml";  // all commands write it
+
+/// The files of a command, by Results; the first is its result, which appears last.
+constexpr std::array<std::array<std::string_view, 5>, 3> kFiles{{
+    {"report.json", "report.html", "image.png", "image.exr", "hits.csv"},
+    {"accuracy.json", "accuracy.html"},
+    {"stress.json", "stress.html"},
+}};
+
+std::string_view result_of(Results results) {
+  return kFiles[static_cast<std::size_t>(results)].front();
+}
+
+bool is_file_of(Results results, std::string_view name) {
+  const auto& files = kFiles[static_cast<std::size_t>(results)];
+  return !name.empty() && std::find(files.begin(), files.end(), name) != files.end();
+}
+
+bool is_file_of_any(std::string_view name) {
+  return name == kConfigFile || is_file_of(Results::kRun, name) || is_file_of(Results::kAccuracy, name) ||
+         is_file_of(Results::kStress, name);
+}
 
 [[noreturn]] void fail(const fs::path& path, const std::string& why) {
   throw FileError("cannot write " + path.string() + ": " + why);
@@ -48,30 +66,23 @@ std::optional<Config> config_in(const fs::path& folder) {
   }
 }
 
-void refuse_other_results(const fs::path& folder, Config config) {
+/// The results of another configuration that a folder holds, in words; empty if there are none.
+std::string other_results(const fs::path& folder, const Config* config) {
   std::error_code ignored;
-  if (!fs::exists(folder / kReport, ignored) && !fs::exists(folder / kConfigFile, ignored)) return;
-  std::string found = "the results of a configuration that cannot be read";
-  if (std::optional<Config> there = config_in(folder)) {
-    there->engine.threads = config.engine.threads;  // is the host's affair, and changes no result
-    const std::vector<std::string> here = config_differences(*there, config);
-    if (here.empty()) return;
-    const std::vector<std::string> were = config_differences(config, *there);
-    found = fmt::format("the results of another configuration, with {}{}, not {}",
-                        were.empty() ? "other keys" : were.front(),
-                        were.size() > 1 ? fmt::format(" and {} more differences", were.size() - 1) : "", here.front());
-  }
-  throw ConfigError({{{},
-                      "--out",
-                      fmt::format("{} holds {}; expected a folder of its own (--out DIR), or --force to replace them",
-                                  folder.string(), found)}});
-}
-
-/// True if the folder holds nothing that is not a run's.
-bool holds_only_run_files(const fs::path& folder) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (!entry.is_regular_file() || entry.is_symlink() || !is_run_file(entry.path().filename().string())) return false;
-  return true;
+  const bool has_config = fs::exists(folder / kConfigFile, ignored);
+  if (!has_config && std::none_of(kFiles.begin(), kFiles.end(),
+                                  [&](const auto& files) { return fs::exists(folder / files.front(), ignored); }))
+    return "";
+  if (config == nullptr) return has_config ? "the results of a configuration, and here there is none" : "";
+  std::optional<Config> there = config_in(folder);
+  if (!there) return "the results of a configuration that cannot be read";
+  there->engine.threads = config->engine.threads;  // is the host's affair, and changes no result
+  const std::vector<std::string> here = config_differences(*there, *config);
+  if (here.empty()) return "";
+  const std::vector<std::string> were = config_differences(*config, *there);
+  return fmt::format("the results of another configuration, with {}{}, not {}",
+                     were.empty() ? "other keys" : were.front(),
+                     were.size() > 1 ? fmt::format(" and {} more differences", were.size() - 1) : "", here.front());
 }
 
 /// True for the working folder: a user's shell would stay in the one that is taken away.
@@ -82,18 +93,21 @@ bool is_current(const fs::path& folder) {
 
 }  // namespace
 
-bool is_run_file(std::string_view name) {
-  return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end();
-}
-
-OutputFolder::OutputFolder(const fs::path& folder, const Config& config, bool force) : folder_(folder) {
+OutputFolder::OutputFolder(const fs::path& folder, const Config* config, bool force, Results results)
+    : folder_(folder), results_(results) {
   std::error_code error;
   target_ = fs::weakly_canonical(fs::absolute(folder), error);
   if (error) fail(folder, error.message());
   if (!target_.has_filename()) target_ = target_.parent_path();
   const fs::file_status status = fs::status(target_, error);
   if (fs::exists(status) && !fs::is_directory(status)) fail(folder / "", "it is not a folder");
-  if (!force) refuse_other_results(folder, config);
+  const std::string others = other_results(target_, config);
+  of_another_ = !others.empty();
+  if (of_another_ && !force)
+    throw ConfigError({{{},
+                        "--out",
+                        fmt::format("{} holds {}; expected a folder of its own (--out DIR), or --force to replace them",
+                                    folder.string(), others)}});
   const fs::path parent = target_.parent_path();
   make_parents();
   prefix_ = "." + target_.filename().string() + ".carousel-";
@@ -160,22 +174,29 @@ void OutputFolder::remove_left_overs(const fs::path& in) const {
   }
 }
 
-/// Moves the files one by one, the report last: where there is a report, all that belongs to it is there.
+/// True for files that are not there any more after commit(), unless they have been made anew.
+bool OutputFolder::is_replaced(const std::string& name) const {
+  return name == kConfigFile || is_file_of(results_, name) || (of_another_ && is_file_of_any(name));
+}
+
+bool OutputFolder::holds_only_replaced() const {
+  for (const fs::directory_entry& entry : fs::directory_iterator(target_))
+    if (!entry.is_regular_file() || entry.is_symlink() || !is_replaced(entry.path().filename().string())) return false;
+  return true;
+}
+
+/// Moves the files one by one, the result last: where there is a result, all that belongs to it is there.
 void OutputFolder::move_each() const {
   std::error_code error;
-  fs::remove(target_ / kReport, error);
-  for (const std::string_view name : kRunFiles)
-    if (!fs::exists(staging_ / name, error)) fs::remove(target_ / name, error);
-  bool report = false;
-  std::vector<fs::path> names;
+  const fs::path result = result_of(results_);
+  fs::remove(target_ / result, error);
+  std::vector<fs::path> old, names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(target_)) old.push_back(entry.path().filename());
+  for (const fs::path& name : old)
+    if (is_replaced(name.string()) && !fs::exists(staging_ / name, error)) fs::remove(target_ / name, error);
   for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) names.push_back(entry.path().filename());
-  for (const fs::path& name : names) {
-    if (name == kReport)
-      report = true;
-    else
-      move_to(staging_ / name, target_ / name);
-  }
-  if (report) move_to(staging_ / kReport, target_ / kReport);
+  std::stable_partition(names.begin(), names.end(), [&](const fs::path& name) { return name != result; });
+  for (const fs::path& name : names) move_to(staging_ / name, target_ / name);
 }
 
 void OutputFolder::commit() {
@@ -184,7 +205,7 @@ void OutputFolder::commit() {
     if (!fs::exists(target_) && beside) {
       move_to(staging_, target_);
       staging_.clear();
-    } else if (beside && holds_only_run_files(target_) && !is_current(target_) &&
+    } else if (beside && holds_only_replaced() && !is_current(target_) &&
                renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
       // staging_ is now the old folder, which the destructor removes.
     } else {
@@ -194,6 +215,16 @@ void OutputFolder::commit() {
   } catch (const fs::filesystem_error& error) {
     fail(folder_, error.code().message());
   }
+}
+
+std::exception_ptr OutputFolder::write(const std::function<void(const fs::path&)>& write) {
+  try {
+    write(staging_);
+    commit();
+  } catch (const FileError&) {
+    return std::current_exception();
+  }
+  return nullptr;
 }
 
 }  // namespace carousel::app

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "report/run/judge_gains.h"
 #include "report/text/progress_line.h"
@@ -60,6 +61,12 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
         return std::make_unique<PilotWorkload>(prepared, machine, job.first_hits(), paths);
       },
       {run, job.first_rays()}, options, show);
+  if (found.whole)
+    spdlog::debug("search: the pilot is the whole frame, {} rays", found.rays);
+  else
+    spdlog::debug("search: a pilot of {} of {} paths, {} rays; its forecast is off by {:.1f} %, uncertainty {:.1f} %",
+                  found.paths, job.first_rays(), found.rays, 100 * found.deviation, 100 * found.uncertainty);
+  if (!found.unlike.empty()) spdlog::debug("search: gives up: {}", found.unlike);
   report::Bottleneck out{.complete = found.complete,
                          .unlike = found.unlike,
                          .rays_per_kilocycle = found.rays_per_kilocycle,

@@ -175,6 +175,16 @@ Table values_of(std::string id, std::string caption, const Json& object, const J
   return table;
 }
 
+const Json& schema_at(const Json& schema, std::string_view path) {
+  static const Json kNone = Json::object();
+  const Json* found = find(schema, path);
+  return found ? *found : kNone;
+}
+
+int bars_height(const Table& table) {
+  return 90 + 30 * static_cast<int>(std::min<std::size_t>(table.rows.size(), 24));
+}
+
 std::string Figure::html() const {
   return fmt::format(
       "<figure id=\"{}\" data-chart=\"{}\" data-tables=\"{}\"><figcaption>{}{}</figcaption>"

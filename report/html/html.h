@@ -63,6 +63,12 @@ Table table_of(std::string id, std::string caption, const Json& list, const Json
 /// Every value below an object, a row each: key, value, unit, meaning. Lists are left out.
 Table values_of(std::string id, std::string caption, const Json& object, const Json& schema);
 
+/// The schema at a path; an empty one if there is none.
+const Json& schema_at(const Json& schema, std::string_view path);
+
+/// Pixels for a chart with a bar for each row.
+int bars_height(const Table& table);
+
 /// The place of a chart, which the scripts fill when it scrolls into view. `kind` is a name of web/src/charts, `tables`
 /// the ids of the tables that it draws, and `label` tells in words, for those who do not see it, its content.
 struct Figure {

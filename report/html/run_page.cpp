@@ -22,7 +22,7 @@ std::string run_page(const Json& report, const Picture& picture) {
       {"latency", "Latency", latency_section(report)},
       {"collections", "Collections", collections_section(report, schema)},
       {"depth", "Depths of the tree", depth_section(report, schema)},
-      {"rays", "Rays", rays_section(report)},
+      {"rays", "Rays", rays_section(report, schema)},
       {"tests", "Tests a ray", tests_section(report, schema)},
       {"effects", "Effects of light", effects_section(report)},
       {"accuracy", "Correctness", accuracy_section(report, schema)},

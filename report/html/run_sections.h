@@ -21,7 +21,7 @@ std::string time_section(const nlohmann::ordered_json& report);
 std::string latency_section(const nlohmann::ordered_json& report);
 std::string collections_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 std::string depth_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
-std::string rays_section(const nlohmann::ordered_json& report);
+std::string rays_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 std::string tests_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 std::string effects_section(const nlohmann::ordered_json& report);
 std::string accuracy_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);

@@ -135,6 +135,19 @@ std::string accuracy_page(const Json& accuracy) {
                             .height = 420}
                          .html() +
                      table.html();
+  Table hardware = table_of_rows("levels-on-hardware", "Levels of accuracy on a machine that its testers limit", levels,
+                                 name, {"tester_limited_cycles_per_ray", "wrong_answers", "unit_area_over_default"});
+  hardware.columns.resize(4);
+  for (auto& row : hardware.rows) row.resize(4);
+  if (!hardware.rows.empty() && !hardware.rows.front()[1].number.is_null())
+    body += Figure{.id = "fig-levels-on-hardware",
+                   .kind = "scatter",
+                   .tables = hardware.id,
+                   .title = "Wrong answers against cycles a ray in hardware",
+                   .label = "Scatter plot of the levels: cycles a ray where the testers limit against wrong answers.",
+                   .height = 420}
+                .html() +
+            hardware.html();
   return page_of("Carousel: levels of accuracy", "carousel accuracy, scene " + text_at(accuracy, "scene"),
                  {{"verdict", "At a glance", glance},
                   {"levels", "Time and errors of the levels", body},

@@ -10,14 +10,26 @@ namespace carousel::report::html {
 
 namespace {
 
-const Json& schema_at(const Json& schema, const std::string& path) {
-  static const Json kNone = Json::object();
-  const Json* found = find(schema, path);
-  return found ? *found : kNone;
-}
-
-int bars_height(const Table& table) {
-  return 90 + 30 * static_cast<int>(std::min<std::size_t>(table.rows.size(), 24));
+/// A distribution of report.json as a table and bars; nothing if it is absent or empty. `counted` names its values.
+std::string distribution(const Json& report, const std::string& path, const std::string& id, const std::string& title,
+                         const std::string& counted) {
+  const Json* found = find(report, path);
+  if (!found || number_at(*found, "count") == 0) return "";
+  Table table{id, title, {{"cycles"}, {counted}, {"share"}}};
+  for (const Json& row : (*found)["classes"])
+    table.rows.push_back({cell(row["from"] == row["to"] ? value_text(row["from"])
+                                                        : value_text(row["from"]) + " to " + value_text(row["to"])),
+                          cell(row["count"]), share(number_at(row, "count") / number_at(*found, "count"))});
+  return fmt::format("<p>{}: the mean is {:.1f} cycles, the greatest {}.</p>\n", title, number_at(*found, "mean"),
+                     value_text((*found)["max"])) +
+         Figure{.id = "fig-" + id,
+                .kind = "histogram",
+                .tables = id,
+                .title = title,
+                .label = "Bars: " + counted + " in classes of time that double.",
+                .height = 300}
+             .html() +
+         table.html();
 }
 
 }  // namespace
@@ -108,7 +120,8 @@ std::string latency_section(const Json& report) {
                  .html();
     out += table.html();
   }
-  return out;
+  return out + distribution(report, "rays.residence", "residence",
+                            "Residence of rays, from their slot until their hit is at shading", "rays");
 }
 
 std::string collections_section(const Json& report, const Json& schema) {
@@ -136,80 +149,9 @@ std::string collections_section(const Json& report, const Json& schema) {
                   .label = "Bars, a bar a resource: collections that it made.",
                   .height = bars_height(each)}
                .html();
-  return out + each.html();
-}
-
-std::string depth_section(const Json& report, const Json& schema) {
-  std::string out;
-  if (const Json* depths = find(report, "tests.bundles.by_depth"); depths && !depths->empty()) {
-    const Table table = table_of("bundle-depths", "Bundles by depth", *depths,
-                                 schema_at(schema, "properties.tests.properties.bundles.properties.by_depth.items"));
-    out += Figure{.id = "fig-bundle-depths",
-                  .kind = "heat",
-                  .tables = table.id,
-                  .title = table.caption,
-                  .label = "Heat map of the outcomes of bundles, by depth.",
-                  .height = 140 + 24 * static_cast<int>(table.columns.size())}
-               .html() +
-           table.html();
-  }
-  if (const Json* levels = find(report, "cull_planes.levels"); levels && !levels->empty()) {
-    const Table table = table_of("cull-depths", "Cull planes by depth", *levels,
-                                 schema_at(schema, "properties.cull_planes.properties.levels.items"));
-    out += Figure{.id = "fig-cull-depths",
-                  .kind = "heat",
-                  .tables = table.id,
-                  .title = table.caption,
-                  .label = "Heat map of the work that cull planes spare, by depth.",
-                  .height = 140 + 24 * static_cast<int>(table.columns.size())}
-               .html() +
-           table.html();
-  }
-  return out;
-}
-
-std::string rays_section(const Json& report) {
-  const Json* rays = find(report, "rays");
-  if (!rays || number_at(*rays, "emitted") == 0) return "";
-  Table flow{"ray-flow", "Rays by kind and outcome", {{"from"}, {"to"}, {"rays"}}};
-  const auto add = [&](const std::string& from, const std::string& to, const Json& count) {
-    if (count.is_number() && count.get<double>() > 0) flow.rows.push_back({cell(from), cell(to), cell(count)});
-  };
-  for (const auto& [kind, count] : (*rays)["by_kind"].items()) add("shading", kind + " rays", count);
-  const double completed = number_at(*rays, "completed"), emitted = number_at(*rays, "emitted");
-  const bool all = completed == emitted;
-  for (const auto& [kind, count] : (*rays)["by_kind"].items())
-    add(kind + " rays", all ? "completed" : "completed or lost", count);
-  return Figure{.id = "fig-rays",
-                .kind = "flow",
-                .tables = flow.id,
-                .title = flow.caption,
-                .label = "Flow of rays from shading by kind to their outcome.",
-                .height = 260}
-             .html() +
-         flow.html();
-}
-
-std::string tests_section(const Json& report, const Json& schema) {
-  const Json* tests = find(report, "tests");
-  if (!tests) return "";
-  Table table{
-      "tests-table", "Tests and other work for each completed ray", {{"work"}, {"a ray"}, {"in all"}, {"meaning"}}};
-  for (const auto& [key, value] : tests->items())
-    if (value.is_object() && value.contains("per_ray") && number_at(value, "count") > 0)
-      table.rows.push_back({cell(words(key)), cell(value["per_ray"]), cell(value["count"]),
-                            cell(text_at(schema, "properties.tests.properties." + key + ".description"))});
-  if (table.rows.empty()) return "";
-  std::string out = Figure{.id = "fig-tests",
-                           .kind = "bars",
-                           .tables = table.id,
-                           .title = table.caption,
-                           .label = "Bars: tests for each completed ray, by kind.",
-                           .height = bars_height(table)}
-                        .html();
-  return out + table.html() +
-         "<p>A depth-first tracer of the same rays is not part of this run. <code>--set "
-         "topology.shape=independent</code> runs one on the same units.</p>\n";
+  return out + each.html() +
+         distribution(report, "collections.age", "collection-ages",
+                      "Age of collections when a packet was taken from them", "packets");
 }
 
 std::string effects_section(const Json& report) {

@@ -11,6 +11,7 @@
 #include "report/sections/host.h"
 #include "report/sections/link.h"
 #include "report/sections/memory.h"
+#include "report/sections/nodes.h"
 #include "report/sections/packets.h"
 #include "report/sections/program.h"
 #include "report/sections/rays.h"
@@ -39,6 +40,7 @@ struct Report {
   std::optional<RasterCounts> raster;
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
+  std::optional<Nodes> nodes;
   std::optional<CullPlanes> cull_planes;
   std::optional<Packets> packets;
   std::optional<Collections> collections;
@@ -71,6 +73,7 @@ void describe(V& v, const Report& r) {
   v.section("raster", r.raster, "raster pass that replaces camera rays; absent with primary: rays");
   v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
   v.section("tests", r.tests, "tests and other work of testing rays");
+  v.section("nodes", r.nodes, "nodes of the structure by depth; absent where single rays go down without packets");
   v.section("cull_planes", r.cull_planes, "size of the cull planes and work that they spare, when there are any");
   v.section("packets", r.packets, "packets of all resources");
   v.section("collections", r.collections, "collections: rays waiting for a node");

@@ -180,7 +180,7 @@ Json report_schema() {
               {"title", "Carousel report"},
               {"description",
                "Two runs are identical when all outside of host is equal. Where engine.deterministic is false, "
-               "throughput, tests, packets, collections, resources and links count what the threads happened to "
+               "throughput, tests, nodes, packets, collections, resources and links count what the threads happened to "
                "do and may differ between runs; rays, shading, verify and digest may not."}};
   schema.update(SchemaWriter::schema_for(Report{}));
   schema["$defs"]["stress"] = SchemaWriter::schema_for(Stress{});

@@ -2,6 +2,7 @@
 
 #include "core/statistics/collection_counts.h"
 #include "core/statistics/resource_counts.h"
+#include "report/sections/distribution.h"
 #include "report/sections/latency.h"
 
 namespace carousel::report {
@@ -32,6 +33,7 @@ struct Collections {
   CollectionCounts counts;  ///< of all resources; of the peaks the greatest
   double fullness_mean = 0;
   std::optional<std::uint64_t> ids_at_once{}, ids_interval{}, spill_bytes_written{}, spill_bytes_read{};
+  std::optional<Distribution> age{};
 };
 
 template <class V>
@@ -47,6 +49,9 @@ void describe(V& v, const Collections& r) {
   v.field("spilled", r.counts.spilled, "ray IDs", "ray IDs stored in blocks beyond the capacity");
   v.field("spill_bytes_written", r.spill_bytes_written, "bytes", "bytes of spilled entries sent to memory");
   v.field("spill_bytes_read", r.spill_bytes_read, "bytes", "bytes of spilled entries read back");
+  v.section("age", r.age,
+            "time that a collection had waited when a packet was taken from it, since its first ray came or the last "
+            "packet was taken (cycle)");
 }
 
 }  // namespace carousel::report

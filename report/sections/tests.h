@@ -59,12 +59,30 @@ void describe(V& v, const Bundles& r) {
   v.section("by_depth", depths, "outcome at each depth from the root down");
 }
 
+/// Tests of a depth-first tracer on the same structure, for some of the rays of the run or all of them.
+struct DepthFirst {
+  std::uint64_t rays = 0, one_in = 1;
+  IntersectionCounts counts;
+};
+
+template <class V>
+void describe(V& v, const DepthFirst& r) {
+  v.field("rays", r.rays, "rays", "completed rays of the run that were traced again");
+  v.field("one_in", r.one_in, "rays", "one ray in so many was chosen, by its origin and direction; 1: every ray");
+  v.section("box", PerRay{r.counts.box, r.rays}, "tests of a ray against a box");
+  v.section("triangle", PerRay{r.counts.triangle, r.rays}, "tests of a ray against a triangle");
+  v.section("plane", PerRay{r.counts.plane, r.rays}, "tests of a ray against a cull plane");
+  v.section("procedural", PerRay{r.counts.procedural, r.rays}, "tests of a ray against a procedural primitive");
+  v.section("transforms", PerRay{r.counts.transforms, r.rays, "rays"}, "transformations of a ray to model space");
+}
+
 struct Tests {
   IntersectionCounts counts;
   std::uint64_t ray_reads = 0;
   std::uint64_t rays = 0;  ///< completed
   RunFeatures features;
   std::optional<Bundles> bundles{};
+  std::optional<DepthFirst> depth_first{};
 
   PerRay per_ray(const Counter<IntersectionCounts>& row) const { return {row.value(counts), rays, row.unit}; }
 };
@@ -79,6 +97,8 @@ void describe(V& v, const Tests& r) {
   }
   v.section("ray_reads", PerRay{r.ray_reads, r.rays}, "records of rays or bundles read by testers");
   v.section("bundles", r.bundles, "outcome of testing rays in bundles, with bundles.size");
+  v.section("depth_first", r.depth_first,
+            "the baseline: tests of a depth-first tracer that takes one ray after another, nearest child first");
 }
 
 }  // namespace carousel::report

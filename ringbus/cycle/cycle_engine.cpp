@@ -112,6 +112,7 @@ class CycleRun {
     CycleResult& c = out.cycle.emplace();
     c.cycles = end;
     c.shading_busy = machine_.shading().busy();
+    c.residence = machine_.shading().residence();
     out.rays_restarted = machine_.shading().rays_restarted();
     out.paths_restarted = machine_.shading().paths_restarted();
     if (machine_.shading().stop() && machine_.shading().stop()->noticed > 0) c.stop = machine_.shading().stop();

@@ -31,8 +31,10 @@ struct Event {
   std::optional<PacketId> packet = std::nullopt;
   accel::NodeKey key{};
   std::uint32_t rays = 0;
-  std::uint32_t reads = 0;  ///< kTest: records of rays and bundles that were read
-  std::uint16_t depth = 0;  ///< kTest: of `key`
+  std::uint32_t reads = 0;                 ///< kTest: records of rays and bundles that were read
+  std::uint64_t tested = 0;                ///< kTest: rays, those of bundles included
+  std::uint32_t children = 0, misses = 0;  ///< kTest: as in TestOutcome
+  std::uint16_t depth = 0;                 ///< kTest: of `key`
   IntersectionCounts tests{};
   const BundleCounts* bundles = nullptr;  ///< kTest with bundles; valid during the call only
   StallReason reason = StallReason::kNone;

@@ -11,6 +11,8 @@ ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) 
   tests += o.tests;
   bundles.resize(std::max(bundles.size(), o.bundles.size()));
   for (std::size_t depth = 0; depth < o.bundles.size(); ++depth) bundles[depth] += o.bundles[depth];
+  nodes.resize(std::max(nodes.size(), o.nodes.size()));
+  for (std::size_t depth = 0; depth < o.nodes.size(); ++depth) nodes[depth] += o.nodes[depth];
   culls += o.culls;
   return *this;
 }
@@ -32,6 +34,16 @@ void StatisticsSink::record(const Event& event) {
       s.seen_rays += event.members.size();
       s.tests += event.tests;
       s.reads += event.reads;
+      if (event.tested > 0) {
+        if (s.nodes.size() <= event.depth) s.nodes.resize(event.depth + std::size_t{1});
+        NodeCounts& nodes = s.nodes[event.depth];
+        ++nodes.visits;
+        nodes.rays += event.tested;
+        nodes.box += event.tests.box;
+        nodes.triangle += event.tests.triangle;
+        nodes.children += event.children;
+        nodes.misses += event.misses;
+      }
       if (event.bundles != nullptr) {
         if (s.bundles.size() <= event.depth) s.bundles.resize(event.depth + std::size_t{1});
         s.bundles[event.depth] += *event.bundles;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/statistics/node_counts.h"
 #include "core/statistics/resource_counts.h"
 #include "ringbus/packets/events.h"
 
@@ -12,6 +13,7 @@ struct ResourceStatistics : ResourceCounts {
   StallCounts stalls;
   IntersectionCounts tests;
   std::vector<BundleCounts> bundles;  ///< by depth in strips; empty without bundles
+  std::vector<NodeCounts> nodes;      ///< likewise; empty without packets
   CullCounts culls;
 
   ResourceStatistics& operator+=(const ResourceStatistics& o);

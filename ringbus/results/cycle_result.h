@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numeric/latency_histogram.h"
+#include "core/numeric/log2_histogram.h"
 #include "core/statistics/cache_counts.h"
 #include "core/statistics/ray_bytes.h"
 #include "core/statistics/shape_buffer_counts.h"
@@ -60,6 +61,7 @@ struct TileResult {
   SpillBytes spilled;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
   LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they retire
+  Log2Histogram collection_ages;         ///< of collections when packets were taken from them
   Cycle packet_cycles = 0;               ///< packets of its own in flight, summed over the cycles
   friend bool operator==(const TileResult&, const TileResult&) = default;
 };
@@ -109,6 +111,7 @@ struct CycleResult {
   Cycle memory_busy = 0;
   Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
+  Log2Histogram residence;        ///< of rays, from their slot until shading has their hit
   std::optional<IdsAtOnce> ids;   ///< where there are collections
   std::optional<StopTimes> stop;  ///< if one was excluded before the last ray was shaded
   EpochDigests epochs;

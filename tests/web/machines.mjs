@@ -1,10 +1,27 @@
-// The runs whose pages are looked at: small, one for each kind of machine and of report.
+// The pages that are looked at: small, one for each kind of page; and for soak, one for each kind of machine.
 const small = ['image.width=24', 'image.height=16', 'image.samples=1', 'scene.triangles=2000', 'engine.what_if=false'];
 const cycle = [...small, 'engine.kind=cycle'];
-const shape = (name, ...more) => ({config: 'demo', sets: [...cycle, `topology.shape=${name}`, ...more]});
+const machine = (config, sets) => ({command: 'run', config, sets});
+const shape = (name, ...more) => machine('demo', [...cycle, `topology.shape=${name}`, ...more]);
 
-export const machines = {
-  ring: {config: 'demo', sets: cycle},
+export const pages = {
+  // All sections of a simulated machine: gains, cull planes, faults, verification.
+  machine: machine('demo', [...cycle, 'image.width=16', 'engine.what_if=true', 'topology.resources=2', 'cull_planes.count=2',
+    'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}']),
+  native: machine('bundles', [...small, 'engine.kind=native', 'primary=raster']),
+  traffic: machine('traffic', ['workload.traffic.packets=2000']),
+  accuracy: {command: 'accuracy', config: 'demo', sets: [...small, 'image.width=8', 'image.height=8', 'scene.triangles=200'],
+    options: ['--rays', '60', '--hard-rays', '30', '--repetitions', '1']},
+  stress: {command: 'stress', config: 'demo', sets: [...small, 'image.width=8', 'image.height=8', 'topology.resources=2'],
+    options: ['--seconds', '0.05', '--messages', '500', '--repetitions', '1', '--pairs', '0', '--queue', 'spsc_ring,mutex',
+      '--pattern', 'stream,ping_pong', '--depths', '4']},
+  life: {command: 'follow', config: 'demo', sets: cycle, options: ['--pixel', '12,8']},
+  compare: {command: 'compare', of: ['machine', 'native']},
+};
+
+export const all = {
+  ...pages,
+  ring: machine('demo', cycle),
   bidirectional: shape('bidirectional'),
   several_rings: shape('multi_ring', 'topology.rings=3'),
   hierarchy: shape('hierarchical', 'topology.resources=12'),
@@ -12,10 +29,7 @@ export const machines = {
   point_to_point: shape('point_to_point'),
   independent: shape('independent'),
   many: shape('ring', 'topology.resources=96', 'rays.slots_per_resource=256'),
-  verdict: {config: 'demo', sets: [...cycle, 'engine.what_if=true', 'topology.resources=2', 'image.width=16']},
-  bundles: {config: 'bundles', sets: cycle},
-  cull_planes: {config: 'cull_planes', sets: cycle},
-  faults: shape('ring', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}', 'verify=reference'),
-  native: {config: 'demo', sets: small},
-  traffic: {config: 'traffic', sets: ['workload.traffic.packets=2000']},
+  bundles: machine('bundles', cycle),
+  native_life: {command: 'follow', config: 'demo', sets: small, options: ['--pixel', '3,9', '--shadow']},
+  side_by_side: {command: 'compare', of: ['ring', 'bus', 'independent'], options: ['--all']},
 };

@@ -1,6 +1,6 @@
-// Numbers that a page must show, derived from report.json without the program that made the page.
+// Numbers that the page of a run must show, derived from report.json without the program that made the page.
 
-const near = (a, b) => Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(a), Math.abs(b));
+export const near = (a, b) => Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(a), Math.abs(b));
 
 /** Differences between the tables of a page, {id: {columns, rows}}, and the report, a line each. */
 export function wrongTables(tables, report) {
@@ -34,6 +34,20 @@ export function wrongTables(tables, report) {
     check('bytes-table', i, 'what', b.what);
     check('bytes-table', i, 'bytes', b.bytes);
   });
+  const by = (id, list, keys, titles = {}) => list?.forEach((item, i) => {
+    for (const key of keys) check(id, i, titles[key] ?? key.replaceAll('_', ' '), item[key]);
+  });
+  by('node-depths', report.nodes?.by_depth,
+    ['depth', 'inner_nodes', 'leaves', 'visits', 'rays', 'box_tests', 'triangle_tests', 'children_hit', 'misses', 'rays_per_visit']);
+  by('ray-bounces', report.rays.by_bounce, ['bounce', 'rays', 'escaped', 'hit', 'absorbed', 'shadow', 'lit', 'occluded']);
+  by('residence', report.rays.residence?.classes, ['count'], {count: 'rays'});
+  by('collection-ages', report.collections?.age?.classes, ['count'], {count: 'packets'});
+  const baseline = report.tests?.depth_first;
+  tables['tests-table']?.rows.forEach((row, i) => {
+    const key = row[0].replaceAll(' ', '_');
+    check('tests-table', i, 'this machine', report.tests[key].per_ray);
+    if (baseline?.[key]) check('tests-table', i, 'depth first', baseline[key].per_ray);
+  });
   report.bottleneck?.gains.forEach((g, i) => {
     check('gains', i, 'gain', g.gain);
     check('gains', i, 'high', g.high);
@@ -63,6 +77,25 @@ export function wrongCharts(charts, report) {
   if (sent.length) same('bytes', charts['fig-bytes'].series[0], sent);
   if (report.resources?.[0]?.units)
     same('cycles of box units', charts['fig-cycles-each'].series[0], report.resources.map((r) => r.units.box.busy / report.engine.cycles));
+  const rows = report.rays.by_bounce?.length ? report.rays.by_bounce : null;
+  if (rows) {
+    const sum = (...keys) => rows.reduce((total, row) => keys.reduce((t, key) => t + row[key], total), 0);
+    const links = charts['fig-rays'].flow;
+    const into = (place) => links.filter((l) => l.to === place).reduce((total, l) => total + l.rays, 0);
+    for (const [place, rays] of [['escaped', sum('escaped')], ['absorbed', sum('absorbed')], ['occluded', sum('occluded')],
+      ['reached a light', sum('lit')], ['shadow rays', sum('shadow') - sum('passed')], ['bounce 1', rows[1]?.rays ?? 0]])
+      if (into(place) !== rays) wrong.push(`flow to ${place}: draws ${into(place)}, report.json has ${rays}`);
+  }
+  const depths = report.nodes?.by_depth;
+  if (depths) {
+    const drawn = charts['fig-node-depths'].series[0].map(([, , , value]) => value);
+    for (const key of ['visits', 'rays', 'box_tests'])
+      for (const row of depths) if (!drawn.includes(row[key])) wrong.push(`heat map by depth lacks ${key} ${row[key]}`);
+  }
+  for (const [id, list] of [['fig-residence', report.rays.residence?.classes], ['fig-collection-ages', report.collections?.age?.classes]])
+    if (list?.length) same(id, charts[id].series[0], list.map((c) => c.count));
+  if (report.tests?.depth_first)
+    same('tests', charts['fig-tests'].series[0].slice(0, 1), [report.tests.box.per_ray]);
   const curves = Object.entries(charts).filter(([id]) => /^fig-time-\d/.test(id)).map(([, chart]) => chart);
   for (const row of report.time_series?.rows.filter((r) => r.part === 'machine') ?? []) {
     const chart = curves.find((c) => c.names.includes(row.quantity));

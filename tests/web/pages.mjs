@@ -1,18 +1,19 @@
-// Opens the pages of a dozen machines in Chromium, as users do: node pages.mjs PROGRAM SOURCES
-// On a phone, on a large screen, dark, and without scripts: no message on the console, marks in every chart, the numbers of
-// report.json in tables and charts, and no violation that axe-core finds. Exit status 1 and a line for each fault.
-import {execFile} from 'node:child_process';
+// Opens the program's pages in Chromium, as users do: node pages.mjs PROGRAM SOURCES [all | NAME,...]
+// Every kind of page, or with `all` also the pages of a dozen machines. On a phone, on a large screen, dark, and without
+// scripts: no message on the console, marks in every chart, the JSON's numbers in tables and charts, and no violation that
+// axe-core finds. Exit status 1 and a line for each fault.
 import {existsSync} from 'node:fs';
 import {mkdtemp, readFile, rm, stat} from 'node:fs/promises';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
-import {promisify} from 'node:util';
 
-import {machines} from './machines.mjs';
+import {all, pages} from './machines.mjs';
 import {wrongCharts, wrongTables} from './numbers.mjs';
+import {make} from './program.mjs';
+import {wrongStudy} from './study_numbers.mjs';
 
-const [program, sources] = process.argv.slice(2);
+const [program, sources, wanted] = process.argv.slice(2);
 const require = createRequire(join(sources, 'web/package.json'));
 const browser_path = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
 const skip = (why) => { console.log(`skipped: ${why}; script/bootstrap all installs it`); process.exit(77); };
@@ -20,19 +21,10 @@ if (!browser_path) skip('chromium is not installed');
 if (!existsSync(join(sources, 'web/node_modules/playwright-core'))) skip('web/node_modules is missing');
 const {chromium} = require('playwright-core');
 const axe = await readFile(require.resolve('axe-core/axe.min.js'), 'utf8');
-const only = process.argv[4]?.split(',');
-
-const inDark = new Set(['ring', 'verdict', 'bundles', 'native', 'traffic']);  // one of each kind of page
 
 const folder = await mkdtemp(join(tmpdir(), 'carousel-pages-'));
 const faults = [];
 const fault = (page, text) => faults.push(`${page}: ${text}`);
-
-async function simulate(name) {
-  const {config, sets} = machines[name];
-  await promisify(execFile)(program, ['run', join(sources, `configs/${config}.yaml`), ...sets.flatMap((s) => ['--set', s]),
-    '--quiet', '--out', join(folder, name)]);
-}
 
 /** What is shown: tables by id, and the data of charts by figure, with the number of their marks. */
 function shown() {
@@ -65,7 +57,8 @@ async function drawn() {
       marks, items: series.reduce((sum, s) => sum + (s.data?.length ?? 0), 0),
       names: series.map((s) => s.name),
       series: series.map((s) => (s.data ?? []).map((d) => d?.value ?? d)),
-      links: (series[0].links ?? []).map((l) => l.value), nodes: (series[0].data ?? []).map((d) => d?.value ?? null),
+      links: (series[0].links ?? []).map((l) => l.value),
+      flow: (series[0].links ?? []).map((l) => ({from: l.source, to: l.target, rays: l.value})), nodes: (series[0].data ?? []).map((d) => d?.value ?? null),
     };
   }
   return {charts, figures: document.querySelectorAll('figure[data-chart]:not([hidden])').length};
@@ -80,58 +73,67 @@ const open = (browser, file, options) => browser.newContext(options).then(async 
   return {page, told, close: () => context.close()};
 });
 
-async function look(browser, name) {
-  const file = join(folder, name, 'report.html');
-  const report = JSON.parse(await readFile(join(folder, name, 'report.json'), 'utf8'));
+/** Charts, tables and width as they are now. */
+async function check(where, page, command, json) {
+  const {charts, figures} = await page.evaluate(drawn);
+  const {tables, wide} = await page.evaluate(shown);
+  if (Object.keys(charts).length !== figures) fault(where, `${figures} figures and ${Object.keys(charts).length} charts`);
+  if (figures === 0) fault(where, 'no charts');
+  for (const [id, {marks, items}] of Object.entries(charts)) if (marks < 3 || items === 0) fault(where, `${id} has no marks`);
+  if (wide > 0) fault(where, `the page is ${wide} pixels wider than the window`);
+  const wrong = command === 'run' ? [...wrongTables(tables, json), ...wrongCharts(charts, json)]
+    : wrongStudy(command, {tables, charts}, json);
+  for (const text of wrong) fault(where, text);
+}
+
+async function judge(where, page, rules) {
+  const {violations} = await page.evaluate((only) => window.axe.run(document,
+    {resultTypes: ['violations'], ...(only ? {runOnly: only} : {})}), rules);
+  for (const v of violations) fault(where, `axe-core: ${v.id}: ${v.help}: ${v.nodes[0].target} ${v.nodes[0].failureSummary}`);
+}
+
+// A page is loaded once with scripts and once without. Charts are drawn anew when the window or the colours change.
+async function look(browser, name, command, {page: file, json}) {
   const bytes = (await stat(file)).size;
   if (bytes > 3e6) fault(name, `${bytes} bytes, more than 3 MB`);
-  for (const view of [
-    {at: '400 pixels', options: {viewport: {width: 400, height: 800}}},
-    {at: '1600 pixels', options: {viewport: {width: 1600, height: 1000}}},
-    {at: 'dark', options: {viewport: {width: 1000, height: 800}, colorScheme: 'dark'}},
-  ]) {
-    if (view.at === 'dark' && !inDark.has(name)) continue;
-    const where = `${name}, ${view.at}`;
-    const {page, told, close} = await open(browser, file, view.options);
-    const {charts, figures} = await page.evaluate(drawn);
-    const {tables, wide} = await page.evaluate(shown);
-    if (Object.keys(charts).length !== figures) fault(where, `${figures} figures and ${Object.keys(charts).length} charts`);
-    if (figures === 0) fault(where, 'no charts');
-    for (const [id, {marks, items}] of Object.entries(charts)) if (marks < 3 || items === 0) fault(where, `${id} has no marks`);
-    if (wide > 0) fault(where, `the page is ${wide} pixels wider than the window`);
-    for (const text of [...wrongTables(tables, report), ...wrongCharts(charts, report)]) fault(where, text);
-    if (view.at !== '1600 pixels') {
-      await page.evaluate(axe);
-      const {violations} = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
-      for (const v of violations) fault(where, `axe-core: ${v.id}: ${v.help}: ${v.nodes[0].target} ${v.nodes[0].failureSummary}`);
-    }
-    for (const text of told) fault(where, `console: ${text}`);
-    await close();
-  }
-  const {page, told, close} = await open(browser, file, {javaScriptEnabled: false});
-  const text = await page.locator('main').innerText();
-  for (const wanted of [report.digest.hits, 'The machine'].filter((t) => t)) if (!text.includes(wanted)) fault(`${name}, no scripts`, `lacks ${wanted}`);
-  if (await page.locator('.plot:visible').count()) fault(`${name}, no scripts`, 'shows empty charts');
-  for (const line of told) fault(`${name}, no scripts`, `console: ${line}`);
+  const {page, told, close} = await open(browser, file, {viewport: {width: 400, height: 800}});
+  await check(`${name}, 400 pixels`, page, command, json);
+  await page.evaluate(axe);
+  await judge(`${name}, 400 pixels`, page);
+  const before = await page.evaluate(() => document.querySelector('.plot').clientWidth);
+  await page.emulateMedia({colorScheme: 'dark'});
+  await page.setViewportSize({width: 1600, height: 1000});
+  await page.waitForFunction((width) => [...document.querySelectorAll('.plot')].every((plot) => !plot.clientWidth ||
+    (plot.clientWidth > width && plot.firstElementChild?.clientWidth === plot.clientWidth)), before);
+  await check(`${name}, 1600 pixels, dark`, page, command, json);
+  await judge(`${name}, dark`, page, ['color-contrast', 'link-in-text-block']);  // the others are the same
+  for (const text of told) fault(name, `console: ${text}`);
   await close();
+
+  const plain = await open(browser, file, {javaScriptEnabled: false});
+  const where = `${name}, no scripts`;
+  const text = await plain.page.locator('main').innerText();
+  for (const needed of command === 'run' ? [json.digest.hits, 'The machine'] : ['At a glance'])
+    if (needed && !text.includes(needed)) fault(where, `lacks ${needed}`);
+  if (await plain.page.locator('.plot:visible').count()) fault(where, 'shows empty charts');
+  for (const line of plain.told) fault(where, `console: ${line}`);
+  await plain.close();
 }
 
 try {
-  const names = Object.keys(machines).filter((name) => !only || only.includes(name));
+  const list = wanted === 'all' ? all : wanted ? Object.fromEntries(wanted.split(',').map((n) => [n, all[n]])) : pages;
   const browser = await chromium.launch({executablePath: browser_path, args: ['--no-sandbox', '--disable-gpu', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync']});
-  const [first, ...rest] = names;
-  await simulate(first);
-  let looked = look(browser, first);  // while the next machine is simulated
-  for (const name of rest) {
-    const [, done] = await Promise.allSettled([looked, simulate(name)]);
+  let looked = Promise.resolve();  // at a page, while the next one is made
+  for (const [name, page] of Object.entries(list)) {
+    const [, made] = await Promise.allSettled([looked, make(program, sources, folder, name, page)]);
     await looked;
-    if (done.reason) fault(name, done.reason.message);
-    looked = done.reason ? Promise.resolve() : look(browser, name);
+    if (made.reason) fault(name, made.reason.message);
+    looked = made.reason ? Promise.resolve() : look(browser, name, page.command, made.value);
   }
   await looked;
   await browser.close();
-  console.log(faults.length ? faults.join('\n') : `${names.length} pages are sound`);
+  console.log(faults.length ? faults.join('\n') : `${Object.keys(list).length} pages are sound`);
 } finally {
   await rm(folder, {recursive: true});
 }

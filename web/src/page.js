@@ -7,7 +7,9 @@ import {CanvasRenderer, SVGRenderer} from 'echarts/renderers';
 
 import {bars, intervals} from './charts/bars.js';
 import {flow} from './charts/flow.js';
+import {groups, ratios, shares} from './charts/groups.js';
 import {heat} from './charts/heat.js';
+import {histogram} from './charts/histogram.js';
 import {machine, machineOverTime} from './charts/machine.js';
 import {curves, parts} from './charts/over_time.js';
 import {quantiles} from './charts/quantiles.js';
@@ -22,7 +24,7 @@ echarts.use([BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyC
 
 // A kind of chart: a function of its context that gives the option of ECharts, or {option, connect}, at once or later.
 const kinds = {
-  bars, intervals, stacked, quantiles, flow, heat, machine, scatter, spans,
+  bars, intervals, stacked, quantiles, flow, groups, shares, ratios, heat, histogram, machine, scatter, spans,
   series: (context) => curves({...context, name: context.names}),
   parts_over_time: parts,
 };

@@ -33,6 +33,7 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       answer_wires_(clients_.size(), SideWire(settings.link, latency_)),
       samples_(observed.samples, kFirstHeldCounter + clients_.size()),
       held_(clients_.size()) {
+  for (const auto& store : machine.stores) placed_at_.emplace_back(store->slots());
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
   for (std::uint32_t w = static_cast<std::uint32_t>(settings.workers); w-- > 0;) idle_.push_back(w);
   const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
@@ -77,6 +78,8 @@ void ShadingAgent::take_completed(Cycle now) {
         continue;
       }
       machine_.control.free(ResourceId(r), done.slots);
+      for (const std::uint32_t slot : done.slots)
+        if (slot < placed_at_[r].size()) residence_.add(now - placed_at_[r][slot]);
       held_[r].change(now, -static_cast<std::int64_t>(done.slots.size()));
       if (ledger_) ledger_->remove(done.rays);
       if (recording_.ray != nullptr) [[unlikely]]
@@ -229,7 +232,14 @@ void ShadingAgent::send_groups(Cycle now) {
       for (const RayId id : group.ids) {
         const RayStore& store = *machine_.stores[layout.owner(id).value];
         const std::uint32_t slot = layout.slot(id);
-        const std::size_t records = store.is_bundle(slot) ? 1 + store.rays_of(slot).size() : 1;
+        std::size_t records = 1;
+        std::vector<Cycle>& placed_at = placed_at_[layout.owner(id).value];
+        if (store.is_bundle(slot)) {
+          records += store.rays_of(slot).size();
+          for (const std::uint32_t ray : store.rays_of(slot)) placed_at[ray] = now;
+        } else {
+          placed_at[slot] = now;
+        }
         Cycle& port = load_free_[layout.owner(id).value];
         port = std::max(port, now) + load_cycles_ * records;
         loaded = std::max(loaded, port);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/numeric/log2_histogram.h"
 #include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
@@ -65,6 +66,8 @@ class ShadingAgent final : public Agent {
   Cycle last_event() const { return now_; }
   /// Worker-cycles spent on jobs that are done: shading, camera rays and any-hit calls.
   Cycle busy() const { return busy_; }
+  /// How long rays were in slots, from being given one until their hit came to shading.
+  const Log2Histogram& residence() const { return residence_; }
   const Trace& trace() const { return trace_; }
   /// Its counters over time (shading_samples.h), after close().
   const CounterSamples& samples() const { return samples_; }
@@ -157,9 +160,11 @@ class ShadingAgent final : public Agent {
   Recording recording_;
   Cycle shade_began_ = 0;  // of the followed ray
   CounterSamples samples_;
-  LevelSum waiting_, working_;  // over time
-  std::vector<Level> held_;     // by resource: slots in use
-  Cycle next_ = 0;              // next(), at the end of the last run()
+  LevelSum waiting_, working_;                 // over time
+  std::vector<Level> held_;                    // by resource: slots in use
+  std::vector<std::vector<Cycle>> placed_at_;  // by resource and slot of a ray
+  Log2Histogram residence_;
+  Cycle next_ = 0;  // next(), at the end of the last run()
 };
 
 }  // namespace carousel::ringbus::cycle

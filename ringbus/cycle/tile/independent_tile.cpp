@@ -212,6 +212,7 @@ ResourceStatistics IndependentTile::statistics() const {
   ResourceStatistics s = sink_.statistics();
   // Rays are tested one by one, not as members of packets.
   s.visits = s.seen_rays = 0;
+  s.nodes.clear();
   return s;
 }
 

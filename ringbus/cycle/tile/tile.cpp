@@ -263,6 +263,7 @@ TileResult Tile::result() const {
   t.spilled = spill_memory_.moved();
   t.transformed_rays = transforms_.bytes();
   t.round_trips = trips_.latency();
+  t.collection_ages = resource_.collections().ages();
   t.packet_cycles = trips_.packet_cycles();
   return t;
 }

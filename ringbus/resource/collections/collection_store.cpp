@@ -43,7 +43,7 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
     free_collections_.pop_back();
   }
   const std::uint32_t waits = collections_[index].waits;
-  collections_[index] = {key, 0, 0, 0, entry, depth, settings_.select == Select::kStrict, false, waits};
+  collections_[index] = {key, 0, 0, 0, now_, entry, depth, settings_.select == Select::kStrict, false, waits};
   begin_to_wait(index);
   table_.insert(key, index);
   ++statistics_.created;
@@ -53,14 +53,15 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
 }
 
 void CollectionStore::begin_to_wait(std::uint32_t index) {
+  collections_[index].since = now_;
   if (settings_.ripe_after == 0) return;
   collections_[index].ripe = false;
   waiting_.push_back({now_, index, ++collections_[index].waits});
 }
 
 void CollectionStore::ripen(std::uint64_t now) {
-  if (settings_.ripe_after == 0) return;
   now_ = now;
+  if (settings_.ripe_after == 0) return;
   for (std::optional<std::uint64_t> at; (at = next_ripe()) && *at <= now; waiting_.pop_front()) {
     Collection& c = collections_[waiting_.front().collection];
     c.ripe = true;
@@ -167,6 +168,7 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   // The chain is filled at the tail and takes go by whole blocks, so all blocks but the last are full. The remainder of
   // `count` in the tail relies on that.
   const std::uint32_t n = front_rays(id);
+  ages_.add(now_ - c.since);
   rays.clear();
   while (rays.size() < n) {
     const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
@@ -192,9 +194,11 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
 
 void CollectionStore::discard() {
   const Statistics kept = statistics_;
+  const Log2Histogram ages = ages_;
   const std::uint64_t now = now_;
   *this = CollectionStore(settings_);
   statistics_ = kept;
+  ages_ = ages;
   now_ = now;
 }
 

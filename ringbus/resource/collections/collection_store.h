@@ -8,6 +8,7 @@
 
 #include "accel/structure/node.h"
 #include "core/config/config.h"
+#include "core/numeric/log2_histogram.h"
 #include "core/statistics/collection_counts.h"
 #include "ringbus/rays/ray_id.h"
 #include "ringbus/resource/collections/collection_table.h"
@@ -72,8 +73,8 @@ class CollectionStore {
   /// Moves the rays of the first packet to `rays`; an empty collection ceases to exist.
   void take(CollectionId id, std::vector<RayId>& rays);
 
-  /// The time is `now`: collections that have waited for Settings::ripe_after become ready. A collection waits from its
-  /// first ray on, or since rays were taken from it.
+  /// The time is `now`, also for ages(): collections that have waited for Settings::ripe_after become ready. A
+  /// collection waits from its first ray on, or since rays were taken from it.
   void ripen(std::uint64_t now);
   /// The time at which the next collection will be ready for having waited; absent if none will.
   std::optional<std::uint64_t> next_ripe();
@@ -92,12 +93,16 @@ class CollectionStore {
     return std::int64_t{settings_.capacity_blocks} - static_cast<std::int64_t>(blocks_used_);
   }
   const Statistics& statistics() const { return statistics_; }
+  /// How long collections had waited when a packet was taken from them, since their first ray or since the last packet.
+  /// In the time of ripen(); without it, nothing but zeros.
+  const Log2Histogram& ages() const { return ages_; }
 
  private:
   struct Collection {
     accel::NodeKey key;
     std::uint32_t head = 0, tail = 0;  // blocks
     std::uint32_t count = 0;
+    std::uint64_t since = 0;  // it waits
     float entry = 0;
     std::uint16_t depth = 0;
     bool ready = false;
@@ -138,6 +143,7 @@ class CollectionStore {
   SpillMoves spills_;
   std::size_t blocks_used_ = 0, memberships_ = 0;
   Statistics statistics_;
+  Log2Histogram ages_;
 };
 
 }  // namespace carousel::ringbus

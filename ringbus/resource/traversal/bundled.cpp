@@ -6,6 +6,7 @@
 
 #include "accel/traverse/kernels.h"
 #include "ringbus/resource/traversal/bundle_tally.h"
+#include "ringbus/resource/visit/count_children.h"
 
 namespace carousel::ringbus {
 
@@ -176,7 +177,9 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
     const bool done = (store.record(rays[i]).tag.flags & kRayDone) != 0;
     const std::uint32_t apart = masks_[i] | (reformed_ && !done ? answer.all : 0u);
     if (apart != 0) ejected_.add(rays[i], static_cast<std::uint8_t>(apart));
+    masks_[i] = static_cast<std::uint8_t>(apart | together);
   }
+  count_children(masks_, outcome);
   packet.members[local.member].mask = enters ? std::uint8_t{0} : together;
   local.change = (enters ? 0 : std::popcount(together)) - 1;
   if (enters && together != 0) descend_into_instance(packet, rays, inside, together);
@@ -199,6 +202,7 @@ void BundledTraversal::eject_singles(Packet& packet, const LocalRays& local, Tes
   masks_.resize(local.size());
   accel::test_strip(context_.accel, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr},
                     outcome.counts);
+  count_children(masks_, outcome);
   context_.any_hit.hold_back(local.slots);
   for (std::size_t i = 0; i < local.size(); ++i) {
     packet.members[local.members[i]].mask = 0;

@@ -2,6 +2,7 @@
 
 #include "accel/traverse/kernels.h"
 #include "ringbus/resource/traversal/farthest_first.h"
+#include "ringbus/resource/visit/count_children.h"
 
 namespace carousel::ringbus {
 
@@ -13,6 +14,7 @@ void OrderedTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outco
     entries_.resize(accel::kMaxWidth * local.size());
     accel::test_strip(context_.accel, packet.key, packet.lanes, members,
                       {masks_.data(), packet.nearest, entries_.data()}, outcome.counts);
+    count_children(masks_, outcome);
   } else {
     masks_.assign(local.size(), 0);
     accel::test_strip(context_.accel, packet.key, packet.lanes, members, {}, outcome.counts);

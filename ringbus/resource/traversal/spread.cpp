@@ -1,22 +1,11 @@
 #include "ringbus/resource/traversal/spread.h"
 
-#include <array>
 #include <bit>
 
 #include "accel/traverse/kernels.h"
+#include "ringbus/resource/visit/count_children.h"
 
 namespace carousel::ringbus {
-
-namespace {
-
-// The baseline instruction set has no population count, and a call for eight bits is dear.
-constexpr std::array<std::int8_t, 256> kBitCount = [] {
-  std::array<std::int8_t, 256> counts{};
-  for (std::size_t i = 1; i < counts.size(); ++i) counts[i] = static_cast<std::int8_t>(counts[i / 2] + (i & 1));
-  return counts;
-}();
-
-}  // namespace
 
 std::uint32_t SpreadTraversal::blocks_needed(accel::NodeKey key, std::uint32_t) const {
   return key.ref.is_inner() ? context_.accel.nodes[key.ref.node()].count : 0;
@@ -30,6 +19,7 @@ void SpreadTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outcom
     accel::test_strip(context_.accel, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr},
                       outcome.counts);
     context_.any_hit.hold_back(local.slots);
+    count_children(masks_, outcome);
     answer(packet, local, masks_);
   } else {
     accel::test_strip(context_.accel, packet.key, packet.lanes, members, {}, outcome.counts);

@@ -26,8 +26,10 @@ struct BundlePasses {
 /// The cost of testing a packet at one resource. The pointer and the span are valid until the resource's next test.
 struct TestOutcome {
   IntersectionCounts counts;
-  std::size_t rays = 0;     ///< tested one by one, not as members of a bundle
-  std::uint32_t reads = 0;  ///< records of rays and bundles that were read
+  std::size_t rays = 0;        ///< tested one by one, not as members of a bundle
+  std::uint32_t reads = 0;     ///< records of rays and bundles that were read
+  std::uint32_t children = 0;  ///< rays that go on to a child, once for each child; not within treelets
+  std::uint32_t misses = 0;    ///< rays that were tested against the children of a node and go on to none
   BundlePasses bundle_passes;
   const BundleCounts* bundles = nullptr;  ///< what became of bundles; null when there are none
   /// With ResourceHooks::hold_any_hit_rays: the rays that wait for Resource::release().

@@ -142,7 +142,8 @@ TEST(AccuracyCommand, MeasuresWhatEachLevelGetsWrongAndCosts) {
   EXPECT_THAT(outcome.out, HasSubstr("watertight"));
   EXPECT_THAT(outcome.out, HasSubstr("cheapest safe level"));
   EXPECT_THAT(outcome.out, HasSubstr("Monte Carlo: -0.50"));
-  EXPECT_THAT(program.read("out/a/accuracy.svg"), HasSubstr("</svg>"));
+  EXPECT_THAT(program.read("out/a/accuracy.html"), HasSubstr("fig-levels-on-hardware"));
+  EXPECT_THAT(program.read("out/a/config.resolved.yaml"), HasSubstr("builtin: instances"));
 }
 
 TEST(AccuracyCommand, HonoursTheConfiguredPlanesAndBundles) {

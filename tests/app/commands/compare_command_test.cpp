@@ -97,6 +97,20 @@ TEST(CompareCommand, ShowsTwoMachinesSideBySide) {
   }
 }
 
+TEST(CompareCommand, WritesAPage) {
+  const Program program;
+  program.write("a.yaml", kConfig);
+  const std::string a = run_into(program, "one"), b = run_into(program, "two", {"topology.resources=2"});
+  const Outcome outcome = program.run({"compare", a, b, "--html", "pages/both.html"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("topology.resources")) << "the terminal has its table as well";
+  const std::string page = program.read("pages/both.html");
+  for (const char* part : {"Hits are the same in all runs", "id=\"table-section-0\"", "data-chart=\"ratios\"",
+                           "data-chart=\"shares\"", "topology.resources", "more values differ"})
+    EXPECT_THAT(page, HasSubstr(part));
+  EXPECT_EQ(program.run({"compare", a, b, "--html", "one"}).status, 2);
+}
+
 TEST(CompareCommand, OnlyKeepsWhatAPatternNames) {
   const Program program;
   program.write("a.yaml", kConfig);

@@ -35,7 +35,10 @@ TEST(Log, NamesThePhasesWithTheirTimes) {
   EXPECT_THAT(outcome.err, testing::ContainsRegex("run: [0-9.]+ m?s, cycle engine, [0-9.]+ k rays"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("debug")));
   EXPECT_THAT(program.run({"run", "a.yaml", "--log-level", "debug"}).err,
-              AllOf(HasSubstr("debug: threads: "), HasSubstr("debug: memory: about "), HasSubstr("run begins")));
+              AllOf(HasSubstr("debug: threads: "), HasSubstr("debug: memory: about "), HasSubstr("run begins"),
+                    HasSubstr("debug: machine: 2 resources, shape ring, 2 links"), HasSubstr("debug: flow: credits"),
+                    HasSubstr("deadlock impossible"), HasSubstr("debug: collections: places for "),
+                    HasSubstr("debug: traversal: "), HasSubstr("debug: search: the pilot is the whole frame")));
 }
 
 TEST(Log, GoesToAFile) {

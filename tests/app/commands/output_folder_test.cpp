@@ -93,6 +93,33 @@ TEST_F(OutputFolder, OfAnotherConfigurationIsRefused) {
   EXPECT_EQ(program_.run({"run", "a.yaml", "--out", "other"}).status, 0);
 }
 
+// Results of one configuration may stand side by side; those of two never do.
+TEST_F(OutputFolder, HoldsResultsOfSeveralCommandsForOneConfiguration) {
+  const auto stress = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"stress",     "a.yaml", "--out",         "o",     "--seconds", "0.02",
+                                   "--messages", "200",    "--repetitions", "1",     "--pairs",   "0",
+                                   "--depths",   "4",      "--queue",       "mutex", "--pattern", "stream"};
+    words.insert(words.end(), more.begin(), more.end());
+    return program_.run(words);
+  };
+  const auto names = [&] { return names_in(folder()); };
+  ASSERT_EQ(stress({}).status, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"config.resolved.yaml", "stress.html", "stress.json"}));
+  ASSERT_EQ(run({"--hits", "--no-html"}).status, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"config.resolved.yaml", "hits.csv", "image.exr", "image.png", "report.json",
+                                            "stress.html", "stress.json"}));
+  ASSERT_EQ(stress({}).status, 0);
+  EXPECT_TRUE(names().contains("hits.csv"));
+  const Outcome refused = stress({"--set", "image.samples=2"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("error: --out: o holds the results of another configuration"));
+  EXPECT_EQ(program_.run({"accuracy", "a.yaml", "--out", "o", "--set", "image.samples=2"}).status, 2);
+  EXPECT_EQ(program_.run({"stress", "--out", "o"}).status, 2) << "here there is no configuration";
+  ASSERT_EQ(stress({"--set", "image.samples=2", "--force"}).status, 0);
+  EXPECT_EQ(names(), (std::set<std::string>{"config.resolved.yaml", "stress.html", "stress.json"}));
+  EXPECT_TRUE(hidden().empty());
+}
+
 TEST_F(OutputFolder, IsTriedBeforeTheRun) {
   program_.write("o", "a file");
   const Outcome outcome = run({"--set", "scene={file: missing.glb}"});

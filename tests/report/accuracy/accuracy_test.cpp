@@ -1,12 +1,9 @@
 #include "report/accuracy/accuracy.h"
 
 #include <cmath>
-#include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "report/accuracy/accuracy_plot.h"
 
 namespace carousel::report {
 namespace {
@@ -107,43 +104,6 @@ TEST(AccuracySlope, IsThatOfAPowerLaw) {
   rows.push_back({256, 0, 0});  // no error at all has no logarithm
   EXPECT_NEAR(log_log_slope(rows), -0.5, 1e-12);
   EXPECT_EQ(log_log_slope({{4, 1, 0}}), 0);
-}
-
-TEST(AccuracyPlot, HasADotForEachRow) {
-  Accuracy accuracy;
-  accuracy.rows = {row("fast", 10, 5, false), row("slow", 30, 0, true)};
-  mark_frontier(accuracy.rows);
-  const std::string svg = accuracy_plot(accuracy);
-  std::size_t dots = 0;
-  for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++dots;
-  EXPECT_EQ(dots, 2u);
-  accuracy.rows = {with_cycles(row("fast", 10, 5, false), 1, 1), with_cycles(row("slow", 30, 0, true), 2, 1)};
-  mark_frontier(accuracy.rows);
-  const std::string both = accuracy_plot(accuracy);
-  dots = 0;
-  for (std::size_t at = both.find("<circle"); at != std::string::npos; at = both.find("<circle", at + 1)) ++dots;
-  EXPECT_EQ(dots, 4u);  // one on each clock
-  EXPECT_THAT(svg, testing::HasSubstr("slow + box + two_step"));
-  accuracy.rows.clear();
-  EXPECT_THAT(accuracy_plot(accuracy), testing::EndsWith("</svg>\n"));
-}
-
-TEST(AccuracyPlot, NoNumberStandsOnAnother) {
-  Accuracy accuracy;
-  for (int i = 0; i < 13; ++i)  // all of the same cost, half without errors
-    accuracy.rows.push_back(with_cycles(row("level", 100 + 0.1 * i, i % 2 == 0 ? 0 : 1, false), 1, 1));
-  mark_frontier(accuracy.rows);
-  const std::string svg = accuracy_plot(accuracy);
-  const std::regex number("class='number' x='([0-9.]+)' y='([0-9.]+)'");
-  std::vector<std::pair<double, double>> places;
-  for (std::sregex_iterator i(svg.begin(), svg.end(), number), end; i != end; ++i)
-    places.emplace_back(std::stod((*i)[1]), std::stod((*i)[2]));
-  ASSERT_EQ(places.size(), 26u);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k)
-      EXPECT_TRUE(std::abs(places[i].first - places[k].first) >= 15.9 ||
-                  std::abs(places[i].second - places[k].second) >= 13.9)
-          << i << " and " << k;
 }
 
 }  // namespace

@@ -169,6 +169,30 @@ TEST(CollectionStore, CountsBlocksBeyondItsCapacityAsSpilled) {
   EXPECT_EQ(store.free_blocks(), 2);
 }
 
+TEST(CollectionStore, TellsHowLongCollectionsHadWaited) {
+  CollectionStore store(settings(Policy::kOldest, Select::kFullFirst));
+  store.ripen(10);
+  store.add(key(1), 0, 1, ray_ids(0, 4));
+  store.ripen(30);
+  store.add(key(1), 0, 1, ray_ids(4, 1));  // it has waited since its first ray
+  std::vector<RayId> out;
+  store.ripen(50);
+  store.take(*store.best(true), out);  // 40 cycles
+  store.ripen(53);
+  store.discard();
+  store.add(key(2), 0, 1, ray_ids(5, 5));
+  store.ripen(59);
+  store.take(*store.best(true), out);  // 6 cycles
+  store.ripen(60);
+  store.take(*store.best(true), out);  // the rest waited for 1
+  EXPECT_EQ(store.ages().count(), 3u);
+  EXPECT_EQ(store.ages().sum(), 47u);
+  EXPECT_EQ(store.ages().max(), 40u);
+  EXPECT_EQ(store.ages().in_class(6), 1u);  // 32 to 63
+  EXPECT_EQ(store.ages().in_class(3), 1u);  // 4 to 7
+  EXPECT_EQ(store.ages().in_class(1), 1u);
+}
+
 TEST(CollectionStore, ACollectionIsReadyWhenItHasWaitedForLongEnough) {
   CollectionStore::Settings s = settings(Policy::kOldest, Select::kFullFirst);
   s.ripe_after = 100;

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/run/prepare.h"
+
+namespace carousel::app {
+
+/// Logs, at level debug, what follows from the configuration for the machine: links, packets, flow, storage, kernels.
+void log_machine(const Prepared& prepared);
+
+}  // namespace carousel::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/statistics/bounce_counts.h"
+#include "core/types/workload.h"
+#include "report/sections/rays.h"
+#include "report/sections/tests.h"
+
+namespace carousel::app {
+
+/// Counts the rays of another workload by kind and bounce and keeps some of them, to be traced depth-first when the
+/// run is over. Counts and choice depend on the rays and their hits alone.
+class RayCensus final : public Workload {
+ public:
+  /// Keeps a reference to `inner`. One ray in `one_in`, a power of two, is kept.
+  RayCensus(Workload& inner, std::size_t workers, std::uint64_t one_in)
+      : inner_(inner), one_in_(one_in), workers_(workers) {}
+
+  /// The part of the rays of a run of about `rays` that is worth tracing again: some 32,768 of them.
+  static std::uint64_t one_in(std::uint64_t rays);
+
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
+  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
+
+  // When nothing runs any more.
+
+  std::vector<report::RayBounce> by_bounce() const;
+  /// Traces the kept rays on the calling thread.
+  report::DepthFirst depth_first(const accel::Accel& accel) const;
+
+ private:
+  struct alignas(128) Worker {
+    std::vector<BounceCounts> bounces;
+    RayBatch kept;
+
+    BounceCounts& at(std::size_t bounce) {
+      if (bounces.size() <= bounce) bounces.resize(bounce + 1);
+      return bounces[bounce];
+    }
+  };
+
+  bool keeps(const Ray& ray) const;
+
+  Workload& inner_;
+  std::uint64_t one_in_;
+  std::vector<Worker> workers_;
+};
+
+}  // namespace carousel::app

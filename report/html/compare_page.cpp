@@ -1,0 +1,126 @@
+#include "report/html/compare_page.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "report/html/html.h"
+#include "report/html/page.h"
+#include "report/text/number_text.h"
+
+namespace carousel::report::html {
+
+namespace {
+
+std::string letter(std::size_t run) {
+  return std::string(1, static_cast<char>('A' + run));
+}
+
+/// "the same in all runs", or the runs that differ from the first.
+std::string sameness(const std::vector<bool>& same) {
+  std::string others;
+  for (std::size_t r = 1; r < same.size(); ++r)
+    if (!same[r]) others += (others.empty() ? "" : ", ") + letter(r);
+  return others.empty() ? "the same in all runs" : "of " + others + " different from A's";
+}
+
+std::string at_a_glance(const Comparison& c) {
+  std::string out = "<p class=\"verdict\">";
+  if (c.identical)
+    out += "The runs are identical.</p>\n";
+  else
+    out += fmt::format("Hits are {}, the picture is {}.</p>\n", sameness(c.same_hits), sameness(c.same_picture));
+  if (!c.same_configuration)
+    out += fmt::format("<p>The configurations differ in {} {}.</p>\n", c.configuration.size(),
+                       c.configuration.size() == 1 ? "key" : "keys");
+  else
+    out += fmt::format("<p>The configuration is the same{}.</p>\n",
+                       c.deterministic ? "" : "; counts and times depend on the timing of threads");
+  Table table{"runs", "The runs", {{"letter"}, {"run"}}};
+  for (const ComparedText& text : c.texts) table.columns.push_back({text.name});
+  for (std::size_t r = 0; r < c.runs.size(); ++r) {
+    auto& row = table.rows.emplace_back(std::vector<Cell>{cell(letter(r)), cell(c.runs[r])});
+    for (const ComparedText& text : c.texts) row.push_back(cell(text.texts[r].empty() ? "–" : text.texts[r]));
+  }
+  return out + table.html();
+}
+
+Cell value_of(const ComparedRow& row, std::size_t run) {
+  const std::optional<double>& value = row.values[run];
+  if (!value) return cell("–");
+  if (row.unit == "share") return share(*value);
+  const bool whole =
+      *value >= 0 && *value < 0x1p53 && *value == static_cast<double>(static_cast<std::uint64_t>(*value));
+  return cell(whole ? Json(static_cast<std::uint64_t>(*value)) : Json(*value));
+}
+
+/// The ratio to the first run; of shares the difference in points.
+Cell ratio_of(const ComparedRow& row, std::size_t run) {
+  if (row.unit == "share") {
+    if (!row.values[run] || !row.values[0]) return cell("–");
+    return cell(fmt::format("{:+.1f} points", 100 * (*row.values[run] - *row.values[0])));
+  }
+  return row.ratios[run] ? Cell{fmt::format("×{:.3g}", *row.ratios[run]), *row.ratios[run]} : cell("–");
+}
+
+Section section_of(const ComparedSection& section, std::size_t number, std::size_t runs) {
+  Table table{fmt::format("section-{}", number), "Runs side by side: " + section.name, {{"quantity"}, {"unit"}}};
+  for (std::size_t r = 0; r < runs; ++r) table.columns.push_back({letter(r)});
+  for (std::size_t r = 1; r < runs; ++r) table.columns.push_back({letter(r) + "/A"});
+  bool shares = true, any_ratio = false;
+  for (const ComparedRow& row : section.rows) {
+    auto& cells = table.rows.emplace_back(std::vector<Cell>{cell(row.name), cell(row.unit)});
+    for (std::size_t r = 0; r < runs; ++r) cells.push_back(value_of(row, r));
+    for (std::size_t r = 1; r < runs; ++r) {
+      cells.push_back(ratio_of(row, r));
+      any_ratio |= row.unit != "share" && row.ratios[r] && *row.ratios[r] > 0;
+    }
+    shares &= row.unit == "share";
+  }
+  std::string body;
+  if (shares || any_ratio)
+    body = Figure{.id = "fig-" + table.id,
+                  .kind = shares ? "shares" : "ratios",
+                  .tables = table.id,
+                  .title = shares ? section.name + ": shares, run beside run" : section.name + ": ratio to run A",
+                  .label = "Bars, a group a row of the table below and a bar a run.",
+                  .height = 100 + static_cast<int>((14 + 12 * runs) * std::min<std::size_t>(section.rows.size(), 40))}
+               .html();
+  std::string title = section.name;
+  if (!title.empty() && title[0] >= 'a' && title[0] <= 'z') title[0] = static_cast<char>(title[0] - 'a' + 'A');
+  return {fmt::format("part-{}", number), title, body + table.html()};
+}
+
+std::string texts_of(const std::string& id, const std::string& caption, const std::vector<ComparedText>& list,
+                     std::size_t runs) {
+  Table table{id, caption, {{"key"}}};
+  for (std::size_t r = 0; r < runs; ++r) table.columns.push_back({letter(r)});
+  for (const ComparedText& text : list) {
+    auto& row = table.rows.emplace_back(std::vector<Cell>{cell(text.name)});
+    for (const std::string& value : text.texts) row.push_back(cell(value.empty() ? "–" : value));
+  }
+  return table.html();
+}
+
+}  // namespace
+
+std::string compare_page(const Comparison& c, bool all) {
+  const std::size_t runs = c.runs.size();
+  std::vector<Section> sections{{"verdict", "At a glance", at_a_glance(c)}};
+  for (std::size_t i = 0; i < c.sections.size(); ++i) sections.push_back(section_of(c.sections[i], i, runs));
+  sections.push_back({"configuration", "Configuration",
+                      texts_of("configuration", "Keys of the configurations that differ", c.configuration, runs)});
+  std::string rest;
+  if (all)
+    rest = texts_of("differences", "All other values that differ", c.differences, runs);
+  else if (!c.differences.empty())
+    rest =
+        fmt::format("<p>{} more values differ; <code>carousel compare --all --html FILE</code> lists them here.</p>\n",
+                    c.differences.size());
+  sections.push_back({"differences", "Every other value", rest});
+  std::string names;
+  for (std::size_t r = 0; r < runs; ++r) names += (r == 0 ? "" : ", ") + letter(r) + " " + c.runs[r];
+  return page_of("Carousel: runs side by side", "carousel compare, " + names, sections, Json::object(), "");
+}
+
+}  // namespace carousel::report::html

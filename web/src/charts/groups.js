@@ -1,0 +1,55 @@
+// Several bars a row, side by side.
+import {axis, base, full, kHues, names, percent, short} from '../look.js';
+
+/** The columns from `first` on up to the first that holds no number. */
+function numberColumns(table, first) {
+  const out = [];
+  for (let c = first; c < table.columns.length && table.rows.some((r) => typeof r[c] === 'number'); ++c) out.push(c);
+  return out;
+}
+
+const numberOf = (cell) => (typeof cell === 'number' ? cell : null);
+
+function grouped({colours, width}, rows, series, xAxis, tooltip) {
+  return {
+    ...base(colours),
+    grid: {left: 10, right: 60, top: 36, bottom: 40, containLabel: true},
+    tooltip: {...base(colours).tooltip, trigger: 'axis', axisPointer: {type: 'shadow'}, ...tooltip},
+    xAxis: axis(colours, {nameLocation: 'middle', nameGap: 26, splitNumber: width < 600 ? 3 : 6, ...xAxis}),
+    yAxis: names(colours, rows, width),
+    series: series.map((s, i) => ({type: 'bar', barMaxWidth: 18, itemStyle: {color: kHues[i % kHues.length]}, ...s,
+      label: {show: true, position: 'right', color: colours.ink, formatter: s.text}})),
+  };
+}
+
+/** Amounts of a kind, a bar for each column of numbers. */
+export function groups(context) {
+  const [table] = context.tables;
+  return grouped(context, table.rows.map((r) => r[0]), numberColumns(table, 1).map((c) => ({
+    name: table.columns[c], data: table.rows.map((r) => numberOf(r[c])), text: ({value}) => short(value),
+  })), {type: 'value', axisLabel: {formatter: short}}, {valueFormatter: (v) => (v == null ? '–' : full(v))});
+}
+
+/** The same for shares of a whole. */
+export function shares(context) {
+  const [table] = context.tables;
+  return grouped(context, table.rows.map((r) => r[0]), numberColumns(table, 2).map((c) => ({
+    name: table.columns[c], data: table.rows.map((r) => numberOf(r[c])), text: ({value}) => percent(value),
+  })), {type: 'value', axisLabel: {formatter: (v) => `${Math.round(100 * v)} %`}},
+  {valueFormatter: (v) => (v == null ? '–' : percent(v))});
+}
+
+/** Ratios to the first run: to the right where there is more, to the left where there is less. The scale is logarithmic. */
+export function ratios(context) {
+  const [table] = context.tables;
+  const columns = table.columns.map((name, c) => [name, c]).filter(([name]) => name.endsWith('/A'));
+  const times = (v) => `×${Number((2 ** v).toPrecision(3))}`;
+  const most = 8;  // doublings that are drawn; the table has the number
+  const clamped = (v) => (v > 0 ? Math.max(-most, Math.min(most, Math.log2(v))) : null);
+  const rows = table.rows.filter((r) => columns.some(([, c]) => typeof r[c] === 'number' && r[c] > 0));
+  if (!rows.length) return null;
+  return grouped(context, rows.map((r) => r[0]), columns.map(([name, c]) => ({
+    name, data: rows.map((r) => (typeof r[c] === 'number' ? clamped(r[c]) : null)), text: ({value}) => (value == null ? '' : times(value)),
+  })), {type: 'value', name: 'times as much as A', axisLabel: {formatter: times}},
+  {valueFormatter: (v) => (v == null ? '–' : times(v))});
+}
