@@ -12,6 +12,7 @@
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
+#include "app/build_report/memory_report.h"
 #include "app/build_report/traffic_report.h"
 #include "app/build_report/verdict.h"
 #include "app/commands/report_command.h"
@@ -24,11 +25,13 @@
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
 #include "app/run/hit_recorder.h"
+#include "app/run/memory_csv.h"
 #include "app/run/ray_progress.h"
 #include "app/run/render_job.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
+#include "report/run/memory_table.h"
 #include "report/run/report_json.h"
 #include "report/run/report_table.h"
 #include "report/run/traffic_table.h"
@@ -36,6 +39,7 @@
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/cycle/memory/memory_trace.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "ringbus/native/native_engine.h"
 
@@ -66,7 +70,8 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 }
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
-                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
+                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace,
+                            ringbus::MemoryLog* memory) {
   Phase phase("run");
   CountingWorkload counting(workload);
   ringbus::RunOptions options;
@@ -74,6 +79,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.stop = interrupt.token();
   options.samples = static_cast<std::size_t>(p.config().report.samples);
   if (trace != nullptr) options.timeline = trace->wanted();
+  options.memory = memory;
   const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
@@ -134,13 +140,38 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   return verdict(report, interrupt.status());
 }
 
-/// Synthetic traffic has no rays whose hits could be written.
-void require_no_hits(const RunArguments& arguments) {
-  constexpr const char* kMessage =
-      "synthetic traffic has no rays; expected workload: rays, or a run without this option";
-  if (arguments.hits) throw ConfigError({{{}, "--hits", kMessage}});
-  if (!arguments.dump_rays.empty()) throw ConfigError({{{}, "--dump-rays", kMessage}});
-  if (!arguments.trace.file.empty()) throw ConfigError({{{}, "--trace", kMessage}});
+/// Plays requests to the memory alone.
+int run_memory_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
+                       OutputFolder& output) {
+  const ringbus::MemoryLog requests = read_memory_csv(find_beside(p.config_folder, p.config().workload.memory_trace));
+  const report::Report report = memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
+  finish(arguments, report, report::memory_table(report), output, [&] {
+    write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
+    write_report(output.staging(), arguments, report);
+  });
+  return verdict(report, interrupt.status());
+}
+
+/// A workload without rays has no hits that could be written.
+void require_no_hits(const RunArguments& arguments, std::string_view workload) {
+  const auto refuse = [&](bool wanted, const char* option) {
+    if (!wanted) return;
+    throw ConfigError(
+        {{{}, option, fmt::format("{} no rays; expected workload: rays, or a run without this option", workload)}});
+  };
+  refuse(arguments.hits, "--hits");
+  refuse(!arguments.dump_rays.empty(), "--dump-rays");
+  refuse(!arguments.dump_memory.empty(), "--dump-memory");
+  refuse(!arguments.trace.file.empty(), "--trace");
+}
+
+/// Only a simulated machine has a memory.
+void require_memory(const RunArguments& arguments, const Config& config) {
+  if (!arguments.dump_memory.empty() && config.engine.kind != EngineKind::kCycle)
+    throw ConfigError({{{},
+                        "--dump-memory",
+                        "the native engine has no simulated memory; expected engine.kind: cycle, or a run without this "
+                        "option"}});
 }
 
 void write_trace(TraceFile& trace, const TraceArguments& arguments, const ringbus::RunResult& result) {
@@ -174,9 +205,14 @@ int run_command(const RunArguments& arguments) {
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
-    require_no_hits(arguments);
+    require_no_hits(arguments, "synthetic traffic has");
     return run_traffic_command(arguments, p, interrupt, *output);
   }
+  if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) {
+    require_no_hits(arguments, "memory requests have");
+    return run_memory_command(arguments, p, interrupt, *output);
+  }
+  require_memory(arguments, p.config());
 
   RenderJob job(p);
   std::optional<HitRecorder> recorder;
@@ -191,7 +227,10 @@ int run_command(const RunArguments& arguments) {
 
   std::optional<TraceFile> trace;
   if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
-  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet, trace ? &*trace : nullptr);
+  ringbus::MemoryLog memory;
+  const ringbus::RunResult result = simulate(p, job, workload, interrupt, arguments.quiet, trace ? &*trace : nullptr,
+                                             arguments.dump_memory.empty() ? nullptr : &memory);
+  if (!arguments.dump_memory.empty()) write_memory_csv(arguments.dump_memory, memory);
   if (trace) write_trace(*trace, arguments.trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   if (result.cycle) {

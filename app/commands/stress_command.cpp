@@ -126,7 +126,8 @@ int stress_command(const StressArguments& arguments) {
   std::unique_ptr<const Prepared> prepared;
   if (!arguments.config.empty()) {
     prepared.reset(new Prepared(prepare(arguments, {}, false)));
-    if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic)
+    if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic ||
+        prepared->config().workload.kind == WorkloadConfig::Kind::kMemoryTrace)
       throw ConfigError(
           {{prepared->located.positions.find("workload"), "workload", "stress tests queues with rays; expected rays"}});
   }

@@ -9,6 +9,7 @@
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
+#include "app/build_report/memory_report.h"
 #include "app/build_report/traffic_report.h"
 #include "app/build_report/verdict.h"
 #include "app/host/interrupt.h"
@@ -16,11 +17,13 @@
 #include "app/run/bottleneck.h"
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
+#include "app/run/memory_csv.h"
 #include "app/run/memory_need.h"
 #include "app/run/render_job.h"
 #include "core/system/error.h"
 #include "report/run/report_json.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/cycle/memory/memory_trace.h"
 #include "ringbus/cycle/memory/shape_room.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "ringbus/native/native_engine.h"
@@ -44,6 +47,11 @@ report::Report simulate_traffic(const Prepared& p, const InterruptScope& interru
   options.threads = p.threads;
   options.stop = interrupt.token();
   return traffic_report(p, ringbus::run_traffic(p.config(), options));
+}
+
+report::Report simulate_memory(const Prepared& p, const InterruptScope& interrupt) {
+  const ringbus::MemoryLog requests = read_memory_csv(find_beside(p.config_folder, p.config().workload.memory_trace));
+  return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
 }
 
 report::Report simulate(const Prepared& p, const ConfigArguments& arguments, const InterruptScope& interrupt) {
@@ -98,9 +106,11 @@ std::optional<PointError> run_point(const SweepSetup& setup, Prepared& prepared,
     prepared.located = load_config(setup.source, point.sets);
     prepared.threads = point_threads(prepared.config());
     const bool traffic = prepared.config().workload.kind == WorkloadConfig::Kind::kTraffic;
-    if (!traffic) require_room(prepared);
-    const report::Report report = traffic ? simulate_traffic(prepared, interrupt)
-                                          : simulate(prepared, {setup.config.string(), point.sets}, interrupt);
+    const bool requests = prepared.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace;
+    if (!traffic && !requests) require_room(prepared);
+    const report::Report report = traffic    ? simulate_traffic(prepared, interrupt)
+                                  : requests ? simulate_memory(prepared, interrupt)
+                                             : simulate(prepared, {setup.config.string(), point.sets}, interrupt);
     std::optional<PointError> error;
     if (verdict(report, kInterrupted) != kDone) error = {"verification", "a verification or comparison failed"};
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
