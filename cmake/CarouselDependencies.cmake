@@ -1,4 +1,5 @@
-# Every library here is a Debian 12 package installed by script/bootstrap; README.md says what each is for.
+# Every library here is a Debian 12 package installed by script/bootstrap; README.md says what each is for. The installed
+# CMake package finds them with this file as well.
 find_package(PkgConfig REQUIRED)
 find_package(TBB REQUIRED)
 find_package(glm REQUIRED)
@@ -22,9 +23,3 @@ if(oiio_includes)
   list(FILTER oiio_includes EXCLUDE REGEX "opencv")
   set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_includes}")
 endif()
-
-# tinygltf is compiled into scene/ itself, without its own image codecs: textures are OpenImageIO's.
-add_library(tinygltf_headers INTERFACE)
-target_compile_definitions(tinygltf_headers INTERFACE TINYGLTF_NO_STB_IMAGE TINYGLTF_NO_STB_IMAGE_WRITE
-                           TINYGLTF_NO_INCLUDE_STB_IMAGE TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
-                           TINYGLTF_NO_INCLUDE_JSON TINYGLTF_USE_CPP14)

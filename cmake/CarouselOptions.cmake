@@ -9,8 +9,8 @@ endif()
 
 # One arithmetic for every machine: a contracted product makes Highway targets differ and the watertight
 # test leak (DESIGN.md section 3), so contraction is off everywhere, and there is no -march=native.
-target_compile_options(carousel_options INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
-                       -Wno-psabi)
+target_compile_options(carousel_options INTERFACE -ffp-contract=off
+                       "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow>" -Wno-psabi)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns of overlaps inside std::string's own operator+ (GCC bug 105651) and of uninitialised strings in
   # vectors of structs (GCC bug 105562).

@@ -15,6 +15,7 @@
 #include "app/commands/certify_command.h"
 #include "app/commands/check_command.h"
 #include "app/commands/compare_command.h"
+#include "app/commands/completion_command.h"
 #include "app/commands/follow_command.h"
 #include "app/commands/inspect_command.h"
 #include "app/commands/report_command.h"
@@ -26,6 +27,7 @@
 #include "app/host/log.h"
 #include "app/host/output.h"
 #include "app/host/version_text.h"
+#include "app/usage/examples.h"
 #include "core/config/edit_distance.h"
 #include "core/system/error.h"
 
@@ -33,8 +35,11 @@ namespace carousel::app {
 
 namespace {
 
-const std::vector<std::string> kCommands{"run",     "sweep",   "check",  "stress", "accuracy",
-                                         "inspect", "compare", "follow", "report", "schema"};
+std::vector<std::string> command_names(const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
   const auto near = nearest_name(name, known);
@@ -43,12 +48,13 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
 
 /// The nearest command or option, which CLI11 does not suggest.
 std::string usage_hint(const CLI::App& program, int argc, const char* const* argv) {
-  if (argc < 2) return fmt::format("expected a command: {}", fmt::join(kCommands, ", "));
+  const std::vector<std::string> commands = command_names(program);
+  if (argc < 2) return fmt::format("expected a command: {}", fmt::join(commands, ", "));
   const std::string first = argv[1];
-  const bool known = std::find(kCommands.begin(), kCommands.end(), first) != kCommands.end();
+  const bool known = std::find(commands.begin(), commands.end(), first) != commands.end();
   if (!first.empty() && first[0] != '-' && !known)
-    return fmt::format("unknown command {}{}; known are {}", first, did_you_mean(first, kCommands),
-                       fmt::join(kCommands, ", "));
+    return fmt::format("unknown command {}{}; known are {}", first, did_you_mean(first, commands),
+                       fmt::join(commands, ", "));
   const CLI::App* command = known ? program.get_subcommand(first) : &program;
   std::vector<std::string> options;
   for (const CLI::Option* option : command->get_options())
@@ -73,6 +79,7 @@ struct Arguments {
   ReportArguments report;
   FollowArguments follow;
   SchemaArguments schema;
+  CompletionArguments completion;
 };
 
 constexpr const char* kJsonHelp = "Print the result as JSON instead of a table (default: table)";
@@ -143,54 +150,6 @@ void add_run(CLI::App& program, RunArguments& r) {
                 "(default: both refused)");
 }
 
-void add_stress(CLI::App& program, StressArguments& s) {
-  CLI::App* stress =
-      program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
-  add_config_options(*stress, s, "the queues are tested by themselves");
-  stress
-      ->add_option("--queue", s.queues,
-                   "Kinds of queue to test, comma-separated, as in topology.link.queue (default: all)")
-      ->delimiter(',')
-      ->type_name("KIND");
-  stress->add_option("--pattern", s.patterns, "Load patterns to test, comma-separated (default: all)")
-      ->delimiter(',')
-      ->type_name("PATTERN");
-  stress->add_option("--bytes", s.bytes, "Message sizes in bytes, of 8, 64 and 256 (default: chosen by the pattern)")
-      ->delimiter(',')
-      ->type_name("BYTES");
-  stress
-      ->add_option("--depths", s.depths,
-                   "Link depths in packets to test in the configuration's ring (default: 1, its own depth, and four "
-                   "times that)")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 1'000'000))
-      ->type_name("PACKETS");
-  stress->add_option("--seconds", s.seconds, "Total time in seconds for tests of queues by themselves")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  stress->add_option("--messages", s.messages, "Most messages in one trial")
-      ->check(CLI::Range(1u, 100'000'000u))
-      ->capture_default_str();
-  stress->add_option("--repetitions", s.repetitions, "Number of times each trial is repeated")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  stress
-      ->add_option("--pairs", s.pairs,
-                   "Number of pairs of runs that compare the best and the worst queue and depth in the "
-                   "configuration's ring; fewer than 8 show no difference")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  stress->add_option("--capacity", s.capacity, "Capacity in messages of a queue tested by itself")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  stress->add_option("--seed", s.seed, "Seed of the random pauses between messages")->capture_default_str();
-  stress
-      ->add_option("--out", s.out, "Folder for stress.json and stress.html (default: out/stress, or out/<config name>)")
-      ->type_name("DIR");
-  stress->add_flag("--json", s.json, kJsonHelp);
-  stress->add_flag("--quiet", s.quiet, kQuietHelp);
-}
-
 void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   CLI::App* accuracy = program.add_subcommand("accuracy", "Measure the time and the errors of every level of accuracy");
   add_config_options(*accuracy, a, "a built-in scene of instances");
@@ -231,7 +190,7 @@ void add_accuracy(CLI::App& program, AccuracyArguments& a) {
 
 void add_inspect(CLI::App& program, InspectArguments& i) {
   CLI::App* inspect = program.add_subcommand("inspect", "List a scene's contents, the effects it needs and their cost");
-  inspect->add_option("scene", i.scene, "glTF file, or builtin:<name>")->required();
+  inspect->add_option("scene", i.scene, "glTF file, or builtin:<name>")->required()->type_name("SCENE");
   add_set_option(*inspect, i.sets);
   inspect->add_flag("--json", i.json, kJsonHelp);
 }
@@ -290,20 +249,31 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   CLI::App* check = program.add_subcommand(
       "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
   add_config_options(*check, arguments.check);
-  add_stress(program, arguments.stress);
+  CLI::App* stress =
+      program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
+  add_config_options(*stress, arguments.stress, "the queues are tested by themselves");
+  add_stress_options(*stress, arguments.stress);
   add_accuracy(program, arguments.accuracy);
   add_inspect(program, arguments.inspect);
   add_compare(program, arguments.compare);
-  add_report(program, arguments.report);
   add_follow(program, arguments.follow);
+  add_report(program, arguments.report);
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
       ->check(CLI::IsMember({"config", "report"}));
   schema->add_flag("--markdown", arguments.schema.markdown,
                    "Print every key with its meaning as Markdown (default: JSON Schema)");
-  for (CLI::App* command : program.get_subcommands({})) add_log_options(*command, arguments.log);
-  program.footer("carousel COMMAND --help describes the options of a command.");
+  CLI::App* completion = program.add_subcommand("completion", "Print the completion of this program for a shell");
+  completion->add_option("shell", arguments.completion.shell, "bash or zsh")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh"}));
+  program.add_subcommand("man", "Print the manual page, for man -l");
+  for (CLI::App* command : program.get_subcommands({})) {
+    add_log_options(*command, arguments.log);
+    command->footer(examples_text(command->get_name()));
+  }
+  program.footer(first_steps());
 }
 
 int run_command_line(int argc, const char* const* argv) {
@@ -337,6 +307,8 @@ int run_command_line(int argc, const char* const* argv) {
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
   if (program.got_subcommand("report")) return report_command(arguments.report);
   if (program.got_subcommand("follow")) return follow_command(arguments.follow);
+  if (program.got_subcommand("completion")) return completion_command(program, arguments.completion);
+  if (program.got_subcommand("man")) return man_command(program);
   return schema_command(arguments.schema);
 }
 

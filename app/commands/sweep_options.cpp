@@ -49,9 +49,11 @@ void add_sweep_options(CLI::App& command, SweepArguments& s) {
                    "finished (default: run them)");
   command.add_flag("--retry-failed", s.retry_failed, "Run points again that failed before (default: they stay failed)");
   CLI::Option* ask = command.add_flag(
-      "--ask", s.ask, "Read points from standard input, a JSON object of keys and values a line, instead of --vary");
+      "--ask", s.ask,
+      "Read points from standard input, a JSON object of keys and values a line (default: from --vary)");
   CLI::Option* tell = command.add_flag(
-      "--tell", s.tell, "With --ask: print each point's row as a line of JSON as soon as it is finished");
+      "--tell", s.tell,
+      "With --ask: print each point's row as a line of JSON as soon as it is finished (default: not printed)");
   ask->needs(tell);
   tell->needs(ask);
   command.add_flag("--json", s.json, "Print the result as JSON instead of a table (default: table)");

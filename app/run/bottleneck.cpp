@@ -69,7 +69,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                          .paths = found.paths,
                          .rays = found.rays};
   for (const ringbus::Gain& gain : found.gains)
-    out.gains.push_back({gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high});
+    out.gains.push_back(
+        {gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high, gain.together});
   return report::judge_gains(std::move(out));
 }
 

@@ -116,10 +116,6 @@ void build_accel(Prepared& p) {
     p.plane_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (phase) phase->result(fmt::format("{} planes fitted", p.accel.planes.size()));
   }
-  if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
-    throw ConfigError(std::move(issues));
-  if (std::vector<ConfigIssue> issues = ringbus::cycle::check_shape_buffer(p.config(), p.accel); !issues.empty())
-    throw ConfigError(std::move(issues));
 }
 
 /// Does all preparation after reading the configuration.
@@ -139,13 +135,23 @@ void prepare_located(Prepared& p, bool keep_hits) {
     load_scene(p);
     build_accel(p);
   });
-  const MemoryNeed need = estimate(p.config(), keep_hits, p.scene, p.accel);
-  spdlog::debug("memory: about {} of {} usable", report::bytes_text(need.total()),
-                report::bytes_text(usable_memory_bytes()));
-  require_fit(need, usable_memory_bytes(), positions);
+  require_room(p, keep_hits);
 }
 
 }  // namespace
+
+void require_room(const Prepared& p, bool keep_hits) {
+  with_positions(p.located.positions, [&] {
+    if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
+      throw ConfigError(std::move(issues));
+    if (std::vector<ConfigIssue> issues = ringbus::cycle::check_shape_buffer(p.config(), p.accel); !issues.empty())
+      throw ConfigError(std::move(issues));
+  });
+  const MemoryNeed need = estimate(p.config(), keep_hits, p.scene, p.accel);
+  spdlog::debug("memory: about {} of {} usable", report::bytes_text(need.total()),
+                report::bytes_text(usable_memory_bytes()));
+  require_fit(need, usable_memory_bytes(), p.located.positions);
+}
 
 scene::View view_of(const Config& config) {
   return {config.camera, static_cast<float>(config.image.width) / static_cast<float>(config.image.height)};

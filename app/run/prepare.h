@@ -47,6 +47,10 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 /// The same for a configuration given as text; files that it names are looked for in the working folder.
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {});
 
+/// Refuses a machine that does not fit the prepared structure, and one that the host's memory does not hold. Throws a
+/// ConfigError.
+void require_room(const Prepared& prepared, bool keep_hits);
+
 /// The view of the configured picture.
 scene::View view_of(const Config& config);
 

@@ -161,7 +161,11 @@ bool is_counter(const ringbus::SeriesRow& row) {
 }  // namespace
 
 TraceFile::TraceFile(const TraceArguments& arguments, bool native)
-    : file_(arguments.file), wanted_(options_of(arguments, native)), most_(arguments.events), native_(native) {}
+    : name_(arguments.file),
+      file_(arguments.file),
+      wanted_(options_of(arguments, native)),
+      most_(arguments.events),
+      native_(native) {}
 
 ringbus::TimelineOptions TraceFile::wanted() const {
   return wanted_;

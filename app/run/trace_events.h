@@ -27,6 +27,7 @@ class TraceFile {
   /// ConfigError for a window that is none. `native`: times are nanoseconds of the host.
   TraceFile(const TraceArguments& arguments, bool native);
 
+  const std::string& name() const { return name_; }
   /// For the engine.
   ringbus::TimelineOptions wanted() const;
 
@@ -38,6 +39,7 @@ class TraceFile {
   Written write(const ringbus::Timeline& timeline, const ringbus::TimeSeries* series);
 
  private:
+  std::string name_;
   AtomicFile file_;
   ringbus::TimelineOptions wanted_;
   std::size_t most_;

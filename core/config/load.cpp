@@ -45,10 +45,22 @@ void imply(const config::Node& root, Config& config) {
   if (root.find("topology")->find("visit") == nullptr) config.topology.visit = Visit::kOwners;
 }
 
+/// Takes `$schema` away, by which a file tells editors where the schema is; it says nothing about the machine.
+void skip_schema_line(config::Node& root, std::vector<ConfigIssue>& issues) {
+  const auto line = std::find_if(root.members.begin(), root.members.end(),
+                                 [](const config::Member& member) { return member.key == "$schema"; });
+  if (line == root.members.end()) return;
+  if (line->value.kind != config::Node::Kind::kString)
+    issues.push_back(
+        {line->value.position, "$schema", "expected the address of the schema, found " + line->value.found()});
+  root.members.erase(line);
+}
+
 LocatedConfig read_fields(const ConfigText& source, std::span<const std::string> sets,
                           std::vector<ConfigIssue>& issues) {
   config::Node root = config::parse_tree(source.text, source.name, issues);
   if (root.kind == config::Node::Kind::kNull) root.kind = config::Node::Kind::kMap;  // an empty file
+  skip_schema_line(root, issues);
   if (root.kind == config::Node::Kind::kMap)
     for (const std::string& set : sets) config::apply_set(root, set, issues);
   LocatedConfig out{{}, KeyPositions(root, source.name)};

@@ -244,6 +244,8 @@ std::optional<std::string> config_path_ending_in(std::string_view key) {
 Json config_schema() {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Carousel configuration"}};
   schema.update(config::SchemaWriter::object(Config{}, ""));
+  // Not a key of the configuration: the line that tells editors of this schema.
+  schema["patternProperties"] = {{"^\\$schema$", {{"type", "string"}}}};
   schema["required"] = {"scene"};
   Json& scene = schema["properties"]["scene"];
   scene["oneOf"] = {Json{{"required", {"file"}}}, Json{{"required", {"builtin"}}}};

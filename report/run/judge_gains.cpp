@@ -14,8 +14,9 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (b.gains.empty()) return "not found out: nothing can be relaxed";
   if (named == nullptr) {
     const BottleneckGain& best = b.gains.front();
-    return fmt::format("no class of parts limits it alone: the best lift, {}, gains {}{}", best.action, gain_text(best),
-                       best.low <= 0 && best.gain > 0 ? ", which may be noise" : "");
+    const std::string others = best.together > 1 ? fmt::format(" with {} others", best.together - 1) : "";
+    return fmt::format("no class of parts limits it alone: the best lift, {}{}, gains {}{}", best.action, others,
+                       gain_text(best), best.low <= 0 && best.gain > 0 ? ", which may be noise" : "");
   }
   std::string text = fmt::format("{}: {} gains {}", named->name, named->action, gain_text(*named));
   if (!b.rivals.empty()) {
@@ -25,7 +26,8 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
         text += fmt::format("{} {} with {}", text.back() == ':' ? "" : ",", gain.name, gain_text(gain));
     return text;
   }
-  const auto next = std::find_if(b.gains.begin(), b.gains.end(), [&](const auto& gain) { return &gain != named; });
+  const auto next = std::find_if(b.gains.begin(), b.gains.end(),
+                                 [&](const auto& gain) { return &gain != named && gain.together == 1; });
   if (next != b.gains.end()) text += fmt::format(", next is {} with {}", next->name, gain_text(*next));
   return text;
 }

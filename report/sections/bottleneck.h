@@ -37,6 +37,7 @@ struct BottleneckGain {
   std::string name, action;
   std::vector<std::string> sets;
   double rays_per_kilocycle = 0, gain = 0, low = 0, high = 0;
+  std::uint64_t together = 1;
 };
 
 template <class V>
@@ -49,6 +50,8 @@ void describe(V& v, const BottleneckGain& r) {
   v.field("gain", r.gain, "fraction", "gain over the machine as configured, for the whole frame");
   v.field("low", r.low, "fraction", "lower end of the gain's interval of confidence (95 %)");
   v.field("high", r.high, "fraction", "upper end of the gain's interval of confidence (95 %)");
+  v.field("together", r.together, "classes",
+          "classes that were relaxed together in the simulation: if more than 1, the gain is that of all of them");
 }
 
 struct Bottleneck {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -40,13 +40,12 @@ class Search {
 
   Bottleneck search() {
     const std::uint64_t frame = run_.result.rays_completed;
-    std::vector<std::size_t> all(lifts_.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
     const std::uint64_t first = frame / kScreening;
-    out_.paths = pilot_paths(config_, run_.paths, frame, first / (all.size() + 1));
-    begin("first pilot", all.size());
+    const std::vector<std::vector<std::size_t>> groups = grouped();
+    out_.paths = pilot_paths(config_, run_.paths, frame, first / (groups.size() + 1));
+    begin("first pilot", groups.size());
     simulate_base();
-    lift(all, 0);
+    for (const std::vector<std::size_t>& group : groups) screen(group);
     std::vector<std::size_t> worth = worth_a_second_look();
     const std::uint64_t larger =
         pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
@@ -74,6 +73,7 @@ class Search {
   static constexpr int kDoublings = 2;
   static constexpr std::size_t kFewest = 2;
   static constexpr std::uint64_t kScreening = 3;  // a third of the rays go to the first pilot
+  static constexpr double kEnough = 0.03;         // a gain that is worth a second look
 
   Bottleneck without_gains() {
     out_.gains.clear();
@@ -118,28 +118,76 @@ class Search {
     return {{&*base_.cycle, base_.rays_completed}, run_.result.rays_completed, 2 * fill_rays(slots_of(config_))};
   }
 
+  /// Whether the parts of a class had nothing to do for more than half of the run.
+  bool idle(const std::string& name) const {
+    constexpr double kIdle = 0.5;
+    const cycle::CycleResult& run = *run_.result.cycle;
+    for (const cycle::ClassUse& use : run.uses)
+      if (use.name == name) return static_cast<double>(use.busy) <= kIdle * use.parts * static_cast<double>(run.cycles);
+    return false;
+  }
+
+  /// All classes, those of idle parts in one group.
+  std::vector<std::vector<std::size_t>> grouped() const {
+    std::vector<std::vector<std::size_t>> out;
+    std::vector<std::size_t> of_idle;
+    for (std::size_t i = 0; i < lifts_.size(); ++i) {
+      if (idle(lifts_[i].name))
+        of_idle.push_back(i);
+      else
+        out.push_back({i});
+    }
+    if (!of_idle.empty()) out.push_back(of_idle);
+    return out;
+  }
+
+  /// Relaxes the classes of a group together, and parts of it by themselves if that may gain enough.
+  void screen(const std::vector<std::size_t>& group) {
+    if (group.size() == 1) return lift(group, 0);
+    std::vector<const WhatIf*> lifts;
+    for (const std::size_t i : group) lifts.push_back(&lifts_[i]);
+    if (const std::optional<Config> machine = relaxed_together(config_, lifts)) {
+      if (!out_.complete) return;
+      state_.name = fmt::format("{} and {} more", lifts_[group.front()].name, group.size() - 1);
+      const RunResult relaxed = simulate(*machine);
+      if (!out_.complete) return;
+      const Estimate gain = foretelling().gain({&*relaxed.cycle, relaxed.rays_completed}, 0);
+      // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
+      if (gain.value < kEnough) {
+        for (const std::size_t i : group) note(i, gain, group.size());
+        return;
+      }
+    }
+    state_.of += 2;
+    const auto half = group.begin() + static_cast<std::ptrdiff_t>(group.size() / 2);
+    screen({group.begin(), half});
+    screen({half, group.end()});
+  }
+
+  void note(std::size_t i, const Estimate& gain, std::size_t together) {
+    const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
+    out_.gains[i] = {lifts_[i].name, lifts_[i].action, lifts_[i].sets, rate * (1 + gain.value),
+                     gain.value,     gain.low,         gain.high,      together};
+  }
+
   /// Relaxes each of these classes, unless that was done with this pilot before.
   void lift(const std::vector<std::size_t>& which, double deviation) {
-    const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
     for (const std::size_t i : which) {
       if (!out_.complete) return;
       state_.name = lifts_[i].name;
       Relaxed& relaxed = relaxed_[i];
       if (relaxed.paths != out_.paths) relaxed = {simulate(lifts_[i].relaxed), out_.paths};
       if (!out_.complete) return;
-      const Estimate gain = foretelling().gain({&*relaxed.result.cycle, relaxed.result.rays_completed}, deviation);
-      out_.gains[i] = {lifts_[i].name, lifts_[i].action, lifts_[i].sets, rate * (1 + gain.value),
-                       gain.value,     gain.low,         gain.high};
+      note(i, foretelling().gain({&*relaxed.result.cycle, relaxed.result.rays_completed}, deviation), 1);
     }
   }
 
   /// The classes that the larger pilot simulates: those that might gain enough to be named, but not many.
   std::vector<std::size_t> worth_a_second_look() const {
-    constexpr double kEnough = 0.03;
     constexpr std::size_t kMost = 6;
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < out_.gains.size(); ++i)
-      if (out_.whole || out_.gains[i].high >= kEnough) out.push_back(i);
+      if (out_.gains[i].together == 1 && (out_.whole || out_.gains[i].high >= kEnough)) out.push_back(i);
     std::stable_sort(out.begin(), out.end(),
                      [&](std::size_t a, std::size_t b) { return out_.gains[a].gain > out_.gains[b].gain; });
     if (!out_.whole && out.size() > kMost) out.resize(kMost);

@@ -20,6 +20,8 @@ struct Gain {
   double rays_per_kilocycle = 0;  ///< of the whole frame, foretold
   double gain = 0;                ///< over the machine as configured, as a fraction of its throughput
   double low = 0, high = 0;       ///< its interval of confidence
+  /// Classes that were relaxed together in the simulation, and gained so little that none was looked at alone.
+  std::size_t together = 1;
 };
 
 /// The bottleneck of a machine, found by simulating it with each class relaxed in turn.
@@ -57,11 +59,13 @@ using SearchObserver = std::function<void(const SearchProgress&)>;
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
 /// frame (foretell.h). A resource that stops is left out of account.
 ///
-/// All classes are relaxed for a first, small pilot; those that may be worth naming, at most six, for a second, larger
-/// one. All pilots have together about as many rays as the run, but each has as many as the machine needs to be seen
-/// between fill and drain; where that is most of the frame, the pilot is the frame. The last pilot is compared with the
-/// run. If it is not like it, it is doubled, twice at most, for half of the classes; after that nothing is found out.
-/// Throws as run_cycle.
+/// The classes of parts that the run kept busy for less than half of its time are relaxed together; only where that
+/// gains enough to matter they are told apart, by halves. This and each other class by itself is simulated for a first,
+/// small pilot; the classes that may be worth
+/// naming, at most six, for a second, larger one. All pilots have together about as many rays as the run, but each has
+/// as many as the machine needs to be seen between fill and drain; where that is most of the frame, the pilot is the
+/// frame. The last pilot is compared with the run. If it is not like it, it is doubled, twice at most, for half of the
+/// classes; after that nothing is found out. Throws as run_cycle.
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe = {});

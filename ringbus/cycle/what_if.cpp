@@ -143,7 +143,7 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   const std::string resolved = resolved_yaml(config);
   const bool valid = may_be_set(resolved, {});  // a test's machine may lack keys that the lifts do not touch
   const auto add = [&](const char* name, std::string action, const auto& relax) {
-    WhatIf what_if{name, std::move(action), {}, config};
+    WhatIf what_if{name, std::move(action), {}, relax, config};
     relax(what_if.relaxed);
     what_if.sets = config_differences(config, what_if.relaxed);
     if (what_if.sets.empty() || (valid && !may_be_set(resolved, what_if.sets))) return;
@@ -159,6 +159,14 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   for (const PartClass& part : kPartClasses)
     if (part.present(config)) add(part.name, part.action, part.relax);
   return all;
+}
+
+std::optional<Config> relaxed_together(const Config& config, const std::vector<const WhatIf*>& lifts) {
+  Config relaxed = config;
+  for (const WhatIf* lift : lifts) lift->relax(relaxed);
+  const std::string resolved = resolved_yaml(config);
+  if (may_be_set(resolved, {}) && !may_be_set(resolved, config_differences(config, relaxed))) return std::nullopt;
+  return relaxed;
 }
 
 }  // namespace carousel::ringbus

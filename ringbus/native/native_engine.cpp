@@ -27,8 +27,9 @@ namespace {
 class NativeRun {
  public:
   NativeRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
-            const RunOptions& options)
+            const RunOptions& options, const LinkMaker& own_links)
       : options_(options),
+        own_links_(own_links),
         config_(config),
         accel_(accel),
         scene_size_(scene_size),
@@ -75,7 +76,7 @@ class NativeRun {
   void build() {
     ports_.clear();
     workers_.clear();
-    machine_ = std::make_unique<NativeMachine>(config_, accel_, scene_size_);
+    machine_ = std::make_unique<NativeMachine>(config_, accel_, scene_size_, own_links_);
     const NativePortSettings settings{resource_settings(config_, scene_size_), config_.faults,
                                       config_.engine.clock_mhz};
     for (std::uint32_t r = 0; r < sinks_.size(); ++r)
@@ -263,6 +264,7 @@ class NativeRun {
   }
 
   const RunOptions& options_;
+  const LinkMaker own_links_;  // empty: links as configured
   const Config& config_;
   const accel::Accel& accel_;
   float scene_size_;
@@ -299,7 +301,12 @@ class NativeRun {
 
 RunResult run_native(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
                      const RunOptions& options) {
-  return NativeRun(config, accel, scene_size, workload, options).run();
+  return NativeRun(config, accel, scene_size, workload, options, {}).run();
+}
+
+RunResult run_native_on(const LinkMaker& links, const Config& config, const accel::Accel& accel, float scene_size,
+                        Workload& workload, const RunOptions& options) {
+  return NativeRun(config, accel, scene_size, workload, options, links).run();
 }
 
 }  // namespace carousel::ringbus

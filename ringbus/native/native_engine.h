@@ -3,6 +3,7 @@
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/types/workload.h"
+#include "ringbus/native/queue_link.h"
 #include "ringbus/results/run_result.h"
 
 namespace carousel::ringbus {
@@ -14,5 +15,10 @@ namespace carousel::ringbus {
 /// something got stuck or was lost; exceptions of the workload pass through.
 RunResult run_native(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
                      const RunOptions& options);
+
+/// The same, with links that `links` makes in place of those of `topology.link.queue`; for queues of one's own, as in
+/// run_native_on(make_queue_link<MyQueue>, ...).
+RunResult run_native_on(const LinkMaker& links, const Config& config, const accel::Accel& accel, float scene_size,
+                        Workload& workload, const RunOptions& options);
 
 }  // namespace carousel::ringbus

@@ -7,13 +7,15 @@
 #include "core/config/config.h"
 #include "ringbus/native/completed_queue.h"
 #include "ringbus/native/link.h"
+#include "ringbus/native/queue_link.h"
 #include "ringbus/protocol/machine.h"
 
 namespace carousel::ringbus {
 
 /// A machine with what the native engine adds to it: real queues between resources, and the queue to shading.
 struct NativeMachine {
-  NativeMachine(const Config& config, const accel::Accel& accel, float scene_size);
+  /// The links come from `own_links` if that is not empty, and otherwise from the configuration.
+  NativeMachine(const Config& config, const accel::Accel& accel, float scene_size, const LinkMaker& own_links);
 
   Machine shared;
   std::vector<std::unique_ptr<Link>> links;  ///< as shared.topology.wires()

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <deque>
 
 #include "core/config/config.h"
+#include "core/system/error.h"
 #include "core/types/enum_names.h"
 #include "ringbus/resource/collections/priority_lists.h"
 
@@ -49,11 +51,29 @@ constexpr std::array kPolicies{
 };
 static_assert(kPolicies.size() == kEnumNames<Policy>.size(), "a row for each policy");
 
+/// Policies of register_policy(). A row keeps its address, since resources refer to it.
+std::deque<IssuePolicy>& registered() {
+  static std::deque<IssuePolicy> rows;
+  return rows;
+}
+
+const IssuePolicy* find_row(const auto& rows, Policy policy) {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const IssuePolicy& r) { return r.policy == policy; });
+  return row == rows.end() ? nullptr : &*row;
+}
+
 }  // namespace
 
 const IssuePolicy& issue_policy(Policy policy) {
-  return *std::find_if(kPolicies.begin(), kPolicies.end(),
-                       [&](const IssuePolicy& row) { return row.policy == policy; });
+  if (const IssuePolicy* row = find_row(kPolicies, policy)) return *row;
+  if (const IssuePolicy* row = find_row(registered(), policy)) return *row;
+  throw SimulationError("no such policy of collections");
+}
+
+Policy register_policy(IssuePolicy own) {
+  own.policy = static_cast<Policy>(kPolicies.size() + registered().size());
+  registered().push_back(own);
+  return own.policy;
 }
 
 }  // namespace carousel::ringbus

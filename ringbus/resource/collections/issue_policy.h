@@ -34,6 +34,12 @@ struct IssuePolicy {
   bool reads_entries = false;  ///< packets must bring back the entries of their rays into the children
 };
 
+/// The row of a policy. Throws SimulationError where there is none.
 const IssuePolicy& issue_policy(Policy policy);
+
+/// Adds a policy that is not in the table, for programs of one's own, and returns its value for
+/// `Config::collections.policy`; `own.policy` is ignored. It has no name in configuration files. Call it before any run
+/// starts, from one thread.
+Policy register_policy(IssuePolicy own);
 
 }  // namespace carousel::ringbus

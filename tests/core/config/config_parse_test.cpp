@@ -19,6 +19,15 @@ TEST(ConfigParse, GivesTheDefaultsOfTheDesignForASmallFile) {
   EXPECT_EQ(config.testers.units[UnitKind::kBox].units, 4);
 }
 
+TEST(ConfigParse, TakesTheLineThatTellsEditorsOfTheSchema) {
+  const char* text = R"({"$schema": "schema.json", "scene": {"builtin": "cornell"}, "image": {"width": 64}})";
+  EXPECT_EQ(parse_config(text, "small.json").image.width, 64);
+  EXPECT_EQ(parse_config(text, "small.yaml").image.width, 64);  // YAML takes JSON
+  EXPECT_EQ(texts(issues_of(R"({"$schema": 7, "scene": {"builtin": "cornell"}})", {}, "small.json")),
+            (std::vector<std::string>{"small.json:1:13: $schema: expected the address of the schema, found 7"}));
+  EXPECT_EQ(issues_of(R"({"scene": {"builtin": "cornell", "$schema": "schema.json"}})", {}, "small.json").size(), 1u);
+}
+
 TEST(ConfigParse, ReadsEveryFormOfTheContract) {
   const Config config = parse_config(R"(
 schema_version: 1

@@ -95,6 +95,12 @@ TEST(NotBuilt, EveryRowIsRefusedByName) {
   }
 }
 
+TEST(ConfigSchema, StandsBesideTheExamples) {
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/configs/schema.json");
+  const std::string kept{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_TRUE(kept == config_schema().dump(2) + "\n") << "carousel schema config >configs/schema.json";
+}
+
 TEST(ConfigPage, IsWrittenByTheProgram) {
   std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/config.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};

@@ -1,12 +1,14 @@
 // The ways in which a run ends: complete, early, stuck, or with an exception of the workload.
 #include "ringbus/native/native_engine.h"
 
+#include <atomic>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "accel/build/build.h"
 #include "core/system/error.h"
+#include "ringbus/queues/spsc_ring.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {
@@ -91,6 +93,36 @@ TEST(NativeEngine, GivesTheSameHitsWithoutStatistics) {
   const RunResult result = run_native(small_config(), scene.accel(BvhConfig{}), scene.size(), workload, options);
   EXPECT_TRUE(result.resources.empty());
   EXPECT_EQ(workload.digest(), scene.digest());
+}
+
+/// A queue that counts what passes.
+template <class T>
+struct CountingQueue : SpscRing<T> {
+  using SpscRing<T>::SpscRing;
+  std::size_t try_push_n(std::span<const T> values) {
+    const std::size_t pushed = SpscRing<T>::try_push_n(values);
+    g_pushed += pushed;
+    return pushed;
+  }
+  static inline std::atomic<std::uint64_t> g_pushed{0};
+};
+
+TEST(NativeEngine, RunsOnQueuesOfOnesOwn) {
+  TestScene scene(builtin_scene(BuiltinScene::kCornell, 0, 0), 500, 2);
+  ScatterWorkload workload = scene.workload();
+  const RunResult result = run_native_on(make_queue_link<CountingQueue>, small_config(), scene.accel(BvhConfig{}),
+                                         scene.size(), workload, on_threads(2));
+  EXPECT_EQ(workload.digest(), scene.digest());
+  std::uint64_t sent = 0;
+  for (const LinkResult& link : result.links) sent += link.statistics.packets;
+  EXPECT_GT(sent, 0u);
+  EXPECT_EQ(CountingQueue<PacketId>::g_pushed, sent);
+
+  Config faulty = small_config();
+  faulty.faults.links.drop = 0.05;
+  ScatterWorkload again = scene.workload();
+  run_native_on(make_queue_link<CountingQueue>, faulty, scene.accel(BvhConfig{}), scene.size(), again, on_threads(2));
+  EXPECT_EQ(again.digest(), scene.digest());
 }
 
 TEST(NativeEngine, LinkCountsAddUpToHops) {

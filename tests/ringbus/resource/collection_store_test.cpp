@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/config/config.h"
+#include "core/system/error.h"
 #include "core/types/enum_names.h"
 
 namespace carousel::ringbus {
@@ -57,6 +58,22 @@ using Keys = std::vector<std::uint32_t>;
 
 TEST(IssuePolicy, EveryNameHasItsRow) {
   for (const auto& entry : kEnumNames<Policy>) EXPECT_EQ(issue_policy(entry.value).policy, entry.value) << entry.name;
+}
+
+TEST(IssuePolicy, TakesPoliciesThatAreNotInTheTable) {
+  // The narrowest collection first, which no built-in policy is.
+  const auto narrowest = [](const CollectionFacts& c, const PolicyScale&) { return std::min(c.rays, 255u); };
+  const Policy own = register_policy({.policy = Policy::kOldest, .bucket = narrowest});
+  const Policy other = register_policy({.policy = Policy::kOldest, .bucket = narrowest, .newest_first = true});
+  EXPECT_NE(own, other);
+  EXPECT_FALSE(issue_policy(own).newest_first);
+  EXPECT_TRUE(issue_policy(other).newest_first);
+  CollectionStore store(settings(own, Select::kStrict));
+  store.add(key(1), 1, 1, ray_ids(0, 2));
+  store.add(key(2), 1, 1, ray_ids(10, 1));
+  store.add(key(3), 1, 1, ray_ids(20, 3));
+  EXPECT_EQ(drain(store), (Keys{2, 1, 3}));
+  EXPECT_THROW(issue_policy(static_cast<Policy>(99)), SimulationError);
 }
 
 // The facts of a policy's table row, whose order the tests below see only through the store.

@@ -1,0 +1,123 @@
+#include "app/build_report/experiment.h"
+
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "accel/planes/cull_planes.h"
+#include "accel/traverse/verifying_workload.h"
+#include "app/build_report/build_report.h"
+#include "app/build_report/memory_report.h"
+#include "app/build_report/traffic_report.h"
+#include "app/host/log.h"
+#include "app/run/bottleneck.h"
+#include "app/run/counting_workload.h"
+#include "app/run/effects_proof.h"
+#include "app/run/fault_cost.h"
+#include "app/run/memory_csv.h"
+#include "app/run/ray_progress.h"
+#include "report/text/number_text.h"
+#include "report/text/progress_line.h"
+#include "report/text/ratio.h"
+#include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/cycle/memory/memory_trace.h"
+#include "ringbus/cycle/traffic/traffic_engine.h"
+#include "ringbus/native/native_engine.h"
+
+namespace carousel::app {
+
+namespace {
+
+/// The result of a run in one line, with the faults that happened on request.
+std::string run_text(const Config& config, const ringbus::RunResult& result) {
+  std::string out = fmt::format("{} engine, {} rays, {} threads", enum_name(config.engine.kind),
+                                report::scaled(double(result.rays_completed)), result.threads);
+  if (result.cycle) out += fmt::format(", {} cycles", report::grouped(result.cycle->cycles));
+  if (result.rays_restarted > 0)
+    out += fmt::format("; a resource stopped: {} rays restarted, {} packets discarded", result.rays_restarted,
+                       result.packets_discarded);
+  LinkFaultCounts faults;
+  for (const ringbus::LinkResult& link : result.links) faults += link.faults;
+  for (const auto& counter : LinkFaultCounts::counters())
+    if (const std::uint64_t count = counter.value(faults); count > 0)
+      out += fmt::format("; {} {} {}", count, counter.unit, counter.name);
+  if (result.slot_waits > 0) spdlog::debug("run: new rays waited {} times for free slots", result.slot_waits);
+  return out + (result.complete ? "" : "; stopped early");
+}
+
+ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
+                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace,
+                            ringbus::MemoryLog* memory) {
+  Phase phase("run");
+  CountingWorkload counting(workload);
+  ringbus::RunOptions options;
+  options.threads = p.threads;
+  options.stop = interrupt.token();
+  options.samples = static_cast<std::size_t>(p.config().report.samples);
+  if (trace != nullptr) options.timeline = trace->wanted();
+  options.memory = memory;
+  const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
+  const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
+  ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
+  phase.result(run_text(p.config(), result));
+  return result;
+}
+
+void write_trace(TraceFile& trace, const ringbus::RunResult& result) {
+  const TraceFile::Written written = trace.write(*result.timeline, result.series ? &*result.series : nullptr);
+  if (written.cut)
+    spdlog::warn("{} has {} events and ends before the run; --trace-window, --trace-sample and --trace-events choose",
+                 trace.name(), written.events);
+}
+
+void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResult& result,
+                 const InterruptScope& interrupt, bool quiet, report::Report& report) {
+  report.bound = bound_of(result);
+  if (!p.config().engine.what_if) return;
+  Phase phase("search");
+  report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), quiet);
+  report.incomplete |= !report.bottleneck->complete;
+  phase.result(fmt::format("{} classes relaxed for {} rays each; scene, structure and first hits are those of the run",
+                           report.bottleneck->gains.size(), report.bottleneck->rays));
+}
+
+}  // namespace
+
+report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
+                        const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory) {
+  std::optional<accel::VerifyingWorkload> verifying;
+  std::optional<accel::Accel> plain;  // planes and spheres are verified as well
+  if (p.config().verify == Verify::kReference) {
+    if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
+    verifying.emplace(job.workload(), plain ? *plain : p.accel);
+  }
+  Workload& workload = verifying ? *verifying : job.workload();
+  const ringbus::RunResult result = simulate(p, job, workload, interrupt, quiet, trace, memory);
+  if (trace != nullptr) write_trace(*trace, result);
+  report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
+  if (result.cycle) find_limits(p, job, result, interrupt, quiet, report);
+  if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);
+  if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, quiet, report);
+  return report;
+}
+
+report::Report run_traffic(const Prepared& p, const InterruptScope& interrupt, bool quiet) {
+  std::optional<report::ProgressLine> line;
+  if (!quiet) line.emplace(stderr);
+  ringbus::RunOptions options;
+  options.threads = p.threads;
+  options.stop = interrupt.token();
+  options.progress = [&](std::uint64_t packets) {
+    if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
+  };
+  return traffic_report(p, ringbus::run_traffic(p.config(), options));
+}
+
+report::Report run_memory(const Prepared& p, const InterruptScope& interrupt) {
+  const ringbus::MemoryLog requests = read_memory_csv(find_beside(p.config_folder, p.config().workload.memory_trace));
+  return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,81 @@
+"""cmake --install into an empty folder; what stands there works, and examples/ build against it and run.
+
+CAROUSEL_BUILD names the build folder. Nothing of the project is compiled here but the three examples.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+BUILD = os.environ["CAROUSEL_BUILD"]
+
+
+def run(*words, **more):
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False, **more)
+    if done.returncode != 0:
+        raise AssertionError(f"{words} ended with {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+class Install(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="carousel_install_")
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.prefix = Path(cls.folder.name) / "prefix"
+        run("cmake", "--install", BUILD, "--prefix", cls.prefix)
+        cls.program = cls.prefix / "bin" / "carousel"
+
+    def one(self, pattern):
+        found = list(self.prefix.glob(pattern))
+        self.assertEqual(len(found), 1, pattern)
+        return found[0]
+
+    def test_all_is_there(self):
+        for pattern in ("share/man/man1/carousel.1.gz", "share/bash-completion/completions/carousel",
+                        "share/zsh/*/_carousel", "share/carousel/configs/demo.yaml", "share/carousel/configs/schema.json",
+                        "share/doc/carousel/tutorial.md", "share/doc/carousel/README.md", "share/doc/carousel/copyright",
+                        "share/doc/carousel-dev/examples/own_queue.cpp", "include/carousel/core/config/config.h",
+                        "lib/**/libcarousel_core.a", "lib/**/CarouselConfig.cmake"):
+            self.assertGreater(self.one(pattern).stat().st_size, 0, pattern)
+        self.assertEqual(list(self.prefix.glob("**/*.cpp")),
+                         list(self.prefix.glob("share/doc/carousel-dev/examples/*.cpp")))
+
+    def test_nothing_names_the_sources(self):
+        for file in self.prefix.glob("lib/**/*.cmake"):
+            self.assertNotIn(str(SOURCE), file.read_text(), file)
+
+    def test_the_program_runs_every_configuration(self):
+        found = [file for file in (self.prefix / "share/carousel/configs").iterdir()
+                 if file.name not in ("schema.json", "README.md")]
+        self.assertGreaterEqual(len(found), 8)
+        self.assertIn(".json", [file.suffix for file in found])
+        for config in found:
+            run(self.program, "check", config)
+            self.assertRegex(config.read_text(), r'(?m)^(# yaml-language-server: \$schema=| +"\$schema": ")schema.json')
+
+    def test_python_finds_the_program(self):
+        package = self.one("lib/**/carousel/__init__.py").parent.parent
+        code = ("import carousel; report = carousel.run({'scene': {'builtin': 'cornell'}}, image={'width': 8, 'height': 8});"
+                "print(report['rays']['lost'])")
+        env = {**os.environ, "PYTHONPATH": str(package), "PATH": f"{self.program.parent}:{os.environ['PATH']}",
+               "PYTHONDONTWRITEBYTECODE": "1"}
+        env.pop("CAROUSEL", None)
+        self.assertEqual(run(sys.executable, "-c", code, env=env).strip(), "0")
+
+    def test_the_examples_build_and_run(self):
+        build = Path(self.folder.name) / "examples"
+        run("cmake", "-S", self.prefix / "share/doc/carousel-dev/examples", "-B", build, "-G", "Ninja",
+            f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0")
+        run("cmake", "--build", build)
+        self.assertIn("violations: none", run(build / "own_queue"))
+        self.assertIn("broad_first (own)", run(build / "own_policy"))
+        self.assertIn("2000 of 2000 beams met a surface", run(build / "own_workload"))
+
+
+if __name__ == "__main__":
+    unittest.main()
