@@ -173,14 +173,19 @@ class AccelBuilder {
     accel_.max_depth = tlas_depth + blas_depth;
   }
 
-  // Small leaves are tested where their boxes would be.
+  // Small leaves are tested where their boxes would be, also those that are whole meshes of the world: so a node of the
+  // top level may hold primitives and instances (US 12394134, paragraph 8: leaf nodes that reference primitives in
+  // world space, and leaf nodes that reference instances).
   void mix_nodes() {
-    const auto most = static_cast<std::uint32_t>(config_.mixed_triangles);
     for (Node& node : accel_.nodes)
       for (int lane = 0; lane < node.count; ++lane)
-        if (const NodeRef child = node.child[lane];
-            !child.is_inner() && !child.is_instance() && child.triangles() <= most)
-          node.direct |= static_cast<std::uint8_t>(1u << lane);
+        if (holds(node.child[lane])) node.direct |= static_cast<std::uint8_t>(1u << lane);
+  }
+  bool holds(NodeRef child) const {
+    if (!child.is_instance()) return !child.is_inner() && child.triangles() <= config_.mixed_triangles;
+    const InstanceNode& instance = accel_.instances[child.instance_index()];
+    return instance.transform.identity && !instance.root.is_inner() &&
+           instance.root.triangles() <= config_.top_triangles;
   }
 
   void add_only_child(Node& root, std::uint32_t instance) {

@@ -57,6 +57,12 @@ struct Accel {
     if (ref.is_instance()) return {ref.instance_index(), instances[ref.instance_index()].root};
     return {parent.instance, ref};
   }
+  /// The leaf that `node` holds itself in a lane of its `direct`. In the top level it belongs to an instance without a
+  /// transform.
+  NodeRef held_leaf(const Node& node, int lane) const {
+    const NodeRef child = node.child[lane];
+    return child.is_instance() ? instances[child.instance_index()].root : child;
+  }
   /// Shapes in the strip of `key`: children of an inner node, triangles of a leaf.
   int strip_size(NodeKey key) const;
   /// Triangles below `key`.

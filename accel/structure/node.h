@@ -75,7 +75,8 @@ struct alignas(64) Node {
   std::uint8_t count = 0;              ///< children, in lanes 0..count-1
   std::uint8_t depth = 0;              ///< below the root of its structure, 255 at most; set with cull planes
   bool above_instances = false;        ///< part of the top level
-  std::uint8_t direct = 0;  ///< a bit a lane: a leaf whose primitives are tested with the node's boxes, without its own
+  std::uint8_t direct =
+      0;  ///< a bit a lane: Accel::held_leaf(), whose primitives are tested with the boxes, without its own
   std::uint32_t triangles = 0;     ///< below this node, instances counted each time; saturates
   std::uint32_t first_plane = 0;   ///< in Accel::planes: lane by lane, where there are any
   std::uint32_t plane_counts = 0;  ///< cull planes of each child, four bits a lane

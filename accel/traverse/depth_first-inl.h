@@ -106,6 +106,7 @@ HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Ve
   if (!node.above_instances || met == 0) return met;
   std::uint32_t instances = 0;
   for (int lane = 0; lane < node.count; ++lane) instances |= std::uint32_t{node.child[lane].is_instance()} << lane;
+  instances &= ~std::uint32_t{node.direct};
   alignas(64) float ignored[kMaxWidth];
   tested += static_cast<std::uint64_t>(std::popcount(instances & met));
   met &= ~instances | slab_node(node, ray, tmax, ignored);
@@ -147,7 +148,9 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Sla
       const std::uint32_t hits = met_children(accel, ref, frame, ray, hit.t, entry, tested);
       for (std::uint32_t left = node.direct; HWY_UNLIKELY(left != 0); left &= left - 1) {
         NodeRef leaf = node.child[std::countr_zero(left)];
-        if (visit_other(leaf) != Then::kStop) continue;
+        Then then = visit_other(leaf);
+        if (then == Then::kEnter) then = visit_other(leaf);  // in the top level: a mesh of the world
+        if (then != Then::kStop) continue;
         counts.box += tested;
         return true;
       }

@@ -30,11 +30,12 @@ HWY_INLINE void settle(RayRecord& record) {
 
 /// Tests the primitives of the node's own leaves among `lanes`; true when the hit changed.
 template <class Slab>
-HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, const LocalRay<Slab>& frame,
+HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, LocalRay<Slab>& frame,
                               Hit& hit, IntersectionCounts& counts) {
   bool changed = false;
   for (std::uint32_t left = node.direct & lanes; left != 0; left &= left - 1) {
-    const NodeRef leaf = node.child[std::countr_zero(left)];
+    NodeRef leaf = node.child[std::countr_zero(left)];
+    if (leaf.is_instance()) enter_instance(accel, leaf, frame);
     count_leaf(leaf, counts);
     changed |= test_leaf(accel, leaf, ~0u, frame, hit);
   }
@@ -176,7 +177,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, I
     for (std::size_t k = 0; k < count; ++k) {
       Walker<Slab>& walker = *active[k];
       const Node& node = nodes[walker.ref.node()];
-      const LocalRay<Slab>& frame = walker.frame.ray;
+      LocalRay<Slab>& frame = walker.frame.ray;
       walker.mask = met_children(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t, walker.entry,
                                  counts.box);
       walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);

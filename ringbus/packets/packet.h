@@ -18,10 +18,12 @@ enum class PacketKind : std::uint8_t {
   kRays,         ///< new rays with their data, looking for slots
 };
 
-/// A ray of a packet: its ID and the strip's answer. Bit l of `mask` is set when it hit lane l.
+/// A ray of a packet: its ID and the strip's answer. Bit l of `mask` is set when it hit lane l. `again`: it has not
+/// been tested and comes to the same strip once more.
 struct PacketMember {
   RayId ray;
   std::uint8_t mask = 0;
+  bool again = false;
 };
 
 /// The node that an ordered ray visits next. The ray's owner writes it into the packet.
@@ -43,6 +45,7 @@ struct Packet {
   std::uint16_t direction = 0;        ///< that it travels round the ring
   std::uint32_t hops_left = 0;        ///< links to cross until it is back at its owner (rings)
   std::uint32_t reserved_blocks = 0;  ///< collection blocks that its retirement may take
+  bool takes_reserve = false;         ///< they are of the reserve: its retirement must not lengthen its own collection
   std::vector<PacketMember> members;
   float nearest[accel::kMaxWidth] = {};  ///< by lane: the nearest entry of any member
   std::vector<NextNode> next;            ///< one a member, where the traversal writes it

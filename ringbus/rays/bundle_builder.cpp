@@ -138,18 +138,20 @@ void BundleBuilder::take(std::uint32_t index, const RayRequest& request, Groups&
     bundle.bounds.extend(Bounds(request.ray));
     bundle.size = best_size;
     bundle.rays[bundle.count++] = index;
-    if (bundle.count == static_cast<std::size_t>(config_.size)) send(best, out);
+    if (bundle.count == full_) send(best, out);
   }
   ++looked_at_;
 }
 
 void BundleBuilder::group(std::span<const RayRequest> rays, std::vector<std::uint32_t>& order,
-                          std::vector<std::uint8_t>& sizes) {
+                          std::vector<std::uint8_t>& sizes, std::size_t most) {
   order.clear();
   sizes.clear();
+  full_ = std::min(most, static_cast<std::size_t>(config_.size));
+  const bool any = full_ >= static_cast<std::size_t>(config_.min_rays);
   Groups out{order, sizes};
   for (std::uint32_t i = 0; i < rays.size(); ++i) {
-    if (may_share(rays[i])) {
+    if (any && may_share(rays[i])) {
       take(i, rays[i], out);
     } else {
       order.push_back(i);

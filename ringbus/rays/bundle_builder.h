@@ -15,14 +15,17 @@ namespace carousel::ringbus {
 /// the call. Deterministic.
 class BundleBuilder {
  public:
+  static constexpr std::size_t kMostRays = 64;
+
   /// `scene_size` is the scale of distances between origins.
   BundleBuilder(const BundlesConfig& config, float scene_size);
 
   /// Cuts `rays` into groups: writes the indices of `rays` group by group into `order`, and each group's length into
   /// `sizes`. Every ray is in exactly one group. A ray is alone in its group if it comes from another source than
-  /// configured, is not valid, has a tmin other than 0, or found fewer than `min_rays` - 1 others. Nothing stays open
-  /// between calls.
-  void group(std::span<const RayRequest> rays, std::vector<std::uint32_t>& order, std::vector<std::uint8_t>& sizes);
+  /// configured, is not valid, has a tmin other than 0, or found fewer than `min_rays` - 1 others. A group has at most
+  /// `size` rays, and no more than `most`. Nothing stays open between calls.
+  void group(std::span<const RayRequest> rays, std::vector<std::uint32_t>& order, std::vector<std::uint8_t>& sizes,
+             std::size_t most = kMostRays);
 
  private:
   /// The ranges that similarity is computed from.
@@ -33,7 +36,6 @@ class BundleBuilder {
     explicit Bounds(const Ray& ray);
     void extend(const Bounds& other);
   };
-  static constexpr std::size_t kMostRays = 64;
   struct Open {
     Bounds bounds;
     double size;           ///< of the bounds
@@ -62,6 +64,7 @@ class BundleBuilder {
   std::vector<Open> open_;
   std::vector<std::uint32_t> oldest_first_, unused_;  // places in open_
   std::uint64_t looked_at_ = 0;
+  std::size_t full_ = kMostRays;  // rays of a full bundle in this call
 };
 
 }  // namespace carousel::ringbus

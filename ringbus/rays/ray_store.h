@@ -136,7 +136,7 @@ class RayStore {
 inline BundleRoom bundle_room(const BundlesConfig& bundles, std::int64_t slots) {
   if (bundles.size == 0) return {};
   const std::uint32_t quarter = static_cast<std::uint32_t>(slots / 4 + 1);
-  const bool rebuilds = bundles.split == BundlesConfig::Split::kBuilder ||
+  const bool rebuilds = bundles.split != BundlesConfig::Split::kTester ||
                         bundles.lifetime == BundlesConfig::Lifetime::kReformed ||
                         bundles.at_instances == BundlesConfig::AtInstances::kRebound;
   return {quarter, rebuilds ? 2 * quarter : 0, static_cast<std::uint32_t>(bundles.size)};

@@ -3,7 +3,9 @@
 CAROUSEL_BUILD names the build folder. Nothing of the project is compiled here but the three examples.
 """
 
+import gzip
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -44,6 +46,13 @@ class Install(unittest.TestCase):
             self.assertGreater(self.one(pattern).stat().st_size, 0, pattern)
         self.assertEqual(list(self.prefix.glob("**/*.cpp")),
                          list(self.prefix.glob("share/doc/carousel-dev/examples/*.cpp")))
+
+    def test_one_version_everywhere(self):
+        version = re.search(r'^version = "(.*)"', (SOURCE / "python/pyproject.toml").read_text(), re.M)[1]
+        self.assertEqual(run(self.program, "--version").splitlines()[0], f"carousel {version}")
+        self.assertEqual(re.search("^## (.*)", (SOURCE / "CHANGELOG.md").read_text(), re.M)[1], version)
+        self.assertIn(f'PACKAGE_VERSION "{version}"', self.one("lib/**/CarouselConfigVersion.cmake").read_text())
+        self.assertIn(f"Carousel {version}", gzip.decompress(self.one("share/man/man1/carousel.1.gz").read_bytes()).decode())
 
     def test_nothing_names_the_sources(self):
         for file in self.prefix.glob("lib/**/*.cmake"):

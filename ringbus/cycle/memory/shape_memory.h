@@ -106,7 +106,7 @@ class ShapeMemory {
     if (node.plane_counts != 0)
       bytes += static_cast<std::uint32_t>(accel::plane_count(node, lane)) * std::uint32_t{sizeof(accel::CullPlane)};
     if (node.direct >> lane & 1)
-      bytes += node.child[lane].blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock));
+      bytes += accel_.held_leaf(node, lane).blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock));
     return bytes;
   }
   /// Fills in behind_before_; the bytes in all.
@@ -117,7 +117,7 @@ class ShapeMemory {
       behind_before_.push_back(bytes);
       bytes += accel::plane_bytes(node, accel_.shared_normals);
       for (int lane = 0; lane < node.count; ++lane)
-        if (node.direct >> lane & 1) bytes += node.child[lane].blocks() * sizeof(accel::TriangleBlock);
+        if (node.direct >> lane & 1) bytes += accel_.held_leaf(node, lane).blocks() * sizeof(accel::TriangleBlock);
     }
     behind_before_.push_back(bytes);
     if (bytes == 0) behind_before_.clear();

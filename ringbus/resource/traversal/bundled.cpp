@@ -13,6 +13,7 @@ BundledTraversal::BundledTraversal(const BundlesConfig& config, float scene_size
                                    std::unique_ptr<TraversalMethod> rays)
     : config_(config),
       reformed_(config.lifetime == BundlesConfig::Lifetime::kReformed),
+      returns_(config.split == BundlesConfig::Split::kUntested),
       context_(context),
       rays_(std::move(rays)),
       split_(config, context.accel, scene_size),
@@ -36,6 +37,8 @@ void BundledTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outco
   find_bundles(local);
   if (go_on(packet)) {
     test_bundles(packet, local, outcome);
+  } else if (tests_leaf(packet)) {
+    test_leaf(packet, local, outcome);
   } else {
     take_apart(packet, local, outcome);
     rays_->test(packet, local, outcome);
@@ -92,14 +95,18 @@ void BundledTraversal::take_apart(Packet& packet, LocalRays& local, TestOutcome&
 /// their counts.
 void BundledTraversal::end_taken_apart(TestOutcome& outcome) {
   for (const LocalBundle& local : bundles_) {
-    accel::BundleRecord& bundle = context_.store.bundle(local.slot);
-    bundle.tmax = -kInfinity;
-    for (const std::uint32_t slot : context_.store.rays_of(local.slot)) {
-      const RayRecord& ray = context_.store.record(slot);
-      if (ray.hit.valid()) bundle.nearest = std::min(bundle.nearest, ray.hit.t);
-      if ((ray.tag.flags & kRayDone) == 0) bundle.tmax = std::max(bundle.tmax, ray.hit.t);
-    }
+    update_range(local.slot);
     add_pending(local.slot, -1, outcome);
+  }
+}
+
+void BundledTraversal::update_range(std::uint32_t slot) {
+  accel::BundleRecord& bundle = context_.store.bundle(slot);
+  bundle.tmax = -kInfinity;
+  for (const std::uint32_t each : context_.store.rays_of(slot)) {
+    const RayRecord& ray = context_.store.record(each);
+    if (ray.hit.valid()) bundle.nearest = std::min(bundle.nearest, ray.hit.t);
+    if ((ray.tag.flags & kRayDone) == 0) bundle.tmax = std::max(bundle.tmax, ray.hit.t);
   }
 }
 
@@ -123,14 +130,7 @@ void BundledTraversal::test_bundles(Packet& packet, LocalRays& local, TestOutcom
   if (reformed_)
     for (const std::uint32_t slot : local.slots) context_.completion.add_pending(slot, -1);
   for (const LocalBundle& bundle : bundles_) add_pending(bundle.slot, bundle.change, outcome);
-  if (context_.transforms != nullptr) {
-    // One inversion serves all rays of a visit.
-    counts.transforms = transforms_;
-    counts.transforms_in_double =
-        transforms_ > 0 && context_.transforms->in_double(packet.key.instance) ? transforms_ : 0;
-    if (transforms_ > 0 && outcome.counts.transforms == 0) context_.transforms->invert(packet.key.instance, counts);
-  }
-  outcome.counts += counts;
+  write_transforms(packet.key, counts, outcome);
 }
 
 void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, IntersectionCounts& counts,
@@ -155,7 +155,9 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
     add_passes(answer, outcome.bundle_passes);
     counts_.edges += answer.edges;
   }
-  answer.undecided |= static_cast<std::uint8_t>(direct);
+  if (returns_ && !packet.takes_reserve && answer.undecided != 0 && !stays_out)
+    return give_back(packet, local, enters, outcome);
+  answer.undecided |= static_cast<std::uint8_t>(held_in_reach(direct, local, packet.key, counts, outcome));
   for (std::uint32_t lanes = answer.all; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     packet.nearest[lane] = std::min(packet.nearest[lane], answer.entry[lane]);
@@ -224,8 +226,22 @@ accel::BundleRecord BundledTraversal::bounds_in(std::uint32_t instance, std::spa
 void BundledTraversal::charge_reads(std::span<const std::uint32_t> rays, accel::NodeKey key, TestOutcome& outcome) {
   outcome.reads += static_cast<std::uint32_t>(rays.size());
   counts_.touched += rays.size();
+  charge_transforms(rays, key);
+}
+
+void BundledTraversal::charge_transforms(std::span<const std::uint32_t> rays, accel::NodeKey key) {
   if (context_.transforms != nullptr)
     transforms_ += context_.transforms->charge(context_.store.records(), rays, key.instance).transforms;
+}
+
+/// Adds the tests of a visit's bundles to `outcome`, with the transforms of their rays. One inversion serves all rays.
+void BundledTraversal::write_transforms(accel::NodeKey key, IntersectionCounts& counts, TestOutcome& outcome) const {
+  if (context_.transforms != nullptr) {
+    counts.transforms = transforms_;
+    counts.transforms_in_double = transforms_ > 0 && context_.transforms->in_double(key.instance) ? transforms_ : 0;
+    if (transforms_ > 0 && outcome.counts.transforms == 0) context_.transforms->invert(key.instance, counts);
+  }
+  outcome.counts += counts;
 }
 
 /// Sends a bundle on as one of the instance that it has come to.

@@ -28,11 +28,12 @@ class BundledTraversal final : public TraversalMethod {
   std::int32_t tests_at(accel::NodeKey key) const override { return rays_->tests_at(key); }
   std::uint32_t lanes(std::uint32_t n) const override { return rays_->lanes(n); }
   std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const override {
-    return rays_->blocks_needed(key, rays) * static_cast<std::uint32_t>(config_.size);
+    const std::uint32_t children = rays_->blocks_needed(key, rays);
+    return (children + (returns_ && children > 0 ? 1 : 0)) * static_cast<std::uint32_t>(config_.size);
   }
   bool is_treelet(accel::NodeKey key) const override { return rays_->is_treelet(key); }
   void test(Packet& packet, LocalRays& local, TestOutcome& outcome) override;
-  void retire(const Packet& packet, CollectionStore& collections) override { rays_->retire(packet, collections); }
+  void retire(const Packet& packet, CollectionStore& collections) override;
   void discard() override;
 
  private:
@@ -48,14 +49,26 @@ class BundledTraversal final : public TraversalMethod {
   // Where bundles are taken apart: each of their rays is tested as a single one.
   void take_apart(Packet& packet, LocalRays& local, TestOutcome& outcome);
   void end_taken_apart(TestOutcome& outcome);
+  void update_range(std::uint32_t slot);
+
+  // Leaves, and those that a node holds itself.
+  bool tests_leaf(const Packet& packet) const;
+  void test_leaf(Packet& packet, LocalRays& local, TestOutcome& outcome);
+  std::uint32_t in_reach(accel::NodeRef leaf, const LocalBundle& local, accel::NodeKey key, IntersectionCounts& counts,
+                         TestOutcome& outcome);
+  std::uint32_t held_in_reach(std::uint32_t direct, const LocalBundle& local, accel::NodeKey key,
+                              IntersectionCounts& counts, TestOutcome& outcome);
 
   // Where bundles go on.
   void test_bundles(Packet& packet, LocalRays& local, TestOutcome& outcome);
   void test_bundle(Packet& packet, LocalBundle& local, IntersectionCounts& counts, TestOutcome& outcome);
   void add_passes(const accel::BundleAnswer& answer, BundlePasses& passes) const;
+  void give_back(Packet& packet, LocalBundle& local, bool entered, TestOutcome& outcome);
   void eject_singles(Packet& packet, const LocalRays& local, TestOutcome& outcome);
   accel::BundleRecord bounds_in(std::uint32_t instance, std::span<const std::uint32_t> rays,
                                 IntersectionCounts& counts) const;
+  void charge_transforms(std::span<const std::uint32_t> rays, accel::NodeKey key);
+  void write_transforms(accel::NodeKey key, IntersectionCounts& counts, TestOutcome& outcome) const;
   void charge_reads(std::span<const std::uint32_t> rays, accel::NodeKey key, TestOutcome& outcome);
   void descend_into_instance(Packet& packet, std::span<const std::uint32_t> rays, const accel::BundleRecord& inside,
                              std::uint8_t mask);
@@ -64,7 +77,7 @@ class BundledTraversal final : public TraversalMethod {
   void free_own_bundles();
 
   BundlesConfig config_;
-  bool reformed_;
+  bool reformed_, returns_;
   const VisitContext context_;
   std::unique_ptr<TraversalMethod> rays_;
   BundleSplitRule split_;
@@ -73,7 +86,9 @@ class BundledTraversal final : public TraversalMethod {
   std::vector<LocalBundle> bundles_;         // of this visit
   BundleCounts counts_;                      // likewise
   std::uint64_t transforms_ = 0;             // likewise: of the bundles' rays, by the engine's account
-  std::vector<std::uint8_t> masks_;          // scratch
+  // Scratch.
+  std::vector<std::uint8_t> masks_;
+  std::vector<RayId> again_;
 };
 
 }  // namespace carousel::ringbus

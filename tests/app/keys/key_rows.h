@@ -84,7 +84,7 @@ inline std::vector<KeyRow> key_rows() {
       {"bvh.elements", kTerrain},
       {"bvh.mixed_triangles", kTerrain, {}, {"4"}},
       {"bvh.storage", kTerrain},
-      {"bvh.top_triangles", kCornell, {}, {"16"}},
+      {"bvh.top_triangles", kInstances, {}, {"2"}},
       {"accuracy.triangle", kInstances},
       {"accuracy.box", kCornell},
       {"accuracy.transform", kLayers},

@@ -42,8 +42,13 @@ class Beam final : public Workload {
   HitsDigest digest_;
 };
 
-/// The boxes that bundles of a beam settle.
-std::uint64_t settled_in_beam(const scene::Scene& scene, const BundlesConfig& bundles, EngineKind engine) {
+struct BeamCounts {
+  BundleCounts bundles;
+  IntersectionCounts tests;
+};
+
+/// The work of a beam of rays in bundles, whose hits have to be the reference tracer's.
+BeamCounts trace_beam(const scene::Scene& scene, const BundlesConfig& bundles, EngineKind engine) {
   Config config;
   config.engine.kind = engine;
   config.bundles = bundles;
@@ -54,10 +59,18 @@ std::uint64_t settled_in_beam(const scene::Scene& scene, const BundlesConfig& bu
       (engine == EngineKind::kCycle ? run_cycle : run_native)(config, accel, scene_size, beam, on_threads(1));
   accel::run_reference(accel, reference);
   EXPECT_EQ(beam.digest().hex(), reference.digest().hex());
-  std::uint64_t lanes = 0;
-  for (const ResourceStatistics& r : result.resources)
-    for (const BundleCounts& at_depth : r.bundles) lanes += at_depth.all + at_depth.none;
-  return lanes;
+  BeamCounts counts;
+  for (const ResourceStatistics& r : result.resources) {
+    for (const BundleCounts& at_depth : r.bundles) counts.bundles += at_depth;
+    counts.tests += r.tests;
+  }
+  return counts;
+}
+
+/// The boxes that bundles of a beam settle.
+std::uint64_t settled_in_beam(const scene::Scene& scene, const BundlesConfig& bundles, EngineKind engine) {
+  const BundleCounts counts = trace_beam(scene, bundles, engine).bundles;
+  return counts.all + counts.none;
 }
 
 /// The boxes that bundles of scattered rays settle.
@@ -86,6 +99,43 @@ TEST(BundleMachines, RaysMayStayTogetherBelowInstances) {
   }
 }
 
+TEST(BundleMachines, RaysMissThePrimitivesThatTheirBundleMisses) {
+  const scene::Scene scene = builtin_scene(BuiltinScene::kTerrain, 3000, 0);
+  BundlesConfig bundles;
+  bundles.size = 8;
+  bundles.order = Order::kAnyHitOnly;  // takes bundles down to the leaves
+  bundles.builder.threshold = 0.2;
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle}) {
+    bundles.leaf = BundlesConfig::Leaf::kRays;
+    const BeamCounts rays = trace_beam(scene, bundles, engine);
+    EXPECT_EQ(rays.bundles.leaf_tests, 0u);
+    bundles.leaf = BundlesConfig::Leaf::kPrimitives;
+    const BeamCounts leaf = trace_beam(scene, bundles, engine);
+    EXPECT_GT(leaf.bundles.leaf_misses, leaf.bundles.leaf_tests / 20);
+    EXPECT_GE(leaf.bundles.leaf_tests_spared, leaf.bundles.leaf_misses);
+    // Hits shorten rays in another order: the tests are the same but for a few.
+    const auto expected = static_cast<double>(rays.tests.triangle - leaf.bundles.leaf_tests_spared);
+    EXPECT_NEAR(static_cast<double>(leaf.tests.triangle), expected, 0.02 * expected) << enum_name(engine);
+  }
+}
+
+TEST(BundleMachines, UndecidedBundlesComeBackInSmallerOnes) {
+  const scene::Scene scene = builtin_scene(BuiltinScene::kTerrain, 3000, 0);
+  BundlesConfig bundles;
+  bundles.size = 8;
+  bundles.builder.threshold = 0.2;
+  for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle}) {
+    bundles.split = BundlesConfig::Split::kBuilder;
+    const BeamCounts builder = trace_beam(scene, bundles, engine);
+    bundles.split = BundlesConfig::Split::kUntested;
+    const BeamCounts untested = trace_beam(scene, bundles, engine);
+    EXPECT_EQ(builder.bundles.returned, 0u);
+    EXPECT_GT(untested.bundles.returned, 100u);
+    EXPECT_EQ(untested.bundles.split, 0u) << "a ray of a bundle was tested after all";
+    EXPECT_GT(untested.tests.bundle, builder.tests.bundle);
+  }
+}
+
 TEST(BundleMachines, WideBundlesSplit) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 1000, 0);
   BundlesConfig bundles;
@@ -108,7 +158,8 @@ TEST(BundleMachines, TheLeastStorageIsEnough) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 2000, 2);
   std::uint64_t reserves = 0, split = 0;
   for (const std::int64_t size : {2, 8, 32}) {
-    for (const Order order : {Order::kAllHitFirst, Order::kAnyHitOnly}) {
+    for (const Order order : {Order::kAllHitFirst, Order::kAnyHitOnly, Order::kParallel}) {
+      if (order == Order::kParallel && size != 8) continue;
       Cell cell;
       Config& c = cell.config;
       c.topology.resources = 2;
@@ -120,6 +171,7 @@ TEST(BundleMachines, TheLeastStorageIsEnough) {
       c.bundles.order = order;
       c.bundles.builder.threshold = 100;
       c.bundles.builder.same_signs = false;
+      if (order == Order::kParallel) c.bundles.split = BundlesConfig::Split::kUntested;
       cell.tight_storage = true;
       const Outcome outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "") << cell.text();

@@ -49,6 +49,7 @@ std::vector<Factor> scene_and_engine() {
       {"bvh.leaf_triangles", {"1", "4", "16"}},
       {"bvh.elements", all<BvhConfig::Elements>()},
       {"bvh.mixed_triangles", {"0", "2"}},
+      {"bvh.top_triangles", {"0", "4"}},
   };
 }
 
@@ -121,6 +122,7 @@ std::vector<Factor> bundles() {
       {"bundles.split_above.spread", {"0", "0.5"}, split},
       {"bundles.split_above.silhouette_area", {"0", "1"}, split},
       {"bundles.at_instances", all<Config::AtInstances>(), on},
+      {"bundles.leaf", all<Config::Leaf>(), on},
       {"bundles.hint", all<Config::Hint>(), on},
       {"bundles.builder.open", {"1", "4", "64"}, on},
       {"bundles.builder.rays_per_cycle", {"1", "2"}, timed},

@@ -69,6 +69,7 @@ struct Seen {
                                                                           {"no ray hits", bundles.none},
                                                                           {"bundles split", bundles.split},
                                                                           {"bundles taken apart", bundles.taken_apart},
+                                                                          {"bundles sent back", bundles.returned},
                                                                           {"boxes culled", tests.culled},
                                                                           {"any-hit calls", tests.any_hit_calls},
                                                                           {"procedural tests", tests.procedural},
