@@ -7,6 +7,7 @@
 
 #include "accel/build/blas.h"
 #include "accel/build/bounding_spheres.h"
+#include "accel/build/quantised_boxes.h"
 #include "accel/build/sah_build.h"
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
@@ -217,7 +218,9 @@ class AccelBuilder {
 
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
             const CullPlanesConfig& planes) {
-  return AccelBuilder(scene, config, executor, accuracy, planes).run();
+  Accel accel = AccelBuilder(scene, config, executor, accuracy, planes).run();
+  if (config.storage == BvhConfig::Storage::kQuantised) quantise_boxes(accel);
+  return accel;
 }
 
 }  // namespace carousel::accel

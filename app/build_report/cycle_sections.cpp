@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/build_report/memory_report.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/steady_state.h"
 #include "ringbus/results/run_features.h"
@@ -71,6 +72,7 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   out.dram_lines_written = c.memory_lines_written;
   out.dram_busy_cycles = c.memory_busy;
   out.dram_utilisation = ratio(c.memory_busy, c.cycles);
+  if (c.dram) out.dram = dram_section(*c.dram);
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
+#include "app/build_report/memory_report.h"
 #include "app/build_report/ring_sections.h"
 #include "app/build_report/traffic_report.h"
 #include "app/host/log.h"
@@ -17,12 +18,14 @@
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
 #include "app/run/machine_log.h"
+#include "app/run/memory_csv.h"
 #include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
 #include "report/text/number_text.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/cycle/memory/memory_trace.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "ringbus/native/native_engine.h"
 
@@ -48,7 +51,8 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 }
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
-                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace) {
+                            const InterruptScope& interrupt, bool quiet, const TraceFile* trace,
+                            ringbus::MemoryLog* memory) {
   log_machine(p);
   Phase phase("run");
   CountingWorkload counting(workload);
@@ -57,6 +61,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.stop = interrupt.token();
   options.samples = static_cast<std::size_t>(p.config().report.samples);
   if (trace != nullptr) options.timeline = trace->wanted();
+  options.memory = memory;
   const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
@@ -85,7 +90,7 @@ void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResu
 }  // namespace
 
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
-                        const InterruptScope& interrupt, bool quiet, TraceFile* trace) {
+                        const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory) {
   std::optional<accel::VerifyingWorkload> verifying;
   std::optional<accel::Accel> plain;  // planes and spheres are verified as well
   if (p.config().verify == Verify::kReference) {
@@ -97,7 +102,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   RayCensus census(verifying ? static_cast<Workload&>(*verifying) : job.workload(),
                    static_cast<std::size_t>(shader_workers(p.config())),
                    RayCensus::one_in(job.first_rays() * rays_a_path));
-  const ringbus::RunResult result = simulate(p, job, census, interrupt, quiet, trace);
+  const ringbus::RunResult result = simulate(p, job, census, interrupt, quiet, trace, memory);
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   add_census(report, census, p.accel);
@@ -117,6 +122,11 @@ report::Report run_traffic(const Prepared& p, const InterruptScope& interrupt, b
     if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
   };
   return traffic_report(p, ringbus::run_traffic(p.config(), options));
+}
+
+report::Report run_memory(const Prepared& p, const InterruptScope& interrupt) {
+  const ringbus::MemoryLog requests = read_memory_csv(find_beside(p.config_folder, p.config().workload.memory_trace));
+  return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
 }
 
 }  // namespace carousel::app

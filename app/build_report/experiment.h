@@ -5,17 +5,23 @@
 #include "app/run/render_job.h"
 #include "app/run/trace_events.h"
 #include "report/run/report.h"
+#include "ringbus/results/memory_request.h"
 
 namespace carousel::app {
 
 /// Simulates the rays of `job`, and all that the configuration asks for besides: the verification of the hits, the
 /// search for the bottleneck, the run without faults, the run with all effects. An interrupted part marks the report as
-/// incomplete. `trace`, if not null, gets the events of the run and is written as soon as they are there. Shows its
-/// progress on a terminal unless `quiet`. Throws ConfigError and FileError.
+/// incomplete. `trace`, if not null, gets the events of the run and is written as soon as they are there; `memory`, if
+/// not null, gets the requests of the run to the simulated memory. Shows its progress on a terminal unless `quiet`.
+/// Throws ConfigError and FileError.
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& prepared, RenderJob& job,
-                        const InterruptScope& interrupt, bool quiet, TraceFile* trace = nullptr);
+                        const InterruptScope& interrupt, bool quiet, TraceFile* trace = nullptr,
+                        ringbus::MemoryLog* memory = nullptr);
 
 /// Simulates the network alone, without rays.
 report::Report run_traffic(const Prepared& prepared, const InterruptScope& interrupt, bool quiet);
+
+/// Plays requests to the memory alone. Throws ConfigError and FileError.
+report::Report run_memory(const Prepared& prepared, const InterruptScope& interrupt);
 
 }  // namespace carousel::app

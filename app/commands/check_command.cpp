@@ -9,6 +9,7 @@
 #include "app/host/exit_status.h"
 #include "app/host/machine_info.h"
 #include "app/host/output.h"
+#include "app/run/memory_csv.h"
 #include "app/run/memory_need.h"
 #include "core/config/write.h"
 #include "report/csv/ray_csv.h"
@@ -40,6 +41,9 @@ int check_command(const CheckArguments& arguments) {
   std::string text;
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
     text = "scene: none, synthetic traffic\n";
+  } else if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) {
+    const std::filesystem::path path = find_beside(p.config_folder, p.config().workload.memory_trace);
+    text = fmt::format("scene: none, {} memory requests of {}\n", read_memory_csv(path).size(), path.string());
   } else {
     text = fmt::format("scene: {}, {} triangles, {} instances\n", p.scene.name, p.scene.unique_triangle_count(),
                        p.scene.instances.size());

@@ -122,6 +122,10 @@ void add_run(CLI::App& program, RunArguments& r) {
   run->add_option("--dump-rays", r.dump_rays,
                   "Write all rays as CSV, which workload: {rays_from: FILE} reads (default: not written)")
       ->type_name("FILE");
+  run->add_option("--dump-memory", r.dump_memory,
+                  "Write the requests to the simulated memory as CSV, which workload: {memory_trace: FILE} reads "
+                  "(default: not written)")
+      ->type_name("FILE");
   run->add_flag("--no-html", r.no_html, "Do not write report.html (default: written)");
   CLI::Option* trace = run->add_option("--trace", r.trace.file,
                                        "Write a timeline of events that ui.perfetto.dev opens (default: not written)")

@@ -176,6 +176,8 @@ int follow_command(const FollowArguments& arguments) {
   const Prepared p = prepare(arguments, {}, arguments.ray.has_value());
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic)
     refuse("workload", "synthetic traffic has no rays; expected workload: rays, or the rays of a file");
+  if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace)
+    refuse("workload", "memory requests have no rays; expected workload: rays, or the rays of a file");
   if (p.config().bundles.size > 0)
     refuse("bundles.size",
            fmt::format("found {}; follow knows rays by themselves only; expected 0", p.config().bundles.size));

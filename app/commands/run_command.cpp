@@ -15,11 +15,13 @@
 #include "app/host/output.h"
 #include "app/host/output_folder.h"
 #include "app/run/hit_recorder.h"
+#include "app/run/memory_csv.h"
 #include "app/run/render_job.h"
 #include "app/run/trace_events.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
+#include "report/run/memory_table.h"
 #include "report/run/report_json.h"
 #include "report/run/report_table.h"
 #include "report/run/traffic_table.h"
@@ -72,13 +74,37 @@ int run_traffic_command(const RunArguments& arguments, const Prepared& p, const 
   return verdict(report, interrupt.status());
 }
 
-/// Synthetic traffic has no rays whose hits could be written.
-void require_no_hits(const RunArguments& arguments) {
-  constexpr const char* kMessage =
-      "synthetic traffic has no rays; expected workload: rays, or a run without this option";
-  if (arguments.hits) throw ConfigError({{{}, "--hits", kMessage}});
-  if (!arguments.dump_rays.empty()) throw ConfigError({{{}, "--dump-rays", kMessage}});
-  if (!arguments.trace.file.empty()) throw ConfigError({{{}, "--trace", kMessage}});
+/// Plays requests to the memory alone.
+int run_memory_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
+                       OutputFolder& output) {
+  const report::Report report = run_memory(p, interrupt);
+  finish(arguments, report, report::memory_table(report), output, [&] {
+    write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
+    write_report(output.staging(), arguments, report);
+  });
+  return verdict(report, interrupt.status());
+}
+
+/// A workload without rays has no hits that could be written.
+void require_no_hits(const RunArguments& arguments, std::string_view workload) {
+  const auto refuse = [&](bool wanted, const char* option) {
+    if (wanted)
+      throw ConfigError(
+          {{{}, option, std::string(workload) + " no rays; expected workload: rays, or a run without this option"}});
+  };
+  refuse(arguments.hits, "--hits");
+  refuse(!arguments.dump_rays.empty(), "--dump-rays");
+  refuse(!arguments.dump_memory.empty(), "--dump-memory");
+  refuse(!arguments.trace.file.empty(), "--trace");
+}
+
+/// Only a simulated machine has a memory.
+void require_memory(const RunArguments& arguments, const Config& config) {
+  if (!arguments.dump_memory.empty() && config.engine.kind != EngineKind::kCycle)
+    throw ConfigError({{{},
+                        "--dump-memory",
+                        "the native engine has no simulated memory; expected engine.kind: cycle, or a run without this "
+                        "option"}});
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -106,16 +132,24 @@ int run_command(const RunArguments& arguments) {
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
-    require_no_hits(arguments);
+    require_no_hits(arguments, "synthetic traffic has");
     return run_traffic_command(arguments, p, interrupt, *output);
   }
+  if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) {
+    require_no_hits(arguments, "memory requests have");
+    return run_memory_command(arguments, p, interrupt, *output);
+  }
+  require_memory(arguments, p.config());
 
   RenderJob job(p);
   std::optional<HitRecorder> recorder;
   if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(shader_workers(p.config()))));
   std::optional<TraceFile> trace;
   if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
-  const report::Report report = run_rays(arguments, p, job, interrupt, arguments.quiet, trace ? &*trace : nullptr);
+  ringbus::MemoryLog memory;
+  const report::Report report = run_rays(arguments, p, job, interrupt, arguments.quiet, trace ? &*trace : nullptr,
+                                         arguments.dump_memory.empty() ? nullptr : &memory);
+  if (!arguments.dump_memory.empty()) write_memory_csv(arguments.dump_memory, memory);
   finish(arguments, report, report::report_table(report), *output,
          [&] { write_files(output->staging(), arguments, p, job, report, recorder ? &*recorder : nullptr); });
   return verdict(report, interrupt.status());

@@ -135,7 +135,8 @@ int stress_command(const StressArguments& arguments) {
     prepared.reset(new Prepared(prepare(arguments, {}, false, [&](const Config& config) {
       output.emplace(folder, &config, arguments.force, Results::kStress);
     })));
-    if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic)
+    if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic ||
+        prepared->config().workload.kind == WorkloadConfig::Kind::kMemoryTrace)
       throw ConfigError(
           {{prepared->located.positions.find("workload"), "workload", "stress tests queues with rays; expected rays"}});
   } else {

@@ -39,18 +39,20 @@ auto with_positions(const KeyPositions& positions, const Body& body) {
   }
 }
 
-/// Refuses a list of rays that is not there before the scene is loaded.
-void require_ray_file(const Prepared& p) {
-  if (p.config().workload.kind != WorkloadConfig::Kind::kRaysFrom) return;
-  const std::string& name = p.config().workload.rays_from;
+/// Refuses a list of rays or of memory requests that is not there, before the scene is loaded.
+void require_list(const Prepared& p) {
+  const WorkloadConfig& workload = p.config().workload;
+  const bool trace = workload.kind == WorkloadConfig::Kind::kMemoryTrace;
+  if (!trace && workload.kind != WorkloadConfig::Kind::kRaysFrom) return;
+  const std::string& name = trace ? workload.memory_trace : workload.rays_from;
   const std::filesystem::path path = find_beside(p.config_folder, name);
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
-  const std::string key = "workload.rays_from";
+  const std::string key = trace ? "workload.memory_trace" : "workload.rays_from";
   throw ConfigError({{p.located.positions.find(key), key,
-                      fmt::format("expected a file of rays beside the configuration or in the working directory, "
+                      fmt::format("expected a file of {} beside the configuration or in the working directory, "
                                   "found '{}', which is not there",
-                                  name)}});
+                                  trace ? "memory requests" : "rays", name)}});
 }
 
 /// Says what the scene came to, and what was made up for it.
@@ -126,7 +128,8 @@ void prepare_located(Prepared& p, bool keep_hits) {
   spdlog::debug("threads: {}{}", p.threads, p.config().engine.threads ? "" : ", chosen");
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene
   const KeyPositions& positions = p.located.positions;
-  require_ray_file(p);
+  require_list(p);
+  if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) return;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
     load_scene(p);

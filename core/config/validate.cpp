@@ -25,7 +25,7 @@ class Rules {
 
   std::vector<ConfigIssue> check() {
     one_scene();
-    trace_is_built();
+    memory_fits();
     camera_has_a_view();
     raster_needs_a_pinhole();
     all_is_built();
@@ -49,7 +49,8 @@ class Rules {
 
   void one_scene() {
     if (c.scene.file.empty() && !c.scene.builtin) {
-      if (c.workload.kind == WorkloadConfig::Kind::kTraffic) return;  // traffic meets no scene
+      if (c.workload.kind == WorkloadConfig::Kind::kTraffic || c.workload.kind == WorkloadConfig::Kind::kMemoryTrace)
+        return;  // these meet no scene
       issue("scene", "expected a scene: file, or builtin (cornell, spheres, terrain, instances, sliver)");
     }
     if (c.scene.procedural && c.scene.builtin != BuiltinScene::kSpheres)
@@ -90,9 +91,38 @@ class Rules {
       issue("primary", "this workload has no camera; expected rays, found raster");
   }
 
-  void trace_is_built() {
-    if (c.workload.kind == WorkloadConfig::Kind::kMemoryTrace)
-      issue("workload", "memory_trace is not built yet; expected rays, {rays_from: FILE} or {traffic: {...}}");
+  void memory_fits() {
+    if (c.workload.kind == WorkloadConfig::Kind::kMemoryTrace && !cycle())
+      issue("engine.kind", "workload: memory_trace runs in virtual time; expected cycle, found native");
+    quantised_nodes_fit();
+    if (c.memory.dram.preset == DramConfig::Preset::kPipe) return;
+    constexpr std::int64_t kTransaction = 32;  // bytes
+    const auto whole = [&](const char* key, std::int64_t bytes) {
+      if (bytes % kTransaction != 0)
+        issue(key, fmt::format("DRAM with banks moves 32 bytes at a time; expected a multiple of 32, found {}", bytes));
+    };
+    whole("memory.line_bytes", c.memory.line_bytes);
+    whole("memory.dram.interleave_bytes", c.memory.dram.interleave_bytes);
+  }
+
+  // A quantised node holds boxes of its children and references, and is decoded as a whole.
+  void quantised_nodes_fit() {
+    if (c.bvh.storage != BvhConfig::Storage::kQuantised) return;
+    constexpr std::string_view without = ", or bvh.storage: full";
+    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
+      issue("bvh.elements", fmt::format("quantised nodes hold boxes; expected boxes{}; found spheres", without));
+    if (c.bvh.mixed_triangles > 0)
+      issue("bvh.mixed_triangles",
+            fmt::format("quantised nodes hold no triangles; expected 0{}; found {}", without, c.bvh.mixed_triangles));
+    if (c.bvh.top_triangles > 0)
+      issue("bvh.top_triangles",
+            fmt::format("quantised nodes hold no triangles; expected 0{}; found {}", without, c.bvh.top_triangles));
+    if (c.packets.shapes == PacketShapes::kSingle)
+      issue("packets.shapes",
+            fmt::format("a quantised node is decoded as a whole; expected strip{}; found single", without));
+    if (c.accuracy.box != BoxLevel::kConservative)
+      issue("accuracy.box", fmt::format("larger boxes could add hits to those of {}; expected conservative{}",
+                                        enum_name(c.accuracy.box), without));
   }
 
   bool cycle() const { return c.engine.kind == EngineKind::kCycle; }
@@ -116,7 +146,8 @@ class Rules {
   }
   bool packets_travel() const {
     return c.topology.shape != TopologyShape::kIndependent && c.topology.resources > 1 &&
-           c.collections.home != Home::kLocal && c.workload.kind != WorkloadConfig::Kind::kTraffic;
+           c.collections.home != Home::kLocal && c.workload.kind != WorkloadConfig::Kind::kTraffic &&
+           c.workload.kind != WorkloadConfig::Kind::kMemoryTrace;
   }
 
   void stored_transform_fits() {

@@ -39,6 +39,10 @@ std::string verdict_sentence(const Json& report) {
         "{:.1f} cycles.",
         number_at(report, "traffic.accepted"), number_at(report, "traffic.offered"),
         number_at(report, "traffic.latency.mean"));
+  if (find(report, "memory_trace"))
+    return fmt::format("The memory moved {:.3f} bytes a cycle, with a mean latency of {:.1f} cycles.",
+                       number_at(report, "memory_trace.bytes_per_cycle"),
+                       number_at(report, "memory_trace.latency.mean"));
   if (find(report, "engine.cycles"))
     return "The search for the limiting part was switched off; engine.what_if: true turns it on.";
   return "A run of the native engine shows the queues of this host and no simulated time, so that no part of the "
@@ -60,7 +64,7 @@ std::string throughput_text(const Json& report) {
       text += fmt::format("; steady {:.2f}", number_at(report, "throughput.steady.rays_per_kilocycle"));
     return text;
   }
-  if (find(report, "traffic")) return "";
+  if (find(report, "traffic") || find(report, "memory_trace")) return "";
   return scaled(number_at(report, "host.rays_per_second")) + "rays/s on this host";
 }
 

@@ -11,6 +11,7 @@
 #include "report/sections/host.h"
 #include "report/sections/link.h"
 #include "report/sections/memory.h"
+#include "report/sections/memory_trace.h"
 #include "report/sections/nodes.h"
 #include "report/sections/packets.h"
 #include "report/sections/program.h"
@@ -50,6 +51,7 @@ struct Report {
   std::optional<std::vector<Bytes>> bytes;
   std::optional<TimeSeries> time_series;
   std::optional<Traffic> traffic;
+  std::optional<MemoryTrace> memory_trace;
   Shading shading;
   std::optional<Bound> bound;
   std::optional<Bottleneck> bottleneck;
@@ -84,6 +86,7 @@ void describe(V& v, const Report& r) {
             "every byte that a part of the simulated machine hands to another, by kind of message (cycle)");
   v.section("time_series", r.time_series, "quantities of the machine's parts over the run (cycle)");
   v.section("traffic", r.traffic, "the network alone, when workload is traffic");
+  v.section("memory_trace", r.memory_trace, "the memory alone, when workload is memory_trace");
   v.section("shading", r.shading, "shader workers and effects of light");
   v.section("bound", r.bound, "rate that each class of parts alone would allow");
   v.section("bottleneck", r.bottleneck, "class of parts that limits the machine, found by relaxing each in turn");

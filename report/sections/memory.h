@@ -2,6 +2,7 @@
 
 #include "core/statistics/cache_counts.h"
 #include "core/statistics/shape_buffer_counts.h"
+#include "report/sections/dram.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -35,6 +36,7 @@ struct Memory {
   std::vector<Cache> caches;
   std::uint64_t dram_lines = 0, dram_bytes = 0, dram_lines_written = 0, dram_busy_cycles = 0;
   double dram_utilisation = 0;
+  std::optional<Dram> dram;
 };
 
 template <class V>
@@ -46,6 +48,7 @@ void describe(V& v, const Memory& r) {
   v.field("dram_lines_written", r.dram_lines_written, "lines", "lines of spilled collection entries written to DRAM");
   v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "cycles in which DRAM moved lines");
   v.field("dram_utilisation", r.dram_utilisation, "fraction", "fraction of the run's cycles in which DRAM moved lines");
+  v.section("dram", r.dram, "DRAM with banks");
 }
 
 }  // namespace carousel::report

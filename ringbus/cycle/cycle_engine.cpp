@@ -24,9 +24,9 @@ class CycleRun {
       : config_(config),
         options_(options),
         link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
-        machine_(
-            config, accel, scene_size, workload, options.statistics,
-            {options.trace, most_samples(options.samples, series_counters(config)), options.timeline, options.ray}) {
+        machine_(config, accel, scene_size, workload, options.statistics,
+                 {options.trace, most_samples(options.samples, series_counters(config)), options.timeline, options.ray,
+                  options.memory}) {
     machine_.warm(options.warm);
   }
 
@@ -128,11 +128,12 @@ class CycleRun {
     c.epochs = combine(traces);
     c.steps = merge_steps(traces);
     machine_.close(end);
+    c.dram = machine_.memory().memory().dram_use(end);
     if (machine_.recorder() != nullptr) {
       out.timeline = machine_.recorder()->timeline(end);
       out.facts = machine_.recorder()->facts();
     }
-    if (options_.samples > 0) out.series = machine_series(machine_, config_);
+    if (options_.samples > 0) out.series = machine_series(machine_);
     for (const auto& tile : machine_.resources()) {
       if (options_.statistics) out.resources.push_back(tile->statistics());
       out.collections.push_back(tile->collections());

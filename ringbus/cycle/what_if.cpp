@@ -22,6 +22,12 @@ std::int64_t halved(std::int64_t cycles) {
 bool passes_packets(const Config& c) {
   return Topology(c.topology).has_packets();
 }
+bool has_pipe(const Config& c) {
+  return c.memory.dram.preset == DramConfig::Preset::kPipe;
+}
+bool has_banks(const Config& c) {
+  return !has_pipe(c);
+}
 bool uses_links(const Config& c) {
   return passes_packets(c) && c.topology.resources > 1 && c.collections.home != Home::kLocal;
 }
@@ -84,8 +90,10 @@ constexpr PartClass kPartClasses[] = {
        c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);
        c.memory.dram_latency_cycles = halved(c.memory.dram_latency_cycles);
      }},
-    {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", every_machine,
+    {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", has_pipe,
      [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }},
+    {"memory_bandwidth", "twice memory.dram.channels", has_banks, [](Config& c) { c.memory.dram.channels *= 2; }},
+    {"dram_queue", "twice memory.dram.queue", has_banks, [](Config& c) { c.memory.dram.queue *= 2; }},
     {"ray_slots", "twice rays.slots_per_resource", every_machine, [](Config& c) { c.rays.slots_per_resource *= 2; },
      kStorageLifts},
     {"shading", "twice shading.workers", every_machine, [](Config& c) { c.shading.workers = 2 * shader_workers(c); }},

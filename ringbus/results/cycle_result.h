@@ -14,6 +14,7 @@
 #include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/byte_row.h"
 #include "ringbus/results/class_use.h"
+#include "ringbus/results/dram_use.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -109,7 +110,8 @@ struct CycleResult {
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;
-  Cycle shading_busy = 0;  ///< worker-cycles, without resources that help
+  std::optional<DramUse> dram;  ///< of DRAM with banks
+  Cycle shading_busy = 0;       ///< worker-cycles, without resources that help
   std::uint64_t hops = 0;
   Log2Histogram residence;        ///< of rays, from their slot until shading has their hit
   std::optional<IdsAtOnce> ids;   ///< where there are collections

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "ringbus/results/memory_request.h"
 #include "ringbus/results/ray_log.h"
 #include "ringbus/results/slice_log.h"
 #include "ringbus/results/trace.h"
@@ -10,10 +11,11 @@ namespace carousel::ringbus::cycle {
 
 /// Parts of a simulated run that are recorded beside its counts.
 struct Observation {
-  TraceWindow steps{};         ///< the steps of these cycles
-  std::size_t samples = 0;     ///< most samples of the time series; 0: none
-  TimelineOptions timeline{};  ///< slices of time
-  FollowedRay* ray = nullptr;  ///< the life of this ray, in place of the timeline
+  TraceWindow steps{};          ///< the steps of these cycles
+  std::size_t samples = 0;      ///< most samples of the time series; 0: none
+  TimelineOptions timeline{};   ///< slices of time
+  FollowedRay* ray = nullptr;   ///< the life of this ray, in place of the timeline
+  MemoryLog* memory = nullptr;  ///< requests to the memory are appended
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -13,6 +13,7 @@
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/link_statistics.h"
+#include "ringbus/results/memory_request.h"
 #include "ringbus/results/occupancy_series.h"
 #include "ringbus/results/ray_log.h"
 #include "ringbus/results/slice_log.h"
@@ -29,6 +30,7 @@ struct RunOptions {
   std::size_t samples = 0;                       ///< most samples of the time series; 0: there is none
   TimelineOptions timeline{};                    ///< slices of time that are recorded
   FollowedRay* ray = nullptr;                    ///< its life is recorded, in place of the timeline
+  MemoryLog* memory = nullptr;                   ///< cycle: requests to the memory are appended
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.

@@ -38,7 +38,8 @@ Json number(float value) {
 /// The tree as the model sees it: every node at its place in the world, with its children by number.
 class Tree {
  public:
-  Tree(const accel::Accel& accel, const AccuracyConfig& accuracy) : accel_(accel), memory_(accel, accuracy) {
+  Tree(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh)
+      : accel_(accel), memory_(accel, accuracy, bvh) {
     add(accel.root_key());
   }
 
@@ -223,7 +224,7 @@ Json run(const std::string& file) {
   app::Prepared prepared = app::prepare_config(read_config_file(file).text, file);
   const Config& config = prepared.config();
   const app::RenderJob job(prepared);
-  const Tree tree(prepared.accel, config.accuracy);
+  const Tree tree(prepared.accel, config.accuracy, config.bvh);
   RecordedWorkload workload(job.workload(), tree);
   ringbus::RunOptions options;
   options.trace = {0, ringbus::cycle::kNever};

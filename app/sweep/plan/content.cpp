@@ -83,6 +83,7 @@ const std::string& ContentDigests::of_scene(const std::string& name) {
 std::string ContentDigests::of(const Config& config) {
   std::string out;
   if (config.workload.kind == WorkloadConfig::Kind::kTraffic) return out;
+  if (config.workload.kind == WorkloadConfig::Kind::kMemoryTrace) return of_file(config.workload.memory_trace);
   if (!config.scene.file.empty()) out += of_scene(config.scene.file);
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) out += of_file(config.workload.rays_from);
   return out;

@@ -36,6 +36,7 @@ std::string SweepPoint::text() const {
 
 std::string scene_group(const Config& config) {
   if (config.workload.kind == WorkloadConfig::Kind::kTraffic) return "traffic";
+  if (config.workload.kind == WorkloadConfig::Kind::kMemoryTrace) return "memory";
   nlohmann::ordered_json json = config_json(config);
   // Everything but the sections that only the simulation reads, so that a new section is safe.
   for (const char* section : {"topology", "rays", "packets", "collections", "bundles", "testers", "memory", "faults",

@@ -39,6 +39,8 @@ std::optional<PointError> run_point(const SweepSetup& setup, Prepared& prepared,
     report::Report report;
     if (traffic) {
       report = run_traffic(prepared, interrupt, true);
+    } else if (prepared.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) {
+      report = run_memory(prepared, interrupt);
     } else {
       require_room(prepared, false);
       RenderJob job(prepared);

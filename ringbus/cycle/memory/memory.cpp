@@ -2,29 +2,10 @@
 
 #include <algorithm>
 
-#include "ringbus/cycle/messages/memory_messages.h"
-
 namespace carousel::ringbus::cycle {
 
-Cycle Memory::request_latency(const MemoryConfig& config) {
-  return way_there(config.dram_latency_cycles);
-}
-
-Cycle Memory::answer_latency(const MemoryConfig& config) {
-  return way_back(config.dram_latency_cycles);
-}
-
 Memory::Memory(const MemoryConfig& config, std::vector<Client> clients)
-    : answer_latency_(answer_latency(config)),
-      line_bytes_(static_cast<std::uint64_t>(config.line_bytes)),
-      width_(static_cast<std::uint64_t>(config.dram_bytes_per_cycle)),
-      clients_(std::move(clients)) {}
-
-Cycle Memory::next() const {
-  Cycle first = kNever;
-  for (const Client& client : clients_) first = std::min(first, client.requests->next());
-  return first;
-}
+    : MemoryAgent(config, std::move(clients)), width_(static_cast<std::uint64_t>(config.dram_bytes_per_cycle)) {}
 
 void Memory::run(Cycle end) {
   for (next_ = next(); next_ < end;) {
@@ -39,11 +20,8 @@ void Memory::run(Cycle end) {
       while (client.requests->next() <= now) {
         moved_ = std::max(moved_, now * width_) + line_bytes_;
         const std::uint64_t line = client.requests->take();
-        if ((line & kWriteLine) != 0) [[unlikely]] {
-          ++lines_written_;
+        if (count(line, now)) [[unlikely]]
           continue;
-        }
-        ++lines_;
         client.answers->send(ceil_div(moved_, width_) + answer_latency_, line);
       }
       next_ = std::min(next_, client.requests->next());

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "ringbus/cycle/memory/memory.h"
+#include "ringbus/cycle/memory/memory_agent.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -19,7 +19,7 @@ Cycle ShapeCache::answer_latency(const MemoryConfig& config) {
 ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, Channel<std::uint64_t>& to_memory,
                        Channel<std::uint64_t>& from_memory)
     : answer_latency_(answer_latency(config)),
-      memory_latency_(Memory::request_latency(config)),
+      memory_latency_(MemoryAgent::request_latency(config)),
       cache_(static_cast<std::uint64_t>(config.l2_kib) * 1024, static_cast<std::uint64_t>(config.line_bytes),
              static_cast<std::uint64_t>(config.ways)),
       clients_(std::move(clients)),

@@ -23,15 +23,16 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
-/// each instance's transform, from a 64-byte border on, in equal room for all of them.
+/// each instance's transform, from a 64-byte border on, in equal room for all of them. With `bvh.storage: quantised`
+/// nodes have 64 or 80 bytes, and each primitive of a leaf 64.
 class ShapeMemory {
  public:
-  ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy)
+  ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh = {})
       : accel_(accel),
-        node_bytes_(sizeof(accel::Node) -
-                    (accel.spheres.empty() ? 0 : sizeof(accel::Node::plane) - sizeof(accel::NodeSpheres))),
+        quantised_(bvh.storage == BvhConfig::Storage::kQuantised),
+        node_bytes_(bytes_of_node(accel, bvh)),
         blocks_at_((accel.nodes.size() * node_bytes_ + bytes_behind_nodes() + 63) / 64 * 64),
-        instances_at_((blocks_at_ + accel.blocks.size() * sizeof(accel::TriangleBlock) + 63) / 64 * 64),
+        instances_at_((blocks_at_ + bytes_of_leaves() + 63) / 64 * 64),
         instance_bytes_(accel::instance_bytes(accuracy)),
         promoted_bytes_(accel::promoted_bytes(accuracy)),
         instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) + 63) / 64 * 64) {}
@@ -45,6 +46,9 @@ class ShapeMemory {
       const std::uint64_t behind = behind_before_[node + 1] - behind_before_[node];
       return {address + behind_before_[node], static_cast<std::uint32_t>(node_bytes_ + behind)};
     }
+    if (quantised_)
+      return {blocks_at_ + std::uint64_t{primitives_before_[key.ref.first_block()]} * kQuantisedLeafBytes,
+              key.ref.triangles() * kQuantisedLeafBytes};
     return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
   }
@@ -74,6 +78,27 @@ class ShapeMemory {
 
  private:
   static constexpr std::uint32_t kPrimitiveBytes = sizeof(accel::TriangleBlock) / accel::kBlockTriangles;
+  // A node's origin, scales, references and kinds, and 6 bytes a child: H. Ylitie et al., HPG 2017, of 8 children in 80
+  // bytes; of 6 children in 64, as Vulkan-Sim (M. Saed et al., MICRO 2022) reads them, with a leaf of 64 bytes a
+  // triangle.
+  static constexpr std::uint32_t kSmallNodeBytes = 64, kSmallWidth = 6, kLargeNodeBytes = 80, kQuantisedLeafBytes = 64;
+
+  static std::uint32_t bytes_of_node(const accel::Accel& accel, const BvhConfig& bvh) {
+    if (bvh.storage == BvhConfig::Storage::kQuantised)
+      return bvh.width <= kSmallWidth ? kSmallNodeBytes : kLargeNodeBytes;
+    return sizeof(accel::Node) - (accel.spheres.empty() ? 0 : sizeof(accel::Node::plane) - sizeof(accel::NodeSpheres));
+  }
+  /// Fills in primitives_before_ where each primitive has a leaf's bytes for itself; the bytes in all.
+  std::uint64_t bytes_of_leaves() {
+    if (!quantised_) return accel_.blocks.size() * sizeof(accel::TriangleBlock);
+    std::uint32_t primitives = 0;
+    primitives_before_.reserve(accel_.blocks.size());
+    for (const accel::TriangleBlock& block : accel_.blocks) {
+      primitives_before_.push_back(primitives);
+      for (const std::uint32_t primitive : block.primitive) primitives += primitive != accel::kNoPrimitive;
+    }
+    return std::uint64_t{primitives} * kQuantisedLeafBytes;
+  }
 
   std::uint32_t child_bytes(std::uint32_t index, int lane) const {
     const accel::Node& node = accel_.nodes[index];
@@ -100,7 +125,9 @@ class ShapeMemory {
   }
 
   const accel::Accel& accel_;
-  std::vector<std::uint64_t> behind_before_;  // bytes, by node; empty when there are none
+  bool quantised_;
+  std::vector<std::uint32_t> primitives_before_;  // by block; of quantised structures
+  std::vector<std::uint64_t> behind_before_;      // bytes, by node; empty when there are none
   std::uint32_t node_bytes_;
   std::uint64_t blocks_at_, instances_at_;
   std::uint32_t instance_bytes_, promoted_bytes_, instance_room_;

@@ -64,7 +64,7 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
   ByteRow notes{"notes and results", "resources", "shading", "wires of notes", width};
   ByteRow addresses{"line requests", "L2", "DRAM", "address wires", kAddress * lines_per_cycle};
   ByteRow lines{"lines", "DRAM", "L2", "DRAM's data wires",
-                static_cast<std::uint64_t>(config.memory.dram_bytes_per_cycle)};
+                static_cast<std::uint64_t>(machine.memory().memory().peak_bytes_per_cycle())};
   for (const auto& channels : machine.channels()) {
     const SidePorts side = channels->ports();
     add(new_rays, *side.new_rays);

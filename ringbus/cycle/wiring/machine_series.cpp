@@ -33,8 +33,8 @@ class SeriesWriter {
     out_.samples = ceil_div(end, interval_);
   }
 
-  TimeSeries write(const Config& config) {
-    machine_rows(config);
+  TimeSeries write() {
+    machine_rows();
     for (std::size_t r = 0; r < machine_.resources().size(); ++r) resource_rows(r);
     std::size_t link = 0;
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
@@ -48,7 +48,7 @@ class SeriesWriter {
  private:
   using Sums = std::vector<std::uint64_t>;
 
-  void machine_rows(const Config& config) {
+  void machine_rows() {
     const std::size_t resources = machine_.resources().size();
     const auto shading = [&](ShadingCounter counter) { return of_shading(counter_index(counter)); };
     const auto all = [&](std::size_t counter) {
@@ -81,7 +81,7 @@ class SeriesWriter {
     Sums dram = zeros();
     machine_.memory().memory().samples().add_to(dram, interval_, 0);
     row({"machine", "bytes of DRAM", "bytes", Kind::kSum}, dram);
-    const double width = static_cast<double>(config.memory.dram_bytes_per_cycle);
+    const double width = machine_.memory().memory().peak_bytes_per_cycle();
     row({"machine", "DRAM busy", "share", Kind::kMean}, dram, width);
   }
 
@@ -148,8 +148,8 @@ std::size_t series_counters(const Config& config) {
          topology.wires().size() * static_cast<std::size_t>(PortCounter::kEnd) + 32;
 }
 
-TimeSeries machine_series(const SimulatedMachine& machine, const Config& config) {
-  return SeriesWriter(machine).write(config);
+TimeSeries machine_series(const SimulatedMachine& machine) {
+  return SeriesWriter(machine).write();
 }
 
 }  // namespace carousel::ringbus::cycle

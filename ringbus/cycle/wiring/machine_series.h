@@ -13,6 +13,6 @@ std::size_t series_counters(const Config& config);
 
 /// The readings of all agents of a machine, which is closed, as rows: those of the machine, of the resources and of the
 /// links. Sums and means of integers over samples of 2^n cycles: with fewer than 2^53 they are exact.
-TimeSeries machine_series(const SimulatedMachine& machine, const Config& config);
+TimeSeries machine_series(const SimulatedMachine& machine);
 
 }  // namespace carousel::ringbus::cycle

@@ -4,19 +4,19 @@
 
 namespace carousel::ringbus::cycle {
 
-MemorySystem::MemorySystem(const MemoryConfig& config, const std::vector<ShapeCache::Client>& clients)
-    : shared_by_(static_cast<std::size_t>(config.shared_by)) {
-  std::vector<Memory::Client> memory_clients;
+MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients)
+    : shared_by_(static_cast<std::size_t>(config.memory.shared_by)) {
+  std::vector<MemoryAgent::Client> memory_clients;
   for (std::size_t first = 0; first < clients.size(); first += shared_by_) {
     const std::size_t last = std::min(clients.size(), first + shared_by_);
     Channel<std::uint64_t>& down = *to_memory_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
     Channel<std::uint64_t>& up = *from_memory_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
     std::vector<ShapeCache::Client> sharers(clients.begin() + static_cast<std::ptrdiff_t>(first),
                                             clients.begin() + static_cast<std::ptrdiff_t>(last));
-    caches_.push_back(std::make_unique<ShapeCache>(config, std::move(sharers), down, up));
+    caches_.push_back(std::make_unique<ShapeCache>(config.memory, std::move(sharers), down, up));
     memory_clients.push_back({&down, &up});
   }
-  memory_ = std::make_unique<Memory>(config, std::move(memory_clients));
+  memory_ = make_memory(config, std::move(memory_clients));
 }
 
 void MemorySystem::warm(const WarmCaches& from) {
@@ -33,7 +33,7 @@ void MemorySystem::connect(WakeupTable& wakeups) const {
 
 Cycle MemorySystem::least_latency(const MemoryConfig& config) {
   return std::min({ShapeCache::request_latency(config), ShapeCache::answer_latency(config),
-                   Memory::request_latency(config), Memory::answer_latency(config)});
+                   MemoryAgent::request_latency(config), MemoryAgent::answer_latency(config)});
 }
 
 }  // namespace carousel::ringbus::cycle

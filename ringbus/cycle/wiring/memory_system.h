@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/config/config.h"
-#include "ringbus/cycle/memory/memory.h"
+#include "ringbus/cycle/memory/memory_agent.h"
 #include "ringbus/cycle/memory/shape_cache.h"
 #include "ringbus/cycle/time/wakeup_table.h"
 #include "ringbus/results/class_use.h"
@@ -15,12 +15,12 @@ namespace carousel::ringbus::cycle {
 class MemorySystem {
  public:
   /// `clients` by resource.
-  MemorySystem(const MemoryConfig& config, const std::vector<ShapeCache::Client>& clients);
+  MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients);
 
   const std::vector<std::unique_ptr<ShapeCache>>& caches() const { return caches_; }
   const ShapeCache& cache_of(std::size_t resource) const { return *caches_[resource / shared_by_]; }
-  Memory& memory() { return *memory_; }
-  const Memory& memory() const { return *memory_; }
+  MemoryAgent& memory() { return *memory_; }
+  const MemoryAgent& memory() const { return *memory_; }
   /// Before the start. A machine with other caches than those that held the lines starts cold.
   void warm(const WarmCaches& from);
   /// Calls `body` with the channels to memory and back, cache by cache.
@@ -37,7 +37,7 @@ class MemorySystem {
   std::size_t shared_by_;
   std::vector<std::unique_ptr<Channel<std::uint64_t>>> to_memory_, from_memory_;  // by cache
   std::vector<std::unique_ptr<ShapeCache>> caches_;
-  std::unique_ptr<Memory> memory_;
+  std::unique_ptr<MemoryAgent> memory_;
 };
 
 }  // namespace carousel::ringbus::cycle

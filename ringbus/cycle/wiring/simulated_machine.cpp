@@ -27,7 +27,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                                    Workload& workload, bool statistics, const Observation& observed)
     : config_(config),
       shared_(config, accel, scene_size, local_packets(config)),
-      shape_memory_(accel, config.accuracy),
+      shape_memory_(accel, config.accuracy, config.bvh),
       network_(shared_, config.topology.link, config.faults, config.testers.contexts) {
   if (observed.timeline.most > 0 || observed.ray != nullptr)
     recorder_ = std::make_unique<Recorder>(config, shared_, observed);
@@ -52,8 +52,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   }
   shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
   if (recorder_) shading_->record(recorder_->of_shading());
-  memory_ = std::make_unique<MemorySystem>(config.memory, cache_clients);
+  memory_ = std::make_unique<MemorySystem>(config, cache_clients);
   memory_->memory().sample(observed.samples);
+  memory_->memory().log(observed.memory);
   for (std::uint32_t h = 0; h < network_.hubs().size(); ++h) {
     Hub& hub = *network_.hubs()[h];
     hub.sample(observed.samples);

@@ -179,13 +179,13 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.l2_sector_bytes", kTerrain, {"memory.line_bytes=128"}, {"32"}},
       {"memory.l2_write", kTerrain},
       {"memory.dram.preset", kTerrain},
-      {"memory.dram.mapping", kTerrain},
-      {"memory.dram.channels", kTerrain, {}, {"1"}},
-      {"memory.dram.interleave_bytes", kTerrain, {}, {"4096"}},
-      {"memory.dram.queue", kTerrain, {}, {"1"}},
-      {"memory.dram.period_ps", kTerrain, {}, {"5000"}},
-      {"memory.dram.refresh", kTerrain},
-      {"memory.dram.refresh_cycles", kTerrain, {}, {"1500"}},
+      {"memory.dram.mapping", kTerrain, {"memory.dram.preset=gddr6_14"}},
+      {"memory.dram.channels", kTerrain, {"memory.dram.preset=gddr6_14"}, {"1"}},
+      {"memory.dram.interleave_bytes", kTerrain, {"memory.dram.preset=gddr6_14"}, {"4096"}},
+      {"memory.dram.queue", kTerrain, {"memory.dram.preset=gddr6_14"}, {"1"}},
+      {"memory.dram.period_ps", kTerrain, {"memory.dram.preset=gddr6_14"}, {"5000"}},
+      {"memory.dram.refresh", kTerrain, {"memory.dram.preset=gddr6_14"}},
+      {"memory.dram.refresh_cycles", kTerrain, {"memory.dram.preset=gddr6_14"}, {"1500"}},
       {"memory.fetch", kTerrain, {"memory.fetch=resource"}, {"packet", "multicast"}, {"packets.carry=data"}},
       {"memory.fetch_ahead", kTerrain, {}, {"0"}},
       {"memory.shape_buffer_kib", kTerrain, {"memory.fetch=resource", "memory.shape_buffer_kib=64"}, {"1"}},
@@ -244,7 +244,7 @@ inline std::vector<std::string> keys_without_a_row() {
   return {
       "schema_version",         // it has one value
       "vary",                   // it is for sweeps; `run` warns of it
-      "workload.memory_trace",  // it replaces the machine; tests/app/commands/memory_trace_test.cpp
+      "workload.memory_trace",  // it replaces the machine; memory_trace_test.cpp has it
   };
 }
 

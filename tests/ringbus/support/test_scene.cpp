@@ -21,9 +21,9 @@ std::string levels(const AccuracyConfig& a) {
 }
 
 std::string structure(const BvhConfig& b, const CullPlanesConfig& p) {
-  return fmt::format("{} {} {} {} planes {} {} {} {} {} {}", b.width, b.leaf_triangles, enum_name(b.elements),
-                     b.mixed_triangles, p.count, enum_name(p.nodes), enum_name(p.fit), p.shared_normals,
-                     enum_name(p.order), enum_name(p.levels));
+  return fmt::format("{} {} {} {} {} planes {} {} {} {} {} {}", b.width, b.leaf_triangles, enum_name(b.storage),
+                     enum_name(b.elements), b.mixed_triangles, p.count, enum_name(p.nodes), enum_name(p.fit),
+                     p.shared_normals, enum_name(p.order), enum_name(p.levels));
 }
 
 }  // namespace

@@ -1,11 +1,17 @@
 """The whole machine."""
 from .clock import Clock, Trace
+from .dram import BankedMemory
 from .memory import Cache, Memory, ShapePort
 from .network import Topology, connect
 from .shading import Shading
 from .tile import Control, Tile
 from .traversal import Spread
 from .tree import Node
+
+
+def memory(config, caches):
+    banks = config["memory"]["dram"]["preset"] != "pipe"
+    return (BankedMemory if banks else Memory)(config, caches)
 
 
 class Machine:
@@ -27,7 +33,7 @@ class Machine:
         shared = config["memory"]["shared_by"]
         caches = [Cache(config, self.clock, shapes[first:first + shared]) for first in range(0, resources, shared)]
         self.shading = Shading(self, controls)
-        self.parts = [*self.tiles, *ends[resources:], *caches, Memory(config, caches), self.shading]
+        self.parts = [*self.tiles, *ends[resources:], *caches, memory(config, caches), self.shading]
 
     def run(self):
         """The cycle at which each ray has been shaded, by its name."""

@@ -76,13 +76,13 @@ class Cache:
             request.ready = ceil_div(self.looked_up, self.lines_a_cycle)
             there = self.lines.touch(line)
             if tag is None:  # a write, which goes through
-                self.to_memory.send(request.ready + self.memory_latency, None)
+                self.to_memory.send(request.ready + self.memory_latency, (line, True))
             if there or tag is None:
                 continue
             request.missing += 1
             if line not in self.waiting:
                 self.waiting[line] = []
-                self.to_memory.send(request.ready + self.memory_latency, line)
+                self.to_memory.send(request.ready + self.memory_latency, (line, False))
             self.waiting[line].append(request)
         if tag is not None:
             self.complete_if_all_there(request)
@@ -114,6 +114,6 @@ class Memory:
         for cache in self.caches:
             while cache.to_memory.ready(now):
                 self.moved = max(self.moved, now * self.width) + self.line
-                line = cache.to_memory.take()
-                if line is not None:  # a line that is written gets no answer
+                line, write = cache.to_memory.take()
+                if not write:  # a line that is written gets no answer
                     cache.from_memory.send(ceil_div(self.moved, self.width) + self.back, line)

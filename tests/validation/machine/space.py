@@ -50,6 +50,14 @@ def draw(seed, index):
                     "cycles_per_lookup": pick([0, 5]), "products_per_cycle": pick([0, 1, 8]),
                     "distribute": pick(["fifo_fill", "load", "round_robin"]), "effects": pick(["auto", "all"])},
     }
+    if config["packets"]["shapes"] == "strip":
+        config["bvh"]["storage"] = pick(["full", "quantised"])
+    preset = pick(["pipe", "pipe", "gddr6_14", "hbm2_2", "lpddr5_6400"])
+    config["memory"]["dram"] = {"preset": preset, "channels": pick([1, 2, 3]), "interleave_bytes": pick([32, 64, 256]),
+                                "mapping": pick(["row_bank_column_group", "row_bank_group_column",
+                                                 "row_column_bank_group"]),
+                                "queue": pick([1, 2, 5, 32]), "period_ps": pick(["auto", 250, 1000, 1701]),
+                                "refresh": pick([True, True, False]), "refresh_cycles": pick(["auto", 40])}
     if r.random() < 0.15:  # independent resources read few of these keys
         config["topology"]["shape"] = "independent"
         config["packets"].update(shapes="strip", carry="reference")

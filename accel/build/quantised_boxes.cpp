@@ -1,0 +1,53 @@
+#include "accel/build/quantised_boxes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carousel::accel {
+
+namespace {
+
+constexpr int kSteps = 255;  // the greatest number of 8 bits
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// The float that is not above `value`.
+float rounded_down(double value) {
+  const float near = static_cast<float>(value);
+  return static_cast<double>(near) > value ? std::nextafter(near, -kInfinity) : near;
+}
+float rounded_up(double value) {
+  return -rounded_down(-value);
+}
+
+/// Planes of one axis: `lo` and `hi` of `count` children. In doubles the products and sums are exact but for planes
+/// that lie farther from the origin than 2^29 steps' bits, and these are rounded outwards as well.
+void quantise_axis(float* lo, float* hi, int count) {
+  float origin = kInfinity, end = -kInfinity;
+  for (int lane = 0; lane < count; ++lane) {
+    origin = std::min(origin, lo[lane]);
+    end = std::max(end, hi[lane]);
+  }
+  if (!std::isfinite(origin) || !std::isfinite(end) || end < origin) return;
+  const double base = origin, length = static_cast<double>(end) - base;
+  int exponent = length > 0 ? std::ilogb(length / kSteps) : 0;
+  while (std::ldexp(double{kSteps}, exponent) < length) ++exponent;
+  const double step = std::ldexp(1.0, exponent);
+  for (int lane = 0; lane < count; ++lane) {
+    int low = std::clamp(static_cast<int>(std::floor((lo[lane] - base) / step)), 0, kSteps);
+    int high = std::clamp(static_cast<int>(std::ceil((hi[lane] - base) / step)), 0, kSteps);
+    while (low > 0 && base + low * step > lo[lane]) --low;
+    while (high < kSteps && base + high * step < hi[lane]) ++high;
+    lo[lane] = std::min(lo[lane], rounded_down(base + low * step));
+    hi[lane] = std::max(hi[lane], rounded_up(base + high * step));
+  }
+}
+
+}  // namespace
+
+void quantise_boxes(Accel& accel) {
+  for (Node& node : accel.nodes)
+    for (int axis = 0; axis < 3; ++axis) quantise_axis(node.plane[axis], node.plane[axis + 3], node.count);
+}
+
+}  // namespace carousel::accel

@@ -1,0 +1,102 @@
+#include "app/run/memory_csv.h"
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "core/system/atomic_file.h"
+#include "core/system/error.h"
+
+namespace carousel::app {
+
+namespace {
+
+constexpr std::string_view kHeader = "cycle,kind,address,bytes";
+constexpr std::size_t kColumns = 4, kMostIssues = 20;
+constexpr std::uint64_t kLastCycle = 1'000'000'000'000, kLastAddress = std::uint64_t{1} << 48, kMostBytes = 65536;
+
+class MemoryReader {
+ public:
+  explicit MemoryReader(const std::string& name) : name_(name) {}
+
+  ringbus::MemoryLog read(std::istream& in) {
+    std::string line;
+    for (line_ = 1; std::getline(in, line) && issues_.size() < kMostIssues; ++line_) {
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      if (line_ == 1 && line != kHeader) issue(1, fmt::format("expected the header {}, found '{}'", kHeader, line));
+      if (line_ > 1 && !line.empty()) read_request(line);
+    }
+    if (line_ == 1) issue(0, fmt::format("expected the header {}", kHeader));
+    if (in.bad()) throw FileError("cannot read " + name_);
+    if (!issues_.empty()) throw ConfigError(std::move(issues_));
+    return std::move(requests_);
+  }
+
+ private:
+  void issue(int column, std::string message) { issues_.push_back({{name_, line_, column}, "", std::move(message)}); }
+
+  void read_request(std::string_view line) {
+    std::array<std::string_view, kColumns> cells;
+    std::array<int, kColumns> columns{};
+    std::size_t count = 0;
+    for (std::size_t begin = 0; begin <= line.size(); ++count) {
+      const std::size_t end = std::min(line.find(',', begin), line.size());
+      if (count < kColumns) {
+        cells[count] = line.substr(begin, end - begin);
+        columns[count] = static_cast<int>(begin) + 1;
+      }
+      begin = end + 1;
+    }
+    if (count != kColumns) return issue(1, fmt::format("expected {} values, found {}", kColumns, count));
+    const auto number = [&](std::size_t i, std::uint64_t min, std::uint64_t max) {
+      std::uint64_t value = 0;
+      const char* last = cells[i].data() + cells[i].size();
+      const auto [end, error] = std::from_chars(cells[i].data(), last, value);
+      if (error != std::errc{} || end != last || value < min || value > max)
+        issue(columns[i], fmt::format("expected a whole number from {} to {}, found '{}'", min, max, cells[i]));
+      return value;
+    };
+    ringbus::MemoryRequest request;
+    request.cycle = number(0, 0, kLastCycle);
+    request.write = cells[1] == "write";
+    if (!request.write && cells[1] != "read")
+      issue(columns[1], fmt::format("expected read or write, found '{}'", cells[1]));
+    request.address = number(2, 0, kLastAddress);
+    request.bytes = static_cast<std::uint32_t>(number(3, 1, kMostBytes));
+    if (!requests_.empty() && request.cycle < requests_.back().cycle)
+      issue(columns[0], fmt::format("requests stand in the order of their cycles; expected at least {}, found {}",
+                                    requests_.back().cycle, request.cycle));
+    requests_.push_back(request);
+  }
+
+  const std::string& name_;
+  int line_ = 1;
+  std::vector<ConfigIssue> issues_;
+  ringbus::MemoryLog requests_;
+};
+
+}  // namespace
+
+void write_memory_csv(const std::filesystem::path& path, const ringbus::MemoryLog& requests) {
+  std::string text(kHeader);
+  text += '\n';
+  for (const ringbus::MemoryRequest& request : requests)
+    fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", request.cycle, request.write ? "write" : "read",
+                   request.address, request.bytes);
+  write_file(path, text);
+}
+
+ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name) {
+  return MemoryReader(name).read(in);
+}
+
+ringbus::MemoryLog read_memory_csv(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw FileError("cannot read " + path.string());
+  return read_memory_csv(in, path.string());
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "ringbus/cycle/memory/dram/dram.h"
+#include "ringbus/cycle/memory/memory_agent.h"
+
+namespace carousel::ringbus::cycle {
+
+/// DRAM with banks behind the caches (`memory.dram.preset`). A line is answered when its last byte is there.
+class BankedMemory final : public MemoryAgent {
+ public:
+  BankedMemory(const Config& config, std::vector<Client> clients);
+
+  Cycle next() const override;
+  void run(Cycle end) override;
+  void close(Cycle end) override;
+
+  Cycle busy() const override { return dram_.busy(); }
+  double peak_bytes_per_cycle() const override { return dram_.peak_bytes_per_cycle(); }
+  std::optional<DramUse> dram_use(Cycle end) const override { return dram_.use(dram_.of_engine(end)); }
+
+ private:
+  Cycle next_step() const;
+
+  Dram dram_;
+  std::uint64_t clients_of_line_;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "core/numeric/latency_histogram.h"
+#include "core/statistics/dram_counts.h"
+#include "ringbus/cycle/memory/dram/dram_timing.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A read or a write of one transaction.
+struct DramRequest {
+  std::uint32_t bank = 0;
+  std::uint64_t row = 0;
+  bool write = false;
+  std::uint64_t tag = 0;
+};
+
+/// A channel of DRAM and its controller, command by command (S. Rixner et al., Memory access scheduling, ISCA 2000:
+/// first ready, first come first served, with rows that stay open).
+///
+/// In each cycle, in this order:
+/// 1. A request that has come takes a place, reads before writes, if its kind has one (`memory.dram.queue`) free.
+/// 2. The next command is chosen. A request needs a read or a write if its row is open, an activate if its bank has
+///    none open, and else a precharge. The oldest request whose next command can be issued now issues it. A request
+///    that has activated its row leaves its place, and goes before those that still have one; its row is not closed
+///    before it has been served. With two command buses the oldest row command and the oldest column command are
+///    issued.
+/// 3. A refresh that is due: no request is begun, all rows are closed at once as soon as those that have been activated
+///    are served, and then nothing is activated for rfc cycles.
+///
+/// Reads are served until no read is left or three quarters of the writes' places are taken, and then writes until a
+/// quarter is taken, if reads wait, or none.
+class DramChannel {
+ public:
+  DramChannel(const DramTiming& timing, std::size_t places);
+
+  /// The request comes in cycle `now`, which is not before any step that was made.
+  void push(const DramRequest& request, DramCycle now);
+  /// The next cycle in which a step does anything for a request; kDramNever if it holds none.
+  DramCycle next() const { return held_ == 0 ? kDramNever : next_; }
+  /// What the step in next() issued.
+  struct Issued {
+    bool served = false;
+    DramRequest request;  ///< that was served
+    DramCycle done = 0;   ///< the end of its last data
+  };
+  Issued step();
+  /// Nothing comes any more before `now`: refreshes go on without requests.
+  void idle_until(DramCycle now);
+
+  const DramCounts& counts() const { return counts_; }
+  /// Of reads: from the taking of a place to the end of the data.
+  const LatencyHistogram& latencies() const { return latencies_; }
+  /// The cycle in which the last request took a place.
+  DramCycle last_taken() const { return last_taken_; }
+
+ private:
+  static constexpr std::uint64_t kClosed = ~std::uint64_t{0};
+  struct Bank {
+    std::uint64_t row = kClosed;
+    DramCycle activate = 0, precharge = 0;
+    std::array<DramCycle, 2> column{};  // read, write: the earliest cycle of each command
+    std::uint32_t activated = 0;        // requests that have activated the row and are not served
+  };
+  struct Group {
+    DramCycle activate = 0;
+    std::array<DramCycle, 2> column{};
+  };
+  struct Pseudo {
+    DramCycle activate = 0;
+    std::array<DramCycle, 2> column{};
+    std::array<DramCycle, 4> last{};  // the earliest activates by the four-activate window, in turn
+    std::uint32_t turn = 0;
+  };
+  struct Entry {
+    DramRequest request;
+    DramCycle taken = 0;
+    bool counted = false;
+  };
+  struct Arrival {
+    DramRequest request;
+    DramCycle at = 0;
+  };
+  enum class Refresh { kNone, kClose, kRefresh };
+
+  void take_arrivals(DramCycle now);
+  void choose_kind();
+  DramCycle column_time(const Entry& entry) const;
+  DramCycle activate_time(std::uint32_t bank) const;
+  void refresh(DramCycle now, DramCycle& wake);
+  Issued issue_column(std::vector<Entry>& from, std::size_t index, DramCycle now);
+  void issue_row(std::vector<Entry>& from, std::size_t index, DramCycle now);
+  void use_row_bus(DramCycle until);
+  void use_column_bus(DramCycle until);
+
+  DramTiming timing_;
+  std::size_t places_, high_, low_;
+  std::array<std::deque<Arrival>, 2> arrivals_;  // reads, writes that have no place
+  std::array<std::vector<Entry>, 2> queues_;     // reads, writes, the oldest first
+  std::vector<Entry> active_;                    // have activated their rows
+  std::vector<Bank> banks_;
+  std::vector<Group> groups_;
+  std::vector<Pseudo> pseudos_;
+  DramCycle row_bus_ = 0, column_bus_ = 0;  // free from
+  DramCycle refresh_due_;
+  Refresh refresh_ = Refresh::kNone;
+  bool writing_ = false;
+  std::size_t held_ = 0;  // requests
+  DramCycle now_ = 0, next_ = 0, last_taken_ = 0;
+  DramCounts counts_;
+  LatencyHistogram latencies_;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/messages/memory_messages.h"
+#include "ringbus/cycle/time/agent.h"
+#include "ringbus/cycle/time/channel.h"
+#include "ringbus/results/counter_samples.h"
+#include "ringbus/results/dram_use.h"
+#include "ringbus/results/memory_request.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The memory behind the caches: a pipe, or DRAM with banks. It takes requests for lines in the order in which they
+/// arrive (at one time: of the caches).
+class MemoryAgent : public Agent {
+ public:
+  struct Client {
+    Channel<std::uint64_t>* requests = nullptr;  ///< line numbers, with kWriteLine for a write
+    Channel<std::uint64_t>* answers = nullptr;
+  };
+  static Cycle request_latency(const MemoryConfig& config) { return way_there(config.dram_latency_cycles); }
+  static Cycle answer_latency(const MemoryConfig& config) { return way_back(config.dram_latency_cycles); }
+
+  bool polled() const override { return false; }
+  Cycle next_after_run() const override { return next_; }
+  std::string describe() const override { return ""; }
+
+  /// From now on the bytes that it has moved are read over time, at most so often.
+  void sample(std::size_t most) { samples_ = CounterSamples(most, 1); }
+  virtual void close(Cycle end) = 0;
+  const CounterSamples& samples() const { return samples_; }
+  /// From now on requests are appended to the log.
+  void log(MemoryLog* log) { log_ = log; }
+
+  std::uint64_t lines() const { return lines_; }  ///< read
+  std::uint64_t lines_written() const { return lines_written_; }
+  /// Cycles that moving the lines took, the last one rounded up.
+  virtual Cycle busy() const = 0;
+  virtual double peak_bytes_per_cycle() const = 0;
+  /// Of DRAM with banks, after close(): its use up to `end`.
+  virtual std::optional<DramUse> dram_use(Cycle end) const = 0;
+
+ protected:
+  MemoryAgent(const MemoryConfig& config, std::vector<Client> clients)
+      : answer_latency_(answer_latency(config)),
+        line_bytes_(static_cast<std::uint64_t>(config.line_bytes)),
+        clients_(std::move(clients)) {}
+
+  Cycle next_request() const {
+    Cycle first = kNever;
+    for (const Client& client : clients_) first = std::min(first, client.requests->next());
+    return first;
+  }
+  /// Counts a request that has been taken. Returns whether it is a write.
+  bool count(std::uint64_t request, Cycle now) {
+    const bool write = (request & kWriteLine) != 0;
+    ++(write ? lines_written_ : lines_);
+    if (log_ != nullptr) [[unlikely]]
+      log_->push_back({now, (request & ~kWriteLine) * line_bytes_, static_cast<std::uint32_t>(line_bytes_), write});
+    return write;
+  }
+
+  Cycle answer_latency_;
+  std::uint64_t line_bytes_;
+  std::vector<Client> clients_;
+  std::uint64_t lines_ = 0, lines_written_ = 0;
+  Cycle next_ = 0;  // next(), at the end of the last run()
+  CounterSamples samples_;
+  MemoryLog* log_ = nullptr;
+};
+
+/// The memory that the configuration names.
+std::unique_ptr<MemoryAgent> make_memory(const Config& config, std::vector<MemoryAgent::Client> clients);
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/numeric/latency_histogram.h"
+#include "core/statistics/dram_counts.h"
+
+namespace carousel::ringbus {
+
+/// The use of a DRAM with banks over a run.
+struct DramUse {
+  struct Channel {
+    DramCounts counts;
+    LatencyHistogram latencies;  ///< of reads, from the taking of a place to the end of the data, in DRAM cycles
+    std::uint64_t bytes = 0;
+    double utilisation = 0;  ///< of its data wires
+    friend bool operator==(const Channel&, const Channel&) = default;
+  };
+  std::uint64_t cycles = 0, period_ps = 0;  ///< DRAM cycles
+  double peak_bytes_per_second = 0;         ///< of all channels
+  std::vector<Channel> channels;
+  friend bool operator==(const DramUse&, const DramUse&) = default;
+};
+
+}  // namespace carousel::ringbus

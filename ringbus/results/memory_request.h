@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace carousel::ringbus {
+
+/// A request to the memory behind the caches, when it arrives there.
+struct MemoryRequest {
+  std::uint64_t cycle = 0;  ///< of the engine
+  std::uint64_t address = 0;
+  std::uint32_t bytes = 0;
+  bool write = false;
+  friend bool operator==(const MemoryRequest&, const MemoryRequest&) = default;
+};
+/// In the order in which they arrived.
+using MemoryLog = std::vector<MemoryRequest>;
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,178 @@
+// DRAM with banks by itself, against closed forms and against rows that Ramulator 2.1 gave. DRAM and engine have the
+// same clock here, so that cycles are DRAM cycles.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "core/config/load.h"
+#include "ringbus/cycle/memory/dram/dram_map.h"
+#include "ringbus/cycle/memory/memory_trace.h"
+#include "tests/ringbus/cycle/memory/dram_patterns.h"
+
+namespace carousel::ringbus {
+namespace {
+
+Config dram_config(const std::string& preset, const std::string& more = "") {
+  return load_config({"engine: {kind: cycle, clock_mhz: 1000}\nworkload: {memory_trace: a.csv}\n"
+                      "memory: {dram: {preset: " +
+                          preset + ", channels: 1, period_ps: 1000, mapping: row_bank_group_column" + more + "}}\n",
+                      "dram.yaml"})
+      .config;
+}
+
+MemoryTraceResult run(const std::string& preset, const std::string& more, const MemoryLog& requests) {
+  return run_memory_trace(dram_config(preset, more), requests);
+}
+
+struct Standard {
+  std::string name, preset;
+  ChannelShape shape;
+  double peak_interval = 2;  ///< cycles of a read, one after another
+  double random_interval = 0;
+  std::uint64_t rcd = 0, cl = 0, bl = 2, rp = 0;
+  double refresh_loss = 0;
+};
+const Standard kStandards[] = {
+    {"GDDR6", "gddr6_14", kGddr6Shape, 2, 11, 30, 24, 2, 30, (4.0 + 30 + 211 + 30) / 3333},
+    {"HBM2", "hbm2_2", kHbm2Shape, 1, 3, 14, 14, 2, 14, (5.0 + 14 + 160 + 14) / 3900},
+    {"LPDDR5", "lpddr5_6400", kLpddr5Shape, 2, 4, 15, 17, 2, 15, (8.0 + 15 + 168 + 15) / 3125},
+};
+
+constexpr const char* kNoRefresh = ", refresh: false";
+
+TEST(Dram, AnIsolatedReadTakesTheSumOfItsCommands) {
+  for (const Standard& s : kStandards) {
+    const std::uint64_t row = 32 * s.shape.columns * s.shape.pseudo_channels * s.shape.groups * s.shape.banks;
+    // A closed row, the open row, another row of the same bank, each after all is quiet.
+    for (const auto& [address, before, expected] :
+         {std::tuple{std::uint64_t{0}, false, s.rcd + s.cl + s.bl}, std::tuple{std::uint64_t{32}, true, s.cl + s.bl},
+          std::tuple{row, true, s.rp + s.rcd + s.cl + s.bl}}) {
+      MemoryLog requests;
+      if (before) requests.push_back({0, 0, 32, false});
+      requests.push_back({1000, address, 32, false});
+      EXPECT_EQ(run(s.preset, kNoRefresh, requests).cycles, 1000 + expected) << s.name << " " << address;
+    }
+  }
+}
+
+TEST(Dram, ReachesItsPeak) {
+  for (const Standard& s : kStandards) {
+    const MemoryTraceResult out =
+        run(s.preset, std::string(kNoRefresh) + ", queue: 128", pattern_of("sequential", s.shape, 20'000, 1));
+    EXPECT_NEAR(static_cast<double>(out.last_taken) / 20'000, s.peak_interval, 0.01 * s.peak_interval) << s.name;
+    EXPECT_NEAR(out.dram->channels[0].utilisation, 1, 0.01) << s.name;
+    EXPECT_EQ(out.dram->channels[0].bytes, 20'000u * 32);
+  }
+}
+
+TEST(Dram, RandomReadsAreLimitedByActivates) {
+  for (const Standard& s : kStandards) {
+    const MemoryTraceResult out =
+        run(s.preset, std::string(kNoRefresh) + ", queue: 256", pattern_of("random_32", s.shape, 20'000, 1));
+    EXPECT_NEAR(static_cast<double>(out.last_taken) / (20'000 - 256), s.random_interval, 0.01 * s.random_interval)
+        << s.name;
+  }
+}
+
+TEST(Dram, RefreshTakesItsPartOfTheTime) {
+  for (const Standard& s : kStandards) {
+    // Reads of one row in each of the groups, so that nothing but refreshes closes it.
+    MemoryLog requests;
+    for (std::uint64_t i = 0; i < 40'000; ++i)
+      requests.push_back({i, 32 * s.shape.columns * (i % (s.shape.groups * s.shape.pseudo_channels)), 32, false});
+    const auto with = run(s.preset, "", requests), without = run(s.preset, kNoRefresh, requests);
+    const double lost = 1 - static_cast<double>(without.last_taken) / static_cast<double>(with.last_taken);
+    // A refresh more or less at the end, and up to three activates behind the first.
+    EXPECT_NEAR(lost, s.refresh_loss, 0.15 * s.refresh_loss) << s.name;
+    EXPECT_EQ(with.dram->channels[0].counts.refreshes, with.cycles / (s.preset == "gddr6_14" ? 3333
+                                                                      : s.preset == "hbm2_2" ? 3900
+                                                                                             : 3125));
+  }
+}
+
+TEST(Dram, WritesTurnTheBusRound) {
+  // A read directly behind a write of the same group and row waits for the write's data and nWTR long.
+  const MemoryTraceResult out = run("gddr6_14", kNoRefresh, {{0, 0, 32, true}, {21, 32, 32, false}});
+  EXPECT_EQ(out.cycles, 20 + (6 + 2 + 11) + 24 + 2u);  // nRCD write; nCWL + nBL + nWTR; nCL + nBL
+  // A precharge behind a write waits for nWR besides.
+  const MemoryTraceResult conflict = run("gddr6_14", kNoRefresh, {{0, 0, 32, true}, {60, 32 * 64 * 16, 32, false}});
+  EXPECT_EQ(conflict.cycles, std::max(60, 20 + 6 + 2 + 30) + 30 + 30 + 24 + 2u);
+  EXPECT_EQ(conflict.dram->channels[0].counts.row_conflicts, 1u);
+  EXPECT_EQ(conflict.dram->channels[0].counts.writes, 1u);
+}
+
+TEST(Dram, ItsClockRunsBesideTheEngines) {
+  // 26 cycles of 570 ps behind an open row; the request comes with the first of them that begins in cycle 1000 of 1 ns.
+  const Config config = load_config({"engine: {kind: cycle}\nworkload: {memory_trace: a.csv}\n"
+                                     "memory: {dram: {preset: gddr6_14, refresh: false}}\n",
+                                     "dram.yaml"})
+                            .config;
+  const MemoryTraceResult out = run_memory_trace(config, {{0, 0, 32, false}, {1000, 0, 32, false}});
+  const double begin = std::ceil(1000e3 / 570) * 570;
+  EXPECT_EQ(out.cycles, static_cast<std::uint64_t>(std::ceil((begin + 26 * 570) / 1000)));
+}
+
+TEST(Dram, MappingsPutNeighboursWhereTheirNamesSay) {
+  const auto place = [](const std::string& mapping, std::uint64_t transaction) {
+    DramConfig config = dram_config("hbm2_2").memory.dram;
+    config.mapping = *enum_value<DramConfig::Mapping>(mapping);
+    return cycle::DramMap(config, cycle::dram_timing(config)).place(32 * transaction);
+  };
+  using cycle::DramPlace;
+  EXPECT_EQ(place("row_bank_column_group", 1), (DramPlace{0, 16, 0}));      // the other pseudo-channel
+  EXPECT_EQ(place("row_bank_column_group", 2), (DramPlace{0, 4, 0}));       // the next group
+  EXPECT_EQ(place("row_bank_column_group", 8 * 32), (DramPlace{0, 1, 0}));  // behind all columns
+  EXPECT_EQ(place("row_bank_group_column", 1), (DramPlace{0, 0, 0}));       // the next column
+  EXPECT_EQ(place("row_bank_group_column", 32), (DramPlace{0, 16, 0}));
+  EXPECT_EQ(place("row_column_bank_group", 8), (DramPlace{0, 1, 0}));  // banks before columns
+  EXPECT_EQ(place("row_column_bank_group", 32), (DramPlace{0, 0, 0}));
+  EXPECT_EQ(place("row_column_bank_group", 32 * 32), (DramPlace{0, 0, 1}));
+}
+
+TEST(Dram, ChannelsHoldBlocksInTurn) {
+  DramConfig config = dram_config("gddr6_14").memory.dram;
+  config.channels = 3;
+  config.interleave_bytes = 256;
+  const cycle::DramMap map(config, cycle::dram_timing(config));
+  for (std::uint64_t address = 0; address < 4096; address += 32)
+    EXPECT_EQ(map.place(address).channel, address / 256 % 3) << address;
+}
+
+/// The rows of a file that Ramulator 2.1 gave, of which the saturated ones with 32 places are tried here; the table in
+/// docs/validation.md has all.
+TEST(Dram, AgreesWithRamulator) {
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/tests/data/dram-ramulator21.csv");
+  std::string line;
+  std::getline(file, line);
+  std::vector<double> cycle_errors, latency_errors;
+  while (std::getline(file, line)) {
+    std::vector<std::string> cell;
+    std::istringstream row(line);
+    for (std::string one; std::getline(row, one, ',');) cell.push_back(one);
+    ASSERT_EQ(cell.size(), 11u);
+    if (cell[2] != "32" || cell[4] != "1") continue;
+    const Standard& s = *std::find_if(std::begin(kStandards), std::end(kStandards),
+                                      [&](const Standard& standard) { return standard.name == cell[0]; });
+    const MemoryTraceResult out =
+        run(s.preset, fmt::format(", queue: {}, refresh: {}", cell[2], cell[3] == "1" ? "true" : "false"),
+            pattern_of(cell[1], s.shape, std::stoull(cell[5]), std::stoull(cell[4])));
+    const double cycles = static_cast<double>(out.last_taken) / std::stod(cell[6]) - 1;
+    const double latency = (out.dram->channels[0].latencies.mean() + 1) / std::stod(cell[10]) - 1;
+    EXPECT_LT(std::abs(cycles), 0.05) << line;
+    EXPECT_LT(std::abs(latency), 0.11) << line;
+    cycle_errors.push_back(std::abs(cycles));
+    latency_errors.push_back(std::abs(latency));
+  }
+  ASSERT_GE(cycle_errors.size(), 16u);
+  std::sort(cycle_errors.begin(), cycle_errors.end());
+  std::sort(latency_errors.begin(), latency_errors.end());
+  EXPECT_LT(cycle_errors[cycle_errors.size() / 2], 0.01);
+  EXPECT_LT(latency_errors[latency_errors.size() / 2], 0.02);
+}
+
+}  // namespace
+}  // namespace carousel::ringbus
