@@ -8,7 +8,8 @@
 namespace carousel::app {
 
 struct ReportArguments {
-  std::string folder;  ///< of a run, or a JSON file that a command wrote
+  std::string folder;  ///< of a run or a sweep, or a JSON file that a command wrote
+  std::string point;   ///< of the sweep in the folder, by its digest; empty: the page of the folder itself
   std::string out;     ///< page to write; empty: beside that file
 };
 

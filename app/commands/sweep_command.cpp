@@ -21,6 +21,7 @@
 #include "app/sweep/sweep_run.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
+#include "report/html/sweep_page.h"
 #include "report/text/number_text.h"
 
 namespace carousel::app {
@@ -199,10 +200,12 @@ int finish(const SweepRows& rows, const InterruptScope& interrupt) {
 void give_results(const SweepArguments& arguments, const SweepSetup& setup, SweepRows rows, bool write, bool print) {
   rows.drop_empty();
   const std::vector<Goal> goals = arguments.pareto.empty() ? std::vector<Goal>{} : parse_goals(rows, arguments.pareto);
-  const std::string json = sweep_json(rows, goals, arguments.config).dump(1) + "\n";
+  const nlohmann::ordered_json sweep = sweep_json(rows, goals, arguments.config);
+  const std::string json = sweep.dump(1) + "\n";
   if (write) {
     write_file(setup.out / "sweep.csv", sweep_csv(rows));
     write_file(setup.out / "sweep.json", json);
+    write_file(setup.out / "sweep.html", report::html::sweep_page(sweep, setup.out.string()));
   }
   if (!print) return;
   if (arguments.json)

@@ -71,6 +71,9 @@ Json sweep_json(const SweepRows& rows, const std::vector<Goal>& goals, const std
            {"keys", rows.keys}};
   Json& names = out["results"] = Json::array();
   for (const ResultColumn& column : rows.columns) names.push_back(column.name);
+  Json& greater = out["greater_is_better"] = Json::array();
+  for (const ResultColumn& column : rows.columns)
+    if (column.greater_is_better) greater.push_back(column.name);
   Json& points = out["points"] = Json::array();
   for (const SweepRow& row : rows.rows) points.push_back(row_json(rows, row));
   if (!goals.empty()) {

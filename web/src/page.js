@@ -16,7 +16,9 @@ import {quantiles} from './charts/quantiles.js';
 import {scatter} from './charts/scatter.js';
 import {spans} from './charts/spans.js';
 import {stacked} from './charts/stacked.js';
+import {sweepEffects, sweepPareto, sweepPlot} from './charts/sweep.js';
 import {look} from './look.js';
+import {sweepTable} from './sweep_table.js';
 import {readTable} from './table.js';
 
 echarts.use([BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyChart, ScatterChart, DataZoomComponent, GridComponent,
@@ -27,6 +29,7 @@ const kinds = {
   bars, intervals, stacked, quantiles, flow, groups, shares, ratios, heat, histogram, machine, scatter, spans,
   series: (context) => curves({...context, name: context.names}),
   parts_over_time: parts,
+  sweep_plot: sweepPlot, sweep_pareto: sweepPareto, sweep_effects: sweepEffects,
 };
 const onCanvas = new Set(['series', 'parts_over_time']);  // many marks
 
@@ -66,6 +69,7 @@ async function draw(figure) {
   plot.dataset.drawn = kind;
   if (!state.controls) {
     state.controls = true;
+    result.choose?.(controlRow(figure, plot), state.settings, () => draw(figure));
     if (result.kinds) chooser(figure, plot, state, result);
     if (kind === 'machine') slider(figure, plot, state, context);
   }
@@ -139,6 +143,7 @@ function themeButton() {
 
 document.documentElement.dataset.charts = '';
 themeButton();
+sweepTable(facts);
 const figures = document.querySelectorAll('figure[data-chart]');
 const seen = new IntersectionObserver((entries) => {
   for (const {isIntersecting, target} of entries) {
