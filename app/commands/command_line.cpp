@@ -221,10 +221,13 @@ void add_compare(CLI::App& program, CompareArguments& c) {
 void add_report(CLI::App& program, ReportArguments& r) {
   CLI::App* report =
       program.add_subcommand("report", "Make the HTML page of a run, or of another command's JSON, again");
-  report->add_option("folder", r.folder, "Folder of a run or a sweep, or the JSON of run, sweep, stress, accuracy or follow")
+  report
+      ->add_option("folder", r.folder,
+                   "Folder of a run or a sweep, or the JSON of run, sweep, stress, accuracy or follow")
       ->required()
       ->type_name("PATH");
-  report->add_option("--point", r.point, "Make the page of one point of the sweep in the folder (default: of the sweep)")
+  report
+      ->add_option("--point", r.point, "Make the page of one point of the sweep in the folder (default: of the sweep)")
       ->type_name("DIGEST");
   report->add_option("--out", r.out, "Page to write (default: beside the JSON, with the ending .html)")
       ->type_name("FILE");
