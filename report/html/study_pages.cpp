@@ -151,7 +151,7 @@ std::string accuracy_page(const Json& accuracy) {
   return page_of("Carousel: levels of accuracy", "carousel accuracy, scene " + text_at(accuracy, "scene"),
                  {{"verdict", "At a glance", glance},
                   {"levels", "Time and errors of the levels", body},
-                  {"spawn", "Offset of new rays", spawn.html()},
+                  {"spawn", "Where new rays start", spawn.html()},
                   {"sampling", "Samples", bars_of(sampling, sampling.caption)}},
                  Json::object(), "");
 }
@@ -186,8 +186,8 @@ std::string ray_life_page(const Json& life) {
                  {{"verdict", "At a glance", glance},
                   {"where", "Use of its time", bars_of(stages, stages.caption)},
                   {"stretches", "Its time in order", spans.rows.empty() ? "" : where + spans.html()},
-                  {"tested", "Tests", tests.html()},
-                  {"next", "Rays that came of it", caused.html()}},
+                  {"tested", "Tests of the ray", tests.html()},
+                  {"next", "Rays it caused", caused.html()}},
                  Json::object(), "");
 }
 

@@ -41,7 +41,7 @@ export function wrongStudy(command, {tables, charts}, json) {
     for (const [title, path] of columns)
       list.forEach((item, i) => {
         const expected = at(item, path) ?? '–', shown = table.rows[i][table.columns.indexOf(title)];
-        if (typeof expected === 'number' ? !near(shown, expected) : String(shown) !== String(expected || '–'))
+        if (typeof expected === 'number' ? !near(shown, expected) : String(shown) !== String(expected))
           wrong.push(`table ${id}, row ${i}, ${title}: shows ${shown}, the JSON has ${expected}`);
       });
   }
