@@ -15,6 +15,8 @@ export const pages = {
   stress: {command: 'stress', config: 'demo', sets: [...small, 'image.width=8', 'image.height=8', 'topology.resources=2'],
     options: ['--seconds', '0.05', '--messages', '500', '--repetitions', '1', '--pairs', '0', '--queue', 'spsc_ring,mutex',
       '--pattern', 'stream,ping_pong', '--depths', '4']},
+  sweep: {command: 'sweep', config: 'sweep', sets: ['image.width=8', 'image.height=8'],
+    options: ['--vary', 'topology.resources=2,4', '--vary', 'memory.l2_kib=16,64']},
   life: {command: 'follow', config: 'demo', sets: cycle, options: ['--pixel', '12,8']},
   compare: {command: 'compare', of: ['machine', 'native']},
 };

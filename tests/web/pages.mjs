@@ -6,14 +6,14 @@ import {existsSync} from 'node:fs';
 import {mkdtemp, readFile, rm, stat} from 'node:fs/promises';
 import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
-import {join} from 'node:path';
+import {join, resolve} from 'node:path';
 
 import {all, pages} from './machines.mjs';
 import {wrongCharts, wrongTables} from './numbers.mjs';
 import {make} from './program.mjs';
 import {wrongStudy} from './study_numbers.mjs';
 
-const [program, sources, wanted] = process.argv.slice(2);
+const [program, sources] = process.argv.slice(2, 4).map((path) => resolve(path)), wanted = process.argv[4];
 const require = createRequire(join(sources, 'web/package.json'));
 const browser_path = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
 const skip = (why) => { console.log(`skipped: ${why}; script/bootstrap all installs it`); process.exit(77); };

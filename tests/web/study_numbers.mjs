@@ -1,4 +1,4 @@
-// Numbers that the pages of accuracy, stress, follow and compare must show, derived from their JSON.
+// Numbers that the pages of accuracy, stress, sweep, follow and compare must show, derived from their JSON.
 import {near} from './numbers.mjs';
 
 /** The value at a path such as `ns_per_ray.median`. */
@@ -21,6 +21,7 @@ const lists = {
     ['spans', json.spans, same('begin', 'length', 'stage', 'part')],
     ['tests', json.tests, same('at', 'resource', 'shapes')],
   ],
+  sweep: (json) => [['points', json.points, json.results.map((name) => [name, `results.${name}`])]],
   compare: (json) => [
     ...json.sections.map((section, i) => [`section-${i}`, section.rows,
       json.runs.map((_, r) => [String.fromCharCode(65 + r), `values.${r}`])]),
