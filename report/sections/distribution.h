@@ -17,7 +17,7 @@ template <class V>
 void describe(V& v, const DistributionClass& r) {
   v.field("from", r.from, "cycles", "least value of the class");
   v.field("to", r.to, "cycles", "greatest value of the class");
-  v.field("count", r.count, "", "values in the class");
+  v.field("count", r.count, "values", "number of values in the class");
 }
 
 /// A distribution of times in classes that double.
@@ -41,7 +41,7 @@ inline Distribution distribution_of(const Log2Histogram& of) {
 
 template <class V>
 void describe(V& v, const Distribution& r) {
-  v.field("count", r.count, "", "values in all");
+  v.field("count", r.count, "values", "number of values in all");
   v.field("mean", r.mean, "cycles", "mean");
   v.field("max", r.max, "cycles", "greatest value");
   v.section("classes", r.classes, "number of values in each class; the width of the classes doubles");

@@ -31,8 +31,10 @@ zpty -w ask 'compadd() { local -a given=("$@"); while [[ ${1-} == -* ]]; do [[ $
   [[ $1 == -(P|S|p|s|i|I|W|d|J|X|x|V|r|R|D|O|A|E|M|F) ]] && shift; shift; done; print -r -- "<$*>" >>'$2'; builtin compadd "${given[@]}" }'
 for line in "${(@f)3}"; do
   zpty -w ask "print -r -- '? $line' >>$2"
+  for i in {1..300}; do [[ "$(tail -n 1 $2 2>/dev/null)" == "? $line" ]] && break; sleep 0.1; done
   zpty -w -n ask "$line"$'\t'
-  sleep 0.7
+  for i in {1..300}; do [[ "$(tail -n 1 $2)" != "? $line" ]] && break; sleep 0.1; done
+  sleep 0.5
   zpty -w -n ask $'\x15'
 done
 sleep 0.2
@@ -126,7 +128,7 @@ class Usage(unittest.TestCase):
             lines = ["carousel sw", "carousel run --tra", "carousel run a.yaml --set topology.sh",
                      "carousel run a.yaml --set topology.shape=bi"]
             subprocess.run(["zsh", "-f", "-c", ASK_ZSH, "ask", folder, str(log), "\n".join(lines)], check=True,
-                           capture_output=True, timeout=60)
+                           capture_output=True, timeout=240)
             answers = dict(part.split("\n", 1) for part in log.read_text().split("? ")[1:])
         for line, word in zip(lines, ["sweep", "--trace", "topology.shape", "bidirectional"]):
             self.assertIn(word, answers[line], line)

@@ -57,7 +57,12 @@ TEST_F(CollectionUse, OrderedTraversalAdmitsAsManyRaysAsThereArePlaces) {
   EXPECT_GT(tight["engine"]["cycles"], ample["engine"]["cycles"]);
   EXPECT_LE(tight["collections"]["memberships_peak"], 4);
   EXPECT_GT(tight["collections"]["memberships_peak"], 1);  // it was a block of packets.rays, 16, for each ray
-  EXPECT_EQ(run(1)["rays"], ample["rays"]);                // one ray at a time at each resource
+  const Json one = run(1);                                 // one ray at a time at each resource
+  for (const auto& [name, value] : ample["rays"].items()) {
+    if (name != "residence") {  // a time
+      EXPECT_EQ(one["rays"][name], value) << name;
+    }
+  }
 }
 
 }  // namespace
