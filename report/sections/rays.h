@@ -28,7 +28,8 @@ struct RayBounce {
 
 template <class V>
 void describe(V& v, const RayBounce& r) {
-  v.field("bounce", r.bounce, "surfaces", "surfaces that the path had met before; a shadow ray has that of its surface");
+  v.field("bounce", r.bounce, "surfaces",
+          "surfaces that the path had met before; a shadow ray has that of its surface");
   describe(v, r.counts);
 }
 
