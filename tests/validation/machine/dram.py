@@ -77,7 +77,6 @@ class Channel:
         if ready:
             served = ready[0]
             self.active.remove(served)
-            self.banks[served.bank].promised -= 1
         if self.refresh is None:
             open_row = lambda request: self.banks[request.bank].row == request.row
             moves = [request for request in queue if open_row(request) and self.may_move(request, now)]
@@ -94,6 +93,8 @@ class Channel:
                     queue.remove(first)
                 else:
                     row = first
+        if ready:  # its row is held in this cycle still
+            self.banks[served.bank].promised -= 1
         if served is not None:
             done = self.move(served, now)
         if row is not None:
