@@ -4,7 +4,7 @@
 
 namespace carousel {
 
-/// What became of the completed rays of one bounce, and what they caused.
+/// The fate of the completed rays of one bounce, and the rays that they caused.
 struct BounceCounts {
   std::uint64_t rays = 0, begun = 0, escaped = 0, hit = 0, went_on = 0;
   std::uint64_t shadow = 0, shadow_begun = 0, lit = 0, occluded = 0, passed = 0;

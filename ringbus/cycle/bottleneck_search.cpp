@@ -118,7 +118,7 @@ class Search {
     return {{&*base_.cycle, base_.rays_completed}, run_.result.rays_completed, 2 * fill_rays(slots_of(config_))};
   }
 
-  /// Whether the parts of a class had nothing to do for more than half of the run.
+  /// True if the parts of a class had nothing to do for more than half of the run.
   bool idle(const std::string& name) const {
     constexpr double kIdle = 0.5;
     const cycle::CycleResult& run = *run_.result.cycle;

@@ -10,7 +10,7 @@
 
 namespace carousel::ringbus {
 
-/// What the memory alone did with a list of requests. Times are cycles of the engine.
+/// The work of the memory alone on a list of requests. Times are cycles of the engine.
 struct MemoryTraceResult {
   bool complete = true;
   std::uint64_t requests = 0, reads = 0, writes = 0, bytes = 0;

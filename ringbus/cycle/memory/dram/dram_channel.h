@@ -42,7 +42,7 @@ class DramChannel {
   void push(const DramRequest& request, DramCycle now);
   /// The next cycle in which a step does anything for a request; kDramNever if it holds none.
   DramCycle next() const { return held_ == 0 ? kDramNever : next_; }
-  /// What the step in next() issued.
+  /// The command that the step in next() issued.
   struct Issued {
     bool served = false;
     DramRequest request;  ///< that was served

@@ -38,7 +38,7 @@ struct DramTiming {
 /// The times of a preset that has banks, with the period and the refresh that the configuration names.
 DramTiming dram_timing(const DramConfig& config);
 
-/// What a channel moves at most, in bytes a second: a transaction every ccd_short of each pseudo-channel.
+/// The most that a channel moves, in bytes a second: a transaction every ccd_short of each pseudo-channel.
 double peak_bytes_per_second(const DramTiming& timing);
 
 }  // namespace carousel::ringbus::cycle
