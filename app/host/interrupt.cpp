@@ -50,14 +50,6 @@ InterruptScope::InterruptScope() {
   });
 }
 
-InterruptScope::~InterruptScope() {
-  for (const int number : kSignals) {
-    struct sigaction now {};
-    sigaction(number, nullptr, &now);
-    if (now.sa_handler != SIG_IGN) std::signal(number, SIG_DFL);
-  }
-}
-
 bool InterruptScope::interrupted() const {
   return g_signal.load(std::memory_order_relaxed) != 0;
 }

@@ -8,12 +8,12 @@
 namespace carousel::app {
 
 /// During its lifetime the first SIGINT, SIGTERM or SIGHUP requests a stop instead of ending the program; a second one
-/// ends it at once. A signal that the program was started to ignore (nohup) stays ignored. At most one object may exist
-/// at a time.
+/// ends it at once. A signal that the program was started to ignore (nohup) stays ignored. The handlers stay after its
+/// end, so that a signal that comes while the program returns does not change the exit status of finished work. At most
+/// one object may exist at a time.
 class InterruptScope {
  public:
   InterruptScope();
-  ~InterruptScope();
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
 
