@@ -95,12 +95,11 @@ of shapes travel a ring of queues: on worker threads and real queues, or
 under virtual time with a report of cycles, bytes and the parts that limit
 the machine. The package holds the program, its manual, example
 configurations and a Python module.")
-# The libraries are those that script/bootstrap installs to build with: one list. Debian's CMake package of OpenImageIO
-# does not load without the programs of openimageio-tools.
+# The libraries are those that script/bootstrap installs to build with: one list.
 file(STRINGS script/bootstrap bootstrap REGEX "^release=|^  lib|^  .*-dev")
 list(JOIN bootstrap " " bootstrap)
 string(REGEX REPLACE "^.*release=\\(([^)]*)\\).*$" "\\1" bootstrap "${bootstrap}")
-string(REGEX MATCHALL "[a-z0-9.+-]+-(dev|tools)" bootstrap "${bootstrap}")
+string(REGEX MATCHALL "[a-z0-9.+-]+-dev" bootstrap "${bootstrap}")
 list(JOIN bootstrap ", " development_packages)
 set(CPACK_DEBIAN_CAROUSEL-DEV_PACKAGE_NAME carousel-dev)
 set(CPACK_DEBIAN_CAROUSEL-DEV_PACKAGE_SECTION libdevel)

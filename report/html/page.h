@@ -9,7 +9,7 @@ namespace carousel::report::html {
 
 /// A picture to put into a page.
 struct Picture {
-  std::string mime_type;  ///< image/png or image/jpeg; empty: there is no picture
+  std::string mime_type;  ///< image/png or image/webp; empty: there is no picture
   std::string bytes;
 };
 

@@ -7,7 +7,7 @@
 
 namespace carousel::scene {
 
-/// Decodes a PNG or JPEG with OpenImageIO or a still WebP with libwebp, without touching its transfer curve or
+/// Decodes a PNG, a JPEG or a still WebP, without touching its transfer curve or
 /// multiplying by alpha. Grey becomes RGB, missing alpha 255, 16 bits are rounded to 8. Throws std::runtime_error with
 /// a reason: none of these formats, broken, more than 2^26 pixels, or more pixels than so few bytes can hold.
 Image decode_image(std::span<const unsigned char> encoded);

@@ -6,8 +6,8 @@ namespace carousel::scene {
 
 /// Why these bytes, which start with PNG's signature, are no whole PNG file, or nullptr when IHDR comes
 /// first, IEND is there, every chunk up to it lies inside and critical chunks have their right checksum (W3C,
-/// "PNG Specification", third edition, sections 5.3 and 5.6). Pixels are not looked at. OpenImageIO leaks
-/// memory and libpng writes to stderr for files that fail this, so they are turned away first.
+/// "PNG Specification", third edition, sections 5.3 and 5.6). Pixels are not looked at. libpng
+/// decodes some files that fail this.
 const char* png_fault(std::span<const unsigned char> bytes);
 
 }  // namespace carousel::scene

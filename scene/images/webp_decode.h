@@ -14,9 +14,8 @@ struct WebpHeader {
 /// Size of a still WebP picture. Throws std::runtime_error with a reason: broken, or animated.
 WebpHeader read_webp_header(std::span<const unsigned char> encoded);
 
-/// The pixels of the picture. (OpenImageIO 2.4 always multiplies WebP colours by alpha, and so loses the colours of
-/// transparent texels, which filters read.) Allocates memory for the header's size, which the caller has to check
-/// first. Throws std::runtime_error with a reason.
+/// The pixels of the picture, not multiplied by alpha. Allocates memory for the header's size, which the caller has to
+/// check first. Throws std::runtime_error with a reason.
 Image decode_webp(std::span<const unsigned char> encoded, const WebpHeader& header);
 
 }  // namespace carousel::scene

@@ -1,14 +1,18 @@
 #include "shading/camera/image_file.h"
 
 #include <cmath>
-#include <memory>
+#include <cstring>
+#include <exception>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
 #include <fmt/format.h>
+#include <png.h>
 
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
@@ -19,19 +23,28 @@ namespace carousel::shading {
 
 namespace {
 
-/// Encodes in memory; AtomicFile writes the result. `format` is a file extension.
-void write(const std::filesystem::path& path, const std::string& format, const OIIO::ImageSpec& spec,
-           OIIO::TypeDesc type, const void* pixels) {
-  auto fail = [&](const std::string& why) { throw FileError(fmt::format("cannot encode {}: {}", path.string(), why)); };
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create("image." + format, &memory);
-  if (!file) fail(OIIO::geterror());
-  if (!file->open("image." + format, spec)) fail(file->geterror());
-  if (!file->write_image(type, pixels)) fail(file->geterror());
-  if (!file->close()) fail(file->geterror());
-  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+[[noreturn]] void fail(const std::filesystem::path& path, const char* why) {
+  throw FileError(fmt::format("cannot encode {}: {}", path.string(), why));
 }
+
+/// What OpenEXR writes, in memory: AtomicFile writes the result.
+class MemoryStream : public Imf::OStream {
+ public:
+  MemoryStream() : OStream("memory") {}
+  void write(const char data[], int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    if (bytes_.size() < at_ + size) bytes_.resize(at_ + size);
+    std::memcpy(&bytes_[at_], data, size);
+    at_ += size;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t at) override { at_ = at; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
 
 }  // namespace
 
@@ -45,17 +58,40 @@ void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint
       pixels[i + c] = static_cast<std::uint8_t>(linear_to_srgb(color[static_cast<int>(c)]) * 255.0f + 0.5f);
     }
   }
-  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  write(path, "png", spec, OIIO::TypeDesc::UINT8, pixels.data());
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = width;
+  image.height = height;
+  image.format = PNG_FORMAT_RGB;  // eight bits a channel, sRGB
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0)
+    fail(path, image.message);
+  write_file(path, {bytes.data(), size});
 }
 
 void write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                std::span<const float> rgb) {
-  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::FLOAT);
-  spec.attribute("oiio:ColorSpace", "Linear");
-  spec.attribute("compression", "zip");
-  write(path, "exr", spec, OIIO::TypeDesc::FLOAT, rgb.data());
+  MemoryStream memory;
+  try {
+    Imf::Header header(static_cast<int>(width), static_cast<int>(height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer channels;
+    constexpr std::size_t kPixel = 3 * sizeof(float);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::string name(1, "RGB"[c]);
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      // OpenEXR reads through a pointer that is not const.
+      auto* first = reinterpret_cast<char*>(const_cast<float*>(rgb.data() + c));
+      channels.insert(name, Imf::Slice(Imf::FLOAT, first, kPixel, kPixel * width));
+    }
+    Imf::OutputFile file(memory, header, 0);
+    file.setFrameBuffer(channels);
+    file.writePixels(static_cast<int>(height));
+  } catch (const std::exception& e) {
+    fail(path, e.what());
+  }
+  write_file(path, memory.bytes());
 }
 
 }  // namespace carousel::shading

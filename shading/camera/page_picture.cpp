@@ -1,43 +1,67 @@
 #include "shading/camera/page_picture.h"
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <exception>
 #include <fstream>
 #include <iterator>
-#include <memory>
-#include <vector>
+#include <utility>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
+#include <webp/encode.h>
+
+#include "scene/images/image_decode.h"
 
 namespace carousel::shading {
 
+namespace {
+
+/// The mean of each `step` by `step` pixels; what is left over at the right and the bottom goes.
+scene::Image reduced(const scene::Image& from, std::uint32_t step) {
+  scene::Image out;
+  out.width = from.width / step;
+  out.height = from.height / step;
+  out.rgba.reserve(std::size_t{4} * out.width * out.height);
+  for (std::size_t y = 0; y < out.height; ++y) {
+    for (std::size_t x = 0; x < out.width; ++x) {
+      std::array<std::uint32_t, 4> sum{};
+      for (std::size_t row = y * step; row < (y + 1) * step; ++row)
+        for (std::size_t i = 4 * (row * from.width + x * step), k = 0; k < std::size_t{4} * step; ++k)
+          sum[k % 4] += from.rgba[i + k];
+      for (const std::uint32_t s : sum)
+        out.rgba.push_back(static_cast<std::uint8_t>((s + step * step / 2) / (step * step)));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 std::optional<PagePicture> page_picture(const std::filesystem::path& png) {
   constexpr std::size_t kMostBytes = 1'000'000;
-  constexpr int kMostWidth = 1600;
+  constexpr std::uint32_t kMostWidth = 1600, kMostHeight = 16383;  // the second is WebP's
+  constexpr float kQuality = 90;
   std::ifstream in(png, std::ios::binary);
   if (!in) return std::nullopt;
   std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (bytes.size() <= kMostBytes) return PagePicture{"image/png", std::move(bytes)};
 
-  OIIO::ImageBuf picture(png.string());
-  if (!picture.read(0, 0, true, OIIO::TypeDesc::UINT8)) return std::nullopt;
-  if (const OIIO::ImageSpec& spec = picture.spec(); spec.width > kMostWidth) {
-    const OIIO::ROI small(0, kMostWidth, 0, std::max(1, spec.height * kMostWidth / spec.width), 0, 1, 0, 3);
-    picture = OIIO::ImageBufAlgo::resize(picture, "", 0.0f, small);
-  }
-  OIIO::ImageSpec spec(picture.spec().width, picture.spec().height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("Compression", "jpeg:90");
-  std::vector<std::uint8_t> pixels(spec.image_pixels() * 3);
-  std::vector<unsigned char> jpeg;
-  OIIO::Filesystem::IOVecOutput memory(jpeg);
-  const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create("image.jpg", &memory);
-  const OIIO::ROI whole(0, spec.width, 0, spec.height, 0, 1, 0, 3);
-  if (!picture.get_pixels(whole, OIIO::TypeDesc::UINT8, pixels.data()) || !file || !file->open("image.jpg", spec) ||
-      !file->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !file->close())
+  scene::Image picture;
+  try {
+    picture = scene::decode_image({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
+  } catch (const std::exception&) {
     return std::nullopt;
-  return PagePicture{"image/jpeg", {reinterpret_cast<const char*>(jpeg.data()), jpeg.size()}};
+  }
+  std::uint32_t step = 1;
+  while (picture.width / step > kMostWidth || picture.height / step > kMostHeight) ++step;
+  if (step > 1) picture = reduced(picture, step);
+  std::uint8_t* webp = nullptr;
+  const std::size_t size =
+      WebPEncodeRGBA(picture.rgba.data(), static_cast<int>(picture.width), static_cast<int>(picture.height),
+                     static_cast<int>(4 * picture.width), kQuality, &webp);
+  std::string encoded(reinterpret_cast<const char*>(webp), size);
+  WebPFree(webp);
+  if (size == 0) return std::nullopt;
+  return PagePicture{"image/webp", std::move(encoded)};
 }
 
 }  // namespace carousel::shading

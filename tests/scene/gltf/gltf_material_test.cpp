@@ -1,29 +1,13 @@
 #include <cstdio>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include "scene/images/image_decode.h"
+#include "tests/scene/gltf/encode_image.h"
 #include "tests/scene/gltf/gltf_builder.h"
 
 namespace carousel::scene {
 namespace {
 
 using Json = nlohmann::json;
-
-std::vector<unsigned char> encode(const char* format, int width, int height, int channels,
-                                  const std::vector<unsigned char>& pixels) {
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput writer(bytes);
-  auto output = OIIO::ImageOutput::create(format);
-  OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  output->set_ioproxy(&writer);
-  EXPECT_TRUE(output->open(std::string("x.") + format, spec)) << output->geterror();
-  EXPECT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data())) << output->geterror();
-  output->close();
-  return bytes;
-}
 
 /// A square whose base colour texture is the image in buffer view `view`.
 GltfBuilder textured(const std::vector<unsigned char>& image) {
@@ -37,21 +21,76 @@ GltfBuilder textured(const std::vector<unsigned char>& image) {
 }
 
 TEST(ImageDecode, PngKeepsBytesAndDoesNotPremultiply) {
-  const Image image = decode_image(encode("png", 2, 1, 4, {200, 100, 50, 0, 10, 20, 30, 128}));
+  const Image image = decode_image(encode_png(2, 1, 4, {200, 100, 50, 0, 10, 20, 30, 128}));
   EXPECT_EQ(image.width, 2u);
   EXPECT_EQ(image.rgba, (std::vector<std::uint8_t>{200, 100, 50, 0, 10, 20, 30, 128}));
 }
 
 TEST(ImageDecode, GreyAndGreyAlphaAndRgbAreWidened) {
-  EXPECT_EQ(decode_image(encode("png", 1, 1, 1, {7})).rgba, (std::vector<std::uint8_t>{7, 7, 7, 255}));
-  EXPECT_EQ(decode_image(encode("png", 1, 1, 2, {7, 9})).rgba, (std::vector<std::uint8_t>{7, 7, 7, 9}));
-  EXPECT_EQ(decode_image(encode("png", 1, 1, 3, {1, 2, 3})).rgba, (std::vector<std::uint8_t>{1, 2, 3, 255}));
+  EXPECT_EQ(decode_image(encode_png(1, 1, 1, {7})).rgba, (std::vector<std::uint8_t>{7, 7, 7, 255}));
+  EXPECT_EQ(decode_image(encode_png(1, 1, 2, {7, 9})).rgba, (std::vector<std::uint8_t>{7, 7, 7, 9}));
+  EXPECT_EQ(decode_image(encode_png(1, 1, 3, {1, 2, 3})).rgba, (std::vector<std::uint8_t>{1, 2, 3, 255}));
 }
 
 TEST(ImageDecode, JpegIsRead) {
-  const Image image = decode_image(encode("jpg", 16, 16, 3, std::vector<unsigned char>(16 * 16 * 3, 128)));
+  const Image image = decode_image(encode_jpeg(16, 16, std::vector<unsigned char>(16 * 16 * 3, 128)));
   EXPECT_EQ(image.width, 16u);
   EXPECT_NEAR(image.rgba[0], 128, 2);
+}
+
+TEST(ImageDecode, JpegOfFourInksBecomesRgb) {
+  std::vector<unsigned char> inks;
+  for (int i = 0; i < 16 * 16; ++i) inks.insert(inks.end(), {255, 128, 0, 128});  // inverted: 255 is no ink
+  const Image image = decode_image(encode_jpeg(16, 16, inks, TJPF_CMYK));
+  EXPECT_NEAR(image.rgba[0], 128, 2);
+  EXPECT_NEAR(image.rgba[1], 64, 2);
+  EXPECT_NEAR(image.rgba[2], 0, 2);
+  EXPECT_EQ(image.rgba[3], 255);
+}
+
+/// A PNG with rows of `bytes` as they stand, and what libpng is asked for before it writes them.
+template <class Prepare>
+std::vector<unsigned char> raw_png(int width, int depth, int colour, const std::vector<unsigned char>& row,
+                                   const Prepare& prepare) {
+  std::vector<unsigned char> out;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_set_write_fn(
+      png, &out,
+      [](png_structp p, png_bytep data, std::size_t size) {
+        auto& to = *static_cast<std::vector<unsigned char>*>(png_get_io_ptr(p));
+        to.insert(to.end(), data, data + size);
+      },
+      nullptr);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), 1, depth, colour, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  prepare(png, info);
+  png_write_info(png, info);
+  png_write_row(png, row.data());
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  return out;
+}
+
+TEST(ImageDecode, PngOfEveryDepthIsWidened) {
+  // 16 bits are rounded: 0x80ff / 257 = 128.49. The file's curve, here linear, is not applied.
+  EXPECT_EQ(decode_image(raw_png(1, 16, PNG_COLOR_TYPE_RGB, {0x80, 0xff, 0x00, 0x7f, 0xff, 0xff},
+                                 [](png_structp png, png_infop info) { png_set_gAMA(png, info, 1.0); }))
+                .rgba,
+            (std::vector<std::uint8_t>{128, 0, 255, 255}));
+  // Four pixels of two bits.
+  EXPECT_EQ(decode_image(raw_png(4, 2, PNG_COLOR_TYPE_GRAY, {0b00011011}, [](png_structp, png_infop) {})).rgba,
+            (std::vector<std::uint8_t>{0, 0, 0, 255, 85, 85, 85, 255, 170, 170, 170, 255, 255, 255, 255, 255}));
+  // A palette of which the second colour is half transparent.
+  EXPECT_EQ(decode_image(raw_png(2, 8, PNG_COLOR_TYPE_PALETTE, {0, 1},
+                                 [](png_structp png, png_infop info) {
+                                   const png_color colours[] = {{1, 2, 3}, {4, 5, 6}};
+                                   const png_byte alpha[] = {255, 128};
+                                   png_set_PLTE(png, info, colours, 2);
+                                   png_set_tRNS(png, info, alpha, 2, nullptr);
+                                 }))
+                .rgba,
+            (std::vector<std::uint8_t>{1, 2, 3, 255, 4, 5, 6, 128}));
 }
 
 std::string reason_for_refusing(const std::vector<unsigned char>& bytes) {
@@ -64,7 +103,7 @@ std::string reason_for_refusing(const std::vector<unsigned char>& bytes) {
 }
 
 TEST(ImageDecode, EveryTruncationIsRefused) {
-  std::vector<unsigned char> bytes = encode("png", 16, 16, 3, std::vector<unsigned char>(16 * 16 * 3, 77));
+  std::vector<unsigned char> bytes = encode_png(16, 16, 3, std::vector<unsigned char>(16 * 16 * 3, 77));
   EXPECT_EQ(reason_for_refusing(bytes), "decoded");
   for (std::size_t size = bytes.size() - 1; size > 8; --size) {
     bytes.resize(size);
@@ -73,7 +112,7 @@ TEST(ImageDecode, EveryTruncationIsRefused) {
 }
 
 TEST(ImageDecode, WrongChecksumsAndForeignDataAreRefused) {
-  std::vector<unsigned char> bytes = encode("png", 1, 1, 1, {7});
+  std::vector<unsigned char> bytes = encode_png(1, 1, 1, {7});
   bytes[20] ^= 1;
   EXPECT_EQ(reason_for_refusing(bytes), "broken: a checksum does not match");
   EXPECT_EQ(reason_for_refusing(std::vector<unsigned char>(100, 'x')), "neither PNG nor JPEG nor WebP");
@@ -81,14 +120,14 @@ TEST(ImageDecode, WrongChecksumsAndForeignDataAreRefused) {
 }
 
 TEST(ImageDecode, BrokenJpegIsRefusedOrDecodedInPart) {
-  std::vector<unsigned char> bytes = encode("jpg", 16, 16, 3, std::vector<unsigned char>(16 * 16 * 3, 128));
+  std::vector<unsigned char> bytes = encode_jpeg(16, 16, std::vector<unsigned char>(16 * 16 * 3, 128));
   bytes.resize(40);
   EXPECT_EQ(reason_for_refusing(bytes).substr(0, 6), "broken");
 }
 
 TEST(ImageDecode, SizesThatTheBytesCannotHoldAreRefused) {
   // Width and height of IHDR set to 7937, with the checksum that belongs to them.
-  std::vector<unsigned char> bytes = encode("png", 1, 1, 1, {7});
+  std::vector<unsigned char> bytes = encode_png(1, 1, 1, {7});
   bytes[18] = bytes[22] = 0x1f;
   std::uint32_t crc = 0xffffffffu;
   for (std::size_t i = 12; i < 29; ++i) {
@@ -100,7 +139,7 @@ TEST(ImageDecode, SizesThatTheBytesCannotHoldAreRefused) {
 }
 
 TEST(GltfTexture, EmbeddedImageIsDecoded) {
-  const Scene scene = textured(encode("png", 1, 2, 3, {1, 2, 3, 4, 5, 6})).load();
+  const Scene scene = textured(encode_png(1, 2, 3, {1, 2, 3, 4, 5, 6})).load();
   ASSERT_EQ(scene.images.size(), 1u);
   EXPECT_EQ(scene.images[0].height, 2u);
   EXPECT_EQ(scene.images[0].rgba, (std::vector<std::uint8_t>{1, 2, 3, 255, 4, 5, 6, 255}));
@@ -110,7 +149,7 @@ TEST(GltfTexture, EmbeddedImageIsDecoded) {
 
 TEST(GltfTexture, ImageInADataUriIsDecoded) {
   GltfBuilder b = textured({1});
-  const std::vector<unsigned char> png = encode("png", 1, 1, 3, {9, 8, 7});
+  const std::vector<unsigned char> png = encode_png(1, 1, 3, {9, 8, 7});
   const auto* first = reinterpret_cast<const std::byte*>(png.data());
   b.json["images"][0] = {{"uri", "data:image/png;base64," + GltfBuilder::base64({first, first + png.size()})}};
   EXPECT_EQ(b.load().images.at(0).rgba, (std::vector<std::uint8_t>{9, 8, 7, 255}));
@@ -118,7 +157,7 @@ TEST(GltfTexture, ImageInADataUriIsDecoded) {
 
 TEST(GltfTexture, BrokenImageIsNamed) {
   expect_refused(textured(std::vector<unsigned char>(64, 'x')), "/images/0", "the image is neither PNG nor JPEG");
-  std::vector<unsigned char> cut = encode("png", 64, 64, 3, std::vector<unsigned char>(64 * 64 * 3, 77));
+  std::vector<unsigned char> cut = encode_png(64, 64, 3, std::vector<unsigned char>(64 * 64 * 3, 77));
   cut.resize(cut.size() / 2);
   expect_refused(textured(cut), "/images/0", "the image is broken");
 }
@@ -130,7 +169,7 @@ TEST(GltfTexture, ImageNobodyUsesIsNotDecoded) {
 }
 
 TEST(GltfTexture, OnlyImagesThatAreWantedAreDecoded) {
-  GltfBuilder b = textured(encode("png", 1, 2, 3, {1, 2, 3, 4, 5, 6}));
+  GltfBuilder b = textured(encode_png(1, 2, 3, {1, 2, 3, 4, 5, 6}));
   b.push("images", {{"uri", "nowhere.png"}, {"name", "missing"}});
   b.push("images", {{"bufferView", b.view(std::vector<unsigned char>(64, 'x'))}, {"mimeType", "image/png"}});
   b.push("textures", {{"source", 1}});
@@ -165,7 +204,7 @@ TEST(GltfTexture, ImageNeedsExactlyOneSource) {
 }
 
 TEST(GltfTexture, SamplerTransformAndUvSet) {
-  GltfBuilder b = textured(encode("png", 1, 1, 3, {9, 8, 7}));
+  GltfBuilder b = textured(encode_png(1, 1, 3, {9, 8, 7}));
   b.push("samplers", {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}});
   b.json["textures"][0]["sampler"] = 0;
   b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {
@@ -186,7 +225,7 @@ TEST(GltfTexture, SamplerTransformAndUvSet) {
 }
 
 TEST(GltfTexture, UsesThatCannotBeReadAreDroppedWithOneWarning) {
-  GltfBuilder b = textured(encode("png", 1, 1, 3, {9, 8, 7}));
+  GltfBuilder b = textured(encode_png(1, 1, 3, {9, 8, 7}));
   b.push("textures", Json::object());
   b.json["materials"][0]["normalTexture"] = {{"index", 1}};
   b.json["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 2}};

@@ -1,9 +1,7 @@
 #include "tests/scene/gltf/rich_model.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include "scene/builtin/mesh_shapes.h"
+#include "tests/scene/gltf/encode_image.h"
 
 namespace carousel::scene {
 
@@ -12,15 +10,9 @@ namespace {
 using Json = nlohmann::json;
 
 std::vector<unsigned char> png(int size) {
-  std::vector<unsigned char> bytes, pixels(static_cast<std::size_t>(size * size * 3));
+  std::vector<unsigned char> pixels(static_cast<std::size_t>(size * size * 3));
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<unsigned char>(i * i);
-  OIIO::Filesystem::IOVecOutput writer(bytes);
-  auto output = OIIO::ImageOutput::create("png");
-  output->set_ioproxy(&writer);
-  output->open("x.png", OIIO::ImageSpec(size, size, 3, OIIO::TypeDesc::UINT8));
-  output->write_image(OIIO::TypeDesc::UINT8, pixels.data());
-  output->close();
-  return bytes;
+  return encode_png(size, size, 3, pixels);
 }
 
 template <class V>

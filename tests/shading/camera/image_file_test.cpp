@@ -4,12 +4,17 @@
 #include <memory>
 #include <vector>
 
-#include <OpenImageIO/imageio.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputFile.h>
 #include <gtest/gtest.h>
+#include <png.h>
+#include <webp/decode.h>
 
 #include "core/numeric/fixed_point.h"
 #include "core/system/error.h"
 #include "shading/camera/film.h"
+#include "shading/camera/page_picture.h"
 #include "shading/camera/tone_curve.h"
 #include "tests/support/full_disk.h"
 
@@ -20,16 +25,30 @@ class ImageFile : public testing::Test {
  protected:
   ImageFile() { std::filesystem::create_directories(folder_); }
   ~ImageFile() override { std::filesystem::remove_all(folder_); }
-  template <class T>
-  static std::vector<T> read(const std::filesystem::path& path, OIIO::TypeDesc type) {
-    const auto file = OIIO::ImageInput::open(path.string());
-    EXPECT_TRUE(file) << OIIO::geterror();
-    if (!file) return {};
-    EXPECT_EQ(file->spec().width, 2);
-    EXPECT_EQ(file->spec().height, 1);
-    EXPECT_EQ(file->spec().nchannels, 3);
-    std::vector<T> pixels(6);
-    EXPECT_TRUE(file->read_image(0, 0, 0, 3, type, pixels.data()));
+  static std::vector<std::uint8_t> read_png(const std::filesystem::path& path) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    EXPECT_NE(png_image_begin_read_from_file(&image, path.c_str()), 0) << image.message;
+    EXPECT_EQ(image.format, png_uint_32{PNG_FORMAT_RGB});
+    EXPECT_EQ(image.width, 2u);
+    EXPECT_EQ(image.height, 1u);
+    std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+    EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0) << image.message;
+    return pixels;
+  }
+  static std::vector<float> read_exr(const std::filesystem::path& path) {
+    Imf::InputFile file(path.c_str());
+    EXPECT_EQ(file.header().dataWindow(), (IMATH_NAMESPACE::Box2i{{0, 0}, {1, 0}}));
+    EXPECT_EQ(file.header().compression(), Imf::ZIP_COMPRESSION);
+    std::vector<float> pixels(6);
+    Imf::FrameBuffer channels;
+    int c = 0;
+    for (const char* name : {"R", "G", "B"}) {
+      EXPECT_TRUE(file.header().channels().findChannel(name));
+      channels.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&pixels[c++]), 12, 24));
+    }
+    file.setFrameBuffer(channels);
+    file.readPixels(0, 0);
     return pixels;
   }
   const std::filesystem::path folder_ =
@@ -40,13 +59,32 @@ class ImageFile : public testing::Test {
 
 TEST_F(ImageFile, ExrKeepsEveryBit) {
   write_exr(folder_ / "a.exr", 2, 1, rgb_);
-  EXPECT_EQ(read<float>(folder_ / "a.exr", OIIO::TypeDesc::FLOAT), rgb_);
+  EXPECT_EQ(read_exr(folder_ / "a.exr"), rgb_);
 }
 
 TEST_F(ImageFile, PngIsDisplayReferred) {
   write_png(folder_ / "a.png", 2, 1, std::vector<float>{0, 0, 0, 1e9f, 1e9f, 1e9f});
-  const auto pixels = read<std::uint8_t>(folder_ / "a.png", OIIO::TypeDesc::UINT8);
+  const auto pixels = read_png(folder_ / "a.png");
   EXPECT_EQ(pixels, (std::vector<std::uint8_t>{0, 0, 0, 255, 255, 255}));
+}
+
+TEST_F(ImageFile, PagesHoldSmallPicturesAsTheyAreAndLargeOnesReduced) {
+  write_png(folder_ / "a.png", 2, 1, rgb_);
+  EXPECT_EQ(page_picture(folder_ / "a.png").value().mime_type, "image/png");
+  EXPECT_FALSE(page_picture(folder_ / "none.png"));
+  // Noise, which PNG cannot pack.
+  std::vector<float> noise(std::size_t{3} * 3300 * 300);
+  std::uint32_t state = 1;
+  for (float& value : noise) value = float((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f;
+  write_png(folder_ / "large.png", 3300, 300, noise);
+  const auto large = page_picture(folder_ / "large.png");
+  ASSERT_TRUE(large);
+  EXPECT_EQ(large->mime_type, "image/webp");
+  int width = 0, height = 0;
+  EXPECT_TRUE(
+      WebPGetInfo(reinterpret_cast<const std::uint8_t*>(large->bytes.data()), large->bytes.size(), &width, &height));
+  EXPECT_EQ(width, 1100);  // the least whole step below 1,600
+  EXPECT_EQ(height, 100);
 }
 
 TEST_F(ImageFile, LeavesNothingElseBehind) {
@@ -72,8 +110,8 @@ TEST_F(ImageFile, KeepsTheOldPictureWhenTheDiskIsFull) {
     EXPECT_THROW(write_png(folder_ / "a.png", 64, 64, noise), FileError);
     EXPECT_THROW(write_png(folder_ / "b.png", 64, 64, noise), FileError);
   }
-  EXPECT_EQ(read<float>(folder_ / "a.exr", OIIO::TypeDesc::FLOAT), rgb_);
-  EXPECT_EQ(read<std::uint8_t>(folder_ / "a.png", OIIO::TypeDesc::UINT8).size(), 6u);
+  EXPECT_EQ(read_exr(folder_ / "a.exr"), rgb_);
+  EXPECT_EQ(read_png(folder_ / "a.png").size(), 6u);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2);
 }
 
