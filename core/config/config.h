@@ -19,6 +19,7 @@
 #include "core/config/fields/packets.h"
 #include "core/config/fields/rays.h"
 #include "core/config/fields/report.h"
+#include "core/config/fields/sampling.h"
 #include "core/config/fields/scene.h"
 #include "core/config/fields/shading.h"
 #include "core/config/fields/testers.h"
@@ -61,6 +62,7 @@ struct Config {
   MemoryConfig memory;
   ShadingConfig shading;
   FaultsConfig faults;
+  SamplingConfig sampling;
   ReportConfig report;
   Verify verify = Verify::kNone;
   WorkloadConfig workload;
@@ -98,6 +100,7 @@ void describe(V& v, Config& c) {
            "The first surface that a pixel shows is found by camera rays, or by a rasteriser, which leaves the other "
            "rays to the machine and needs a pinhole.");
   v.section("faults", c.faults, "Faults that happen on request.");
+  v.section("sampling", c.sampling, "A part of the frame that stands for all of it.");
   v.section("report", c.report, "The report of a run.");
   v.choice("verify", c.verify,
            "With reference every ray is traced again, depth first, and compared. With effects the picture is computed "

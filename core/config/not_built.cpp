@@ -41,12 +41,20 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"testers.any_hit", "shader", kNative, "any-hit calls by shader workers"},
     {"testers.bundle_blocks", "", kNative, "clock for bundle units"},
     {"memory.fetch", "multicast", kBoth},
+    {"memory.l1_kib", "", kBoth, "a cache of one resource"},
+    {"memory.l1_ways", "", kBoth, "a cache of one resource"},
+    {"memory.l1_lines_per_cycle", "", kBoth, "a cache of one resource"},
+    {"memory.l1_mshrs", "", kBoth, "a cache of one resource"},
+    {"memory.l1_latency_cycles", "", kBoth, "a cache of one resource"},
     {"memory.l2_banks", "", kBoth, "a choice of banks"},
     {"memory.l2_mshrs", "", kBoth, "a bound of misses"},
     {"memory.l2_sector_bytes", "", kBoth, "a choice of sectors"},
     {"memory.l2_write", "back", kBoth},
     {"shading.idle_resources_shade", "true", kNative, "shading by idle resources"},
     {"shading.distribute", "", kNative, "choice of shader workers"},
+    {"sampling.fraction", "", kBoth, "sampled runs"},
+    {"sampling.strata", "", kBoth, "sampled runs"},
+    {"sampling.seed", "", kBoth, "sampled runs"},
 });
 
 std::string text_of(const Json& value) {

@@ -16,6 +16,7 @@ struct MemoryConfig {
   std::int64_t l2_banks = 1, l2_mshrs = 0;
   std::optional<std::int64_t> l2_sector_bytes;  ///< absent: a whole line
   enum class Write { kThrough, kBack } l2_write = Write::kThrough;
+  std::int64_t l1_kib = 0, l1_ways = 8, l1_lines_per_cycle = 1, l1_mshrs = 0, l1_latency_cycles = 20;
   DramConfig dram;
 };
 
@@ -45,11 +46,20 @@ void describe(V& v, MemoryConfig& c) {
   v.field("l2_banks", c.l2_banks, IntRange{1, 64}, "banks",
           "The number of banks of a shared cache, which hold its lines in turn.");
   v.field("l2_mshrs", c.l2_mshrs, IntRange{0, 65536}, "lines",
-          "The number of lines that a bank can have on their way from memory. With 0 there is no bound.");
+          "The number of lines, or sectors, that a bank can have on their way from memory. With 0 there is no bound.");
   v.field_or_auto("l2_sector_bytes", c.l2_sector_bytes, IntRange{16, 1024}, "bytes",
                   "The part of a line that is fetched by itself. With auto it is the whole line.");
   v.choice("l2_write", c.l2_write,
            "A line that is written goes on to memory at once, or when it is replaced in the shared cache.");
+  v.field("l1_kib", c.l1_kib, IntRange{0, 1 << 20}, "KiB",
+          "The size of a resource's own cache, before the shared one. With 0 there is none.");
+  v.field("l1_ways", c.l1_ways, IntRange{1, 64}, "ways", "The associativity of a resource's own cache.");
+  v.field("l1_lines_per_cycle", c.l1_lines_per_cycle, IntRange{1, 64}, "lines/cycle",
+          "The number of lines that a resource's own cache looks up in a cycle.");
+  v.field(
+      "l1_mshrs", c.l1_mshrs, IntRange{0, 65536}, "lines",
+      "The number of lines, or sectors, that a resource's own cache can have on their way. With 0 there is no bound.");
+  v.field("l1_latency_cycles", c.l1_latency_cycles, kCycles, "cycles", "The time of a hit in a resource's own cache.");
   v.field("l2_latency_cycles", c.l2_latency_cycles, kCycles, "cycles", "The time of a hit in the shared cache.");
   v.field("dram_latency_cycles", c.dram_latency_cycles, kCycles, "cycles",
           "The time of a miss; of DRAM with banks the way there and back.");

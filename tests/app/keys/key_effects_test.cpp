@@ -130,8 +130,8 @@ std::vector<std::string> leaves() {
   return out;
 }
 
-const std::vector<std::string> kScene{"scene.",  "camera.", "image.", "engine.",
-                                      "primary", "report.", "verify", "workload."};
+const std::vector<std::string> kScene{"scene.",  "camera.",   "image.", "engine.",  "primary",
+                                      "report.", "sampling.", "verify", "workload."};
 const std::vector<std::string> kMachine{"topology.", "rays.",    "packets.", "collections.",
                                         "memory.",   "shading.", "faults."};
 const std::vector<std::string> kTests{"bvh.", "accuracy.", "cull_planes.", "bundles.", "testers."};
