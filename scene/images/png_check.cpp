@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <string_view>
 
 namespace carousel::scene {
@@ -51,6 +52,12 @@ const char* png_fault(std::span<const unsigned char> bytes) {
     at += 12 + length;
   }
   return "the data ends early";
+}
+
+PngHeader read_png_header(std::span<const unsigned char> encoded) {
+  constexpr std::size_t kSignature = 8, kChunkHead = 8;
+  if (encoded.size() < kSignature + kChunkHead + 8) throw std::runtime_error("broken: the data ends early");
+  return {read_u32(encoded, kSignature + kChunkHead), read_u32(encoded, kSignature + kChunkHead + 4)};
 }
 
 }  // namespace carousel::scene

@@ -68,18 +68,7 @@ bool read_info(Reader& reader) {
   return true;
 }
 
-std::uint32_t read_u32(std::span<const unsigned char> bytes, std::size_t at) {  // big-endian
-  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 | std::uint32_t{bytes[at + 2]} << 8 |
-         bytes[at + 3];
-}
-
 }  // namespace
-
-PngHeader read_png_header(std::span<const unsigned char> encoded) {
-  constexpr std::size_t kSignature = 8, kChunkHead = 8;
-  if (encoded.size() < kSignature + kChunkHead + 8) throw std::runtime_error("broken: the data ends early");
-  return {read_u32(encoded, kSignature + kChunkHead), read_u32(encoded, kSignature + kChunkHead + 4)};
-}
 
 Image decode_png(std::span<const unsigned char> encoded) {
   Reader reader(encoded);

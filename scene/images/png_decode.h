@@ -7,13 +7,6 @@
 
 namespace carousel::scene {
 
-struct PngHeader {
-  std::uint32_t width = 0, height = 0;
-};
-
-/// Size of a PNG picture that png_fault() has nothing against.
-PngHeader read_png_header(std::span<const unsigned char> encoded);
-
 /// The pixels of a PNG picture that png_fault() has nothing against, as the file has them: palettes and fewer bits are
 /// widened, 16 bits rounded to 8, and neither the transfer curve nor alpha changes a colour. Allocates memory for the
 /// header's size, which the caller has to check first. Throws std::runtime_error with a reason.
