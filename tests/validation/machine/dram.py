@@ -82,10 +82,10 @@ class Channel:
             moves = [request for request in queue if open_row(request) and self.may_move(request, now)]
             changes = [request for request in queue if not open_row(request) and self.may_change_row(request, now)]
             if self.t["buses"] == 2:
-                row = changes[0] if changes else None
                 if served is None and moves:
                     served = moves[0]
                     queue.remove(served)
+                row = next((c for c in changes if served is None or c.bank != served.bank), None)
             elif served is None:
                 first = min(moves[:1] + changes[:1], key=queue.index, default=None)
                 if first in moves:
