@@ -22,8 +22,8 @@ struct MemoryTraceResult {
 };
 
 /// Plays requests, in the order of their cycles, to the memory of the configuration, without caches. A read of a pipe
-/// takes `memory.dram_latency_cycles` besides the time of its bytes; with banks the way there and back is left out. A request waits until the memory has room for it; it holds up those behind it only as the memory
-/// does.
+/// takes `memory.dram_latency_cycles` besides the time of its bytes; with banks the way there and back is left out. A
+/// request waits until the memory has room for it; it holds up those behind it only as the memory does.
 MemoryTraceResult run_memory_trace(const Config& config, const MemoryLog& requests, std::stop_token stop = {});
 
 }  // namespace carousel::ringbus
