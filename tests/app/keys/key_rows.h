@@ -182,7 +182,7 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.l2_banks", kTerrain, {"memory.l2_lines_per_cycle=1"}, {"2"}},
       {"memory.l2_mshrs", kTerrain, {}, {"1"}},
       {"memory.l2_sector_bytes", kTerrain, {"memory.line_bytes=128"}, {"32"}},
-      {"memory.l2_write", kTerrain},
+      {"memory.l2_write", kTerrain, {"collections.when_full=spill", "collections.capacity=64"}},
       {"memory.dram.preset", kTerrain},
       {"memory.dram.mapping", kTerrain, {"memory.dram.preset=gddr6_14"}},
       {"memory.dram.channels", kTerrain, {"memory.dram.preset=gddr6_14"}, {"1"}},
