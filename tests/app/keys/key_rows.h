@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/types/cost_table.h"
 #include "tests/app/keys/base_machines.h"
 
 namespace carousel {
@@ -61,10 +62,12 @@ inline std::vector<KeyRow> key_rows() {
       {"rays.slots_per_resource", kTerrain, {}, {"8"}},
       {"rays.placement", kNative},
       {"rays.reads_per_cycle", kTerrain, {}, {"1"}},
+      {"rays.query", kCornell},
       {"packets.rays", kTerrain, {}, {"4"}},
       {"packets.shapes", kTerrain},
       {"packets.carry", kTerrain, {"packets.carry=reference"}, {"data"}, {"memory.fetch=packet"}},
       {"packets.results", kTerrain},
+      {"packets.made_per", kTerrain},
       {"packets.ids_per_cycle", kTerrain, {}, {"1"}},
       {"collections.ready", kTerrain, {}, {"3"}},
       {"collections.traversal", kTerrain},
@@ -163,6 +166,9 @@ inline std::vector<KeyRow> key_rows() {
       {"testers.any_hit_unit.latency_cycles", kLayers, {}, {"90"}},
       {"testers.simd.lanes", kTerrain, {}, {"4"}},
       {"testers.simd.map", kTerrain},
+      {"testers.simd.reformat_cycles", kTerrain, {}, {"9"}},
+      {"testers.window", kTerrain, {}, {"4"}},
+      {"testers.own_rays", kTerrain},
       {"testers.contexts", kTerrain, {}, {"3"}},
       {"testers.any_hit", kLayers},
       {"testers.bundle_blocks", kBundles, {"bundles.order=parallel"}},
@@ -227,6 +233,10 @@ inline std::vector<KeyRow> key_rows() {
        {"faults.resource.kind=stop", "faults.resource.after_rays=20", "faults.resource.silence_cycles=1000"},
        {"9000"}},
       {"faults.compare", kLinks},
+      {"energy.profile", kTerrain},
+      {"area.budget_mm2", kTerrain, {}, {"9"}},
+      {"area.fit", kTerrain},
+      {"area.link_mm", kTerrain, {}, {"9"}},
       {"sampling.fraction", kTerrain, {}, {"0.25"}},
       {"sampling.strata", kTerrain, {}, {"4"}},
       {"sampling.seed", kTerrain, {}, {"2"}},
@@ -249,11 +259,13 @@ inline std::vector<KeyRow> key_rows() {
 
 /// Keys without a row, for a reason.
 inline std::vector<std::string> keys_without_a_row() {
-  return {
+  std::vector<std::string> keys{
       "schema_version",         // it has one value
       "vary",                   // it is for sweeps; `run` warns of it
       "workload.memory_trace",  // it replaces the machine; memory_trace_test.cpp has it
   };
+  for (const CostRow& row : kCostTable) keys.push_back(std::string(row.section) + "." + std::string(row.key));
+  return keys;
 }
 
 }  // namespace carousel
