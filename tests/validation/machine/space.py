@@ -59,6 +59,8 @@ def draw(seed, index):
                                                  "row_column_bank_group"]),
                                 "queue": pick([1, 2, 5, 32]), "period_ps": pick(["auto", 250, 1000, 1701]),
                                 "refresh": pick([True, True, False]), "refresh_cycles": pick(["auto", 40])}
+    config["testers"]["simd"] = {"lanes": pick([1, 1, 2, 5, 8]), "map": pick(["rays", "shapes"]),
+                                 "reformat_cycles": pick([0, 1, 6])}
     memory = config["memory"]
     if r.random() < 0.5:
         line = memory["line_bytes"]
