@@ -35,6 +35,7 @@ class Rules {
     shapes_reach_the_resources();
     effects_are_known();
     ordered_needs_strips();
+    query_needs_a_file();
     hashed_homes_spill();
     cache_holds_a_set();
     config::check_network(c, options_.force,
@@ -46,6 +47,12 @@ class Rules {
  private:
   void issue(const std::string& key, std::string message) {
     issues_.push_back({positions_.find(key), key, std::move(message)});
+  }
+
+  void query_needs_a_file() {
+    if (c.rays.query != Query::kClosest && c.workload.kind != WorkloadConfig::Kind::kRaysFrom)
+      issue("rays.query",
+            "a picture's shaders say which hits they look for; expected closest, or workload: {rays_from: FILE}");
   }
 
   void one_scene() {
