@@ -123,6 +123,8 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   }
   r.memory = memory(c, config.memory);
   r.bytes = bytes(c);
+  r.shading.products = c.shading_products;
+  r.shading.lookups = c.shading_lookups;
   r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 

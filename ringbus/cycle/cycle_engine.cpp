@@ -112,6 +112,8 @@ class CycleRun {
     CycleResult& c = out.cycle.emplace();
     c.cycles = end;
     c.shading_busy = machine_.shading().busy();
+    c.shading_products = machine_.shading().products();
+    c.shading_lookups = machine_.shading().lookups();
     c.residence = machine_.shading().residence();
     out.rays_restarted = machine_.shading().rays_restarted();
     out.paths_restarted = machine_.shading().paths_restarted();
