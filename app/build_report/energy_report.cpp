@@ -17,10 +17,10 @@ using report::ratio;
 
 namespace {
 
-constexpr double kWord = 8;  ///< bytes of an access
-constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
-
 class Account {
+  static constexpr double kWord = 8;  ///< bytes of an access
+  static constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
+
  public:
   Account(const report::Report& r, const Config& config, double link_mm)
       : r_(r), c_(config), link_mm_(link_mm), rays_kib_(static_cast<double>(config.rays.slots_per_resource) / 16) {}
