@@ -5,6 +5,7 @@
 #include "accel/traverse/kernels.h"
 #include "app/build_report/cycle_sections.h"
 #include "app/build_report/effects.h"
+#include "app/build_report/energy_report.h"
 #include "app/build_report/ring_sections.h"
 #include "app/build_report/series.h"
 #include "app/host/machine_info.h"
@@ -127,6 +128,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   add_effects(r.shading, prepared.scene, config);
   if (result.series) (result.cycle ? r.time_series : r.host.time_series) = series_section(*result.series);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
+  add_energy(r, config);
   if (result.rays_restarted > 0 || (result.cycle && result.cycle->stop)) r.faults.emplace().stop = stop(config, result);
   if (verifying) r.verify = verify(*verifying);
   r.digest = {job.hits_digest(), job.image_digest()};

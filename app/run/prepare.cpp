@@ -12,6 +12,7 @@
 #include "accel/build/build.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/kernels.h"
+#include "app/area/machine_area.h"
 #include "app/host/log.h"
 #include "app/host/machine_info.h"
 #include "app/run/memory_need.h"
@@ -166,6 +167,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
                  const std::function<void(const Config&)>& before_scene) {
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
+  fit_area(p.located);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   if (before_scene) before_scene(p.config());
   prepare_located(p, keep_hits);
@@ -175,6 +177,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets) {
   Prepared p;
   p.located = load_config({text, name}, sets, {.force = true});
+  fit_area(p.located);
   prepare_located(p, false);
   return p;
 }

@@ -17,7 +17,14 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
   const auto workers = static_cast<std::size_t>(shader_workers(config));
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
-    list_ = std::make_unique<RayListWorkload>(report::read_rays_csv(path), workers);
+    RayBatch rays = report::read_rays_csv(path);
+    if (config.rays.query == Query::kAny) {
+      for (RayRequest& ray : rays) {
+        ray.tag.kind = RayKind::kShadow;  // the kind whose way ends at any hit
+        ray.tag.flags &= static_cast<std::uint8_t>(~kRayClosest);
+      }
+    }
+    list_ = std::make_unique<RayListWorkload>(std::move(rays), workers);
     first_rays_ = list_->size();
   } else {
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);

@@ -59,6 +59,9 @@ std::vector<ResultColumn> result_columns(const std::vector<std::string>& paths) 
                                 {"gain", ""},
                                 {"bytes", ""},
                                 {"tests_per_ray", "throughput.tests_per_ray"},
+                                {"nj_per_ray", "energy.nj_per_ray"},
+                                {"mm2", "area.mm2"},
+                                {"mrays_per_second_per_mm2", "area.mrays_per_second_per_mm2", true},
                                 {"host_rays_per_second", "host.rays_per_second", true}};
   for (const std::string& path : paths) out.push_back({path, path, path.find("rays_per") != path.npos});
   return out;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ class Rules {
     shapes_reach_the_resources();
     effects_are_known();
     ordered_needs_strips();
+    query_needs_a_file();
     hashed_homes_spill();
     cache_holds_a_set();
     config::check_network(c, options_.force,
@@ -45,6 +47,12 @@ class Rules {
  private:
   void issue(const std::string& key, std::string message) {
     issues_.push_back({positions_.find(key), key, std::move(message)});
+  }
+
+  void query_needs_a_file() {
+    if (c.rays.query != Query::kClosest && c.workload.kind != WorkloadConfig::Kind::kRaysFrom)
+      issue("rays.query",
+            "a picture's shaders say which hits they look for; expected closest, or workload: {rays_from: FILE}");
   }
 
   void one_scene() {
@@ -102,6 +110,7 @@ class Rules {
         issue(key, fmt::format("DRAM with banks moves 32 bytes at a time; expected a multiple of 32, found {}", bytes));
     };
     whole("memory.line_bytes", c.memory.line_bytes);
+    if (c.memory.l2_sector_bytes) whole("memory.l2_sector_bytes", *c.memory.l2_sector_bytes);
     whole("memory.dram.interleave_bytes", c.memory.dram.interleave_bytes);
   }
 
@@ -276,6 +285,16 @@ class Rules {
       issue("memory.ways", fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the "
                                        "cache; expected at most {}, found {}",
                                        c.memory.l2_kib, lines, c.memory.line_bytes, lines, c.memory.ways));
+    // Sets that a cache does not have would be left out of it.
+    const std::int64_t sets = c.memory.ways * c.memory.line_bytes * c.memory.l2_banks;
+    const std::int64_t step = sets / std::gcd(sets, std::int64_t{1024});
+    if (c.memory.ways <= lines && c.memory.l2_kib % step != 0)
+      issue("memory.l2_kib", fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; "
+                                         "expected a multiple of {}, found {}",
+                                         c.memory.ways, c.memory.line_bytes, step, c.memory.l2_kib));
+    if (c.memory.l2_sector_bytes && c.memory.line_bytes % *c.memory.l2_sector_bytes != 0)
+      issue("memory.l2_sector_bytes", fmt::format("a line has whole sectors; expected a divisor of {}, found {}",
+                                                  c.memory.line_bytes, *c.memory.l2_sector_bytes));
   }
 
   void hashed_homes_spill() {

@@ -18,6 +18,7 @@ std::string run_page(const Json& report, const Picture& picture) {
       {"waits", "Waiting, ranked", waits_section(report)},
       {"gains", "Gain of a better part", gains_section(report, schema)},
       {"bytes", "Bytes by wire", bytes_section(report, schema)},
+      {"energy", "Energy and area", energy_section(report, schema)},
       {"time", "Over time", time_section(report)},
       {"latency", "Latency", latency_section(report)},
       {"collections", "Collections", collections_section(report, schema)},

@@ -17,6 +17,7 @@ std::string cycles_section(const nlohmann::ordered_json& report);
 std::string waits_section(const nlohmann::ordered_json& report);
 std::string gains_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 std::string bytes_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
+std::string energy_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 std::string time_section(const nlohmann::ordered_json& report);
 std::string latency_section(const nlohmann::ordered_json& report);
 std::string collections_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);

@@ -5,6 +5,7 @@
 #include "core/statistics/raster_counts.h"
 #include "report/sections/bottleneck.h"
 #include "report/sections/bytes.h"
+#include "report/sections/costs.h"
 #include "report/sections/cull_planes.h"
 #include "report/sections/engine.h"
 #include "report/sections/faults.h"
@@ -53,6 +54,9 @@ struct Report {
   std::optional<Traffic> traffic;
   std::optional<MemoryTrace> memory_trace;
   Shading shading;
+  std::optional<Energy> energy;
+  std::optional<Area> area;
+  std::optional<std::vector<CostConstant>> costs;
   std::optional<Bound> bound;
   std::optional<Bottleneck> bottleneck;
   std::optional<Faults> faults;
@@ -88,6 +92,9 @@ void describe(V& v, const Report& r) {
   v.section("traffic", r.traffic, "the network alone, when workload is traffic");
   v.section("memory_trace", r.memory_trace, "the memory alone, when workload is memory_trace");
   v.section("shading", r.shading, "shader workers and effects of light");
+  v.section("energy", r.energy, "energy of the simulated machine, with energy.profile");
+  v.section("area", r.area, "area of the simulated machine, with energy.profile");
+  v.section("costs", r.costs, "every number of energy and area, with its source");
   v.section("bound", r.bound, "rate that each class of parts alone would allow");
   v.section("bottleneck", r.bottleneck, "class of parts that limits the machine, found by relaxing each in turn");
   v.section("faults", r.faults, "faults that were asked for and their cost");

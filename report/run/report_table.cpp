@@ -209,6 +209,31 @@ void bottleneck_lines(Table& table, const Bottleneck& b) {
                100 * b.deviation);
 }
 
+void energy_lines(Table& table, const Report& report) {
+  const Energy& e = *report.energy;
+  table.line("energy", "{:.4g} nJ a ray   {:.4g} mJ in all   {:.4g} W at the clock   {:.4g} Mrays a joule",
+             e.nj_per_ray, 1e3 * e.joules, e.watts, 1e-6 * e.rays_per_joule);
+  double tests = 0, links = 0, stores = 0, dram = 0, shading = 0;
+  for (const auto [kind, part] : e.parts.units) tests += part.joules;
+  const auto sum = [&](double& to, std::initializer_list<EnergyPart> parts) {
+    for (const EnergyPart part : parts) to += e.parts.others[static_cast<std::size_t>(part)].joules;
+  };
+  using enum EnergyPart;
+  sum(stores, {kRayStore, kCollections, kShapeBuffers, kStacks, kL2});
+  sum(links, {kPorts, kWires, kMessages, kMessageWires});
+  sum(dram, {kDram, kActivations});
+  sum(shading, {kShades, kProducts, kLookups});
+  const auto part = [&](double joules) { return percent(ratio(joules, e.joules)); };
+  table.line("", "tests {}   stores {}   wires {}   DRAM {}   shading {}", part(tests), part(stores), part(links),
+             part(dram), part(shading));
+  const Area& a = *report.area;
+  Items items;
+  for (std::size_t i = 0; i < kAreaParts.size(); ++i)
+    if (a.parts.of[i].mm2 > 0) items.add(kAreaParts[i].name, percent(ratio(a.parts.of[i].mm2, a.mm2)));
+  table.line("area", "{:.4g} mm2   {:.4g} Mrays/s on each   {}", a.mm2, a.mrays_per_second_per_mm2.value_or(0),
+             items.text());
+}
+
 std::string image_text(const nlohmann::ordered_json& config) {
   const auto image = config.find("image");
   if (image == config.end()) return "";
@@ -265,6 +290,7 @@ std::string report_table(const Report& report) {
   if (report.bound && !report.bound->classes.empty())
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
                report.bound->classes.front().name, percent(report.bound->reached));
+  if (report.energy && report.area) energy_lines(table, report);
   if (report.tests) test_line(table, *report.tests);
   if (report.cull_planes) cull_plane_lines(table, report);
   packet_lines(table, report);

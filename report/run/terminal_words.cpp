@@ -5,6 +5,7 @@
 #include "core/statistics/intersection_counts.h"
 #include "core/statistics/stall_counts.h"
 #include "core/types/unit_kind.h"
+#include "report/sections/costs.h"
 
 namespace carousel::report {
 
@@ -104,6 +105,24 @@ void cycle_words(Words& w) {
       "N rays per kilocycle by *, reached N", "bound.rays_per_kilocycle",
       "the rate that the tightest class of parts would allow if it were busy all the time, and the part "
       "of it that the run reached");
+}
+
+void energy_words(Words& w) {
+  w.line("energy")
+      .item("N nJ a ray", "energy.nj_per_ray")
+      .item("N mJ in all", "energy.joules")
+      .item("N W at the clock", "energy.watts")
+      .item("N Mrays a joule", "energy.rays_per_joule")
+      .item("tests N", "energy.parts", "part of the energy that the test units take")
+      .item("stores N", "energy.parts",
+            "part of the ray stores, collections, shape buffers, stacks and L2 caches: their accesses")
+      .item("wires N", "energy.parts", "part of the packets and other messages: their ports and wires")
+      .item("DRAM N", "energy.parts", "part of the memory: bytes and activations")
+      .item("shading N", "energy.parts", "part of the shader workers");
+  w.line("area").item("N mm2", "area.mm2").item("N Mrays/s on each", "area.mrays_per_second_per_mm2");
+  for (const AreaPartRow& row : kAreaParts)
+    w.item(std::string(row.name) + " N", std::string("area.parts.") + row.key,
+           std::string("part of the area: ") + row.meaning);
 }
 
 void test_words(Words& w) {
@@ -240,6 +259,7 @@ std::vector<TerminalWord> terminal_words() {
   machine_words(w);
   ray_words(w);
   cycle_words(w);
+  energy_words(w);
   test_words(w);
   packet_words(w);
   resource_words(w);

@@ -126,6 +126,7 @@ void describe(V& v, const EffectsProof& r) {
 struct Shading {
   std::uint64_t workers = 0, shaded = 0, saturated = 0;
   std::optional<double> utilisation{};
+  std::optional<std::uint64_t> products{}, lookups{};
   std::vector<Effect> effects{};
   std::string effects_choice{};
   std::uint64_t path_state_bytes = 0;
@@ -141,6 +142,9 @@ void describe(V& v, const Shading& r) {
   v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
   v.field("utilisation", r.utilisation, "fraction",
           "fraction of the workers' cycles spent on shading and on making camera rays");
+  v.field("products", r.products, "products",
+          "products of the surfaces' effects, beyond those of plain surfaces (cycle)");
+  v.field("lookups", r.lookups, "lookups", "filtered texture lookups at surfaces (cycle)");
   v.section("effects", r.effects, "every effect of light");
   v.field("effects_choice", r.effects_choice, "",
           "shading.effects: auto, all, or the list; a list changes digest.image");

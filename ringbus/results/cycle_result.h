@@ -110,8 +110,9 @@ struct CycleResult {
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;
-  std::optional<DramUse> dram;  ///< of DRAM with banks
-  Cycle shading_busy = 0;       ///< worker-cycles, without resources that help
+  std::optional<DramUse> dram;                              ///< of DRAM with banks
+  Cycle shading_busy = 0;                                   ///< worker-cycles, without resources that help
+  std::uint64_t shading_products = 0, shading_lookups = 0;  ///< of ShadeWork
   std::uint64_t hops = 0;
   Log2Histogram residence;        ///< of rays, from their slot until shading has their hit
   std::optional<IdsAtOnce> ids;   ///< where there are collections

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <new>
 
+#include "app/area/machine_area.h"
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
 #include "app/host/interrupt.h"
@@ -34,6 +35,7 @@ std::optional<PointError> run_point(const SweepSetup& setup, Prepared& prepared,
     const auto start = std::chrono::steady_clock::now();
     const InterruptScope interrupt;
     prepared.located = load_config(setup.source, point.sets);
+    fit_area(prepared.located);
     prepared.threads = point_threads(prepared.config());
     const bool traffic = prepared.config().workload.kind == WorkloadConfig::Kind::kTraffic;
     report::Report report;

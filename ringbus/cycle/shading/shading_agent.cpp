@@ -167,9 +167,10 @@ bool ShadingAgent::start_jobs(Cycle now) {
   return any;
 }
 
-Cycle ShadingAgent::cycles_for(const RayResult& ray) const {
-  if (lookup_cycles_ == 0 && products_per_cycle_ == 0) return shade_cycles_;
+Cycle ShadingAgent::cycles_for(const RayResult& ray) {
   const ShadeWork work = workload_.extra_work(ray);
+  products_ += work.products;
+  lookups_ += work.lookups;
   const Cycle products = products_per_cycle_ == 0 ? 0 : ceil_div(work.products, products_per_cycle_);
   return shade_cycles_ + lookup_cycles_ * work.lookups + products;
 }

@@ -66,6 +66,9 @@ class ShadingAgent final : public Agent {
   Cycle last_event() const { return now_; }
   /// Worker-cycles spent on jobs that are done: shading, camera rays and any-hit calls.
   Cycle busy() const { return busy_; }
+  /// The work of shading beyond that of plain surfaces, of all rays that began to be shaded.
+  std::uint64_t products() const { return products_; }
+  std::uint64_t lookups() const { return lookups_; }
   /// How long rays were in slots, from being given one until their hit came to shading.
   const Log2Histogram& residence() const { return residence_; }
   const Trace& trace() const { return trace_; }
@@ -112,7 +115,7 @@ class ShadingAgent final : public Agent {
   void take_questions(Cycle now);
   bool finish_jobs(Cycle now);
   bool start_jobs(Cycle now);
-  Cycle cycles_for(const RayResult& ray) const;
+  Cycle cycles_for(const RayResult& ray);
   bool start_job(std::uint32_t worker, Cycle now);
   /// Takes the next camera rays from the workload, for a worker to make; returns how many there are.
   std::size_t take_camera_rays(std::uint32_t worker);
@@ -157,6 +160,7 @@ class ShadingAgent final : public Agent {
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0;
   std::uint64_t outstanding_ = 0, emitted_ = 0, completed_ = 0;
   Cycle now_ = 0, busy_ = 0;
+  std::uint64_t products_ = 0, lookups_ = 0;
   Recording recording_;
   Cycle shade_began_ = 0;  // of the followed ray
   CounterSamples samples_;

@@ -6,6 +6,7 @@
 #include "core/config/config.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/types/ids.h"
+#include "ringbus/cycle/testers/lanes.h"
 #include "ringbus/cycle/testers/level_cycles.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/cycle/testers/unit_passes.h"
@@ -20,7 +21,8 @@ namespace carousel::ringbus::cycle {
 /// is, and its planes when its boxes have been; or, by `cull_planes.order`, its planes first and then the boxes that
 /// are left. A matrix that is inverted first takes its passes through the transform units ahead of the rays. Records of
 /// rays and bundles come from the store one after another if its port is narrow, and rays that leave a bundle are
-/// tested after it. Primitives of all kinds are tested beside each other and beside boxes, where a node holds both.
+/// tested after it. A unit of several lanes starts a vector of tests at a time (lanes.h). Primitives of all kinds are
+/// tested beside each other and beside boxes, where a node holds both.
 class Tester {
  public:
   using Order = CullPlanesConfig::Order;
@@ -30,6 +32,7 @@ class Tester {
                   std::int64_t regrouped_per_cycle = 1)
       : store_({std::max<std::int64_t>(1, reads_per_cycle), 1, 1}),
         builder_({regrouped_per_cycle, 1, 1}),
+        lanes_(config.simd),
         blocks_(config.bundle_blocks),
         order_(order),
         reads_cost_(reads_per_cycle > 0),
@@ -44,15 +47,15 @@ class Tester {
                                 bundled = bundle_tests(read, bundles);
     const Cycle inverse = inverted(bundled.first, counts);
     const UnitBank::Reservation moved = tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)},
-                                               passes_of(UnitKind::kTransform, counts));
-    const Cycle end = std::max(boxes(moved, counts), primitives(moved, counts));
+                                               lanes_.starts(passes_of(UnitKind::kTransform, counts), reads));
+    const Cycle end = std::max(boxes(moved, counts, reads), primitives(moved, counts, reads)) + lanes_.reformatting();
     return bundles.regrouped == 0 ? end : builder_.reserve(end, bundles.regrouped).last;
   }
 
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const RayTests& ray) {
     const auto beside = [&](UnitKind kind, Cycle from) {
-      return banks_[kind].reserve_beside(from, ray.tests[kind]).last;
+      return banks_[kind].reserve_beside(from, lanes_.starts(ray.tests[kind], 1)).last;
     };
     if (ray.inversion > 0) at = invert(at, ray.inversion);
     const Cycle moved = beside(UnitKind::kTransform, at);
@@ -138,20 +141,22 @@ class Tester {
     UnitBank& bank = banks_[blocks_ == Blocks::kShared ? UnitKind::kBox : UnitKind::kBundle];
     return tested(bank, tested(bank, read, blocks_ == Blocks::kPairs ? passes.at_once : passes.first), passes.second);
   }
-  Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts) {
+  Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts, std::uint64_t rays) {
     UnitBank &box = banks_[UnitKind::kBox], &plane = banks_[UnitKind::kPlane];
+    const std::uint64_t box_starts = lanes_.starts(counts.box, rays), plane_starts = lanes_.starts(counts.plane, rays);
     if (order_ == Order::kBoxFirst || counts.plane == 0)
-      return tested(plane, tested(box, moved, counts.box), counts.plane).last;
-    return tested(box, tested(plane, moved, counts.plane), counts.box).last;
+      return tested(plane, tested(box, moved, box_starts), plane_starts).last;
+    return tested(box, tested(plane, moved, plane_starts), box_starts).last;
   }
-  Cycle primitives(const UnitBank::Reservation& moved, const IntersectionCounts& counts) {
+  Cycle primitives(const UnitBank::Reservation& moved, const IntersectionCounts& counts, std::uint64_t rays) {
     UnitBank::Reservation met = moved;
     for (const UnitKindRow& row : kUnitKinds) {
       if (row.stage != Stage::kPrimitive || counts.*row.tests == 0) continue;
-      const UnitBank::Reservation own = tested(banks_[row.kind], moved, passes_of(row.kind, counts));
+      const UnitBank::Reservation own =
+          tested(banks_[row.kind], moved, lanes_.starts(passes_of(row.kind, counts), rays));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
-    return tested(banks_[UnitKind::kAnyHit], met, lookups(counts)).last;
+    return tested(banks_[UnitKind::kAnyHit], met, lanes_.starts(lookups(counts), rays)).last;
   }
   /// Any-hit calls that units of the resource answer.
   std::uint64_t lookups(const IntersectionCounts& counts) const { return inline_ ? counts.any_hit_calls : 0; }
@@ -159,6 +164,7 @@ class Tester {
 
   PerUnit<UnitBank> banks_;
   UnitBank store_, builder_;
+  Lanes lanes_;
   TestersConfig::BundleBlocks blocks_;
   PerUnit<Ledger> units_;
   Ledger ray_reads_;

@@ -20,7 +20,7 @@ struct KeyRow {
 /// One row, or several, for every key.
 inline std::vector<KeyRow> key_rows() {
   using enum BaseMachine;
-  return {
+  std::vector<KeyRow> rows{
       {"scene.file", kLayers, {}, {"other.gltf"}},
       {"scene.builtin", kTerrain},
       {"scene.procedural", kProcedural},
@@ -164,9 +164,9 @@ inline std::vector<KeyRow> key_rows() {
        {"1"}},
       {"testers.any_hit_unit.interval_cycles", kLayers, {"testers.any_hit_unit.units=1"}, {"40"}},
       {"testers.any_hit_unit.latency_cycles", kLayers, {}, {"90"}},
-      {"testers.simd.lanes", kTerrain, {}, {"4"}},
-      {"testers.simd.map", kTerrain},
-      {"testers.simd.reformat_cycles", kTerrain, {}, {"9"}},
+      {"testers.simd.lanes", kTerrain, {"testers.box.units=1"}, {"4"}},
+      {"testers.simd.map", kTerrain, {"testers.box.units=1", "testers.simd.lanes=8"}},
+      {"testers.simd.reformat_cycles", kTerrain, {"testers.simd.lanes=8"}, {"9"}},
       {"testers.window", kTerrain, {}, {"4"}},
       {"testers.own_rays", kTerrain},
       {"testers.contexts", kTerrain, {}, {"3"}},
@@ -188,7 +188,7 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.l2_banks", kTerrain, {"memory.l2_lines_per_cycle=1"}, {"2"}},
       {"memory.l2_mshrs", kTerrain, {}, {"1"}},
       {"memory.l2_sector_bytes", kTerrain, {"memory.line_bytes=128"}, {"32"}},
-      {"memory.l2_write", kTerrain},
+      {"memory.l2_write", kTerrain, {"collections.when_full=spill", "collections.capacity=64"}},
       {"memory.dram.preset", kTerrain},
       {"memory.dram.mapping", kTerrain, {"memory.dram.preset=gddr6_14"}},
       {"memory.dram.channels", kTerrain, {"memory.dram.preset=gddr6_14"}, {"1"}},
@@ -234,9 +234,9 @@ inline std::vector<KeyRow> key_rows() {
        {"9000"}},
       {"faults.compare", kLinks},
       {"energy.profile", kTerrain},
-      {"area.budget_mm2", kTerrain, {}, {"9"}},
-      {"area.fit", kTerrain},
-      {"area.link_mm", kTerrain, {}, {"9"}},
+      {"area.budget_mm2", kTerrain, {"energy.profile=n45"}, {"30"}},
+      {"area.fit", kTerrain, {"energy.profile=n45", "area.budget_mm2=300"}},
+      {"area.link_mm", kTerrain, {"energy.profile=n45"}, {"9"}},
       {"sampling.fraction", kTerrain, {}, {"0.25"}},
       {"sampling.strata", kTerrain, {}, {"4"}},
       {"sampling.seed", kTerrain, {}, {"2"}},
@@ -255,17 +255,19 @@ inline std::vector<KeyRow> key_rows() {
       {"workload.traffic.hotspot_fraction", kTraffic, {"workload.traffic.pattern=hotspot"}, {"0.9"}},
       {"workload.traffic.burst_packets", kTraffic, {"workload.traffic.pattern=bursty"}, {"2"}},
   };
+  for (const CostRow& row : kCostTable)
+    rows.push_back(
+        {std::string(row.section) + "." + std::string(row.key), kTerrain, {"energy.profile=n45"}, {"12345"}});
+  return rows;
 }
 
 /// Keys without a row, for a reason.
 inline std::vector<std::string> keys_without_a_row() {
-  std::vector<std::string> keys{
+  return {
       "schema_version",         // it has one value
       "vary",                   // it is for sweeps; `run` warns of it
       "workload.memory_trace",  // it replaces the machine; memory_trace_test.cpp has it
   };
-  for (const CostRow& row : kCostTable) keys.push_back(std::string(row.section) + "." + std::string(row.key));
-  return keys;
 }
 
 }  // namespace carousel

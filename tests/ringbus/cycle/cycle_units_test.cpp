@@ -9,6 +9,7 @@
 #include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/memory/memory.h"
 #include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 
 namespace carousel::ringbus::cycle {
@@ -42,6 +43,46 @@ TEST(UnitBank, NoTestsTakeNoTime) {
   bank.reserve(0, 2);
   EXPECT_EQ(bank.reserve(1, 0).last, 1u);
   EXPECT_EQ(bank.busy(), 5u);
+}
+
+// ---- lanes
+
+/// The cycle of the last answer to box tests of some rays against some boxes each, by two units with lanes.
+Cycle boxes_end(TestersConfig::Simd simd, std::uint64_t rays, std::uint64_t boxes) {
+  TestersConfig config;
+  config.simd = simd;
+  config.units[UnitKind::kBox] = {2, 3, 10};
+  IntersectionCounts counts;
+  counts.box = rays * boxes;
+  return Tester(config).strip(100, counts, rays);
+}
+
+TEST(Lanes, EachHoldsARayAndTheShapesStreamPast) {
+  using enum TestersConfig::Simd::Map;
+  // 10 rays in 4 lanes are 3 vectors; against 5 boxes 15 starts, on two units 8 rounds of 3 cycles.
+  EXPECT_EQ(boxes_end({4, kRays, 0}, 10, 5), 100u + 7 * 3 + 10);
+  EXPECT_EQ(boxes_end({4, kRays, 6}, 10, 5), 100u + 7 * 3 + 10 + 6) << "the results are reformatted";
+  EXPECT_EQ(boxes_end({64, kRays, 0}, 10, 5), 100u + 2 * 3 + 10) << "lanes stay empty";
+  EXPECT_EQ(boxes_end({1, kRays, 6}, 10, 5), 100u + 24 * 3 + 10) << "one lane: each test by itself";
+}
+
+TEST(Lanes, EachHoldsAShapeAndTheRaysStreamPast) {
+  using enum TestersConfig::Simd::Map;
+  // 5 boxes in 4 lanes are 2 vectors; 10 rays make 20 starts, on two units 10 rounds.
+  EXPECT_EQ(boxes_end({4, kShapes, 0}, 10, 5), 100u + 9 * 3 + 10);
+  EXPECT_EQ(boxes_end({8, kShapes, 2}, 10, 5), 100u + 4 * 3 + 10 + 2);
+  EXPECT_EQ(boxes_end({1, kShapes, 2}, 10, 5), 100u + 24 * 3 + 10);
+}
+
+TEST(Lanes, ASingleRayFillsOneLaneOrItsShapesDo) {
+  TestersConfig config;
+  config.units[UnitKind::kBox] = {1, 1, 10};
+  IntersectionCounts counts;
+  counts.box = 8;
+  config.simd = {4, TestersConfig::Simd::Map::kRays, 5};
+  EXPECT_EQ(Tester(config).ray(100, counts), 100u + 7 + 10);
+  config.simd.map = TestersConfig::Simd::Map::kShapes;
+  EXPECT_EQ(Tester(config).ray(100, counts), 100u + 1 + 10);
 }
 
 // ---- caches and memory

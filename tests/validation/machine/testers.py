@@ -73,8 +73,20 @@ class Testers:
                   TRANSFORM: accuracy["transform"] == "two_step_double"}
         self.banks = {k: Bank(t[k]["units"], t[k]["interval_cycles"] * (DOUBLE_PASSES if longer.get(k) else 1),
                               t[k]["latency_cycles"]) for k in KINDS}
+        self.simd = t["simd"]
         self.reads_per_cycle = config["rays"]["reads_per_cycle"]
         self.store = Bank(max(1, self.reads_per_cycle), 1, 1)
+
+    def vectors(self, tests, rays):
+        """Starts of units with lanes: a vector of rays against a shape, or of shapes against a ray."""
+        lanes = self.simd["lanes"]
+        if lanes == 1 or tests == 0:
+            return tests
+        rays = max(1, min(rays, tests))
+        shapes = ceil_div(tests, rays)
+        if self.simd["map"] == "rays":
+            return ceil_div(rays, lanes) * shapes
+        return rays * ceil_div(shapes, lanes)
 
     def _reads(self, at, reads):
         return self.store.reserve(at, reads if self.reads_per_cycle > 0 else 0)
@@ -90,11 +102,11 @@ class Testers:
     def strip(self, at, counts, reads):
         first, last = self._reads(at, reads)
         inverse = self.banks[TRANSFORM].reserve(first, counts.inversion_passes())[1]
-        moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)), counts.passes(TRANSFORM))
-        end = self._behind(self.banks[BOX], moved, counts.box)[1]
+        moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)), self.vectors(counts.passes(TRANSFORM), reads))
+        end = self._behind(self.banks[BOX], moved, self.vectors(counts.box, reads))[1]
         for kind in (TRIANGLE, PROCEDURAL):
-            end = max(end, self._behind(self.banks[kind], moved, counts.passes(kind))[1])
-        return end
+            end = max(end, self._behind(self.banks[kind], moved, self.vectors(counts.passes(kind), reads))[1])
+        return end + (self.simd["reformat_cycles"] if self.simd["lanes"] > 1 else 0)
 
     def read(self, at, records):
         return self.store.reserve_beside(at, records) if self.reads_per_cycle > 0 else at
@@ -107,7 +119,7 @@ class Testers:
         bank = self.banks
         if inverts and counts.inversions > 0:
             at = self.invert(at, counts.inversion_passes())
-        moved = bank[TRANSFORM].reserve_beside(at, counts.passes(TRANSFORM))
-        return max(moved, bank[BOX].reserve_beside(moved, counts.box),
-                   bank[TRIANGLE].reserve_beside(moved, counts.passes(TRIANGLE)),
-                   bank[PROCEDURAL].reserve_beside(moved, counts.procedural))
+        moved = bank[TRANSFORM].reserve_beside(at, self.vectors(counts.passes(TRANSFORM), 1))
+        return max(moved, bank[BOX].reserve_beside(moved, self.vectors(counts.box, 1)),
+                   bank[TRIANGLE].reserve_beside(moved, self.vectors(counts.passes(TRIANGLE), 1)),
+                   bank[PROCEDURAL].reserve_beside(moved, self.vectors(counts.procedural, 1)))

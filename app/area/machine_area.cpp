@@ -1,0 +1,112 @@
+#include "app/area/machine_area.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/config/costs.h"
+#include "core/config/validate.h"
+#include "core/system/error.h"
+#include "ringbus/topology/wire_length.h"
+
+namespace carousel::app {
+
+namespace {
+
+using report::AreaPart;
+
+constexpr double kRecordBytes = 64, kIdBytes = 4, kStackBytes = 64, kHeaderBytes = 16, kKiB = 1024;
+
+/// The kinds of units that the machine has. Units that test what the machine never meets are left out.
+bool has_units(const Config& c, UnitKind kind) {
+  switch (kind) {
+    case UnitKind::kPlane:
+      return c.cull_planes.count > 0;
+    case UnitKind::kBundle:
+      return c.bundles.size > 0;
+    case UnitKind::kProcedural:
+      return c.scene.procedural;
+    case UnitKind::kAnyHit:
+      return c.testers.any_hit == TestersConfig::AnyHit::kInline;
+    default:
+      return true;
+  }
+}
+
+void add_units(report::AreaOf& out, const Config& c, const TestersConfig& testers) {
+  for (const auto [kind, units] : testers.units) {
+    if (!has_units(c, kind)) continue;
+    const auto lanes = static_cast<double>(units.units * testers.simd.lanes);
+    out.size += lanes;
+    out.mm2 += lanes * cost(c, area_of(kind));
+  }
+}
+
+const TestersConfig& testers_of(const Config& c, std::int64_t resource) {
+  for (const ResourceOverride& one : c.topology.overrides)
+    if (one.resource == resource) return one.testers;
+  return c.testers;
+}
+
+}  // namespace
+
+report::Area machine_area(const Config& c) {
+  report::Area out;
+  report::AreaParts& parts = out.parts;
+  const ringbus::Topology topology(c.topology);
+  const auto n = static_cast<double>(c.topology.resources);
+  const auto store = [&](AreaPart part, double kib) {
+    parts[part].size += kib;
+    parts[part].mm2 += kib * cost(c, Cost::kSramArea);
+  };
+  for (std::int64_t r = 0; r < c.topology.resources; ++r) add_units(parts[AreaPart::kUnits], c, testers_of(c, r));
+  const double slots = n * static_cast<double>(c.rays.slots_per_resource);
+  store(AreaPart::kRayStores, slots * kRecordBytes / kKiB);
+  if (topology.has_packets())
+    store(AreaPart::kCollections, n * static_cast<double>(c.collections.capacity) * kIdBytes / kKiB);
+  else
+    store(AreaPart::kStacks, slots * kStackBytes / kKiB);
+  store(AreaPart::kShapeBuffers, n * static_cast<double>(c.memory.shape_buffer_kib));
+  store(AreaPart::kL1, n * static_cast<double>(c.memory.l1_kib));
+  out.link_mm = c.area.link_mm ? static_cast<double>(*c.area.link_mm) : std::sqrt(parts.mm2() / n);
+  const std::int64_t caches = (c.topology.resources + c.memory.shared_by - 1) / c.memory.shared_by;
+  store(AreaPart::kL2, static_cast<double>(caches * c.memory.l2_kib));
+  const double packet = kHeaderBytes + kIdBytes * static_cast<double>(c.packets.rays);
+  store(AreaPart::kLinkQueues,
+        static_cast<double>(topology.wires().size()) * static_cast<double>(c.topology.link.depth) * packet / kKiB);
+  report::AreaOf& wires = parts[AreaPart::kWires];
+  wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm * wire_lengths(topology);
+  wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
+  report::AreaOf& shaders = parts[AreaPart::kShaders];
+  shaders.size = static_cast<double>(shader_workers(c) * std::max<std::int64_t>(1, c.shading.products_per_cycle));
+  shaders.mm2 = shaders.size * cost(c, Cost::kShaderArea);
+  out.mm2 = parts.mm2();
+  return out;
+}
+
+void fit_area(LocatedConfig& located) {
+  Config& c = located.config;
+  if (!c.area.budget_mm2) return;
+  const auto budget = static_cast<double>(*c.area.budget_mm2);
+  const auto refuse = [&](const std::string& why) {
+    throw ConfigError({{located.positions.find("area.budget_mm2"), "area.budget_mm2", why}});
+  };
+  if (c.energy.profile == CostProfile::kNone)
+    refuse("an area needs a process; expected energy.profile: n45 or n7, found none");
+  if (c.area.fit == AreaConfig::Fit::kRefuse) {
+    const double area = machine_area(c).mm2;
+    if (area > budget) refuse(fmt::format("expected a machine of at most {} mm2, found one of {:.4g}", budget, area));
+    return;
+  }
+  const std::int64_t given = c.topology.resources;
+  for (std::int64_t n = config::kMaxResources; n > 0; --n) {
+    c.topology.resources = n;
+    if (validate_config(c, located.positions, {.force = true}).empty() && machine_area(c).mm2 <= budget) return;
+  }
+  c.topology.resources = given;
+  refuse(fmt::format("no number of resources makes a machine of at most {} mm2; with {} it has {:.4g}", budget, given,
+                     machine_area(c).mm2));
+}
+
+}  // namespace carousel::app

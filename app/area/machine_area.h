@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/config/load.h"
+#include "report/sections/costs.h"
+
+namespace carousel::app {
+
+/// The area of the machine by its parts, and the length of a link. Zero without energy.profile.
+report::Area machine_area(const Config& config);
+
+/// Holds the machine to area.budget_mm2: gives it the largest number of resources whose machine is within the budget,
+/// or refuses it, as area.fit says. Throws a ConfigError where no number is.
+void fit_area(LocatedConfig& located);
+
+}  // namespace carousel::app

@@ -1,0 +1,150 @@
+#include "app/build_report/energy_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "app/area/machine_area.h"
+#include "core/config/costs.h"
+#include "core/config/write.h"
+#include "report/text/ratio.h"
+#include "ringbus/topology/wire_length.h"
+
+namespace carousel::app {
+
+using report::EnergyPart;
+using report::ratio;
+
+namespace {
+
+class Account {
+  static constexpr double kWord = 8;  ///< bytes of an access
+  static constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
+
+ public:
+  Account(const report::Report& r, const Config& config, double link_mm)
+      : r_(r), c_(config), link_mm_(link_mm), rays_kib_(static_cast<double>(config.rays.slots_per_resource) / 16) {}
+
+  report::EnergyParts take() {
+    tests();
+    stores();
+    packets();
+    for (const report::Bytes& row : *r_.bytes) message(row);
+    shading();
+    for (const auto [kind, part] : parts_.units) part.rays = static_cast<double>(r_.rays.completed);
+    for (report::EnergyOf& part : parts_.others) part.rays = static_cast<double>(r_.rays.completed);
+    return parts_;
+  }
+
+ private:
+  double pj(Cost of) const { return cost(c_, of); }
+  void access(EnergyPart part, double bytes, double kib) { parts_[part].add(bytes / kWord, sram_access_pj(c_, kib)); }
+
+  void tests() {
+    if (!r_.tests) return;
+    for (const UnitKindRow& row : kUnitKinds)
+      parts_.units[row.kind].add(static_cast<double>(r_.tests->counts.*row.tests), pj(energy_of(row.kind)));
+    access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(r_.tests->ray_reads), rays_kib_);
+  }
+
+  void stores() {
+    if (r_.packets)
+      access(EnergyPart::kCollections, 2 * kIdBytes * static_cast<double>(r_.packets->counts.packet_rays),
+             kIdBytes * static_cast<double>(c_.collections.capacity) / 1024);
+    const ShapeBufferCounts& buffers = r_.memory->shape_buffers.counts;
+    access(EnergyPart::kShapeBuffers, kPlaceBytes * static_cast<double>(buffers.hits + buffers.merged + buffers.misses),
+           buffer_kib());
+    for (const report::Resource& resource : *r_.resources)
+      if (resource.stack)
+        access(EnergyPart::kStacks, static_cast<double>(resource.stack->pushed_bytes + resource.stack->popped_bytes),
+               rays_kib_);
+    for (const report::Cache& cache : r_.memory->caches)
+      access(EnergyPart::kL2, static_cast<double>(c_.memory.line_bytes) * static_cast<double>(cache.counts.lines),
+             l2_kib());
+  }
+
+  void packets() {
+    const ringbus::Topology topology(c_.topology);
+    for (std::size_t i = 0; i < r_.links->size(); ++i) {
+      const auto bytes = static_cast<double>((*r_.links)[i].bytes.value_or(0));
+      parts_[EnergyPart::kPorts].add(bytes, pj(Cost::kHop));
+      parts_[EnergyPart::kWires].add(bytes * link_mm_ * wire_length(topology, topology.wires()[i]), pj(Cost::kWire));
+    }
+  }
+
+  /// Shared parts stand in the middle of the square of the resources that share them: the way is half of its side.
+  void message(const report::Bytes& row) {
+    const auto bytes = static_cast<double>(row.bytes);
+    if (row.over == "links") return;
+    if (row.from == "DRAM" || row.to == "DRAM") {
+      if (row.from == "L2" && row.over == "address wires") return;  // contained in the bytes of the lines
+      if (row.to == "L2") access(EnergyPart::kL2, bytes, l2_kib());
+      const bool hbm = c_.memory.dram.preset == DramConfig::Preset::kHbm2;
+      parts_[EnergyPart::kDram].add(bytes, pj(hbm ? Cost::kHbm : Cost::kDram));
+      return;
+    }
+    const std::int64_t sharing = row.from == "L2" || row.to == "L2"
+                                     ? std::min(c_.memory.shared_by, c_.topology.resources)
+                                     : c_.topology.resources;
+    parts_[EnergyPart::kMessages].add(bytes, pj(Cost::kHop));
+    parts_[EnergyPart::kMessageWires].add(bytes * link_mm_ * std::sqrt(static_cast<double>(sharing)) / 2,
+                                          pj(Cost::kWire));
+    if (row.what == "new rays" || row.what == "completed rays") access(EnergyPart::kRayStore, bytes, rays_kib_);
+    if (row.what == "shape data") access(EnergyPart::kShapeBuffers, bytes, buffer_kib());
+  }
+
+  void shading() {
+    parts_[EnergyPart::kShades].add(static_cast<double>(r_.shading.shaded), pj(Cost::kShade));
+    parts_[EnergyPart::kProducts].add(static_cast<double>(r_.shading.products.value_or(0)), pj(Cost::kProduct));
+    parts_[EnergyPart::kLookups].add(static_cast<double>(r_.shading.lookups.value_or(0)), pj(Cost::kLookup));
+    if (!r_.memory->dram) return;
+    const bool hbm = c_.memory.dram.preset == DramConfig::Preset::kHbm2;
+    for (const report::DramChannel& channel : r_.memory->dram->channels)
+      parts_[EnergyPart::kActivations].add(
+          static_cast<double>(channel.counts.row_misses + channel.counts.row_conflicts),
+          pj(hbm ? Cost::kHbmActivation : Cost::kDramActivation));
+  }
+
+  double l2_kib() const { return static_cast<double>(c_.memory.l2_kib) / static_cast<double>(c_.memory.l2_banks); }
+  double buffer_kib() const { return static_cast<double>(c_.memory.shape_buffer_kib); }
+
+  const report::Report& r_;
+  const Config& c_;
+  double link_mm_, rays_kib_;
+  report::EnergyParts parts_;
+};
+
+std::vector<report::CostConstant> constants(const Config& config) {
+  static constexpr std::string_view kBases[] = {"published", "derived", "assumed"};
+  std::vector<report::CostConstant> out;
+  for (const CostRow& row : kCostTable) {
+    const CostValue value = cost_value(config, row.cost);
+    const bool given = value.source == "the configuration";
+    out.push_back({std::string(row.section) + "." + std::string(row.key), row.unit,
+                   std::string(given ? "given" : kBases[static_cast<std::size_t>(value.basis)]),
+                   std::string(value.source), shortest(value.value)});
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_energy(report::Report& r, const Config& config) {
+  if (config.energy.profile == CostProfile::kNone || !r.engine.cycles || !r.bytes || !r.memory || !r.resources) return;
+  report::Area area = machine_area(config);
+  report::Energy& energy = r.energy.emplace();
+  energy.profile = enum_name(config.energy.profile);
+  energy.parts = Account(r, config, area.link_mm).take();
+  for (const auto [kind, part] : std::as_const(energy.parts.units)) energy.joules += part.joules;
+  for (const report::EnergyOf& part : energy.parts.others) energy.joules += part.joules;
+  const double rays = static_cast<double>(r.rays.completed);
+  const double seconds = static_cast<double>(*r.engine.cycles) / (static_cast<double>(config.engine.clock_mhz) * 1e6);
+  energy.nj_per_ray = ratio(energy.joules, rays) * 1e9;
+  energy.watts = ratio(energy.joules, seconds);
+  energy.rays_per_joule = ratio(rays, energy.joules);
+  area.mrays_per_second_per_mm2 = ratio(ratio(rays, seconds) * 1e-6, area.mm2);
+  r.area = std::move(area);
+  r.costs = constants(config);
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/config/config.h"
+#include "report/run/report.h"
+
+namespace carousel::app {
+
+/// Adds the sections energy, area and costs, from the counters that the report of a simulated machine has already.
+/// Nothing without energy.profile.
+void add_energy(report::Report& r, const Config& config);
+
+}  // namespace carousel::app

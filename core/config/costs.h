@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/config/config.h"
+
+namespace carousel {
+
+/// The number of a row for this machine: the configuration's own, or the profile's. Without a profile the number is
+/// zero.
+inline CostValue cost_value(const Config& config, Cost cost) {
+  const CostRow& row = kCostTable[cost_index(cost)];
+  const OwnCosts& own = row.section == "energy" ? config.energy.own : config.area.own;
+  if (own[cost_index(cost)]) return {*own[cost_index(cost)], Basis::kPublished, "the configuration"};
+  switch (config.energy.profile) {
+    case CostProfile::kN45:
+      return row.n45;
+    case CostProfile::kN7:
+      return row.n7;
+    case CostProfile::kNone:
+      break;
+  }
+  return {0, Basis::kAssumed, ""};
+}
+
+inline double cost(const Config& config, Cost cost) {
+  return static_cast<double>(cost_value(config, cost).value);
+}
+
+/// Picojoules of an access of 64 bits to a store of `kib`: interpolated between the sizes of the table, with the
+/// logarithms of size and energy, and continued beyond them.
+inline double sram_access_pj(const Config& config, double kib) {
+  const double e8 = cost(config, Cost::kSram8), e32 = cost(config, Cost::kSram32),
+               e1024 = cost(config, Cost::kSram1024);
+  const auto between = [&](double low_kib, double low, double high_kib, double high) {
+    if (low <= 0 || high <= 0) return low;
+    return low * std::pow(high / low, std::log(kib / low_kib) / std::log(high_kib / low_kib));
+  };
+  return kib < 32 ? between(8, e8, 32, e32) : between(32, e32, 1024, e1024);
+}
+
+}  // namespace carousel

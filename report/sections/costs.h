@@ -1,0 +1,182 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/types/unit_kind.h"
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+/// The parts of a run's energy besides the test units, which have a part for each kind.
+enum class EnergyPart : std::uint8_t {
+  kRayStore,
+  kCollections,
+  kShapeBuffers,
+  kStacks,
+  kL2,
+  kPorts,
+  kWires,
+  kMessages,
+  kMessageWires,
+  kDram,
+  kActivations,
+  kShades,
+  kProducts,
+  kLookups
+};
+
+struct EnergyPartRow {
+  const char *key, *meaning;
+};
+
+inline constexpr auto kEnergyParts = std::to_array<EnergyPartRow>({
+    {"ray_store", "accesses of 64 bits to the ray store: 8 for a record read, and the bytes of new and completed rays"},
+    {"collections", "accesses of 64 bits to the collections: each of 4 bytes an ID is written and read once"},
+    {"shape_buffers",
+     "accesses of 64 bits to the shape buffers: the shape data that comes, and 64 bytes whenever a "
+     "strip or transform is needed"},
+    {"stacks", "accesses of 64 bits to the stacks of rays"},
+    {"l2", "accesses of 64 bits to the L2: lines looked up, and lines that come from memory"},
+    {"ports", "bytes of packets through the ports of links"},
+    {"wires", "bytes of packets times the millimetres of their links"},
+    {"messages", "bytes between resources, L2, ray control and shading, through ports"},
+    {"message_wires", "bytes of these messages times the millimetres of their way"},
+    {"dram", "bytes from and to memory"},
+    {"dram_activations", "activations of rows, with memory.dram.preset"},
+    {"shades", "rays shaded"},
+    {"products", "products of the surfaces' effects"},
+    {"lookups", "filtered texture lookups"},
+});
+
+struct EnergyOf {
+  double events = 0, joules = 0, rays = 0;
+  void add(double more, double pj_each) {
+    events += more;
+    joules += more * pj_each * 1e-12;
+  }
+};
+
+template <class V>
+void describe(V& v, const EnergyOf& r) {
+  v.field("events", r.events, "", "events that cost energy");
+  v.field("pj_each", ratio(r.joules, r.events) * 1e12, "pJ", "energy of an event, in the mean");
+  v.field("joules", r.joules, "J", "energy of the run");
+  v.field("nj_per_ray", ratio(r.joules, r.rays) * 1e9, "nJ/ray", "energy for each completed ray");
+}
+
+struct EnergyParts {
+  PerUnit<EnergyOf> units{};
+  std::array<EnergyOf, kEnergyParts.size()> others{};
+  EnergyOf& operator[](EnergyPart part) { return others[static_cast<std::size_t>(part)]; }
+};
+
+template <class V>
+void describe(V& v, const EnergyParts& r) {
+  for (const UnitKindRow& row : kUnitKinds) v.section(row.work, r.units[row.kind], row.meaning);
+  for (std::size_t i = 0; i < kEnergyParts.size(); ++i)
+    v.section(kEnergyParts[i].key, r.others[i], kEnergyParts[i].meaning);
+}
+
+struct Energy {
+  std::string profile;
+  double joules = 0, nj_per_ray = 0, watts = 0, rays_per_joule = 0;
+  EnergyParts parts{};
+};
+
+template <class V>
+void describe(V& v, const Energy& r) {
+  v.field("profile", r.profile, "", "process, whose numbers stand in costs");
+  v.field("joules", r.joules, "J", "energy of the events of the run: the sum of the parts, without leakage and clocks");
+  v.field("nj_per_ray", r.nj_per_ray, "nJ/ray", "energy for each completed ray");
+  v.field("watts", r.watts, "W", "mean power at engine.clock_mhz");
+  v.field("rays_per_joule", r.rays_per_joule, "rays/J", "completed rays over energy: throughput per watt");
+  v.section("parts", r.parts, "each part's energy; they add up to the whole");
+}
+
+enum class AreaPart : std::uint8_t {
+  kUnits,
+  kRayStores,
+  kCollections,
+  kStacks,
+  kShapeBuffers,
+  kL1,
+  kL2,
+  kLinkQueues,
+  kWires,
+  kShaders
+};
+
+struct AreaPartRow {
+  const char *key, *name, *meaning;
+};
+
+inline constexpr auto kAreaParts = std::to_array<AreaPartRow>({
+    {"test_units", "test units", "test units of all resources (units)"},
+    {"ray_stores", "ray stores", "ray stores, of 64 bytes a slot (KiB)"},
+    {"collections", "collections", "collections, of 4 bytes a ray ID (KiB)"},
+    {"stacks", "stacks", "stacks of rays, of 64 bytes a slot, with topology.shape: independent (KiB)"},
+    {"shape_buffers", "shape buffers", "shape buffers (KiB)"},
+    {"l1", "L1", "caches of the resources (KiB)"},
+    {"l2", "L2", "shared caches (KiB)"},
+    {"link_queues", "link queues", "queues of links, of packets.rays IDs a packet (KiB)"},
+    {"wires", "wires", "wires of links, a bit wide, side by side (mm)"},
+    {"shaders", "shaders", "shader workers (products/cycle)"},
+});
+
+struct AreaOf {
+  double size = 0, mm2 = 0;
+};
+
+template <class V>
+void describe(V& v, const AreaOf& r) {
+  v.field("size", r.size, "", "size, in the unit of the part");
+  v.field("mm2", r.mm2, "mm2", "area");
+}
+
+struct AreaParts {
+  std::array<AreaOf, kAreaParts.size()> of{};
+  AreaOf& operator[](AreaPart part) { return of[static_cast<std::size_t>(part)]; }
+  double mm2() const {
+    double sum = 0;
+    for (const AreaOf& part : of) sum += part.mm2;
+    return sum;
+  }
+};
+
+template <class V>
+void describe(V& v, const AreaParts& r) {
+  for (std::size_t i = 0; i < kAreaParts.size(); ++i) v.section(kAreaParts[i].key, r.of[i], kAreaParts[i].meaning);
+}
+
+struct Area {
+  double mm2 = 0, link_mm = 0;
+  std::optional<double> mrays_per_second_per_mm2{};
+  AreaParts parts{};
+};
+
+template <class V>
+void describe(V& v, const Area& r) {
+  v.field("mm2", r.mm2, "mm2", "area of the machine: the sum of the parts, without the memory and its pins");
+  v.field("link_mm", r.link_mm, "mm", "length of a link between neighbours");
+  v.field("mrays_per_second_per_mm2", r.mrays_per_second_per_mm2, "Mrays/s/mm2",
+          "throughput at engine.clock_mhz over the area");
+  v.section("parts", r.parts, "each part's area; they add up to the whole");
+}
+
+/// A number of the table of costs, as the run had it.
+struct CostConstant {
+  std::string key, unit, basis, source;
+  double value = 0;
+};
+
+template <class V>
+void describe(V& v, const CostConstant& r) {
+  v.field("key", r.key, "", "key of the configuration that sets it");
+  v.field("value", r.value, "", "value");
+  v.field("unit", r.unit, "", "unit of the value");
+  v.field("basis", r.basis, "", "published, derived from published numbers, assumed, or given");
+  v.field("source", r.source, "", "source of the value, and the rule that derives it");
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,33 @@
+#include "ringbus/topology/wire_length.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carousel::ringbus {
+
+double wire_length(const Topology& topology, const Topology::Wire& wire) {
+  const auto resources = static_cast<std::uint32_t>(topology.resources());
+  if (topology.broadcasts()) return wire.to.value >= resources ? static_cast<double>(resources) : 0.0;
+  const auto place = [&](std::uint32_t node) {
+    return node < resources ? node : topology.groups()[node - resources].first.value;
+  };
+  const std::uint32_t from = place(wire.from.value), to = place(wire.to.value);
+  const std::uint32_t apart = from > to ? from - to : to - from;
+  if (apart <= 1 || apart == resources - 1) return 1;
+  const auto width = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(resources))));
+  const auto column = [&](std::uint32_t at) {
+    const std::uint32_t along = at % width;
+    return static_cast<double>((at / width) % 2 == 0 ? along : width - 1 - along);
+  };
+  return std::abs(column(from) - column(to)) +
+         std::abs(static_cast<double>(from / width) - static_cast<double>(to / width));
+}
+
+double wire_lengths(const Topology& topology) {
+  if (topology.broadcasts()) return static_cast<double>(topology.resources());
+  double sum = 0;
+  for (const Topology::Wire& wire : topology.wires()) sum += wire_length(topology, wire);
+  return sum;
+}
+
+}  // namespace carousel::ringbus

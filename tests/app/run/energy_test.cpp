@@ -1,0 +1,202 @@
+// Joules and square millimetres, computed a second time from the counters of the report and from numbers that stand
+// here, on machines that are read from text as `carousel run` reads them.
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/types/cost_table.h"
+#include "tests/app/support/program.h"
+
+namespace carousel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kMachine =
+    "scene: {{builtin: cornell}}\n"
+    "image: {{width: 12, height: 8, samples: 1, max_depth: 2}}\n"
+    "engine: {{kind: cycle, clock_mhz: 1000}}\n"
+    "topology: {{resources: 8, shape: {}}}\n"
+    "rays: {{slots_per_resource: 512}}\n"
+    "collections: {{capacity: 8192}}\n"
+    "memory: {{shape_buffer_kib: 8, l2_kib: 1024}}\n"
+    "energy: {{profile: {}}}\n"
+    "area: {{link_mm: 2}}\n";
+
+class EnergyRun : public testing::Test {
+ protected:
+  Json run(const std::string& shape, const std::vector<std::string>& sets = {}, const std::string& profile = "n45") {
+    program_.write("machine.yaml", fmt::format(kMachine, shape, profile));
+    std::vector<std::string> arguments{"run", "machine.yaml", "--out", "out", "--force", "--quiet"};
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const Outcome outcome = program_.run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.status == 0 ? Json::parse(program_.read("out/report.json")) : Json();
+  }
+  Program program_;
+};
+
+double bytes_over(const Json& report, const std::string& wire) {
+  double out = 0;
+  for (const Json& row : report["bytes"])
+    if (row["over"] == wire) out += row["bytes"].get<double>();
+  return out;
+}
+
+double bytes_of(const Json& report, const std::string& what) {
+  for (const Json& row : report["bytes"])
+    if (row["what"] == what) return row["bytes"].get<double>();
+  return 0;
+}
+
+/// Picojoules by the profile n45, with links of 2 mm. `link_lengths` is the mean length of a packet's link, in links.
+double expected_pj(const Json& r, double link_lengths) {
+  const auto count = [&](const char* test) {
+    return r["tests"].contains(test) ? r["tests"][test]["count"].get<double>() : 0.0;
+  };
+  double pj = 29 * count("box") + 98 * count("triangle") + 80.1 * count("transforms");
+  const double new_rays = bytes_of(r, "new rays"), completed = bytes_of(r, "completed rays");
+  const double at_store = 20 * (8 * count("ray_reads") + (new_rays + completed) / 8);  // 32 KiB
+  pj += at_store;
+  if (r.contains("packets")) {
+    const double ids = r["packets"]["issued"].get<double>() * r["packets"]["rays_mean"].get<double>();
+    pj += 20 * ids;  // 32 KiB
+  }
+  const Json& buffers = r["memory"]["shape_buffers"];
+  const double needed =
+      buffers["hits"].get<double>() + buffers["merged"].get<double>() + buffers["misses"].get<double>();
+  pj += 10 * (8 * needed + bytes_of(r, "shape data") / 8);  // 8 KiB
+  for (const Json& resource : r["resources"])
+    if (resource.contains("stack"))
+      pj +=
+          20 * (resource["stack"]["pushed_bytes"].get<double>() + resource["stack"]["popped_bytes"].get<double>()) / 8;
+  for (const Json& cache : r["memory"]["caches"])
+    pj += 100 * 8 * (cache["lines"].get<double>() + cache["misses"].get<double>());  // 1 MiB, lines of 64 bytes
+  const double packets = bytes_of(r, "packets");
+  pj += packets * (0.45 + 0.96 * 2 * link_lengths);
+  const double messages = new_rays + completed + bytes_of(r, "shape requests") + bytes_of(r, "shape data") +
+                          bytes_of(r, "any-hit questions") + bytes_of(r, "any-hit answers") +
+                          bytes_of(r, "shading jobs") + bytes_of(r, "notes and results");
+  pj += messages * (0.45 + 0.96 * 2 * std::sqrt(8) / 2);
+  pj += 244 * bytes_over(r, "DRAM's data wires");
+  pj += 736 * r["shading"]["shaded"].get<double>();
+  pj += 4.6 * r["shading"]["products"].get<double>() + 80 * r["shading"]["lookups"].get<double>();
+  return pj;
+}
+
+TEST_F(EnergyRun, AgreesWithTheCounters) {
+  for (const auto& [shape, length] : {std::pair{"ring", 1.0}, std::pair{"bidirectional", 1.0},
+                                      std::pair{"independent", 0.0}, std::pair{"bus", 8.0}}) {
+    SCOPED_TRACE(shape);
+    const Json r = run(shape);
+    ASSERT_TRUE(r.contains("energy"));
+    double lengths = length;
+    if (shape == std::string("bus")) {  // bytes that leave the bus have no way of their own
+      double in = 0, all = 0;
+      for (const Json& link : r["links"]) {
+        all += link["bytes"].get<double>();
+        if (link["to"] == 8) in += link["bytes"].get<double>();
+      }
+      ASSERT_GT(in, 0);
+      lengths = 8 * in / all;
+    }
+    const double expected = expected_pj(r, lengths) * 1e-12;
+    EXPECT_NEAR(r["energy"]["joules"].get<double>() / expected, 1, 1e-5);
+    double sum = 0;
+    for (const auto& [key, part] : r["energy"]["parts"].items()) sum += part["joules"].get<double>();
+    EXPECT_NEAR(sum / r["energy"]["joules"].get<double>(), 1, 1e-12);
+    const double rays = r["rays"]["completed"], seconds = r["engine"]["cycles"].get<double>() * 1e-9;
+    EXPECT_NEAR(r["energy"]["nj_per_ray"].get<double>(), 1e9 * expected / rays, 1e-4 * 1e9 * expected / rays);
+    EXPECT_NEAR(r["energy"]["watts"].get<double>() / (expected / seconds), 1, 1e-5);
+    EXPECT_NEAR(r["area"]["mrays_per_second_per_mm2"].get<double>(),
+                rays / seconds * 1e-6 / r["area"]["mm2"].get<double>(), 1e-6);
+  }
+}
+
+TEST_F(EnergyRun, AreaIsOfTheConfiguredParts) {
+  const Json r = run("ring");
+  const Json& parts = r["area"]["parts"];
+  // 4 box, 1 triangle, 1 transform and 1 any-hit unit.
+  EXPECT_NEAR(parts["test_units"]["mm2"].get<double>(), 8 * (4 * 0.126 + 0.193 + 0.0928 + 0.126), 1e-4);
+  EXPECT_NEAR(parts["ray_stores"]["mm2"].get<double>(), 8 * 32 * 0.00456, 1e-4);
+  EXPECT_NEAR(parts["collections"]["mm2"].get<double>(), 8 * 32 * 0.00456, 1e-4);
+  EXPECT_NEAR(parts["shape_buffers"]["mm2"].get<double>(), 8 * 8 * 0.00456, 1e-4);
+  EXPECT_NEAR(parts["l2"]["mm2"].get<double>(), 1024 * 0.00456, 1e-3);
+  EXPECT_NEAR(parts["shaders"]["mm2"].get<double>(), 16 * 8 * 0.021, 1e-4);
+  const double wires = parts["wires"]["mm2"];
+  EXPECT_NEAR(wires, 8 * 256 * 2 * 0.28e-3, 1e-4);
+  double sum = 0;
+  for (const auto& [key, part] : parts.items()) sum += part["mm2"].get<double>();
+  EXPECT_NEAR(sum, r["area"]["mm2"].get<double>(), 1e-9);
+  const Json both = run("bidirectional");
+  EXPECT_NEAR(both["area"]["parts"]["wires"]["mm2"].get<double>(), 2 * wires, 1e-9) << "twice a ring's wires";
+}
+
+TEST_F(EnergyRun, TheCostsStandInTheReportWithTheirSources) {
+  for (const std::string profile : {"n45", "n7"}) {
+    const Json r = run("ring", {"energy.box=7"}, profile);
+    ASSERT_EQ(r["costs"].size(), kCostTable.size());
+    for (std::size_t i = 0; i < kCostTable.size(); ++i) {
+      const Json& row = r["costs"][i];
+      const CostValue& own = profile == "n45" ? kCostTable[i].n45 : kCostTable[i].n7;
+      EXPECT_FALSE(row["source"].get<std::string>().empty());
+      if (row["key"] == "energy.box") {
+        EXPECT_EQ(row["value"], 7);
+        EXPECT_EQ(row["basis"], "given");
+      } else {
+        EXPECT_FLOAT_EQ(row["value"].get<float>(), own.value) << row["key"];
+      }
+    }
+    EXPECT_NEAR(r["energy"]["parts"]["box_tests"]["pj_each"].get<double>(), 7, 1e-9);
+  }
+}
+
+TEST(MachinesPage, HasEveryNumberWithItsSource) {
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/machines.md");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  static constexpr const char* kBases[] = {"published", "derived", "assumed"};
+  const auto shown = [](const CostValue& value) {
+    return fmt::format("{} | {}: {}", value.value, kBases[static_cast<std::size_t>(value.basis)], value.source);
+  };
+  for (const CostRow& row : kCostTable)
+    EXPECT_THAT(page, testing::HasSubstr(fmt::format("| `{}.{}` | {} | {} | {} |\n", row.section, row.key, row.unit,
+                                                     shown(row.n45), shown(row.n7))));
+}
+
+TEST_F(EnergyRun, ABudgetGivesTheLargestMachineWithinIt) {
+  const double budget = 25;
+  const Json r = run("ring", {"area.budget_mm2=25"});
+  const auto resources = r["config"]["topology"]["resources"].get<int>();
+  EXPECT_LE(r["area"]["mm2"].get<double>(), budget);
+  const Json larger = run("ring", {fmt::format("topology.resources={}", resources + 1)});
+  EXPECT_GT(larger["area"]["mm2"].get<double>(), budget);
+  EXPECT_GT(resources, 8);
+
+  const auto refused = [&](const std::vector<std::string>& sets) {
+    std::vector<std::string> arguments{"run", "machine.yaml", "--out", "refused"};
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const Outcome outcome = program_.run(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.err;
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refused({"area.budget_mm2=3"}), HasSubstr("no number of resources makes a machine of at most 3 mm2"));
+  EXPECT_THAT(refused({"area.budget_mm2=3", "area.fit=refuse"}), HasSubstr("expected a machine of at most 3 mm2"));
+  EXPECT_THAT(refused({"area.budget_mm2=3", "energy.profile=none"}), HasSubstr("expected energy.profile: n45 or n7"));
+  EXPECT_THAT(refused({"engine.kind=native"}), HasSubstr("the native engine has no count of joules"));
+}
+
+TEST_F(EnergyRun, IsAbsentWithoutAProfile) {
+  const Json r = run("ring", {}, "none");
+  for (const char* section : {"energy", "area", "costs"}) EXPECT_FALSE(r.contains(section)) << section;
+}
+
+}  // namespace
+}  // namespace carousel
