@@ -1,10 +1,13 @@
 #include "app/run/render_job.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "app/run/memory_need.h"
 #include "core/system/executor.h"
 #include "report/csv/ray_csv.h"
+#include "ringbus/cycle/bottleneck_search.h"
 #include "shading/camera/image_file.h"
 
 namespace carousel::app {
@@ -18,7 +21,7 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
     list_ = std::make_unique<RayListWorkload>(report::read_rays_csv(path), workers);
-    first_rays_ = list_->size();
+    frame_rays_ = list_->size();
   } else {
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);
     if (first_hits != nullptr) {
@@ -30,12 +33,26 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
       tracer_->set_first_hits(&first_hits_);
       raster_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
-    first_rays_ = static_cast<std::uint64_t>(config.image.width * config.image.height * config.image.samples);
+    frame_rays_ = order_.count();
   }
+  if (config.sampling.fraction < 1) draw_sample(config);
+}
+
+void RenderJob::draw_sample(const Config& config) {
+  const auto seed = static_cast<std::uint64_t>(config.sampling.seed);
+  const auto rays = std::max<std::uint64_t>(
+      1, static_cast<std::uint64_t>(std::llround(config.sampling.fraction * static_cast<double>(frame_rays_))));
+  if (list_)
+    drawn_ = shading::draw_list(frame_rays_, rays, seed);
+  else if (config.sampling.strata)
+    drawn_ = shading::draw_places(order_, rays, static_cast<std::uint64_t>(*config.sampling.strata), seed);
+  else
+    drawn_ = shading::draw_tiles(order_, rays, ringbus::slots_of(config), seed);
+  set_sample(&*drawn_);
 }
 
 shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together) const {
-  return tracer_ ? shading::draw_tiles(order_, paths, together, seed_) : shading::draw_list(first_rays_, paths, seed_);
+  return tracer_ ? shading::draw_tiles(order_, paths, together, seed_) : shading::draw_list(frame_rays_, paths, seed_);
 }
 
 void RenderJob::set_sample(const shading::PathSample* sample) {
@@ -56,8 +73,21 @@ std::pair<std::uint32_t, std::uint32_t> RenderJob::place_of(std::uint32_t path) 
   return tracer_ ? tracer_->place_of(path) : std::pair{path, 0u};
 }
 
-std::uint64_t RenderJob::first_rays() const {
-  return first_rays_;
+std::uint64_t RenderJob::pieces() const {
+  if (list_) return frame_rays_ / shading::kListRun + 1;
+  return std::uint64_t{order_.tile_columns()} * order_.tile_rows();
+}
+
+std::uint64_t RenderJob::piece_at(std::uint64_t ordinal) const {
+  if (list_) return ordinal / shading::kListRun;
+  const shading::PixelSample at = order_.at(ordinal);
+  return order_.tile_of(at.x, at.y);
+}
+
+std::uint64_t RenderJob::piece_of(std::uint32_t path) const {
+  if (list_) return path / shading::kListRun;
+  const std::uint32_t pixel = tracer_->place_of(path).first;
+  return order_.tile_of(pixel % tracer_->width(), pixel / tracer_->width());
 }
 
 std::array<std::uint64_t, kRayKinds> RenderJob::emitted() const {
@@ -73,16 +103,27 @@ std::string RenderJob::hits_digest() const {
 }
 
 std::optional<std::string> RenderJob::image_digest() const {
-  return tracer_ ? std::optional(tracer_->image_digest()) : std::nullopt;
+  return tracer_ && !drawn_ ? std::optional(tracer_->image_digest()) : std::nullopt;
 }
 
 std::optional<RasterCounts> RenderJob::raster() const {
   return raster_seconds_ ? std::optional(first_hits_.counts) : std::nullopt;
 }
 
+void RenderJob::scale_drawn(std::vector<float>& rgb) const {
+  std::vector<std::uint32_t> drawn(rgb.size() / 3);
+  for (std::uint64_t i = 0; i < drawn_->count(); ++i) {
+    const shading::PixelSample at = order_.at(drawn_->ordinal(i));
+    ++drawn[std::size_t{at.y} * tracer_->width() + at.x];
+  }
+  for (std::size_t i = 0; i < rgb.size(); ++i)
+    if (drawn[i / 3] > 0) rgb[i] *= static_cast<float>(order_.samples()) / static_cast<float>(drawn[i / 3]);
+}
+
 void RenderJob::write_images(const std::filesystem::path& folder) const {
   if (!tracer_) return;
-  const std::vector<float> rgb = tracer_->linear_rgb();
+  std::vector<float> rgb = tracer_->linear_rgb();
+  if (drawn_) scale_drawn(rgb);
   shading::write_png(folder / "image.png", tracer_->width(), tracer_->height(), rgb, exposure_);
   shading::write_exr(folder / "image.exr", tracer_->width(), tracer_->height(), rgb);
 }

@@ -52,9 +52,7 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"memory.l2_write", "back", kBoth},
     {"shading.idle_resources_shade", "true", kNative, "shading by idle resources"},
     {"shading.distribute", "", kNative, "choice of shader workers"},
-    {"sampling.fraction", "", kBoth, "sampled runs"},
-    {"sampling.strata", "", kBoth, "sampled runs"},
-    {"sampling.seed", "", kBoth, "sampled runs"},
+    {"sampling.fraction", "", kNative, "sampled runs"},
 });
 
 std::string text_of(const Json& value) {

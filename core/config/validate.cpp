@@ -38,6 +38,7 @@ class Rules {
     cache_holds_a_set();
     config::check_network(c, options_.force,
                           [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
+    sampling_fits();
     vary_names_keys();
     return std::move(issues_);
   }
@@ -283,6 +284,28 @@ class Rules {
       issue("collections.when_full",
             "home: hash can fill one resource with another's collections and stop; expected spill, found "
             "reserve");
+  }
+
+  // A sample stands for a frame of many alike parts.
+  void sampling_fits() {
+    if (c.sampling.fraction >= 1) return;
+    using Kind = WorkloadConfig::Kind;
+    constexpr std::string_view whole = ", or sampling.fraction: 1";
+    if (c.workload.kind == Kind::kTraffic || c.workload.kind == Kind::kMemoryTrace)
+      issue("sampling.fraction",
+            fmt::format("this workload has no rays to draw from; expected 1, found {}", c.sampling.fraction));
+    if (c.workload.kind == Kind::kRaysFrom && c.sampling.strata)
+      issue("sampling.strata",
+            fmt::format("the rays of a list are drawn in runs of 64, a run a stratum; expected auto{}; "
+                        "found {}",
+                        whole, *c.sampling.strata));
+    using Fault = FaultsConfig::Resource::Kind;
+    const Fault fault = c.faults.resource.kind;
+    if (fault == Fault::kPause || fault == Fault::kStop)
+      issue("faults.resource.kind",
+            fmt::format(
+                "happens once in a frame, so that a sample says nothing about it; expected none or slow{}; found {}",
+                whole, enum_name(fault)));
   }
 
   void vary_names_keys() {
