@@ -38,16 +38,22 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
   if (config.sampling.fraction < 1) draw_sample(config);
 }
 
+/// Places of several times as many paths as the machine has slots, so that most of the time it holds rays of one place,
+/// as it holds those of one part of the frame; but enough of them to be a mix of the frame.
+std::uint64_t RenderJob::strata_of(const Config& config, std::uint64_t rays) {
+  constexpr std::uint64_t kLeast = 16;
+  if (config.sampling.strata) return static_cast<std::uint64_t>(*config.sampling.strata);
+  return std::max(kLeast, rays / (2 * ringbus::slots_of(config)));
+}
+
 void RenderJob::draw_sample(const Config& config) {
   const auto seed = static_cast<std::uint64_t>(config.sampling.seed);
   const auto rays = std::max<std::uint64_t>(
       1, static_cast<std::uint64_t>(std::llround(config.sampling.fraction * static_cast<double>(frame_rays_))));
   if (list_)
     drawn_ = shading::draw_list(frame_rays_, rays, seed);
-  else if (config.sampling.strata)
-    drawn_ = shading::draw_places(order_, rays, static_cast<std::uint64_t>(*config.sampling.strata), seed);
   else
-    drawn_ = shading::draw_tiles(order_, rays, ringbus::slots_of(config), seed);
+    drawn_ = shading::draw_places(order_, rays, strata_of(config, rays), order_.samples(), seed);
   set_sample(&*drawn_);
 }
 
@@ -110,20 +116,9 @@ std::optional<RasterCounts> RenderJob::raster() const {
   return raster_seconds_ ? std::optional(first_hits_.counts) : std::nullopt;
 }
 
-void RenderJob::scale_drawn(std::vector<float>& rgb) const {
-  std::vector<std::uint32_t> drawn(rgb.size() / 3);
-  for (std::uint64_t i = 0; i < drawn_->count(); ++i) {
-    const shading::PixelSample at = order_.at(drawn_->ordinal(i));
-    ++drawn[std::size_t{at.y} * tracer_->width() + at.x];
-  }
-  for (std::size_t i = 0; i < rgb.size(); ++i)
-    if (drawn[i / 3] > 0) rgb[i] *= static_cast<float>(order_.samples()) / static_cast<float>(drawn[i / 3]);
-}
-
 void RenderJob::write_images(const std::filesystem::path& folder) const {
   if (!tracer_) return;
-  std::vector<float> rgb = tracer_->linear_rgb();
-  if (drawn_) scale_drawn(rgb);
+  const std::vector<float> rgb = tracer_->linear_rgb();
   shading::write_png(folder / "image.png", tracer_->width(), tracer_->height(), rgb, exposure_);
   shading::write_exr(folder / "image.exr", tracer_->width(), tracer_->height(), rgb);
 }

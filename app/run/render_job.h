@@ -67,8 +67,7 @@ class RenderJob {
 
  private:
   void draw_sample(const Config& config);
-  /// Pixels of which not all samples are drawn get the mean of those that are.
-  void scale_drawn(std::vector<float>& rgb) const;
+  static std::uint64_t strata_of(const Config& config, std::uint64_t rays);
 
   std::optional<double> raster_seconds_;
   shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads

@@ -37,18 +37,18 @@ std::uint64_t PathSample::ordinal(std::uint64_t i) const {
 
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t together, std::uint64_t seed,
                       std::uint64_t draw) {
-  constexpr std::uint64_t kLeastPlaces = 16;
-  return draw_places(order, paths, std::max(kLeastPlaces, paths / std::max<std::uint64_t>(1, together)), seed, draw);
+  constexpr std::uint64_t kEnoughTiles = 128, kLeastPlaces = 16, kPixels = PixelOrder::kTile * PixelOrder::kTile;
+  const std::uint64_t places = std::max(kLeastPlaces, paths / std::max<std::uint64_t>(1, together));
+  const std::uint64_t each = std::clamp<std::uint64_t>(paths / kPixels / kEnoughTiles, 1, order.samples());
+  return draw_places(order, paths, places, each, seed, draw);
 }
 
-PathSample draw_places(const PixelOrder& order, std::uint64_t paths, std::uint64_t places, std::uint64_t seed,
-                       std::uint64_t draw) {
-  constexpr std::uint64_t kEnoughTiles = 128;
+PathSample draw_places(const PixelOrder& order, std::uint64_t paths, std::uint64_t places, std::uint64_t each,
+                       std::uint64_t seed, std::uint64_t draw) {
   const auto parts = [](double count, std::uint64_t most) {
     return std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::lround(count)), 1, most);
   };
   const std::uint64_t pixels = PixelOrder::kTile * PixelOrder::kTile, rows = order.tile_rows();
-  const std::uint64_t each = std::clamp<std::uint64_t>(paths / pixels / kEnoughTiles, 1, order.samples());
   const std::uint64_t tiles = std::max<std::uint64_t>(1, paths / pixels / each);
   const std::uint64_t in_a_row = order.tile_columns();
   // A row is cut into places of nearly equal numbers of tiles, which stay together.

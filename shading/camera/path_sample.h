@@ -36,9 +36,9 @@ class PathSample {
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t together, std::uint64_t seed,
                       std::uint64_t draw = 0);
 
-/// The same of about so many places, however many paths each of them then has.
-PathSample draw_places(const PixelOrder& order, std::uint64_t paths, std::uint64_t places, std::uint64_t seed,
-                       std::uint64_t draw = 0);
+/// The same of about so many places, however many paths each of them then has, with the first `each` samples of a tile.
+PathSample draw_places(const PixelOrder& order, std::uint64_t paths, std::uint64_t places, std::uint64_t each,
+                       std::uint64_t seed, std::uint64_t draw = 0);
 
 inline constexpr std::uint64_t kListRun = 64;
 /// About `paths` elements of a list of `all`, drawn likewise: runs of kListRun, one of each of equal parts.
