@@ -4,6 +4,7 @@
 
 #include "app/build_report/memory_report.h"
 #include "report/text/ratio.h"
+#include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/steady_state.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
@@ -66,9 +67,10 @@ void add_to_link(report::Link& out, const ringbus::cycle::LinkUse& link, std::ui
 report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& config) {
   report::Memory out;
   for (const ringbus::cycle::TileResult& tile : c.tiles) out.shape_buffers.counts += tile.shapes;
-  for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, c.cycles)});
+  const std::uint64_t port_cycles = c.cycles * static_cast<std::uint64_t>(config.l2_banks);
+  for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, port_cycles)});
   out.dram_lines = c.memory_lines;
-  out.dram_bytes = c.memory_lines * static_cast<std::uint64_t>(config.line_bytes);
+  out.dram_bytes = c.memory_lines * ringbus::cycle::fetched_bytes(config);
   out.dram_lines_written = c.memory_lines_written;
   out.dram_busy_cycles = c.memory_busy;
   out.dram_utilisation = ratio(c.memory_busy, c.cycles);

@@ -12,6 +12,7 @@
 #include "core/config/fields/camera.h"
 #include "core/config/fields/collections.h"
 #include "core/config/fields/cull_planes.h"
+#include "core/config/fields/energy.h"
 #include "core/config/fields/engine.h"
 #include "core/config/fields/faults.h"
 #include "core/config/fields/image.h"
@@ -62,6 +63,8 @@ struct Config {
   MemoryConfig memory;
   ShadingConfig shading;
   FaultsConfig faults;
+  EnergyConfig energy;
+  AreaConfig area;
   SamplingConfig sampling;
   ReportConfig report;
   Verify verify = Verify::kNone;
@@ -101,6 +104,8 @@ void describe(V& v, Config& c) {
            "rays to the machine and needs a pinhole.");
   v.section("faults", c.faults, "Faults that happen on request.");
   v.section("sampling", c.sampling, "A part of the frame that stands for all of it.");
+  v.section("energy", c.energy, "The joules of an event. Every number may be given instead of the profile's.");
+  v.section("area", c.area, "The area of a part, with the profile of energy.");
   v.section("report", c.report, "The report of a run.");
   v.choice("verify", c.verify,
            "With reference every ray is traced again, depth first, and compared. With effects the picture is computed "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -103,6 +104,7 @@ class Rules {
         issue(key, fmt::format("DRAM with banks moves 32 bytes at a time; expected a multiple of 32, found {}", bytes));
     };
     whole("memory.line_bytes", c.memory.line_bytes);
+    if (c.memory.l2_sector_bytes) whole("memory.l2_sector_bytes", *c.memory.l2_sector_bytes);
     whole("memory.dram.interleave_bytes", c.memory.dram.interleave_bytes);
   }
 
@@ -277,6 +279,16 @@ class Rules {
       issue("memory.ways", fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the "
                                        "cache; expected at most {}, found {}",
                                        c.memory.l2_kib, lines, c.memory.line_bytes, lines, c.memory.ways));
+    // Sets that a cache does not have would be left out of it.
+    const std::int64_t sets = c.memory.ways * c.memory.line_bytes * c.memory.l2_banks;
+    const std::int64_t step = sets / std::gcd(sets, std::int64_t{1024});
+    if (c.memory.ways <= lines && c.memory.l2_kib % step != 0)
+      issue("memory.l2_kib", fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; "
+                                         "expected a multiple of {}, found {}",
+                                         c.memory.ways, c.memory.line_bytes, step, c.memory.l2_kib));
+    if (c.memory.l2_sector_bytes && c.memory.line_bytes % *c.memory.l2_sector_bytes != 0)
+      issue("memory.l2_sector_bytes", fmt::format("a line has whole sectors; expected a divisor of {}, found {}",
+                                                  c.memory.line_bytes, *c.memory.l2_sector_bytes));
   }
 
   void hashed_homes_spill() {

@@ -17,7 +17,7 @@ void describe(V& v, const Cache& r) {
   describe(v, r.counts);
   v.field("hit_fraction", ratio(r.counts.hits, r.counts.lines), "fraction", "hits over lines");
   v.field("port_utilisation", r.port_utilisation, "fraction",
-          "fraction of the run's cycles in which the port looked up lines");
+          "fraction of the run's cycles in which a bank looked up lines, in the mean");
 }
 
 struct ShapeBuffers {
@@ -43,7 +43,7 @@ template <class V>
 void describe(V& v, const Memory& r) {
   v.section("shape_buffers", r.shape_buffers, "use of the shape buffers of all resources");
   v.section("caches", r.caches, "use of each L2 cache");
-  v.field("dram_lines", r.dram_lines, "lines", "lines read from DRAM");
+  v.field("dram_lines", r.dram_lines, "lines", "lines, or sectors, read from DRAM");
   v.field("dram_bytes", r.dram_bytes, "bytes", "bytes read from DRAM");
   v.field("dram_lines_written", r.dram_lines_written, "lines", "lines of spilled collection entries written to DRAM");
   v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "cycles in which DRAM moved lines");

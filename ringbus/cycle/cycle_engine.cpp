@@ -190,7 +190,9 @@ class CycleRun {
     out.push_back(link_use());
     Cycle port = 0;
     for (const auto& cache : machine_.memory().caches()) port += cache->statistics().port_busy;
-    out.push_back({"l2_port", static_cast<double>(machine_.memory().caches().size()), port});
+    const double ports =
+        static_cast<double>(machine_.memory().caches().size()) * static_cast<double>(config_.memory.l2_banks);
+    out.push_back({"l2_port", ports, port});
     out.push_back({"memory_bandwidth", 1, machine_.memory().memory().busy()});
     out.push_back({"shading", static_cast<double>(shader_workers(config_)), machine_.shading().busy()});
     return out;

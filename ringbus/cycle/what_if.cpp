@@ -85,6 +85,8 @@ constexpr PartClass kPartClasses[] = {
      [](Config& c) { c.memory.fetch_ahead = std::max<std::int64_t>(1, 2 * c.memory.fetch_ahead); }},
     {"l2_size", "twice memory.l2_kib", every_machine, [](Config& c) { c.memory.l2_kib *= 2; }},
     {"l2_port", "twice memory.l2_lines_per_cycle", every_machine, [](Config& c) { c.memory.l2_lines_per_cycle *= 2; }},
+    {"l2_mshrs", "twice memory.l2_mshrs", [](const Config& c) { return c.memory.l2_mshrs > 0; },
+     [](Config& c) { c.memory.l2_mshrs *= 2; }},
     {"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", every_machine,
      [](Config& c) {
        c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);

@@ -28,11 +28,19 @@ inline constexpr auto kEnumNames<PacketResults> = [] {
       {{kMask, "mask"}, {kPerShape, "per_shape"}, {kMessage, "message"}, {kImpliedOrder, "implied_order"}});
 }();
 
+enum class MadePer { kParent, kChild };
+template <>
+inline constexpr auto kEnumNames<MadePer> = [] {
+  using enum MadePer;
+  return names<MadePer>({{kParent, "parent"}, {kChild, "child"}});
+}();
+
 struct PacketsConfig {
   std::int64_t rays = 32;
   PacketShapes shapes = PacketShapes::kStrip;
   PacketCarry carry = PacketCarry::kReference;
   PacketResults results = PacketResults::kMask;
+  MadePer made_per = MadePer::kParent;
   std::int64_t ids_per_cycle = 16;
 };
 
@@ -44,6 +52,8 @@ void describe(V& v, PacketsConfig& c) {
   v.choice("shapes", c.shapes, "A packet carries all shapes below one node, or a single one.");
   v.choice("carry", c.carry, "A packet carries a reference to its shapes, or their data.");
   v.choice("results", c.results, "The way in which hits travel back to the owner of the packet.");
+  v.choice("made_per", c.made_per,
+           "Rays gather at the node whose children they are tested against, or at each child of a node that they hit.");
   v.field("ids_per_cycle", c.ids_per_cycle, IntRange{1, 1024}, "ray IDs/cycle",
           "The number of a packet's ray IDs that a resource reads, to find its own rays or to gather hits.");
 }

@@ -14,10 +14,18 @@ inline constexpr auto kEnumNames<Placement> = [] {
       {{kBalanced, "balanced"}, {kRoundRobin, "round_robin"}, {kFirstTaker, "first_taker"}, {kAddressed, "addressed"}});
 }();
 
+enum class Query { kClosest, kAny, kAll };
+template <>
+inline constexpr auto kEnumNames<Query> = [] {
+  using enum Query;
+  return names<Query>({{kClosest, "closest"}, {kAny, "any"}, {kAll, "all"}});
+}();
+
 struct RaysConfig {
   std::int64_t slots_per_resource = 1024;
   Placement placement = Placement::kBalanced;
   std::int64_t reads_per_cycle = 0;
+  Query query = Query::kClosest;
 };
 
 namespace config {
@@ -30,6 +38,7 @@ void describe(V& v, RaysConfig& c) {
   v.field("reads_per_cycle", c.reads_per_cycle, IntRange{0, 1024}, "records/cycle",
           "The number of rays or bundles whose data the testers of a resource read from its store. With 0 there is no "
           "limit.");
+  v.choice("query", c.query, "The hits of a file's rays that are looked for: the closest, any one, or all.");
 }
 
 }  // namespace config

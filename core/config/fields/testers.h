@@ -23,10 +23,13 @@ constexpr PerUnit<TesterUnits> default_tester_units() {
 struct TestersConfig {
   PerUnit<TesterUnits> units = default_tester_units();
   struct Simd {
-    std::int64_t lanes = 8;
+    std::int64_t lanes = 1;
     enum class Map { kRays, kShapes } map = Map::kRays;
+    std::int64_t reformat_cycles = 1;
   } simd;
   std::int64_t contexts = 16;
+  std::int64_t window = 1;
+  enum class OwnRays { kAfter, kBefore } own_rays = OwnRays::kAfter;
   enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
   enum class BundleBlocks { kSeparate, kPairs, kShared } bundle_blocks = BundleBlocks::kSeparate;
 };
@@ -35,6 +38,12 @@ template <>
 inline constexpr auto kEnumNames<TestersConfig::Simd::Map> = [] {
   using enum TestersConfig::Simd::Map;
   return names<TestersConfig::Simd::Map>({{kRays, "rays"}, {kShapes, "shapes"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<TestersConfig::OwnRays> = [] {
+  using enum TestersConfig::OwnRays;
+  return names<TestersConfig::OwnRays>({{kAfter, "after"}, {kBefore, "before"}});
 }();
 
 template <>
@@ -60,8 +69,12 @@ void describe(V& v, TesterUnits& c) {
 
 template <class V>
 void describe(V& v, TestersConfig::Simd& c) {
-  v.field("lanes", c.lanes, IntRange{1, 64}, "lanes", "The number of tests that a unit does side by side.");
+  v.field("lanes", c.lanes, IntRange{1, 64}, "lanes",
+          "The number of tests that a unit starts side by side. With 1 it starts each test by itself.");
   v.choice("map", c.map, "The lanes hold rays that are tested against one shape, or shapes tested against one ray.");
+  v.field(
+      "reformat_cycles", c.reformat_cycles, IntRange{0, 1000}, "cycles",
+      "The time to bring the results of a packet's lanes into the order of its rays and shapes, with several lanes.");
 }
 
 template <class V>
@@ -69,6 +82,11 @@ void describe(V& v, TestersConfig& c) {
   for (const UnitKindRow& row : kUnitKinds) v.section_or_number(row.key, c.units[row.kind], row.meaning);
   v.section("simd", c.simd, "The lanes of the units.");
   v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.");
+  v.field(
+      "window", c.window, IntRange{1, 64}, "packets",
+      "The number of packets at the front of a resource's input queue from which it takes one whose shapes are there.");
+  v.choice("own_rays", c.own_rays,
+           "The issuer of a packet tests its own rays after the packet has come back, or before the packet leaves.");
   v.choice("any_hit", c.any_hit,
            "The unit that meets a non-opaque primitive decides at once if it is hit, or a shader worker decides.");
   v.choice(

@@ -8,45 +8,83 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Set-associative cache of lines, least recently used out first. Holds tags, but no data.
+/// Set-associative cache of lines, least recently used out first. Holds tags, but no data. A line may have parts
+/// (sectors), which come one by one, and parts that have been written since. Addresses are numbers of parts.
 class LineCache {
  public:
   /// As many sets as fit into `bytes`, but at least one. A line belongs to the set of its number modulo the sets.
-  LineCache(std::uint64_t bytes, std::uint64_t line_bytes, std::uint64_t ways)
-      : ways_(ways), sets_(std::max<std::uint64_t>(1, bytes / line_bytes / ways)), lines_(sets_ * ways_, kEmpty) {}
+  /// `keeps_writes`: written() may be called.
+  LineCache(std::uint64_t bytes, std::uint64_t line_bytes, std::uint64_t ways, std::uint64_t parts = 1,
+            bool keeps_writes = false)
+      : ways_(ways),
+        sets_(std::max<std::uint64_t>(1, bytes / line_bytes / ways)),
+        parts_(parts),
+        lines_(sets_ * ways_, kEmpty),
+        states_(parts > 1 || keeps_writes ? sets_ * ways_ : 0) {}
 
-  /// Returns whether `line` is there, and makes it the last to be replaced.
-  bool touch(std::uint64_t line) {
-    std::uint64_t* set = set_of(line);
+  /// Returns whether `part` is there, and makes its line, if it has any part, the last to be replaced.
+  bool touch(std::uint64_t part) {
+    const std::uint64_t line = line_of(part), first = line % sets_ * ways_;
     for (std::uint64_t i = 0; i < ways_; ++i) {
-      if (set[i] != line) continue;
-      for (; i > 0; --i) set[i] = set[i - 1];
-      set[0] = line;
-      return true;
+      if (lines_[first + i] != line) continue;
+      to_front(first, i);
+      return states_.empty() || (states_[first].here & bit(part)) != 0;
     }
     return false;
   }
-  /// The lines that are there, in each set the one that is replaced next first.
+  /// The parts that are there, in each set the line that is replaced next first.
   std::vector<std::uint64_t> lines() const {
     std::vector<std::uint64_t> out;
     for (std::uint64_t set = 0; set < sets_; ++set)
-      for (std::uint64_t i = ways_; i-- > 0;)
-        if (lines_[set * ways_ + i] != kEmpty) out.push_back(lines_[set * ways_ + i]);
+      for (std::uint64_t i = (set + 1) * ways_; i-- > set * ways_;)
+        for (std::uint64_t p = 0; p < parts_ && lines_[i] != kEmpty; ++p)
+          if (states_.empty() || (states_[i].here >> p & 1) != 0) out.push_back(lines_[i] * parts_ + p);
     return out;
   }
-  void insert(std::uint64_t line) {
-    if (touch(line)) return;
-    std::uint64_t* set = set_of(line);
-    for (std::uint64_t i = ways_ - 1; i > 0; --i) set[i] = set[i - 1];
-    set[0] = line;
+  /// Parts of a line that was replaced which had been written: those from `first_part` on whose bits are set.
+  struct Replaced {
+    std::uint64_t first_part = 0, written = 0;
+  };
+  /// The part comes; its line replaces another, if none of its parts was there.
+  Replaced insert(std::uint64_t part) {
+    const std::uint64_t line = line_of(part), first = line % sets_ * ways_;
+    std::uint64_t i = 0;
+    while (i + 1 < ways_ && lines_[first + i] != line) ++i;
+    const bool replaces = lines_[first + i] != line;
+    Replaced out;
+    if (replaces && !states_.empty()) {
+      out = {lines_[first + i] * parts_, states_[first + i].written};
+      states_[first + i] = {};
+    }
+    lines_[first + i] = line;
+    to_front(first, i);
+    if (!states_.empty()) states_[first].here |= bit(part);
+    return out;
   }
+  /// The part, which has just been touched or inserted, is written.
+  void written(std::uint64_t part) { states_[line_of(part) % sets_ * ways_].written |= bit(part); }
 
  private:
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
-  std::uint64_t* set_of(std::uint64_t line) { return &lines_[line % sets_ * ways_]; }
+  struct State {
+    std::uint64_t here = 0, written = 0;  // a bit for each part
+  };
+  std::uint64_t line_of(std::uint64_t part) const { return parts_ == 1 ? part : part / parts_; }
+  std::uint64_t bit(std::uint64_t part) const { return std::uint64_t{1} << part % parts_; }
+  template <class T>
+  static void shift(T* set, std::uint64_t i) {
+    const T front = set[i];
+    for (; i > 0; --i) set[i] = set[i - 1];
+    set[0] = front;
+  }
+  void to_front(std::uint64_t first, std::uint64_t i) {
+    shift(&lines_[first], i);
+    if (!states_.empty()) shift(&states_[first], i);
+  }
 
-  std::uint64_t ways_, sets_;
+  std::uint64_t ways_, sets_, parts_;
   std::vector<std::uint64_t> lines_;  // by set, most recently used first
+  std::vector<State> states_;         // of the lines; empty if a line comes as a whole and is never written here
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -47,9 +47,7 @@ class MemoryAgent : public Agent {
 
  protected:
   MemoryAgent(const MemoryConfig& config, std::vector<Client> clients)
-      : answer_latency_(answer_latency(config)),
-        line_bytes_(static_cast<std::uint64_t>(config.line_bytes)),
-        clients_(std::move(clients)) {}
+      : answer_latency_(answer_latency(config)), line_bytes_(fetched_bytes(config)), clients_(std::move(clients)) {}
 
   Cycle next_request() const {
     Cycle first = kNever;

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "ringbus/cycle/memory/dram/dram.h"
+#include "ringbus/cycle/memory/memory_agent.h"
 
 namespace carousel::ringbus {
 
@@ -15,12 +16,14 @@ constexpr std::size_t kLookEvery = 4096;  // requests between two looks at the s
 
 void run_pipe(const MemoryConfig& config, const MemoryLog& requests, MemoryTraceResult& out) {
   const auto width = static_cast<std::uint64_t>(config.dram_bytes_per_cycle);
+  const Cycle latency = MemoryAgent::request_latency(config) + MemoryAgent::answer_latency(config);
   std::uint64_t moved = 0;
   for (const MemoryRequest& request : requests) {
     moved = std::max(moved, request.cycle * width) + request.bytes;
     out.last_taken = request.cycle;
-    out.cycles = ceil_div(moved, width);
-    if (!request.write) out.latency.add(out.cycles - request.cycle);
+    const Cycle end = ceil_div(moved, width) + (request.write ? 0 : latency);
+    out.cycles = std::max(out.cycles, end);
+    if (!request.write) out.latency.add(end - request.cycle);
   }
 }
 

@@ -21,9 +21,9 @@ struct MemoryTraceResult {
   double wall_seconds = 0;
 };
 
-/// Plays requests, in the order of their cycles, to the memory of the configuration, without caches and without the way
-/// there and back. A request waits until the memory has room for it; it holds up those behind it only as the memory
-/// does.
+/// Plays requests, in the order of their cycles, to the memory of the configuration, without caches. A read of a pipe
+/// takes `memory.dram_latency_cycles` besides the time of its bytes; with banks the way there and back is left out. A
+/// request waits until the memory has room for it; it holds up those behind it only as the memory does.
 MemoryTraceResult run_memory_trace(const Config& config, const MemoryLog& requests, std::stop_token stop = {});
 
 }  // namespace carousel::ringbus

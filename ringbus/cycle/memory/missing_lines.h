@@ -26,6 +26,11 @@ class MissingLines {
     first = lines_.take({line, first, wait, wait});
     return true;
   }
+  bool has(std::uint64_t line) const {
+    std::uint32_t at = buckets_[bucket(line)];
+    while (at != kNone && lines_[at].line != line) at = lines_[at].chain;
+    return at != kNone;
+  }
   /// The line, which is on its way, has come: calls `body(request)` for all who wait for it.
   template <class Body>
   void come(std::uint64_t line, const Body& body) {
@@ -59,6 +64,7 @@ class MissingLines {
   class Pool {
    public:
     T& operator[](std::uint32_t index) { return things_[index]; }
+    const T& operator[](std::uint32_t index) const { return things_[index]; }
     std::uint32_t take(const T& thing) {
       if (free_.empty()) {
         things_.push_back(thing);

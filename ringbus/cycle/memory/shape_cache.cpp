@@ -1,6 +1,7 @@
 #include "ringbus/cycle/memory/shape_cache.h"
 
 #include <algorithm>
+#include <bit>
 
 #include <fmt/format.h>
 
@@ -20,12 +21,18 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, 
                        Channel<std::uint64_t>& from_memory)
     : answer_latency_(answer_latency(config)),
       memory_latency_(MemoryAgent::request_latency(config)),
+      line_bytes_(fetched_bytes(config)),
+      parts_(static_cast<std::uint64_t>(config.line_bytes) / line_bytes_),
+      writes_back_(config.l2_write == MemoryConfig::Write::kBack),
+      mshrs_(static_cast<std::uint64_t>(config.l2_mshrs)),
       cache_(static_cast<std::uint64_t>(config.l2_kib) * 1024, static_cast<std::uint64_t>(config.line_bytes),
-             static_cast<std::uint64_t>(config.ways)),
+             static_cast<std::uint64_t>(config.ways), parts_, writes_back_),
+      banks_(static_cast<std::size_t>(config.l2_banks)),
       clients_(std::move(clients)),
       to_memory_(to_memory),
       from_memory_(from_memory),
-      port_lines_(static_cast<std::uint64_t>(config.l2_lines_per_cycle)) {}
+      port_lines_(static_cast<std::uint64_t>(config.l2_lines_per_cycle)),
+      in_order_(banks_.size() == 1 && !writes_back_) {}
 
 void ShapeCache::warm(std::span<const std::uint64_t> lines, double part) {
   for (const std::uint64_t line : lines) {
@@ -38,6 +45,7 @@ void ShapeCache::warm(std::span<const std::uint64_t> lines, double part) {
 Cycle ShapeCache::next() const {
   Cycle first = from_memory_.next();
   if (!answers_.empty()) first = std::min(first, answers_.top().ready);
+  if (!outgoing_.empty()) first = std::min(first, outgoing_.top().ready);
   for (const Client& client : clients_) first = std::min(first, client.requests->next());
   return first;
 }
@@ -49,35 +57,40 @@ void ShapeCache::run(Cycle end) {
     next_ = from_memory_.next();
     for (std::uint32_t c = 0; c < clients_.size(); ++c) {
       Channel<FetchRequest>& requests = *clients_[c].requests;
-      while (requests.next() <= now) look_up(c, requests.take(), now);
+      while (requests.next() <= now) take(c, requests.take(), now);
       next_ = std::min(next_, requests.next());
     }
     for (; !answers_.empty() && answers_.top().ready <= now; answers_.pop())
       clients_[answers_.top().client].answers->send(now + answer_latency_, {answers_.top().tag});
     if (!answers_.empty()) next_ = std::min(next_, answers_.top().ready);
+    for (; !outgoing_.empty() && outgoing_.top().ready <= now; outgoing_.pop())
+      to_memory_.send(now + memory_latency_, outgoing_.top().line);
+    if (!outgoing_.empty()) next_ = std::min(next_, outgoing_.top().ready);
   }
 }
 
-/// Takes the port for the next line. Returns the end of the cycle in which it is looked up.
-Cycle ShapeCache::take_port(Cycle now) {
-  looked_up_ = std::max(looked_up_, now * port_lines_) + 1;
-  const Cycle end = ceil_div(looked_up_, port_lines_);
-  statistics_.port_busy += end > port_busy_until_;
-  port_busy_until_ = end;
+/// Takes a port of the bank for the next line. Returns the end of the cycle in which it is looked up.
+Cycle ShapeCache::take_port(Bank& bank, Cycle now) {
+  bank.looked_up = std::max(bank.looked_up, now * port_lines_) + 1;
+  const Cycle end = ceil_div(bank.looked_up, port_lines_);
+  statistics_.port_waits += end > now + 1;
+  statistics_.port_busy += end > bank.busy_until;
+  bank.busy_until = end;
   return end;
 }
 
-void ShapeCache::write(const FetchRequest& request, Cycle now) {
-  for (std::uint64_t line = request.first_line; line < request.first_line + request.lines; ++line) {
-    cache_.touch(line);
-    to_memory_.send(take_port(now) + memory_latency_, kWriteLine | line);
-    ++statistics_.written;
-  }
+void ShapeCache::to_memory(Cycle leaves, std::uint64_t request) {
+  if (in_order_)
+    to_memory_.send(leaves + memory_latency_, request);
+  else
+    outgoing_.push({leaves, next_turn_++, request});
 }
 
-void ShapeCache::look_up(std::uint32_t client, const FetchRequest& request, Cycle now) {
+// ---- requests
+
+void ShapeCache::take(std::uint32_t client, const FetchRequest& request, Cycle now) {
   if (request.written > 0) [[unlikely]]
-    return write(request, now);
+    return writes_back_ ? write_back(request, now) : write_through(request, now);
   std::uint32_t index;
   if (free_pending_.empty()) {
     index = static_cast<std::uint32_t>(pending_.size());
@@ -86,33 +99,101 @@ void ShapeCache::look_up(std::uint32_t client, const FetchRequest& request, Cycl
     index = free_pending_.back();
     free_pending_.pop_back();
   }
-  pending_[index] = {client, request.tag, 0, 0};
+  pending_[index] = {client, request.tag, request.lines, 0};
   ++statistics_.requests;
   statistics_.lines += request.lines;
+  for (std::uint32_t i = 0; i < request.lines; ++i) look_up({request.first_line + i, index}, now);
+}
+
+void ShapeCache::write_through(const FetchRequest& request, Cycle now) {
   for (std::uint64_t line = request.first_line; line < request.first_line + request.lines; ++line) {
-    const Cycle looked_up = pending_[index].ready = take_port(now);
-    if (cache_.touch(line)) {
-      ++statistics_.hits;
-      continue;
-    }
-    ++pending_[index].lines_missing;
-    if (missing_.wait(line, index)) {
-      to_memory_.send(looked_up + memory_latency_, line);
-      ++statistics_.misses;
-    } else {
-      ++statistics_.merged;
-    }
+    cache_.touch(line);
+    to_memory(take_port(bank_of(line), now), kWriteLine | line);
+    ++statistics_.written;
   }
-  if (pending_[index].lines_missing == 0) complete(index);
+}
+
+void ShapeCache::write_back(const FetchRequest& request, Cycle now) {
+  const std::uint64_t end = std::uint64_t{request.skipped} + request.written;
+  for (std::uint64_t i = 0; i < request.lines; ++i) {
+    const bool whole = (i > 0 || request.skipped == 0) && (i + 1) * line_bytes_ <= end;
+    look_up({request.first_line + i, whole ? kWholeWriter : kWriter}, now);
+  }
+  statistics_.kept += request.lines;
+}
+
+/// Looks up a line, unless its bank has stopped at one before it or stops at this one.
+void ShapeCache::look_up(const LookUp& one, Cycle now) {
+  Bank& bank = bank_of(one.line);
+  if (bank.waiting.empty() && (one.request >= kWholeWriter ? write(bank, one, now) : read(bank, one, now))) return;
+  bank.waiting.push_back(one);
+  ++statistics_.mshr_waits;
+}
+
+/// Returns whether the line could be looked up.
+bool ShapeCache::read(Bank& bank, const LookUp& one, Cycle now) {
+  Pending& pending = pending_[one.request];
+  if (cache_.touch(one.line)) {
+    pending.ready = std::max(pending.ready, take_port(bank, now));
+    ++statistics_.hits;
+    if (--pending.lines_missing == 0) complete(one.request);
+    return true;
+  }
+  if (!can_fetch(bank) && !missing_.has(one.line)) return false;
+  const Cycle looked_up = take_port(bank, now);
+  pending.ready = std::max(pending.ready, looked_up);
+  if (missing_.wait(one.line, one.request)) {
+    to_memory(looked_up, one.line);
+    ++bank.on_their_way;
+    ++statistics_.misses;
+  } else {
+    ++statistics_.merged;
+  }
+  return true;
+}
+
+bool ShapeCache::write(Bank& bank, const LookUp& one, Cycle now) {
+  const bool here = cache_.touch(one.line);
+  if (here || (one.request == kWholeWriter && !missing_.has(one.line))) {
+    const Cycle looked_up = take_port(bank, now);
+    if (!here) insert(one.line, looked_up);
+    cache_.written(one.line);
+    return true;
+  }
+  if (!can_fetch(bank) && !missing_.has(one.line)) return false;
+  const Cycle looked_up = take_port(bank, now);
+  if (missing_.wait(one.line, kWriter)) {
+    to_memory(looked_up, one.line);
+    ++bank.on_their_way;
+    ++statistics_.write_fetches;
+  }
+  return true;
+}
+
+// ---- lines that come
+
+void ShapeCache::insert(std::uint64_t line, Cycle now) {
+  const LineCache::Replaced replaced = cache_.insert(line);
+  for (std::uint64_t written = replaced.written; written != 0; written &= written - 1) {
+    to_memory(now, kWriteLine | (replaced.first_part + static_cast<std::uint64_t>(std::countr_zero(written))));
+    ++statistics_.written_back;
+  }
 }
 
 void ShapeCache::fill(std::uint64_t line, Cycle now) {
-  cache_.insert(line);
+  insert(line, now);
   missing_.come(line, [&](std::uint32_t index) {
+    if (index == kWriter) return cache_.written(line);
     Pending& pending = pending_[index];
     pending.ready = std::max(pending.ready, now);
     if (--pending.lines_missing == 0) complete(index);
   });
+  Bank& bank = bank_of(line);
+  --bank.on_their_way;
+  for (; !bank.waiting.empty(); bank.waiting.pop_front()) {
+    const LookUp one = bank.waiting.front();
+    if (!(one.request >= kWholeWriter ? write(bank, one, now) : read(bank, one, now))) return;
+  }
 }
 
 void ShapeCache::complete(std::uint32_t index) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <queue>
 #include <span>
 #include <vector>
@@ -15,10 +16,16 @@
 
 namespace carousel::ringbus::cycle {
 
-/// The L2 that some resources share: looks up so many lines a cycle, in the order in which requests arrive (at one
-/// time: of the resources). A line that is on its way from memory is requested once. Lines that a resource writes,
-/// spilled collection entries, go through to memory: one that is here is brought up to date, and others take no
-/// room. An answer leaves when the last line of its request is there, also before those of earlier requests.
+/// The L2 that some resources share. Its banks hold the lines in turn, and each looks up so many a cycle, in the order
+/// in which requests arrive (at one time: of the resources). A line that is on its way from memory is requested once. A
+/// bank that may have no further line on its way (`memory.l2_mshrs`) stops at the next that has to be fetched. An
+/// answer leaves when the last line of its request is there, also before those of earlier requests.
+///
+/// Lines that a resource writes are spilled collection entries. With `memory.l2_write: through` they go on to memory:
+/// one that is here is brought up to date, and others take no room. With `back` they stay here until they are replaced;
+/// one of which only a part is written is fetched first.
+///
+/// With `memory.l2_sector_bytes` "line" here means a sector (see fetched_bytes()), but for replacement.
 class ShapeCache final : public Agent {
  public:
   struct Client {
@@ -58,19 +65,50 @@ class ShapeCache final : public Agent {
     bool operator>(const Answer& o) const { return ready != o.ready ? ready > o.ready : turn > o.turn; }
   };
 
-  void write(const FetchRequest& request, Cycle now);
-  void look_up(std::uint32_t client, const FetchRequest& request, Cycle now);
+  /// A request to memory that leaves at `ready`.
+  struct Outgoing {
+    Cycle ready = 0;
+    std::uint64_t turn = 0, line = 0;
+    bool operator>(const Outgoing& o) const { return ready != o.ready ? ready > o.ready : turn > o.turn; }
+  };
+  /// A line of a request, of a pending one or (kWriter, kWholeWriter) of one that writes.
+  struct LookUp {
+    std::uint64_t line = 0;
+    std::uint32_t request = 0;
+  };
+  struct Bank {
+    std::uint64_t looked_up = 0;  // its ports are taken up to this line of time, of which a cycle has port_lines_
+    Cycle busy_until = 0;         // the first cycle after the last in which a line was looked up
+    std::uint32_t on_their_way = 0;
+    std::deque<LookUp> waiting;  // the first has to be fetched, and cannot be yet
+  };
+  static constexpr std::uint32_t kWriter = ~0u, kWholeWriter = kWriter - 1;  // writes a part of a line, or all of it
+
+  Bank& bank_of(std::uint64_t line) { return banks_.size() == 1 ? banks_[0] : banks_[line / parts_ % banks_.size()]; }
+  void take(std::uint32_t client, const FetchRequest& request, Cycle now);
+  void write_through(const FetchRequest& request, Cycle now);
+  void write_back(const FetchRequest& request, Cycle now);
+  void look_up(const LookUp& one, Cycle now);
+  bool read(Bank& bank, const LookUp& one, Cycle now);
+  bool write(Bank& bank, const LookUp& one, Cycle now);
+  bool can_fetch(const Bank& bank) const { return mshrs_ == 0 || bank.on_their_way < mshrs_; }
   void fill(std::uint64_t line, Cycle now);
-  Cycle take_port(Cycle now);
+  void insert(std::uint64_t line, Cycle now);
+  void to_memory(Cycle leaves, std::uint64_t request);
+  Cycle take_port(Bank& bank, Cycle now);
   void complete(std::uint32_t index);
 
   Cycle answer_latency_, memory_latency_;
+  std::uint64_t line_bytes_, parts_;  // a line of the messages, and their number in one of the cache
+  bool writes_back_;
+  std::uint64_t mshrs_;  // of a bank; 0: no bound
   LineCache cache_;
+  std::vector<Bank> banks_;
   std::vector<Client> clients_;
   Channel<std::uint64_t>&to_memory_, &from_memory_;
-  std::uint64_t port_lines_;     // a cycle
-  std::uint64_t looked_up_ = 0;  // the port is taken up to this line of time, of which a cycle has port_lines_
-  Cycle port_busy_until_ = 0;    // the first cycle after the last in which a line was looked up
+  std::uint64_t port_lines_;  // a cycle
+  bool in_order_;             // requests to memory leave in the order in which they are made
+  std::priority_queue<Outgoing, std::vector<Outgoing>, std::greater<>> outgoing_;  // unless they are in order
   std::priority_queue<Answer, std::vector<Answer>, std::greater<>> answers_;
   std::uint64_t next_turn_ = 0;
   std::vector<Pending> pending_;

@@ -18,7 +18,7 @@ class ShapePort {
       : requests_(*ports.fetch),
         answers_(*ports.fetched),
         wire_(link, ShapeCache::request_latency(config)),
-        line_bytes_(static_cast<std::uint64_t>(config.line_bytes)) {}
+        line_bytes_(fetched_bytes(config)) {}
 
   /// Asks for the lines of `span`; `tag` comes back when all are there. Requests are made in order of time.
   void request(const ShapeSpan& span, std::uint32_t tag, Cycle now) {
@@ -31,6 +31,7 @@ class ShapePort {
   void write(const ShapeSpan& span, Cycle now) {
     FetchRequest message = lines_of(span);
     message.written = span.bytes;
+    message.skipped = static_cast<std::uint32_t>(span.address % line_bytes_);
     requests_.send(wire_.send(message.bytes(), now), message);
   }
   /// The time at which the next answer comes.

@@ -2,7 +2,15 @@
 
 #include <cstdint>
 
+#include "core/config/fields/memory.h"
+
 namespace carousel::ringbus::cycle {
+
+/// The bytes that come from memory at a time: a line, or with `memory.l2_sector_bytes` a part of it. Messages count in
+/// these, and call each a line.
+inline std::uint64_t fetched_bytes(const MemoryConfig& config) {
+  return static_cast<std::uint64_t>(config.l2_sector_bytes.value_or(config.line_bytes));
+}
 
 /// A resource asks its cache for lines; `tag` comes back with the answer. Or it writes lines, which has no answer.
 struct FetchRequest {
@@ -10,6 +18,7 @@ struct FetchRequest {
   std::uint32_t lines = 0;
   std::uint32_t tag = 0;
   std::uint32_t written = 0;  ///< bytes that it writes; 0 when it asks
+  std::uint32_t skipped = 0;  ///< bytes of the first line before those that it writes
 
   /// Address 8, number of lines 4, tag 4, and what is written.
   std::uint64_t bytes() const { return 16 + std::uint64_t{written}; }

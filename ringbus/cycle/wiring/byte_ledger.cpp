@@ -36,9 +36,9 @@ ByteRow packets(const SimulatedMachine& machine, std::uint64_t width) {
 
 /// The resources count the lines for which they ask, the caches those that they look up.
 ByteRow shape_data(const SimulatedMachine& machine, const MemoryConfig& memory) {
-  const auto line = static_cast<std::uint64_t>(memory.line_bytes);
+  const std::uint64_t line = fetched_bytes(memory);
   ByteRow row{"shape data", "L2", "resources", "L2's port",
-              line * static_cast<std::uint64_t>(memory.l2_lines_per_cycle)};
+              line * static_cast<std::uint64_t>(memory.l2_lines_per_cycle * memory.l2_banks)};
   for (const auto& cache : machine.memory().caches()) row.bytes += cache->statistics().lines * line;
   for (const auto& channels : machine.channels()) {
     const SidePorts side = channels->ports();
@@ -52,8 +52,8 @@ ByteRow shape_data(const SimulatedMachine& machine, const MemoryConfig& memory) 
 
 std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& config) {
   const auto width = static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle);
-  const auto line = static_cast<std::uint64_t>(config.memory.line_bytes);
-  const auto lines_per_cycle = static_cast<std::uint64_t>(config.memory.l2_lines_per_cycle);
+  const std::uint64_t line = fetched_bytes(config.memory);
+  const auto lines_per_cycle = static_cast<std::uint64_t>(config.memory.l2_lines_per_cycle * config.memory.l2_banks);
   constexpr std::uint64_t kAddress = 8;
   ByteRow new_rays{"new rays", "ray control", "resources", "load ports and wires of IDs", width};
   ByteRow completed{"completed rays", "resources", "ray control", "ports of completed rays", width};
@@ -81,7 +81,8 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
   });
   // Entries that do not fit collection storage: to L2 with their requests, and on to DRAM in whole lines.
   ByteRow spilled{"lines of spilled entries", "L2", "DRAM", "DRAM's data wires", lines.width};
-  for (const auto& cache : machine.memory().caches()) spilled.bytes += cache->statistics().written * line;
+  for (const auto& cache : machine.memory().caches())
+    spilled.bytes += (cache->statistics().written + cache->statistics().written_back) * line;
   spilled.bytes_taken = machine.memory().memory().lines_written() * line;
   spilled.messages = spilled.bytes / line;  // "line requests" has counted these messages
   return {packets(machine, width),

@@ -132,8 +132,8 @@ std::vector<std::string> leaves() {
 
 const std::vector<std::string> kScene{"scene.",  "camera.",   "image.", "engine.",  "primary",
                                       "report.", "sampling.", "verify", "workload."};
-const std::vector<std::string> kMachine{"topology.", "rays.",    "packets.", "collections.",
-                                        "memory.",   "shading.", "faults."};
+const std::vector<std::string> kMachine{"topology.", "rays.",   "packets.", "collections.", "memory.",
+                                        "shading.",  "faults.", "energy.",  "area."};
 const std::vector<std::string> kTests{"bvh.", "accuracy.", "cull_planes.", "bundles.", "testers."};
 
 bool is_of(const std::string& key, const std::vector<std::string>& sections) {

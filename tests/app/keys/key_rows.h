@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/types/cost_table.h"
 #include "tests/app/keys/base_machines.h"
 
 namespace carousel {
@@ -61,10 +62,12 @@ inline std::vector<KeyRow> key_rows() {
       {"rays.slots_per_resource", kTerrain, {}, {"8"}},
       {"rays.placement", kNative},
       {"rays.reads_per_cycle", kTerrain, {}, {"1"}},
+      {"rays.query", kCornell},
       {"packets.rays", kTerrain, {}, {"4"}},
       {"packets.shapes", kTerrain},
       {"packets.carry", kTerrain, {"packets.carry=reference"}, {"data"}, {"memory.fetch=packet"}},
       {"packets.results", kTerrain},
+      {"packets.made_per", kTerrain},
       {"packets.ids_per_cycle", kTerrain, {}, {"1"}},
       {"collections.ready", kTerrain, {}, {"3"}},
       {"collections.traversal", kTerrain},
@@ -163,6 +166,9 @@ inline std::vector<KeyRow> key_rows() {
       {"testers.any_hit_unit.latency_cycles", kLayers, {}, {"90"}},
       {"testers.simd.lanes", kTerrain, {}, {"4"}},
       {"testers.simd.map", kTerrain},
+      {"testers.simd.reformat_cycles", kTerrain, {}, {"9"}},
+      {"testers.window", kTerrain, {}, {"4"}},
+      {"testers.own_rays", kTerrain},
       {"testers.contexts", kTerrain, {}, {"3"}},
       {"testers.any_hit", kLayers},
       {"testers.bundle_blocks", kBundles, {"bundles.order=parallel"}},
@@ -182,7 +188,7 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.l2_banks", kTerrain, {"memory.l2_lines_per_cycle=1"}, {"2"}},
       {"memory.l2_mshrs", kTerrain, {}, {"1"}},
       {"memory.l2_sector_bytes", kTerrain, {"memory.line_bytes=128"}, {"32"}},
-      {"memory.l2_write", kTerrain},
+      {"memory.l2_write", kTerrain, {"collections.when_full=spill", "collections.capacity=64"}},
       {"memory.dram.preset", kTerrain},
       {"memory.dram.mapping", kTerrain, {"memory.dram.preset=gddr6_14"}},
       {"memory.dram.channels", kTerrain, {"memory.dram.preset=gddr6_14"}, {"1"}},
@@ -230,6 +236,10 @@ inline std::vector<KeyRow> key_rows() {
       {"sampling.fraction", kTerrain, {"image.width=48", "image.height=32"}, {"0.5"}},
       {"sampling.strata", kTerrain, {"image.width=48", "image.height=32", "sampling.fraction=0.5"}, {"4"}},
       {"sampling.seed", kTerrain, {"image.width=48", "image.height=32", "sampling.fraction=0.5"}, {"2"}},
+      {"energy.profile", kTerrain},
+      {"area.budget_mm2", kTerrain, {}, {"9"}},
+      {"area.fit", kTerrain},
+      {"area.link_mm", kTerrain, {}, {"9"}},
       {"report.samples", kTerrain, {}, {"16"}},
       {"verify", kTerrain},
       {"workload.rays_from", kCornell, {}, {"fewer.csv"}},
@@ -249,11 +259,13 @@ inline std::vector<KeyRow> key_rows() {
 
 /// Keys without a row, for a reason.
 inline std::vector<std::string> keys_without_a_row() {
-  return {
+  std::vector<std::string> keys{
       "schema_version",         // it has one value
       "vary",                   // it is for sweeps; `run` warns of it
       "workload.memory_trace",  // it replaces the machine; memory_trace_test.cpp has it
   };
+  for (const CostRow& row : kCostTable) keys.push_back(std::string(row.section) + "." + std::string(row.key));
+  return keys;
 }
 
 }  // namespace carousel

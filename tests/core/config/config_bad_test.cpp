@@ -223,6 +223,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"SetLargerThanTheCache", SCENE "memory: {l2_kib: 1, line_bytes: 64, ways: 17}\n",
                   "test.yaml:2:43: memory.ways: a cache of 1 KiB has 16 lines of 64 bytes, and a set is no larger than "
                   "the cache; expected at most 16, found 17"},
+        BadConfig{
+            "PartOfASet", SCENE "memory: {l2_kib: 9, line_bytes: 128, ways: 8, l2_banks: 4}\n",
+            "test.yaml:2:18: memory.l2_kib: a cache has whole sets, of 8 lines of 128 bytes, as many in each bank; "
+            "expected a multiple of 4, found 9"},
+        BadConfig{
+            "PartOfASector", SCENE "memory: {line_bytes: 64, l2_sector_bytes: 48}\n",
+            "test.yaml:2:43: memory.l2_sector_bytes: a line has whole sectors; expected a divisor of 64, found 48"},
         BadConfig{"FaultyLinksOfIndependentResources",
                   SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\nfaults: {links: {drop: 0.1}}\n",
                   "test.yaml:4:17: faults.links: independent resources have no links; expected no faults of links, or "

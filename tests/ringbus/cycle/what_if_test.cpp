@@ -146,6 +146,7 @@ TEST(WhatIf, EveryLiftIsNoticed) {
        [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.l2_latency_cycles = 500, c.memory.fetch_ahead = 0; }},
       {"fetch_ahead", [](Config& c) { c.memory.fetch_ahead = 0, c.memory.l2_latency_cycles = 500; }},
       {"l2_size", [](Config& c) { c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
+      {"l2_mshrs", [](Config& c) { c.memory.l2_mshrs = 1, c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
       {"l2_port",
        [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.line_bytes = 16, c.memory.l2_lines_per_cycle = 1; }},
       {"issue_rule",

@@ -138,7 +138,11 @@ std::vector<Factor> bundles() {
 std::vector<Factor> memory_and_shading() {
   const Values timed{"engine.kind=cycle"};
   return {
-      {"memory.l2_kib", {"1", "1024"}, timed},
+      {"memory.l2_kib", {"2", "1024"}, timed},
+      {"memory.l2_banks", {"1", "2"}, timed},
+      {"memory.l2_mshrs", {"0", "1"}, timed},
+      {"memory.l2_sector_bytes", {"auto", "32"}, timed},
+      {"memory.l2_write", all<MemoryConfig::Write>(), timed},
       {"memory.shared_by", {"1", "4"}, timed},
       {"memory.fetch", all<MemoryConfig::Fetch>(), timed},
       {"memory.fetch_ahead", {"0", "2"}, timed},

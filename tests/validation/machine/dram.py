@@ -1,5 +1,6 @@
 """DRAM with banks, cycle by cycle ("DRAM with banks")."""
 from .clock import ceil_div, way_back
+from .memory import piece_of
 
 NEVER = 1 << 62
 UNIT = 32  # bytes of a transaction
@@ -82,10 +83,10 @@ class Channel:
             moves = [request for request in queue if open_row(request) and self.may_move(request, now)]
             changes = [request for request in queue if not open_row(request) and self.may_change_row(request, now)]
             if self.t["buses"] == 2:
-                row = changes[0] if changes else None
                 if served is None and moves:
                     served = moves[0]
                     queue.remove(served)
+                row = next((c for c in changes if served is None or c.bank != served.bank), None)
             elif served is None:
                 first = min(moves[:1] + changes[:1], key=queue.index, default=None)
                 if first in moves:
@@ -167,7 +168,7 @@ class BankedMemory:
             t["rfc"] = d["refresh_cycles"]
         if not d["refresh"]:
             t["refi"] = NEVER
-        self.t, self.caches, self.line, self.d = t, caches, m["line_bytes"], d
+        self.t, self.caches, self.line, self.d = t, caches, piece_of(config), d
         self.back = way_back(m["dram_latency_cycles"])
         self.channels = [Channel(t, d["queue"]) for _ in range(d["channels"])]
         self.per_million = t["period"] * config["engine"]["clock_mhz"]  # engine cycles of a million DRAM cycles

@@ -3,25 +3,54 @@ from .clock import Channel, SideWire, ceil_div, way_back, way_there
 REQUEST = 16  # bytes
 
 
+def piece_of(config):
+    """The bytes that come from memory at a time: a sector, or a line."""
+    m = config["memory"]
+    sector = m.get("l2_sector_bytes", "auto")
+    return m["line_bytes"] if sector in ("auto", None) else sector
+
+
+class Line:
+    def __init__(self, number):
+        self.number, self.here, self.written = number, set(), set()  # pieces
+
+
 class LineCache:
-    def __init__(self, lines, ways):
-        self.ways, self.sets = ways, max(1, lines // ways)
-        self.lines = [[] for _ in range(self.sets)]  # most recently used first
+    """Lines of some pieces each; pieces come one by one."""
 
-    def touch(self, line):
-        entries = self.lines[line % self.sets]
-        if line not in entries:
-            return False
-        entries.remove(line)
-        entries.insert(0, line)
-        return True
+    def __init__(self, lines, ways, pieces):
+        self.ways, self.pieces = ways, pieces
+        self.sets = [[] for _ in range(lines // ways)]  # most recently used first
 
-    def insert(self, line):
-        if self.touch(line):
-            return
-        entries = self.lines[line % self.sets]
-        entries.insert(0, line)
-        del entries[self.ways:]
+    def line(self, piece):
+        """The line of a piece, if it has any, as the most recently used one."""
+        number = piece // self.pieces
+        entries = self.sets[number % len(self.sets)]
+        for line in entries:
+            if line.number == number:
+                entries.remove(line)
+                entries.insert(0, line)
+                return line
+        return None
+
+    def touch(self, piece):
+        line = self.line(piece)
+        return line is not None and piece in line.here
+
+    def insert(self, piece):
+        """The written pieces that have to leave for it."""
+        line, leave = self.line(piece), []
+        if line is None:
+            line = Line(piece // self.pieces)
+            entries = self.sets[line.number % len(self.sets)]
+            entries.insert(0, line)
+            if len(entries) > self.ways:
+                leave = sorted(entries.pop().written)
+        line.here.add(piece)
+        return leave
+
+    def write(self, piece):
+        self.line(piece).written.add(piece)
 
 
 class ShapePort:
@@ -30,71 +59,130 @@ class ShapePort:
     def __init__(self, config, clock):
         self.wire = SideWire(clock, config, way_there(config["memory"]["l2_latency_cycles"]))
         self.requests, self.answers = self.wire.channel, Channel(clock)
-        self.line = config["memory"]["line_bytes"]
+        self.line = piece_of(config)
 
     def request(self, span, tag, now):
         """Reads the lines of `span`; `tag` comes back. Without a tag it writes them."""
         address, size = span
         first, last = address // self.line, (address + size - 1) // self.line
-        self.wire.send(REQUEST + (size if tag is None else 0), now, (first, last - first + 1, tag))
+        self.wire.send(REQUEST + (size if tag is None else 0), now, (first, last - first + 1, tag, span))
 
 
 class Request:
-    def __init__(self, client, tag):
-        self.client, self.tag, self.ready, self.missing = client, tag, 0, 0
+    def __init__(self, client, tag, missing):
+        self.client, self.tag, self.ready, self.missing = client, tag, 0, missing
+
+
+class Bank:
+    def __init__(self):
+        self.looked_up = 0  # in lines: a cycle has lines_a_cycle of them
+        self.fetched = 0    # pieces on their way
+        self.stopped = []   # look-ups, of which the first cannot fetch
 
 
 class Cache:
-    """An L2 that some resources share. Its port looks up so many lines a cycle."""
+    """An L2 that some resources share. Each bank looks up so many lines a cycle."""
 
     def __init__(self, config, clock, ports):
         m = config["memory"]
         self.clock, self.ports = clock, ports
-        self.lines = LineCache(m["l2_kib"] * 1024 // m["line_bytes"], m["ways"])
+        self.piece = piece_of(config)
+        self.lines = LineCache(m["l2_kib"] * 1024 // m["line_bytes"], m["ways"], m["line_bytes"] // self.piece)
         self.back = way_back(m["l2_latency_cycles"])
         self.to_memory, self.from_memory = Channel(clock), Channel(clock)
         self.memory_latency = way_there(m["dram_latency_cycles"])
         self.lines_a_cycle = m["l2_lines_per_cycle"]
-        self.looked_up = 0  # in lines: a cycle has lines_a_cycle of them
-        self.waiting = {}   # line: requests, in the order in which they asked
+        self.banks = [Bank() for _ in range(m.get("l2_banks", 1))]
+        self.mshrs = m.get("l2_mshrs", 0) or 1 << 60
+        self.keeps_writes = m.get("l2_write", "through") == "back"
+        self.waiting = {}   # piece: who waits for it (None: a writer), in the order in which they asked
         self.complete = []  # requests that wait for their answer to leave
+        self.leaving = []   # requests to memory, each with the cycle in which it leaves
 
     def step(self, now):
         while self.from_memory.ready(now):
             self.fill(self.from_memory.take(), now)
         for client, port in enumerate(self.ports):
             while port.requests.ready(now):
-                self.look_up(Request(client, port.requests.front()[2]), port.requests.take(), now)
+                self.take(client, port.requests.take(), now)
         for request in [request for request in self.complete if request.ready <= now]:
             self.complete.remove(request)
             self.ports[request.client].answers.send(now + self.back, request.tag)
+        for leaves in [leaves for leaves in self.leaving if leaves[0] <= now]:
+            self.leaving.remove(leaves)
+            self.to_memory.send(now + self.memory_latency, leaves[1])
 
-    def look_up(self, request, asked, now):
-        first, lines, tag = asked
-        for line in range(first, first + lines):
-            self.looked_up = max(self.looked_up, now * self.lines_a_cycle) + 1
-            request.ready = ceil_div(self.looked_up, self.lines_a_cycle)
-            there = self.lines.touch(line)
-            if tag is None:  # a write, which goes through
-                self.to_memory.send(request.ready + self.memory_latency, (line, True))
-            if there or tag is None:
+    def take(self, client, asked, now):
+        first, lines, tag, (address, size) = asked
+        request = Request(client, tag, lines)
+        for piece in range(first, first + lines):
+            begin = piece * self.piece
+            if tag is not None:
+                how = request
+            elif self.keeps_writes:
+                how = "whole" if address <= begin and begin + self.piece <= address + size else "part"
+            else:
+                how = "through"
+            bank = self.bank(piece)
+            if (bank.stopped and how != "through") or not self.look_up(bank, piece, how, now):
+                bank.stopped.append((piece, how))
+
+    def bank(self, piece):
+        return self.banks[piece // self.lines.pieces % len(self.banks)]
+
+    def look_up(self, bank, piece, how, now):
+        """False, and nothing is done, if the piece must be fetched and cannot be."""
+        there, under_way = self.lines.touch(piece), piece in self.waiting
+        needs_it = how not in ("through", "whole")
+        if how == "whole" and under_way:
+            needs_it = True
+        if needs_it and not there and not under_way and bank.fetched == self.mshrs:
+            return False
+        bank.looked_up = max(bank.looked_up, now * self.lines_a_cycle) + 1
+        end = ceil_div(bank.looked_up, self.lines_a_cycle)
+        if how == "through":
+            self.leave(end, (piece, True))
+        elif there or not needs_it:
+            if not there:
+                self.insert(piece, end)
+            if isinstance(how, Request):
+                how.ready = max(how.ready, end)
+                self.one_less(how)
+            else:
+                self.lines.write(piece)
+        else:
+            if not under_way:
+                self.waiting[piece] = []
+                bank.fetched += 1
+                self.leave(end, (piece, False))
+            if isinstance(how, Request):
+                how.ready = max(how.ready, end)
+            self.waiting[piece].append(how if isinstance(how, Request) else None)
+        return True
+
+    def insert(self, piece, now):
+        for written in self.lines.insert(piece):
+            self.leave(now, (written, True))
+
+    def leave(self, at, what):
+        self.leaving.append((at, what))
+        self.clock.wake(at)
+
+    def fill(self, piece, now):
+        self.insert(piece, now)
+        for request in self.waiting.pop(piece):
+            if request is None:
+                self.lines.write(piece)
                 continue
-            request.missing += 1
-            if line not in self.waiting:
-                self.waiting[line] = []
-                self.to_memory.send(request.ready + self.memory_latency, (line, False))
-            self.waiting[line].append(request)
-        if tag is not None:
-            self.complete_if_all_there(request)
-
-    def fill(self, line, now):
-        self.lines.insert(line)
-        for request in self.waiting.pop(line):
             request.ready = max(request.ready, now)
-            request.missing -= 1
-            self.complete_if_all_there(request)
+            self.one_less(request)
+        bank = self.bank(piece)
+        bank.fetched -= 1
+        while bank.stopped and self.look_up(bank, *bank.stopped[0], now):
+            bank.stopped.pop(0)
 
-    def complete_if_all_there(self, request):
+    def one_less(self, request):
+        request.missing -= 1
         if request.missing == 0:
             self.complete.append(request)
             self.clock.wake(request.ready)
@@ -107,7 +195,7 @@ class Memory:
         m = config["memory"]
         self.caches = caches
         self.back = way_back(m["dram_latency_cycles"])
-        self.line, self.width = m["line_bytes"], m["dram_bytes_per_cycle"]
+        self.line, self.width = piece_of(config), m["dram_bytes_per_cycle"]
         self.moved = 0  # in bytes: a cycle has `width` of them
 
     def step(self, now):

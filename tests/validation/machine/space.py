@@ -1,4 +1,5 @@
 """Random machines: configurations of 1 to 4 resources and some 200 rays."""
+import math
 import random
 
 
@@ -58,6 +59,14 @@ def draw(seed, index):
                                                  "row_column_bank_group"]),
                                 "queue": pick([1, 2, 5, 32]), "period_ps": pick(["auto", 250, 1000, 1701]),
                                 "refresh": pick([True, True, False]), "refresh_cycles": pick(["auto", 40])}
+    memory = config["memory"]
+    if r.random() < 0.5:
+        line = memory["line_bytes"]
+        memory.update(l2_banks=pick([1, 2, 3, 8]), l2_mshrs=pick([0, 1, 2, 7]), l2_write=pick(["through", "back", "back"]),
+                      l2_sector_bytes=pick(["auto", 32 if line > 32 else "auto", line // 2 if line > 32 else "auto"]))
+    sets = memory["ways"] * memory["line_bytes"] * memory.get("l2_banks", 1)  # a cache has whole sets in each bank
+    step = sets // math.gcd(sets, 1024)
+    memory["l2_kib"] = -(-memory["l2_kib"] // step) * step
     if r.random() < 0.15:  # independent resources read few of these keys
         config["topology"]["shape"] = "independent"
         config["packets"].update(shapes="strip", carry="reference")

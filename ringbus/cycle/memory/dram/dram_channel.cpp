@@ -81,7 +81,9 @@ DramChannel::Issued DramChannel::step() {
   std::vector<Entry>& queue = queues_[writing_];
   constexpr std::size_t kNone = ~std::size_t{0};
   std::size_t active = kNone, column = kNone, row = kNone;
+  std::size_t other_row = kNone;  // the row command behind `row` that is for another bank
   DramCycle wake = refresh_due_;
+  const auto same_bank = [&](std::size_t a, std::size_t b) { return queue[a].request.bank == queue[b].request.bank; };
   const auto consider = [&](std::size_t& chosen, std::size_t index, DramCycle at) {
     if (at > now)
       wake = std::min(wake, at);
@@ -94,15 +96,21 @@ DramChannel::Issued DramChannel::step() {
       const Bank& bank = banks_[queue[i].request.bank];
       if (bank.row == queue[i].request.row) {
         if (column == kNone) consider(column, i, column_time(queue[i]));
-      } else if (row == kNone) {
+      } else {
+        std::size_t& chosen = row != kNone && !same_bank(row, i) ? other_row : row;
         if (bank.row == kClosed)
-          consider(row, i, activate_time(queue[i].request.bank));
+          consider(chosen, i, activate_time(queue[i].request.bank));
         else if (bank.activated == 0)
-          consider(row, i, std::max(bank.precharge, row_bus_));
+          consider(chosen, i, std::max(bank.precharge, row_bus_));
       }
       // Behind these nothing goes before them.
-      if (timing_.two_buses ? column != kNone && row != kNone : column != kNone || row != kNone) break;
+      if (!timing_.two_buses ? column != kNone || row != kNone
+                             : column != kNone && row != kNone && (other_row != kNone || !same_bank(column, row)))
+        break;
     }
+    // The row of a request that is served in this cycle stays open.
+    if (active == kNone && column != kNone && row != kNone && queue[row].request.bank == queue[column].request.bank)
+      row = other_row;
   }
   Issued issued;
   bool any = false;

@@ -28,7 +28,7 @@ struct DramRequest {
 ///    none open, and else a precharge. The oldest request whose next command can be issued now issues it. A request
 ///    that has activated its row leaves its place, and goes before those that still have one; its row is not closed
 ///    before it has been served. With two command buses the oldest row command and the oldest column command are
-///    issued.
+///    issued; a row is not precharged in the cycle in which a request of it is served.
 /// 3. A refresh that is due: no request is begun, all rows are closed at once as soon as those that have been activated
 ///    are served, and then nothing is activated for rfc cycles.
 ///

@@ -78,6 +78,26 @@ TEST(Dram, RandomReadsAreLimitedByActivates) {
   }
 }
 
+/// Reads of one row, which nothing but refreshes closes: one each nCCD long. A refresh that is due lets no further read
+/// begin; the row is closed nRTP after the last one (no sooner than the refresh is due, since nRTP is not below nCCD
+/// long), and the next read comes nRP + nRFC + nRCD later.
+TEST(Dram, ARefreshTakesTheSumOfItsCommands) {
+  for (const Standard& s : kStandards) {
+    const cycle::DramTiming t = cycle::dram_timing(dram_config(s.preset).memory.dram);
+    MemoryLog requests;
+    for (std::uint64_t i = 0; i < 100'000; ++i) requests.push_back({i, 32 * (i % s.shape.columns), 32, false});
+    const auto with = run(s.preset, "", requests), without = run(s.preset, kNoRefresh, requests);
+    const std::uint64_t refreshes = with.cycles / static_cast<std::uint64_t>(t.refi);
+    ASSERT_GT(refreshes, 100u);
+    EXPECT_EQ(with.dram->channels[0].counts.refreshes, refreshes);
+    const auto lost = static_cast<std::uint64_t>(t.rtp - t.ccd_long + t.rp + t.rfc + t.rcd_read);
+    EXPECT_EQ(with.cycles - without.cycles, refreshes * lost) << s.name;
+    const double part = static_cast<double>(lost) / static_cast<double>(t.refi);
+    EXPECT_NEAR(1 - static_cast<double>(without.cycles) / static_cast<double>(with.cycles), part, 0.01 * part)
+        << s.name;
+  }
+}
+
 TEST(Dram, RefreshTakesItsPartOfTheTime) {
   for (const Standard& s : kStandards) {
     // Reads of one row in each of the groups, so that nothing but refreshes closes it.
@@ -86,7 +106,8 @@ TEST(Dram, RefreshTakesItsPartOfTheTime) {
       requests.push_back({i, 32 * s.shape.columns * (i % (s.shape.groups * s.shape.pseudo_channels)), 32, false});
     const auto with = run(s.preset, "", requests), without = run(s.preset, kNoRefresh, requests);
     const double lost = 1 - static_cast<double>(without.last_taken) / static_cast<double>(with.last_taken);
-    // A refresh more or less at the end, and up to three activates behind the first.
+    // A refresh more or less at the end is 2 %, and while the rows are opened one behind the other, nRRD apart, some
+    // groups still wait: the closed form has no term for that, and is exact for one row (above).
     EXPECT_NEAR(lost, s.refresh_loss, 0.15 * s.refresh_loss) << s.name;
     EXPECT_EQ(with.dram->channels[0].counts.refreshes, with.cycles / (s.preset == "gddr6_14" ? 3333
                                                                       : s.preset == "hbm2_2" ? 3900
@@ -103,6 +124,28 @@ TEST(Dram, WritesTurnTheBusRound) {
   EXPECT_EQ(conflict.cycles, std::max(60, 20 + 6 + 2 + 30) + 30 + 30 + 24 + 2u);
   EXPECT_EQ(conflict.dram->channels[0].counts.row_conflicts, 1u);
   EXPECT_EQ(conflict.dram->channels[0].counts.writes, 1u);
+}
+
+/// A row of HBM2 is open and may be closed from cycle 34 on (nRAS). A request of another row has waited for that when
+/// one of the open row comes in the same cycle: it is served, and the row is closed nRTP later.
+TEST(Dram, ARowThatIsReadIsNotPrechargedInTheSameCycle) {
+  const std::uint64_t other_row = 32 * 32 * 2 * 16;
+  const MemoryTraceResult out =
+      run("hbm2_2", kNoRefresh, {{0, 0, 32, false}, {30, other_row, 32, false}, {34, 32, 32, false}});
+  EXPECT_EQ(out.cycles, 34 + 5 + 14 + 14 + 14 + 2u);  // nRTP, nRP, nRCD, nCL, nBL
+  EXPECT_EQ(out.dram->channels[0].counts.row_hits, 1u);
+}
+
+TEST(Dram, APipeTakesItsLatency) {
+  const Config config = load_config({"engine: {kind: cycle}\nworkload: {memory_trace: a.csv}\n"
+                                     "memory: {dram_bytes_per_cycle: 16, dram_latency_cycles: 101}\n",
+                                     "pipe.yaml"})
+                            .config;
+  const MemoryTraceResult out =
+      run_memory_trace(config, {{10, 0, 64, false}, {10, 64, 32, false}, {500, 0, 32, false}, {500, 0, 64, true}});
+  EXPECT_EQ(out.latency.max(), 6 + 101u);  // 64 and 32 bytes at 16 a cycle
+  EXPECT_EQ(out.latency.sum(), 4 + 6 + 2 + 3 * 101u);
+  EXPECT_EQ(out.cycles, 500 + 2 + 101u);  // a write has no answer
 }
 
 TEST(Dram, ItsClockRunsBesideTheEngines) {

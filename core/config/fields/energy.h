@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/config/fields/field.h"
+#include "core/types/cost_table.h"
+
+namespace carousel {
+
+template <>
+inline constexpr auto kEnumNames<CostProfile> = [] {
+  using enum CostProfile;
+  return names<CostProfile>({{kNone, "none"}, {kN45, "n45"}, {kN7, "n7"}});
+}();
+
+/// The numbers that a configuration gives itself, by the rows of kCostTable. Absent: those of the profile.
+using OwnCosts = std::array<std::optional<float>, kCostTable.size()>;
+
+struct EnergyConfig {
+  CostProfile profile = CostProfile::kNone;
+  OwnCosts own;  ///< of the rows of this section
+};
+
+struct AreaConfig {
+  std::optional<float> budget_mm2;
+  enum class Fit { kResources, kRefuse } fit = Fit::kResources;
+  std::optional<float> link_mm;  ///< absent: the side of a square of a resource's area
+  OwnCosts own;                  ///< of the rows of this section
+};
+
+template <>
+inline constexpr auto kEnumNames<AreaConfig::Fit> = [] {
+  using enum AreaConfig::Fit;
+  return names<AreaConfig::Fit>({{kResources, "resources"}, {kRefuse, "refuse"}});
+}();
+
+namespace config {
+
+template <class V>
+void describe_costs(V& v, OwnCosts& own, std::string_view section) {
+  for (std::size_t i = 0; i < kCostTable.size(); ++i)
+    if (kCostTable[i].section == section)
+      v.field_or_auto(kCostTable[i].key, own[i], RealRange{0, 1e9}, kCostTable[i].unit, kCostTable[i].meaning);
+}
+
+template <class V>
+void describe(V& v, EnergyConfig& c) {
+  v.choice("profile", c.profile,
+           "The process whose numbers energy and area have where they say auto: 45 nm with DDR3, or 7 nm with GDDR6. "
+           "With none neither is computed.");
+  describe_costs(v, c.own, "energy");
+}
+
+template <class V>
+void describe(V& v, AreaConfig& c) {
+  v.field_or_auto("budget_mm2", c.budget_mm2, RealRange{0, 1e6, true}, "mm2",
+                  "The largest area of the machine. With auto there is no bound.");
+  v.choice("fit", c.fit,
+           "With a budget the machine gets the largest number of resources that stays within it, whatever "
+           "topology.resources says; or a larger machine is refused.");
+  v.field_or_auto(
+      "link_mm", c.link_mm, RealRange{0, 1000}, "mm",
+      "The length of a link between neighbours. With auto it is the side of a square of a resource's area.");
+  describe_costs(v, c.own, "area");
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,292 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "core/types/unit_kind.h"
+
+namespace carousel {
+
+// The joules of an event and the square millimetres of a part. The keys of `energy` and `area`, the report, its pages
+// and the documentation iterate over this one table. The profiles are never mixed: every number of a run is of one
+// process, apart from the numbers that the configuration gives itself.
+
+/// A process: 45 nm and 0.9 V with DDR3, or 7 nm with GDDR6.
+enum class CostProfile : std::uint8_t { kNone, kN45, kN7 };
+
+enum class Cost : std::uint8_t {
+  // Joules of a test, in the order of UnitKind.
+  kBoxTest,
+  kTriangleTest,
+  kPlaneTest,
+  kBundleTest,
+  kTransform,
+  kProceduralTest,
+  kAnyHitTest,
+  // Joules of other events.
+  kHop,
+  kWire,
+  kSram8,
+  kSram32,
+  kSram1024,
+  kDram,
+  kDramActivation,
+  kHbm,
+  kHbmActivation,
+  kShade,
+  kProduct,
+  kLookup,
+  // Areas of a unit, in the order of UnitKind.
+  kBoxUnit,
+  kTriangleUnit,
+  kPlaneUnit,
+  kBundleUnit,
+  kTransformUnit,
+  kProceduralUnit,
+  kAnyHitUnit,
+  // Areas of other parts.
+  kSramArea,
+  kShaderArea,
+  kWirePitch,
+};
+
+/// The support of a number: it stands in the source; it is computed from numbers of the source by the rule that the
+/// source's text names; or nothing that was found supports it.
+enum class Basis : std::uint8_t { kPublished, kDerived, kAssumed };
+
+struct CostValue {
+  float value;
+  Basis basis;
+  std::string_view source;
+};
+
+struct CostRow {
+  Cost cost;
+  std::string_view section;  ///< of the configuration: energy or area
+  std::string_view key;
+  const char* unit;
+  const char* meaning;  ///< a sentence
+  CostValue n45, n7;
+};
+
+namespace cost_sources {
+using std::string_view;
+inline constexpr string_view kHorowitz = "Horowitz, ISSCC 2014";
+inline constexpr string_view kJouppi = "Jouppi et al., ISCA 2021, Table 2, from memory";
+inline constexpr string_view kHbm2 = "HBM2: O'Connor et al., MICRO 2017";
+}  // namespace cost_sources
+
+/// The one table. A product and a sum of 32-bit numbers are 3.7 and 0.9 pJ at 45 nm (Horowitz, ISSCC 2014), and 1.31
+/// and 0.4 pJ at 7 nm (Jouppi et al., ISCA 2021). A unit of 28 nm (GauTracer, HPCA 2026, Table III) is scaled by
+/// (45/28)² to 45 nm, and by 0.15 to 7 nm, which assumes a half from 28 to 16 nm and 0.3 from there.
+inline constexpr auto kCostTable = [] {
+  using enum Basis;
+  using namespace cost_sources;
+  constexpr auto kOperations45 = [](float pj, std::string_view count) { return CostValue{pj, kDerived, count}; };
+  constexpr std::string_view kE = "energy", kA = "area";
+  const CostValue scaled_from_box45{0.126f, kAssumed, "as a box unit"},
+      scaled_from_box7{0.0073f, kAssumed, "as a box unit"};
+  constexpr auto kOps = kOperations45;
+  return std::to_array<CostRow>({
+      {Cost::kBoxTest, kE, "box", "pJ", "A test of a ray against a box.",
+       kOps(29, "6 products, 6 sums, 10 comparisons; Horowitz, ISSCC 2014"),
+       kOps(10, "6 products, 6 sums, 10 comparisons; Jouppi et al., ISCA 2021, Table 2")},
+      {Cost::kTriangleTest, kE, "triangle", "pJ", "A test of a ray against a triangle.",
+       kOps(98, "a watertight test's products and sums; Horowitz, ISSCC 2014"),
+       kOps(36, "a watertight test's products and sums; Jouppi et al., ISCA 2021, Table 2")},
+      {Cost::kPlaneTest,
+       kE,
+       "plane",
+       "pJ",
+       "A test of a ray against a cull plane.",
+       {30.4f, kAssumed, "7 products, 5 sums; Horowitz, ISSCC 2014"},
+       {11.2f, kAssumed, "7 products, 5 sums; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kBundleTest,
+       kE,
+       "bundle",
+       "pJ",
+       "A test of a bundle.",
+       {49.8f, kAssumed, "6 edges of 2 products and a sum; Horowitz, ISSCC 2014"},
+       {18.1f, kAssumed, "6 edges of 2 products and a sum; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kTransform, kE, "transform", "pJ", "A ray brought to model space.",
+       kOps(80.1f, "18 products, 15 sums; Horowitz, ISSCC 2014"),
+       kOps(29.6f, "18 products, 15 sums; Jouppi et al., ISCA 2021, Table 2")},
+      {Cost::kProceduralTest,
+       kE,
+       "procedural",
+       "pJ",
+       "A test of a ray against a procedural primitive.",
+       {98, kAssumed, "as a triangle"},
+       {36, kAssumed, "as a triangle"}},
+      {Cost::kAnyHitTest,
+       kE,
+       "any_hit_unit",
+       "pJ",
+       "A decision if a non-opaque primitive is hit.",
+       {45.8f, kAssumed, "6 products, 4 sums and 64 bits of 32 KB; Horowitz, ISSCC 2014"},
+       {18, kAssumed, "6 products, 4 sums and 64 bits of 32 KB; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kHop,
+       kE,
+       "hop",
+       "pJ/byte",
+       "A byte through the port of a link, without its wire.",
+       {0.45f, kAssumed, "3.58 pJ a hop of 64 bits of which none switches, 32 nm: McKeown et al., HPCA 2018"},
+       {0.16f, kAssumed, "the number of 32 nm, by the ratio of products of 45 and 7 nm"}},
+      {Cost::kWire,
+       kE,
+       "wire",
+       "pJ/byte/mm",
+       "A byte over a millimetre of wire.",
+       {0.96f, kDerived, "240 fJ a transition and mm at 40 nm, half of the bits switch: Keckler et al., Micro 2011"},
+       {0.46f, kDerived, "115 fJ a transition and mm at 10 nm, half of the bits switch: Keckler et al., Micro 2011"}},
+      {Cost::kSram8,
+       kE,
+       "sram_8_kib",
+       "pJ",
+       "An access of 64 bits to a store of 8 KiB. Other sizes are interpolated.",
+       {10, kPublished, kHorowitz},
+       {7.5f, kAssumed, kJouppi}},
+      {Cost::kSram32,
+       kE,
+       "sram_32_kib",
+       "pJ",
+       "An access of 64 bits to a store of 32 KiB.",
+       {20, kPublished, kHorowitz},
+       {8.5f, kAssumed, kJouppi}},
+      {Cost::kSram1024,
+       kE,
+       "sram_1_mib",
+       "pJ",
+       "An access of 64 bits to a store of 1 MiB.",
+       {100, kPublished, kHorowitz},
+       {14, kAssumed, kJouppi}},
+      {Cost::kDram,
+       kE,
+       "dram",
+       "pJ/byte",
+       "A byte from or to memory, unless it is HBM2.",
+       {244, kDerived, "DDR3, activation included, the middle of 1.3 to 2.6 nJ for 64 bits: Horowitz, ISSCC 2014"},
+       {52, kDerived, "GDDR6, activation included, the middle of 5.5 to 7.5 pJ a bit: Jouppi et al., ISCA 2021"}},
+      {Cost::kDramActivation,
+       kE,
+       "dram_activation",
+       "pJ",
+       "An activation of a row, unless the memory is HBM2.",
+       {0, kDerived, "contained in the bytes"},
+       {0, kDerived, "contained in the bytes"}},
+      {Cost::kHbm,
+       kE,
+       "hbm",
+       "pJ/byte",
+       "A byte from or to HBM2.",
+       {20.3f, kDerived, "2.24 + 0.30 pJ a bit: O'Connor et al., MICRO 2017"},
+       {20.3f, kDerived, "2.24 + 0.30 pJ a bit: O'Connor et al., MICRO 2017"}},
+      {Cost::kHbmActivation,
+       kE,
+       "hbm_activation",
+       "pJ",
+       "An activation of a row of HBM2.",
+       {909, kPublished, kHbm2},
+       {909, kPublished, kHbm2}},
+      {Cost::kShade,
+       kE,
+       "shade",
+       "pJ",
+       "A ray shaded as a plain surface or a miss.",
+       {736, kAssumed, "160 products and sums, no instruction counted; Horowitz, ISSCC 2014"},
+       {274, kAssumed, "160 products and sums, no instruction counted; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kProduct, kE, "product", "pJ", "A product and a sum of a surface's effects.",
+       kOps(4.6f, "a product and a sum; Horowitz, ISSCC 2014"),
+       kOps(1.71f, "a product and a sum; Jouppi et al., ISCA 2021, Table 2")},
+      {Cost::kLookup,
+       kE,
+       "lookup",
+       "pJ",
+       "A filtered texture lookup.",
+       {80, kAssumed, "8 texels of 4 bytes from 32 KB; Horowitz, ISSCC 2014"},
+       {34, kAssumed, "8 texels of 4 bytes from 32 KB; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kBoxUnit,
+       kA,
+       "box",
+       "mm2",
+       "A unit that tests boxes.",
+       {0.126f, kDerived, "48,630 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"},
+       {0.0073f, kAssumed, "48,630 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"}},
+      {Cost::kTriangleUnit,
+       kA,
+       "triangle",
+       "mm2",
+       "A unit that tests triangles.",
+       {0.193f, kDerived, "74,577 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"},
+       {0.0112f, kAssumed, "74,577 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"}},
+      {Cost::kPlaneUnit, kA, "plane", "mm2", "A unit that tests cull planes.", scaled_from_box45, scaled_from_box7},
+      {Cost::kBundleUnit,
+       kA,
+       "bundle",
+       "mm2",
+       "A unit that tests bundles.",
+       {0.252f, kAssumed, "as two box units, by its products"},
+       {0.0146f, kAssumed, "as two box units, by its products"}},
+      {Cost::kTransformUnit,
+       kA,
+       "transform",
+       "mm2",
+       "A unit that brings rays to model space.",
+       {0.0928f, kDerived, "35,942 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"},
+       {0.0054f, kAssumed, "35,942 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"}},
+      {Cost::kProceduralUnit,
+       kA,
+       "procedural",
+       "mm2",
+       "A unit that tests procedural primitives.",
+       {0.193f, kAssumed, "as a triangle unit"},
+       {0.0112f, kAssumed, "as a triangle unit"}},
+      {Cost::kAnyHitUnit, kA, "any_hit_unit", "mm2", "A unit that decides on non-opaque primitives.", scaled_from_box45,
+       scaled_from_box7},
+      {Cost::kSramArea,
+       kA,
+       "sram",
+       "mm2/KiB",
+       "Storage on the chip.",
+       {0.00456f, kDerived, "0.609 mm² for 64 KB at 65 nm: SimTRaX's table of CACTI; scaled by (45/65)²"},
+       {0.00034f, kAssumed, "bit cells of 0.027 µm² (Chang et al., ISSCC 2017), of which 65 % of the area consists"}},
+      {Cost::kShaderArea,
+       kA,
+       "shader",
+       "mm2",
+       "A product a cycle of a shader worker.",
+       {0.021f, kAssumed, "a sixth of a box unit, which has six products"},
+       {0.0012f, kAssumed, "a sixth of a box unit, which has six products"}},
+      {Cost::kWirePitch,
+       kA,
+       "wire_pitch",
+       "um",
+       "The place that a wire of a link takes, beside the next one.",
+       {0.28f, kAssumed, "twice the least pitch of a metal in the middle"},
+       {0.08f, kAssumed, "twice the least pitch of a metal in the middle"}},
+  });
+}();
+
+constexpr std::size_t cost_index(Cost cost) {
+  return static_cast<std::size_t>(cost);
+}
+
+static_assert([] {
+  for (std::size_t i = 0; i < kCostTable.size(); ++i)
+    if (cost_index(kCostTable[i].cost) != i) return false;
+  for (std::size_t i = 0; i < kUnitKinds.size(); ++i)  // a kind of unit has its row in both parts
+    if (kCostTable[i].key != kUnitKinds[i].key || kCostTable[cost_index(Cost::kBoxUnit) + i].key != kUnitKinds[i].key)
+      return false;
+  return true;
+}());
+
+constexpr Cost energy_of(UnitKind kind) {
+  return static_cast<Cost>(unit_index(kind));
+}
+constexpr Cost area_of(UnitKind kind) {
+  return static_cast<Cost>(cost_index(Cost::kBoxUnit) + unit_index(kind));
+}
+
+}  // namespace carousel
