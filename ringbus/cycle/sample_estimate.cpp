@@ -16,6 +16,8 @@ namespace {
 /// Standard errors to either side that hold 95 %, of Student's distribution with as many degrees of freedom as there
 /// are neighbours to compare.
 constexpr double kErrors = 2.13;
+/// The part of the time that warm caches spare that is in doubt: waits for different lines overlap.
+constexpr double kUnsure = 0.5;
 
 Estimate around(double value, double error) {
   return {value, std::max(0.0, value - error), value + error};
@@ -60,17 +62,19 @@ class Sample {
     end_ = c_.all_begun ? c_.all_begun->completed : n;
     too_small_ = end_ < begin_ + n / 4;
     if (too_small_) begin_ = 0, end_ = n;
+    count_lines();
   }
 
   FrameValues estimate() const {
     FrameValues out;
-    const double more = times_ - 1, rate = cycles_a_ray(), rays_error = error_of_rays(), time_error = error_of_time();
-    const double cycles = static_cast<double>(c_.cycles) + more * rays_ * rate;
-    const double each = cycles / (times_ * rays_);
+    const double rays_error = error_of_rays(), time_error = error_of_time();
+    const double rest = (times_ - 1) * rays_, spared = rest * spared_cycles_a_ray();
+    const double cycles = static_cast<double>(c_.cycles) + rest * cycles_a_ray() - spared;
+    const double each = cycles / (times_ * rays_), unsure = kUnsure * spared / (times_ * rays_);
     out.rays = around(times_ * rays_, times_ * rays_ * rays_error);
-    out.cycles_per_ray = around(each, each * time_error);
+    out.cycles_per_ray = around(each, each * time_error + unsure);
     if (too_small_) out.cycles_per_ray.low = std::min(out.cycles_per_ray.low, least_cycles_a_ray() * (1 - time_error));
-    out.cycles = quotient(cycles, time_error, rays_error);
+    out.cycles = quotient(cycles, time_error + unsure / each, rays_error);
     if (too_small_) out.cycles.low = out.cycles_per_ray.low * out.rays.low;
     const Estimate& e = out.cycles_per_ray;
     out.rays_per_kilocycle = {over(1000, e.value), over(1000, e.high), over(1000, e.low)};
@@ -98,6 +102,19 @@ class Sample {
     const double work = at_count(c_, end_, busy) - at_count(c_, begin_, busy);
     return work > 0 ? time * static_cast<double>(c_.uses[i].busy) / work / rays_
                     : time / static_cast<double>(end_ - begin_);
+  }
+
+  /// The time of a ray that the rest of the frame spares, as the testers wait less often for lines that no ray has
+  /// asked for before.
+  double spared_cycles_a_ray() const {
+    if (first_ <= 0) return 0;
+    double wait = 0;
+    for (const cycle::TileResult& tile : c_.tiles)
+      wait += static_cast<double>(tile.states[static_cast<std::size_t>(cycle::TileState::kMemory)]);
+    wait /= static_cast<double>(c_.tiles.size());
+    const double cold = wait * first_ / (first_ + again_) / rays_;
+    const double fewer = 1 - std::min(1.0, (grown(power_) / first_ - 1) / std::max(1e-9, times_ - 1));
+    return std::min(cold * fewer, cycles_a_ray() / 2);
   }
 
   /// The class whose parts are most of the time at work, other than those of the memory, which are busier while caches
@@ -164,27 +181,32 @@ class Sample {
     return around(count / rays_, i ? count / rays_ * error_of_work(*i, false) : 0);
   }
 
-  /// Lines of the frame's requests to memory.
-  Estimate frame_lines() const {
+  /// The lines that the frame asks for first, if they grow by a power of its rays.
+  double grown(double by) const { return first_ * std::pow(times_, std::clamp(by, 0.0, 1.0)); }
+
+  void count_lines() {
     const auto half = static_cast<std::uint64_t>(at_count(c_, run_.result.rays_completed / 2, cycle_of));
     const std::size_t caches = std::max<std::size_t>(1, c_.caches.size());
     std::unordered_map<std::uint64_t, std::size_t> seen;
-    double first = 0, first_half = 0, again = 0;
+    double first_half = 0;
     for (const MemoryRequest& request : run_.memory) {
       if (!request.write && seen[request.address]++ < caches) {
-        ++first;
+        ++first_;
         first_half += request.cycle <= half;
       } else {
-        ++again;
+        ++again_;
       }
     }
-    const double power = first > 0 && first_half > 0 ? std::clamp(std::log2(first / first_half), 0.0, 1.0) : 0;
-    const auto grown = [&](double by) { return first * std::pow(times_, std::clamp(by, 0.0, 1.0)); };
+    if (first_half > 0) power_ = std::clamp(std::log2(first_ / first_half), 0.0, 1.0);
+  }
+
+  /// Lines of the frame's requests to memory.
+  Estimate frame_lines() const {
     const auto i = class_of("memory_bandwidth");
-    const double error = times_ * again * (i ? error_of_work(*i, false) : 0), value = grown(power) + times_ * again;
+    const double again = times_ * again_, error = again * (i ? error_of_work(*i, false) : 0);
     constexpr double kPowerError = 0.25;
-    return {value, std::max(0.0, grown(power - kPowerError) + times_ * again - error),
-            grown(power + kPowerError) + times_ * again + error};
+    return {grown(power_) + again, std::max(0.0, grown(power_ - kPowerError) + again - error),
+            grown(power_ + kPowerError) + again + error};
   }
 
   Estimate use(std::size_t i, double cycles, const Estimate& lines) const {
@@ -207,6 +229,8 @@ class Sample {
   double rays_, times_, unseen_;
   std::uint64_t begin_ = 0, end_ = 0;
   bool too_small_ = false;
+  double first_ = 0, again_ = 0;  // requests to memory: those of a cache that asks for a line first, and others
+  double power_ = 0;              // of the growth of the former
 };
 
 Estimate exactly(double value) {

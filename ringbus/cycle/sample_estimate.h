@@ -47,6 +47,8 @@ FrameValues exact_values(const Config& config, const RunResult& result);
 /// - Caches are cold. The first request of a cache for a line is one of the frame's, too; the number of such lines
 ///   grows more slowly than that of the rays, by the power that it grew with in the sample's second half. All other
 ///   requests are taken to be as many a ray as in the sample.
+///   The testers waited for first lines as long as for others, and the rest of the frame waits less by as many as it
+///   has fewer of them a ray. Half of the time that it so spares is added to the interval.
 /// - Errors are those of the differences between neighbouring places and between neighbouring blocks of completed rays
 ///   (foretell.h), less the part of the frame that was simulated (K. Wolter, Introduction to Variance Estimation, 2nd
 ///   edition 2007, sections 1.4 and 8.2).
