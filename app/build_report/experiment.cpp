@@ -21,7 +21,7 @@
 #include "app/run/memory_csv.h"
 #include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
-#include "app/run/sampled_run.h"
+#include "app/sampled/sampled_run.h"
 #include "report/text/number_text.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"

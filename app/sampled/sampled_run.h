@@ -3,9 +3,9 @@
 #include <optional>
 #include <stop_token>
 
-#include "app/run/place_census.h"
 #include "app/run/prepare.h"
 #include "app/run/render_job.h"
+#include "app/sampled/place_census.h"
 #include "report/run/report.h"
 #include "ringbus/results/run_result.h"
 

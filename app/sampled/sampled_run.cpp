@@ -1,4 +1,4 @@
-#include "app/run/sampled_run.h"
+#include "app/sampled/sampled_run.h"
 
 #include <utility>
 

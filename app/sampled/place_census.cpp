@@ -1,4 +1,4 @@
-#include "app/run/place_census.h"
+#include "app/sampled/place_census.h"
 
 namespace carousel::app {
 
