@@ -111,7 +111,7 @@ TEST(QuantisedNodes, CountBoxesThatOnlyRoundingHits) {
   };
   std::uint64_t expected = 0;
   IntersectionCounts counts;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     RayRecord record;
     const Vec3 from = corner(), to = corner();
     if (from == to) continue;
