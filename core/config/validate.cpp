@@ -36,7 +36,7 @@ class Rules {
     effects_are_known();
     ordered_needs_strips();
     hashed_homes_spill();
-    cache_holds_a_set();
+    caches_have_whole_sets();
     config::check_network(c, options_.force,
                           [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
     sampling_fits();
@@ -273,22 +273,32 @@ class Rules {
       issue("packets.shapes", "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
   }
 
-  void cache_holds_a_set() {
-    const std::int64_t lines = c.memory.l2_kib * 1024 / c.memory.line_bytes;
-    if (c.memory.ways > lines)
-      issue("memory.ways", fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the "
-                                       "cache; expected at most {}, found {}",
-                                       c.memory.l2_kib, lines, c.memory.line_bytes, lines, c.memory.ways));
-    // Sets that a cache does not have would be left out of it.
-    const std::int64_t sets = c.memory.ways * c.memory.line_bytes * c.memory.l2_banks;
-    const std::int64_t step = sets / std::gcd(sets, std::int64_t{1024});
-    if (c.memory.ways <= lines && c.memory.l2_kib % step != 0)
-      issue("memory.l2_kib", fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; "
-                                         "expected a multiple of {}, found {}",
-                                         c.memory.ways, c.memory.line_bytes, step, c.memory.l2_kib));
+  void caches_have_whole_sets() {
+    cache_has_whole_sets("l2_kib", c.memory.l2_kib, "ways", c.memory.ways, c.memory.l2_banks);
+    if (c.memory.l1_kib > 0) cache_has_whole_sets("l1_kib", c.memory.l1_kib, "l1_ways", c.memory.l1_ways, 1);
     if (c.memory.l2_sector_bytes && c.memory.line_bytes % *c.memory.l2_sector_bytes != 0)
       issue("memory.l2_sector_bytes", fmt::format("a line has whole sectors; expected a divisor of {}, found {}",
                                                   c.memory.line_bytes, *c.memory.l2_sector_bytes));
+  }
+
+  void cache_has_whole_sets(const char* size, std::int64_t kib, const char* set, std::int64_t ways,
+                            std::int64_t banks) {
+    const std::int64_t lines = kib * 1024 / c.memory.line_bytes;
+    if (ways > lines) {
+      issue(fmt::format("memory.{}", set),
+            fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the cache; "
+                        "expected at most {}, found {}",
+                        kib, lines, c.memory.line_bytes, lines, ways));
+      return;
+    }
+    // Sets that a cache does not have would be left out of it.
+    const std::int64_t bytes = ways * c.memory.line_bytes * banks;
+    const std::int64_t step = bytes / std::gcd(bytes, std::int64_t{1024});
+    if (kib % step != 0)
+      issue(fmt::format("memory.{}", size),
+            fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; expected a multiple of "
+                        "{}, found {}",
+                        ways, c.memory.line_bytes, step, kib));
   }
 
   void hashed_homes_spill() {
