@@ -46,6 +46,7 @@ void quantise_axis(float* lo, float* hi, int count) {
 }  // namespace
 
 void quantise_boxes(Accel& accel) {
+  accel.full_nodes = accel.nodes;
   for (Node& node : accel.nodes)
     for (int axis = 0; axis < 3; ++axis) quantise_axis(node.plane[axis], node.plane[axis + 3], node.count);
 }

@@ -28,6 +28,7 @@ struct InstanceNode {
 struct Accel {
   NodeArray nodes;
   BlockArray blocks;
+  NodeArray full_nodes;                 ///< with bvh.storage: quantised the nodes as they were; else empty
   std::vector<CullPlane> planes;        ///< in order of the nodes; empty without cull_planes
   std::vector<NodeSpheres> spheres;     ///< by node, tested instead of its boxes; empty with bvh.elements: boxes
   bool shared_normals = false;          ///< of siblings; `planes` repeats them

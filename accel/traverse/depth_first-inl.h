@@ -127,6 +127,15 @@ HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const Loc
          ~std::uint32_t{node.direct};
 }
 
+/// Counts the children in `mask` that the ray meets only because their boxes are quantised. Called with full_nodes.
+template <class Registers>
+HWY_NOINLINE void count_extra_hits(const Accel& accel, NodeRef ref, const Registers& ray, float tmax,
+                                   std::uint32_t mask, IntersectionCounts& counts) {
+  alignas(64) float ignored[kMaxWidth];
+  const std::uint32_t met = slab_node(accel.full_nodes[ref.node()], ray, tmax, ignored);
+  counts.extra_box_hits += static_cast<std::uint64_t>(std::popcount(mask & ~met));
+}
+
 /// The next action after a visit of anything but an inner node.
 enum class Then { kPop, kEnter, kStop };
 
@@ -138,6 +147,7 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Sla
                             DepthFirstStack& stack, TraversalCounts& counts, const VisitOther& visit_other) {
   const auto ray = in_registers(frame.slab);
   const Node* const nodes = accel.nodes.data();
+  const bool quantised = !accel.full_nodes.empty();
   DepthFirstStack::Entry* top = stack.entries;
   NodeRef ref = root;
   std::uint64_t tested = 0;
@@ -156,6 +166,7 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Sla
       }
       const std::uint32_t mask = cull(accel, node, frame.slab, frame.direction, ~0u, hits, counts, counts.culls);
       if (mask == 0) goto pop;
+      if (HWY_UNLIKELY(quantised)) count_extra_hits(accel, ref, ray, hit.t, mask, counts);
       ref = nearest_child(accel, node, mask, entry, top);
     }
     if (const Then then = visit_other(ref); then != Then::kPop) {

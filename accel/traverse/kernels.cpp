@@ -67,6 +67,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
   const std::uint32_t direct = node.direct & lanes, held = ~std::uint32_t{node.direct};
   const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes & held));
   const float widening = far_widening(accel.accuracy.box);
+  const bool quantised = !accel.full_nodes.empty();
   alignas(64) float nearest[kMaxWidth];
   std::copy(hits.nearest, hits.nearest + kMaxWidth, nearest);
   for (std::size_t i = 0; i < members.count; ++i) {
@@ -94,6 +95,8 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
       for (int lane = 0; lane < kMaxWidth; ++lane)
         if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
     }
+    if (HWY_UNLIKELY(quantised) && mask != 0)
+      count_extra_hits(accel, key.ref, in_registers(ray), record.hit.t, mask, counts);
     if (HWY_UNLIKELY(direct != 0))
       test_direct<Slab>(accel, node, key, direct, record,
                         members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i, counts);
@@ -158,6 +161,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, I
   Walker<Slab> walkers[kWalkers];
   Walker<Slab>* active[kWalkers];
   std::size_t count = 0;
+  const bool quantised = !accel.full_nodes.empty();
   const auto start = [&](Walker<Slab>& walker) HWY_ATTR {
     while (next < members.count) {
       RayRecord& record = member<8>(members, next++);
@@ -181,6 +185,8 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, I
       walker.mask = met_children(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t, walker.entry,
                                  counts.box);
       walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
+      if (HWY_UNLIKELY(quantised) && walker.mask != 0)
+        count_extra_hits(accel, walker.ref, in_registers(frame.slab), walker.record->hit.t, walker.mask, counts);
       if (HWY_UNLIKELY(node.direct != 0) && test_direct(accel, node, ~0u, frame, walker.record->hit, counts) &&
           walker.any_hit) {
         walker.mask = 0;

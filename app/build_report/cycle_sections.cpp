@@ -69,6 +69,7 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   for (const ringbus::cycle::TileResult& tile : c.tiles) out.shape_buffers.counts += tile.shapes;
   const std::uint64_t port_cycles = c.cycles * static_cast<std::uint64_t>(config.l2_banks);
   for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, port_cycles)});
+  if (c.own_caches) out.own_caches = {*c.own_caches, ratio(c.own_caches->port_busy, c.cycles * c.tiles.size())};
   out.dram_lines = c.memory_lines;
   out.dram_bytes = c.memory_lines * ringbus::cycle::fetched_bytes(config);
   out.dram_lines_written = c.memory_lines_written;

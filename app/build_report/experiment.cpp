@@ -21,6 +21,7 @@
 #include "app/run/memory_csv.h"
 #include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
+#include "app/sampled/sampled_run.h"
 #include "report/text/number_text.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
@@ -79,7 +80,7 @@ void write_trace(TraceFile& trace, const ringbus::RunResult& result) {
 void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResult& result,
                  const InterruptScope& interrupt, bool quiet, report::Report& report) {
   report.bound = bound_of(result);
-  if (!p.config().engine.what_if) return;
+  if (!p.config().engine.what_if || job.sample() != nullptr) return;
   Phase phase("search");
   report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), quiet);
   report.incomplete |= !report.bottleneck->complete;
@@ -101,11 +102,19 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   const auto rays_a_path = static_cast<std::uint64_t>(picture ? 2 * p.config().image.max_depth : 1);
   RayCensus census(verifying ? static_cast<Workload&>(*verifying) : job.workload(),
                    static_cast<std::size_t>(shader_workers(p.config())),
-                   RayCensus::one_in(job.first_rays() * rays_a_path));
-  const ringbus::RunResult result = simulate(p, job, census, interrupt, quiet, trace, memory);
+                   RayCensus::one_in(job.frame_rays() * rays_a_path));
+  std::optional<PlaceCensus> places;
+  ringbus::MemoryLog requests;
+  if (job.sample() != nullptr) {
+    places.emplace(census, job);
+    if (memory == nullptr) memory = &requests;
+  }
+  const ringbus::RunResult result =
+      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory);
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   add_census(report, census, p.accel);
+  if (places && result.complete) report.sampled = estimates(p, job, *places, result, *memory);
   if (result.cycle) find_limits(p, job, result, interrupt, quiet, report);
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, quiet, report);

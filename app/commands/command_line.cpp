@@ -126,6 +126,10 @@ void add_run(CLI::App& program, RunArguments& r) {
                   "Write the requests to the simulated memory as CSV, which workload: {memory_trace: FILE} reads "
                   "(default: not written)")
       ->type_name("FILE");
+  run->add_flag(
+      "--audit", r.audit,
+      "With sampling.fraction: simulate the whole frame, too, and say how far off the estimates are (default: "
+      "not simulated)");
   run->add_flag("--no-html", r.no_html, "Do not write report.html (default: written)");
   CLI::Option* trace = run->add_option("--trace", r.trace.file,
                                        "Write a timeline of events that ui.perfetto.dev opens (default: not written)")

@@ -18,6 +18,7 @@
 #include "app/run/memory_csv.h"
 #include "app/run/render_job.h"
 #include "app/run/trace_events.h"
+#include "app/sampled/sampled_run.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
@@ -107,6 +108,15 @@ void require_memory(const RunArguments& arguments, const Config& config) {
                         "option"}});
 }
 
+/// Only estimates can be compared with the whole frame.
+void require_estimates(const RunArguments& arguments, const Config& config) {
+  if (arguments.audit && config.sampling.fraction >= 1)
+    throw ConfigError({{{},
+                        "--audit",
+                        "this run has no estimates; expected sampling.fraction below 1, as in --set "
+                        "sampling.fraction=0.1, or a run without this option"}});
+}
+
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
                  const RenderJob& job, const report::Report& report, HitRecorder* recorder) {
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
@@ -140,6 +150,7 @@ int run_command(const RunArguments& arguments) {
     return run_memory_command(arguments, p, interrupt, *output);
   }
   require_memory(arguments, p.config());
+  require_estimates(arguments, p.config());
 
   RenderJob job(p);
   std::optional<HitRecorder> recorder;
@@ -147,8 +158,9 @@ int run_command(const RunArguments& arguments) {
   std::optional<TraceFile> trace;
   if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
   ringbus::MemoryLog memory;
-  const report::Report report = run_rays(arguments, p, job, interrupt, arguments.quiet, trace ? &*trace : nullptr,
-                                         arguments.dump_memory.empty() ? nullptr : &memory);
+  report::Report report = run_rays(arguments, p, job, interrupt, arguments.quiet, trace ? &*trace : nullptr,
+                                   arguments.dump_memory.empty() ? nullptr : &memory);
+  if (arguments.audit) audit(p, job, interrupt.token(), arguments.quiet, report);
   if (!arguments.dump_memory.empty()) write_memory_csv(arguments.dump_memory, memory);
   finish(arguments, report, report::report_table(report), *output,
          [&] { write_files(output->staging(), arguments, p, job, report, recorder ? &*recorder : nullptr); });

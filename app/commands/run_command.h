@@ -13,6 +13,7 @@ struct RunArguments : ConfigArguments {
   std::string dump_memory;  ///< CSV of memory requests to write; empty: none
   TraceArguments trace;
   bool hits = false, json = false, quiet = false, force = false, no_html = false;
+  bool audit = false;  ///< with sampling.fraction: the whole frame is simulated, too
 };
 
 /// `carousel run`: one simulation. Returns the exit status.

@@ -17,6 +17,7 @@
 #include "app/sweep/ask_tell.h"
 #include "app/sweep/folder_lock.h"
 #include "app/sweep/plan/design.h"
+#include "app/sweep/sampled_sweep.h"
 #include "app/sweep/sweep_files.h"
 #include "app/sweep/sweep_run.h"
 #include "core/system/atomic_file.h"
@@ -66,6 +67,12 @@ std::vector<Axis> axes_of(const SweepArguments& arguments, const Config& config)
     Axis seeds{{"image.seed"}, {}, {}};
     for (std::int64_t i = 0; i < arguments.repeat; ++i) seeds.levels.push_back({std::to_string(config.image.seed + i)});
     axes.push_back(std::move(seeds));
+  }
+  if (!arguments.sampled.empty()) {
+    const auto fraction = number_of(arguments.sampled);
+    if (!fraction || !(*fraction > 0 && *fraction < 1))
+      usage("--sampled=" + arguments.sampled, "expected a number above 0 and below 1");
+    axes.push_back({{kSampledKey}, {{arguments.sampled}}, {}});
   }
   std::vector<std::string> keys;
   for (const Axis& axis : axes)
@@ -262,6 +269,8 @@ int sweep_command(const SweepArguments& arguments) {
   if (!arguments.merge.empty()) merge(arguments, setup, rows);
   if (ledger) record(*ledger, rows);
   if (arguments.merge.empty()) run_missing(setup, options, rows, ledger ? &*ledger : nullptr, interrupt);
+  if (!arguments.sampled.empty() && !arguments.pareto.empty() && !sharded && arguments.merge.empty())
+    run_front_whole(setup, options, maker, arguments.pareto, rows, &*ledger, interrupt);
   give_results(arguments, setup, rows, !sharded, true);
   return finish(rows, interrupt);
 }

@@ -23,6 +23,7 @@ struct SweepArguments : ConfigArguments {
   std::string shard;     ///< "I/N"; empty: all points
   std::vector<std::string> merge;
   std::vector<std::string> results;
+  std::string sampled;  ///< part of the frame that each point simulates; empty: as configured
   std::string pareto, out;
   bool dry_run = false, retry_failed = false, ask = false, tell = false, json = false, quiet = false;
 };

@@ -42,6 +42,9 @@ void add_sweep_options(CLI::App& command, SweepArguments& s) {
                   "Find the Pareto front of two results, e.g. cycles,bytes; max: or min: before a name says what is "
                   "better (default: none)")
       ->type_name("A,B");
+  command.add_flag("--sampled{0.1}", s.sampled,
+                   "Simulate a part of each point's frame, --sampled=FRACTION or a tenth, and estimate the rest; with "
+                   "--pareto run the points of the front whole after that (default: as configured)");
   command.add_option("--out", s.out, "Folder for the points and the results (default: out/<config name>)")
       ->type_name("DIR");
   command.add_flag("--dry-run", s.dry_run,

@@ -1,10 +1,13 @@
 #include "app/run/render_job.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "app/run/memory_need.h"
 #include "core/system/executor.h"
 #include "report/csv/ray_csv.h"
+#include "ringbus/cycle/bottleneck_search.h"
 #include "shading/camera/image_file.h"
 
 namespace carousel::app {
@@ -25,7 +28,7 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
       }
     }
     list_ = std::make_unique<RayListWorkload>(std::move(rays), workers);
-    first_rays_ = list_->size();
+    frame_rays_ = list_->size();
   } else {
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);
     if (first_hits != nullptr) {
@@ -37,12 +40,32 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
       tracer_->set_first_hits(&first_hits_);
       raster_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
-    first_rays_ = static_cast<std::uint64_t>(config.image.width * config.image.height * config.image.samples);
+    frame_rays_ = order_.count();
   }
+  if (config.sampling.fraction < 1) draw_sample(config);
+}
+
+/// Places of several times as many paths as the machine has slots, so that most of the time it holds rays of one place,
+/// as it holds those of one part of the frame; but enough of them to be a mix of the frame.
+std::uint64_t RenderJob::strata_of(const Config& config, std::uint64_t rays) {
+  constexpr std::uint64_t kLeast = 16;
+  if (config.sampling.strata) return static_cast<std::uint64_t>(*config.sampling.strata);
+  return std::max(kLeast, rays / (2 * ringbus::slots_of(config)));
+}
+
+void RenderJob::draw_sample(const Config& config) {
+  const auto seed = static_cast<std::uint64_t>(config.sampling.seed);
+  const auto rays = std::max<std::uint64_t>(
+      1, static_cast<std::uint64_t>(std::llround(config.sampling.fraction * static_cast<double>(frame_rays_))));
+  if (list_)
+    drawn_ = shading::draw_list(frame_rays_, rays, seed);
+  else
+    drawn_ = shading::draw_places(order_, rays, strata_of(config, rays), order_.samples(), seed);
+  set_sample(&*drawn_);
 }
 
 shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together) const {
-  return tracer_ ? shading::draw_tiles(order_, paths, together, seed_) : shading::draw_list(first_rays_, paths, seed_);
+  return tracer_ ? shading::draw_tiles(order_, paths, together, seed_) : shading::draw_list(frame_rays_, paths, seed_);
 }
 
 void RenderJob::set_sample(const shading::PathSample* sample) {
@@ -63,8 +86,21 @@ std::pair<std::uint32_t, std::uint32_t> RenderJob::place_of(std::uint32_t path) 
   return tracer_ ? tracer_->place_of(path) : std::pair{path, 0u};
 }
 
-std::uint64_t RenderJob::first_rays() const {
-  return first_rays_;
+std::uint64_t RenderJob::pieces() const {
+  if (list_) return frame_rays_ / shading::kListRun + 1;
+  return std::uint64_t{order_.tile_columns()} * order_.tile_rows();
+}
+
+std::uint64_t RenderJob::piece_at(std::uint64_t ordinal) const {
+  if (list_) return ordinal / shading::kListRun;
+  const shading::PixelSample at = order_.at(ordinal);
+  return order_.tile_of(at.x, at.y);
+}
+
+std::uint64_t RenderJob::piece_of(std::uint32_t path) const {
+  if (list_) return path / shading::kListRun;
+  const std::uint32_t pixel = tracer_->place_of(path).first;
+  return order_.tile_of(pixel % tracer_->width(), pixel / tracer_->width());
 }
 
 std::array<std::uint64_t, kRayKinds> RenderJob::emitted() const {
@@ -80,7 +116,7 @@ std::string RenderJob::hits_digest() const {
 }
 
 std::optional<std::string> RenderJob::image_digest() const {
-  return tracer_ ? std::optional(tracer_->image_digest()) : std::nullopt;
+  return tracer_ && !drawn_ ? std::optional(tracer_->image_digest()) : std::nullopt;
 }
 
 std::optional<RasterCounts> RenderJob::raster() const {

@@ -30,13 +30,24 @@ class RenderJob {
   shading::PathSample draw(std::uint64_t paths, std::uint64_t together) const;
   /// Only these of the first rays are traced; `sample` must outlive the job. Before the first ray.
   void set_sample(const shading::PathSample* sample);
+  /// The paths that `sampling` draws; null if the whole frame is traced.
+  const shading::PathSample* sample() const { return drawn_ ? &*drawn_ : nullptr; }
 
   Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);
   /// Pixel and sample of a path whose rays are in flight; of a ray of a list its number and 0.
   std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t path) const;
   /// The number of rays that no other ray causes, by which progress is measured.
-  std::uint64_t first_rays() const;
+  std::uint64_t first_rays() const { return drawn_ ? drawn_->count() : frame_rays_; }
+  /// The same of the whole frame, of which `sampling` may draw a part.
+  std::uint64_t frame_rays() const { return frame_rays_; }
+
+  /// Number of the pieces of the frame that a sample consists of: tiles of the picture, or runs of the list.
+  std::uint64_t pieces() const;
+  /// The piece of a first ray, by its number in the frame.
+  std::uint64_t piece_at(std::uint64_t ordinal) const;
+  /// The piece of a path whose rays are in flight.
+  std::uint64_t piece_of(std::uint32_t path) const;
 
   /// The result of the raster pass; null if rays find the first hits.
   const shading::FirstHits* first_hits() const { return raster_seconds_ ? &first_hits_ : nullptr; }
@@ -46,20 +57,24 @@ class RenderJob {
   std::array<std::uint64_t, kRayKinds> emitted() const;  ///< by RayKind
   std::uint64_t saturated() const;
   std::string hits_digest() const;
-  /// Absent if the rays make no picture.
+  /// Absent if the rays make no picture, or a part of one.
   std::optional<std::string> image_digest() const;
   /// Counts and time of the rasteriser; absent if rays found the first hits.
   std::optional<RasterCounts> raster() const;
   std::optional<double> raster_seconds() const { return raster_seconds_; }
-  /// Writes image.png and image.exr if there is a picture.
+  /// Writes image.png and image.exr if there is a picture. Pixels that `sampling` has not drawn are black.
   void write_images(const std::filesystem::path& folder) const;
 
  private:
+  void draw_sample(const Config& config);
+  static std::uint64_t strata_of(const Config& config, std::uint64_t rays);
+
   std::optional<double> raster_seconds_;
   shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads
   std::unique_ptr<shading::PathTracer> tracer_;  // either tracer_ or list_ is set
   std::unique_ptr<RayListWorkload> list_;
-  std::uint64_t first_rays_, seed_;
+  std::optional<shading::PathSample> drawn_;
+  std::uint64_t frame_rays_, seed_;
   float exposure_;
   shading::PixelOrder order_;
 };

@@ -41,11 +41,29 @@ Json gain_of_verdict(const Json& report) {
   return nullptr;
 }
 
+/// The estimate for the whole frame where the point simulated a part of it; null if there is none.
+Json estimate_of(const std::string& column, const Json& report) {
+  const auto estimate = [&](const char* name) -> Json {
+    const Json* at = at_path(report, std::string("sampled.") + name + ".estimate");
+    return at == nullptr ? Json() : *at;
+  };
+  if (column == "cycles") return estimate("cycles");
+  const Json rate = estimate("rays_per_kilocycle");
+  if (column == "rays_per_kilocycle") return rate;
+  const Json* clock = at_path(report, "config.engine.clock_mhz");
+  if (column == "mrays_per_second" && rate.is_number() && clock != nullptr)
+    return rate.get<double>() * clock->get<double>() / 1000;
+  return nullptr;
+}
+
 Json all_bytes(const Json& report) {
   const Json* bytes = at_path(report, "bytes");
   if (bytes == nullptr) return nullptr;
   std::uint64_t sum = 0;
   for (const Json& row : *bytes) sum += row["bytes"].get<std::uint64_t>();
+  // The frame sends as many bytes more as it has more paths.
+  if (const Json* paths = at_path(report, "sampled.paths"), *all = at_path(report, "sampled.frame_paths"); paths && all)
+    return static_cast<double>(sum) * all->get<double>() / paths->get<double>();
   return sum;
 }
 
@@ -69,6 +87,7 @@ std::vector<ResultColumn> result_columns(const std::vector<std::string>& paths) 
 
 Json result_of(const ResultColumn& column, const Json& report) {
   if (column.path.empty()) return column.name == "gain" ? gain_of_verdict(report) : all_bytes(report);
+  if (const Json estimate = estimate_of(column.name, report); !estimate.is_null()) return estimate;
   const Json* at = at_path(report, column.path);
   if (at == nullptr) return nullptr;
   // The host's rate is the result of a native run, and noise beside simulated cycles.

@@ -45,16 +45,9 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"testers.any_hit", "shader", kNative, "any-hit calls by shader workers"},
     {"testers.bundle_blocks", "", kNative, "clock for bundle units"},
     {"memory.fetch", "multicast", kBoth},
-    {"memory.l1_kib", "", kBoth, "a cache of one resource"},
-    {"memory.l1_ways", "", kBoth, "a cache of one resource"},
-    {"memory.l1_lines_per_cycle", "", kBoth, "a cache of one resource"},
-    {"memory.l1_mshrs", "", kBoth, "a cache of one resource"},
-    {"memory.l1_latency_cycles", "", kBoth, "a cache of one resource"},
     {"shading.idle_resources_shade", "true", kNative, "shading by idle resources"},
     {"shading.distribute", "", kNative, "choice of shader workers"},
-    {"sampling.fraction", "", kBoth, "sampled runs"},
-    {"sampling.strata", "", kBoth, "sampled runs"},
-    {"sampling.seed", "", kBoth, "sampled runs"},
+    {"sampling.fraction", "", kNative, "sampled runs"},
 });
 
 std::string text_of(const Json& value) {

@@ -37,9 +37,10 @@ class Rules {
     ordered_needs_strips();
     query_needs_a_file();
     hashed_homes_spill();
-    cache_holds_a_set();
+    caches_have_whole_sets();
     config::check_network(c, options_.force,
                           [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
+    sampling_fits();
     vary_names_keys();
     return std::move(issues_);
   }
@@ -279,22 +280,32 @@ class Rules {
       issue("packets.shapes", "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
   }
 
-  void cache_holds_a_set() {
-    const std::int64_t lines = c.memory.l2_kib * 1024 / c.memory.line_bytes;
-    if (c.memory.ways > lines)
-      issue("memory.ways", fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the "
-                                       "cache; expected at most {}, found {}",
-                                       c.memory.l2_kib, lines, c.memory.line_bytes, lines, c.memory.ways));
-    // Sets that a cache does not have would be left out of it.
-    const std::int64_t sets = c.memory.ways * c.memory.line_bytes * c.memory.l2_banks;
-    const std::int64_t step = sets / std::gcd(sets, std::int64_t{1024});
-    if (c.memory.ways <= lines && c.memory.l2_kib % step != 0)
-      issue("memory.l2_kib", fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; "
-                                         "expected a multiple of {}, found {}",
-                                         c.memory.ways, c.memory.line_bytes, step, c.memory.l2_kib));
+  void caches_have_whole_sets() {
+    cache_has_whole_sets("l2_kib", c.memory.l2_kib, "ways", c.memory.ways, c.memory.l2_banks);
+    if (c.memory.l1_kib > 0) cache_has_whole_sets("l1_kib", c.memory.l1_kib, "l1_ways", c.memory.l1_ways, 1);
     if (c.memory.l2_sector_bytes && c.memory.line_bytes % *c.memory.l2_sector_bytes != 0)
       issue("memory.l2_sector_bytes", fmt::format("a line has whole sectors; expected a divisor of {}, found {}",
                                                   c.memory.line_bytes, *c.memory.l2_sector_bytes));
+  }
+
+  void cache_has_whole_sets(const char* size, std::int64_t kib, const char* set, std::int64_t ways,
+                            std::int64_t banks) {
+    const std::int64_t lines = kib * 1024 / c.memory.line_bytes;
+    if (ways > lines) {
+      issue(fmt::format("memory.{}", set),
+            fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the cache; "
+                        "expected at most {}, found {}",
+                        kib, lines, c.memory.line_bytes, lines, ways));
+      return;
+    }
+    // Sets that a cache does not have would be left out of it.
+    const std::int64_t bytes = ways * c.memory.line_bytes * banks;
+    const std::int64_t step = bytes / std::gcd(bytes, std::int64_t{1024});
+    if (kib % step != 0)
+      issue(fmt::format("memory.{}", size),
+            fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; expected a multiple of "
+                        "{}, found {}",
+                        ways, c.memory.line_bytes, step, kib));
   }
 
   void hashed_homes_spill() {
@@ -302,6 +313,28 @@ class Rules {
       issue("collections.when_full",
             "home: hash can fill one resource with another's collections and stop; expected spill, found "
             "reserve");
+  }
+
+  // A sample stands for a frame of many alike parts.
+  void sampling_fits() {
+    if (c.sampling.fraction >= 1) return;
+    using Kind = WorkloadConfig::Kind;
+    constexpr std::string_view whole = ", or sampling.fraction: 1";
+    if (c.workload.kind == Kind::kTraffic || c.workload.kind == Kind::kMemoryTrace)
+      issue("sampling.fraction",
+            fmt::format("this workload has no rays to draw from; expected 1, found {}", c.sampling.fraction));
+    if (c.workload.kind == Kind::kRaysFrom && c.sampling.strata)
+      issue("sampling.strata",
+            fmt::format("the rays of a list are drawn in runs of 64, a run a stratum; expected auto{}; "
+                        "found {}",
+                        whole, *c.sampling.strata));
+    using Fault = FaultsConfig::Resource::Kind;
+    const Fault fault = c.faults.resource.kind;
+    if (fault == Fault::kPause || fault == Fault::kStop)
+      issue("faults.resource.kind",
+            fmt::format(
+                "happens once in a frame, so that a sample says nothing about it; expected none or slow{}; found {}",
+                whole, enum_name(fault)));
   }
 
   void vary_names_keys() {

@@ -9,7 +9,7 @@ namespace carousel {
 struct IntersectionCounts {
   std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
   std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0, exact_volumes = 0, refined = 0, transforms_in_double = 0;
-  std::uint64_t full_inversions = 0;
+  std::uint64_t full_inversions = 0, extra_box_hits = 0;
 
   static constexpr auto counters() {
     using C = IntersectionCounts;
@@ -33,6 +33,8 @@ struct IntersectionCounts {
         Counter{"exact_volumes", &C::exact_volumes, "volumes",
                 "volumes that accuracy.triangle: exact computed in exact arithmetic, as doubles did not decide: four a "
                 "triangle test at most"},
+        Counter{"extra_box_hits", &C::extra_box_hits, "tests",
+                "boxes of bvh.storage: quantised that a ray hits, though it misses the full box", Shown::kQuantised},
         Counter{"culled", &C::culled, "tests",
                 "children whose box the ray hits and which a cull plane showed to be missed"},
         Counter{"procedural", &C::procedural, "tests",

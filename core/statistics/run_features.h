@@ -13,11 +13,13 @@ enum class Shown : std::uint8_t {
   kProcedural,  ///< runs whose scene has procedural primitives
   kAnyHit,      ///< runs whose scene has primitives that are not opaque
   kAnyHitUnit,  ///< runs that look up the opacity of such primitives in units beside the testers
+  kQuantised,   ///< runs with quantised nodes
 };
 
 /// The features of a machine and its scene that decide which numbers its report shows.
 struct RunFeatures {
-  bool cull_planes = false, bundles = false, procedural = false, any_hit = false, any_hit_units = false;
+  bool cull_planes = false, bundles = false, procedural = false, any_hit = false, any_hit_units = false,
+       quantised = false;
 
   constexpr bool show(Shown shown) const {
     switch (shown) {
@@ -35,6 +37,8 @@ struct RunFeatures {
         return any_hit;
       case Shown::kAnyHitUnit:
         return any_hit_units;
+      case Shown::kQuantised:
+        return quantised;
     }
     return false;
   }

@@ -13,6 +13,7 @@ std::string run_page(const Json& report, const Picture& picture) {
   const Json schema = report_schema();
   const std::vector<Section> sections{
       {"verdict", "The run at a glance", verdict_section(report, picture)},
+      {"sampled", "Estimates for the whole frame", sampled_section(report, schema)},
       {"machine", "The machine", machine_section(report, schema)},
       {"cycles", "Use of the cycles", cycles_section(report)},
       {"waits", "Waiting, ranked", waits_section(report)},

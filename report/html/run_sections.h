@@ -12,6 +12,7 @@ namespace carousel::report::html {
 // report has nothing to show. `schema` is report_schema().
 
 std::string verdict_section(const nlohmann::ordered_json& report, const Picture& picture);
+std::string sampled_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 std::string machine_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 std::string cycles_section(const nlohmann::ordered_json& report);
 std::string waits_section(const nlohmann::ordered_json& report);

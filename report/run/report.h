@@ -18,6 +18,7 @@
 #include "report/sections/program.h"
 #include "report/sections/rays.h"
 #include "report/sections/resource.h"
+#include "report/sections/sampled.h"
 #include "report/sections/scene_summary.h"
 #include "report/sections/shading.h"
 #include "report/sections/tests.h"
@@ -40,6 +41,7 @@ struct Report {
   Engine engine;
   Rays rays;
   std::optional<RasterCounts> raster;
+  std::optional<Sampled> sampled;
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
   std::optional<Nodes> nodes;
@@ -77,6 +79,10 @@ void describe(V& v, const Report& r) {
   v.section("engine", r.engine, "engine that simulated the machine");
   v.section("rays", r.rays, "rays; emitted = completed + lost");
   v.section("raster", r.raster, "raster pass that replaces camera rays; absent with primary: rays");
+  v.section(
+      "sampled", r.sampled,
+      "estimates for the whole frame, when sampling.fraction is less than 1; all other sections are about the part "
+      "that was simulated");
   v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
   v.section("tests", r.tests, "tests and other work of testing rays");
   v.section("nodes", r.nodes, "nodes of the structure by depth; absent where single rays go down without packets");

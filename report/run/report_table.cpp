@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "report/run/sampled_table.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 
@@ -22,6 +23,7 @@ class Table {
     out_ += '\n';
   }
   void gap() { out_ += '\n'; }
+  void text(std::string_view lines) { out_ += lines; }
   std::string take() { return std::move(out_); }
 
  private:
@@ -257,6 +259,7 @@ std::string report_table(const Report& report) {
   const bool simulated = report.engine.cycles.has_value();
   table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
              simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);
+  if (report.sampled) table.text(sampled_table(*report.sampled));
   table.gap();
   const Rays& rays = report.rays;
   const std::optional<Stop> stop = report.faults ? report.faults->stop : std::nullopt;

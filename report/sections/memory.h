@@ -34,6 +34,7 @@ void describe(V& v, const ShapeBuffers& r) {
 struct Memory {
   ShapeBuffers shape_buffers;
   std::vector<Cache> caches;
+  std::optional<Cache> own_caches;
   std::uint64_t dram_lines = 0, dram_bytes = 0, dram_lines_written = 0, dram_busy_cycles = 0;
   double dram_utilisation = 0;
   std::optional<Dram> dram;
@@ -43,6 +44,7 @@ template <class V>
 void describe(V& v, const Memory& r) {
   v.section("shape_buffers", r.shape_buffers, "use of the shape buffers of all resources");
   v.section("caches", r.caches, "use of each L2 cache");
+  v.section("own_caches", r.own_caches, "use of the resources' own caches, all together");
   v.field("dram_lines", r.dram_lines, "lines", "lines, or sectors, read from DRAM");
   v.field("dram_bytes", r.dram_bytes, "bytes", "bytes read from DRAM");
   v.field("dram_lines_written", r.dram_lines_written, "lines", "lines of spilled collection entries written to DRAM");

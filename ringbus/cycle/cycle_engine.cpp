@@ -159,6 +159,8 @@ class CycleRun {
       c.caches.push_back(cache->statistics());
       c.cached_lines.push_back(cache->lines());
     }
+    for (const auto& cache : machine_.memory().own_caches())
+      (c.own_caches ? *c.own_caches : c.own_caches.emplace()) += cache->statistics();
     c.bytes = byte_ledger(machine_, config_);
     if (kChecked && complete) check_byte_ledger(c.bytes);
     return out;
@@ -195,6 +197,11 @@ class CycleRun {
     const double ports =
         static_cast<double>(machine_.memory().caches().size()) * static_cast<double>(config_.memory.l2_banks);
     out.push_back({"l2_port", ports, port});
+    if (!machine_.memory().own_caches().empty()) {
+      Cycle own = 0;
+      for (const auto& cache : machine_.memory().own_caches()) own += cache->statistics().port_busy;
+      out.push_back({"l1_port", tiles, own});
+    }
     out.push_back({"memory_bandwidth", 1, machine_.memory().memory().busy()});
     out.push_back({"shading", static_cast<double>(shader_workers(config_)), machine_.shading().busy()});
     return out;

@@ -28,6 +28,9 @@ bool has_pipe(const Config& c) {
 bool has_banks(const Config& c) {
   return !has_pipe(c);
 }
+bool has_own_caches(const Config& c) {
+  return c.memory.l1_kib > 0;
+}
 bool uses_links(const Config& c) {
   return passes_packets(c) && c.topology.resources > 1 && c.collections.home != Home::kLocal;
 }
@@ -85,6 +88,10 @@ constexpr PartClass kPartClasses[] = {
      [](Config& c) { c.memory.fetch_ahead = std::max<std::int64_t>(1, 2 * c.memory.fetch_ahead); }},
     {"l2_size", "twice memory.l2_kib", every_machine, [](Config& c) { c.memory.l2_kib *= 2; }},
     {"l2_port", "twice memory.l2_lines_per_cycle", every_machine, [](Config& c) { c.memory.l2_lines_per_cycle *= 2; }},
+    {"l1_size", "twice memory.l1_kib", has_own_caches, [](Config& c) { c.memory.l1_kib *= 2; }},
+    {"l1_port", "twice memory.l1_lines_per_cycle", has_own_caches, [](Config& c) { c.memory.l1_lines_per_cycle *= 2; }},
+    {"l1_mshrs", "twice memory.l1_mshrs", [](const Config& c) { return has_own_caches(c) && c.memory.l1_mshrs > 0; },
+     [](Config& c) { c.memory.l1_mshrs *= 2; }},
     {"l2_mshrs", "twice memory.l2_mshrs", [](const Config& c) { return c.memory.l2_mshrs > 0; },
      [](Config& c) { c.memory.l2_mshrs *= 2; }},
     {"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", every_machine,

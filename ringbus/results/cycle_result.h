@@ -107,6 +107,7 @@ struct CycleResult {
   std::vector<LinkUse> links;
   std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
+  std::optional<CacheCounts> own_caches;                 ///< of all resources, if they have caches of their own
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;

@@ -12,7 +12,8 @@ inline RunFeatures features_of(const Config& config, const accel::Accel& accel) 
           .bundles = config.bundles.size > 0,
           .procedural = accel.procedural_primitives,
           .any_hit = accel.calls_any_hit(),
-          .any_hit_units = accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kInline};
+          .any_hit_units = accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kInline,
+          .quantised = config.bvh.storage == BvhConfig::Storage::kQuantised};
 }
 
 }  // namespace carousel::ringbus

@@ -26,27 +26,29 @@ std::uint64_t draw_within(std::uint64_t all, std::uint64_t part, std::uint64_t p
 
 }  // namespace
 
-PathSample::PathSample(const std::vector<Run>& runs) : begins_{0} {
-  for (const Run& run : runs) {
-    firsts_.push_back(run.first);
-    begins_.push_back(begins_.back() + run.count);
-  }
+PathSample::PathSample(const std::vector<Run>& runs) : runs_(runs), begins_{0} {
+  for (const Run& run : runs) begins_.push_back(begins_.back() + run.count);
 }
 
 std::uint64_t PathSample::ordinal(std::uint64_t i) const {
   const auto run = std::upper_bound(begins_.begin(), begins_.end(), i) - begins_.begin() - 1;
-  return firsts_[static_cast<std::size_t>(run)] + (i - begins_[static_cast<std::size_t>(run)]);
+  return runs_[static_cast<std::size_t>(run)].first + (i - begins_[static_cast<std::size_t>(run)]);
 }
 
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t together, std::uint64_t seed,
                       std::uint64_t draw) {
-  constexpr std::uint64_t kEnoughTiles = 128, kLeastPlaces = 16;
+  constexpr std::uint64_t kEnoughTiles = 128, kLeastPlaces = 16, kPixels = PixelOrder::kTile * PixelOrder::kTile;
   const std::uint64_t places = std::max(kLeastPlaces, paths / std::max<std::uint64_t>(1, together));
+  const std::uint64_t each = std::clamp<std::uint64_t>(paths / kPixels / kEnoughTiles, 1, order.samples());
+  return draw_places(order, paths, places, each, seed, draw);
+}
+
+PathSample draw_places(const PixelOrder& order, std::uint64_t paths, std::uint64_t places, std::uint64_t each,
+                       std::uint64_t seed, std::uint64_t draw) {
   const auto parts = [](double count, std::uint64_t most) {
     return std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::lround(count)), 1, most);
   };
   const std::uint64_t pixels = PixelOrder::kTile * PixelOrder::kTile, rows = order.tile_rows();
-  const std::uint64_t each = std::clamp<std::uint64_t>(paths / pixels / kEnoughTiles, 1, order.samples());
   const std::uint64_t tiles = std::max<std::uint64_t>(1, paths / pixels / each);
   const std::uint64_t in_a_row = order.tile_columns();
   // A row is cut into places of nearly equal numbers of tiles, which stay together.
@@ -59,6 +61,7 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
   Uniform uniform(seed, draw);
   std::vector<PathSample::Run> runs;
   std::vector<bool> taken(columns * rows);
+  std::uint32_t place = 0;
   for (std::uint64_t y = 0; y < down; ++y) {
     for (std::uint64_t x = 0; x < across; ++x) {
       std::uint64_t column = 0, row = 0;
@@ -71,21 +74,22 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
       if (taken[row * columns + column]) continue;
       taken[row * columns + column] = true;
       for (std::uint64_t tile = column * in_a_row / columns; tile < (column + 1) * in_a_row / columns; ++tile)
-        runs.push_back({order.tile_begin(tile, row), each * order.tile_pixels(tile, row)});
+        runs.push_back({order.tile_begin(tile, row), each * order.tile_pixels(tile, row), place});
+      ++place;
     }
   }
   return PathSample(runs);
 }
 
 PathSample draw_list(std::uint64_t all, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw) {
-  constexpr std::uint64_t kRun = 64;
-  const std::uint64_t pieces = (all + kRun - 1) / kRun, parts = std::clamp<std::uint64_t>(paths / kRun, 1, pieces);
+  const std::uint64_t pieces = (all + kListRun - 1) / kListRun,
+                      parts = std::clamp<std::uint64_t>(paths / kListRun, 1, pieces);
   Uniform uniform(seed, draw);
   std::vector<PathSample::Run> runs;
   std::uint64_t next = 0;  // the first piece that is not taken
   for (std::uint64_t part = 0; part < parts && next < pieces; ++part) {
     const std::uint64_t piece = std::max(next, draw_within(pieces, part, parts, uniform));
-    runs.push_back({piece * kRun, std::min(kRun, all - piece * kRun)});
+    runs.push_back({piece * kListRun, std::min(kListRun, all - piece * kListRun), static_cast<std::uint32_t>(part)});
     next = piece + 1;
   }
   return PathSample(runs);

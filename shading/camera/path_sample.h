@@ -13,15 +13,17 @@ class PathSample {
   /// Paths whose ordinals in the frame follow one another.
   struct Run {
     std::uint64_t first = 0, count = 0;
+    std::uint32_t place = 0;  ///< equal for the runs of one place; ascending
   };
   explicit PathSample(const std::vector<Run>& runs);
 
   std::uint64_t count() const { return begins_.back(); }
   /// The ordinal in the frame of the sample's path `i`. Precondition: i < count().
   std::uint64_t ordinal(std::uint64_t i) const;
+  const std::vector<Run>& runs() const { return runs_; }
 
  private:
-  std::vector<std::uint64_t> firsts_;  // by run
+  std::vector<Run> runs_;
   std::vector<std::uint64_t> begins_;  // by run: the sample's paths before it; the count of all at the end
 };
 
@@ -34,7 +36,12 @@ class PathSample {
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t together, std::uint64_t seed,
                       std::uint64_t draw = 0);
 
-/// About `paths` elements of a list of `all`, drawn likewise: runs of 64, one of each of equal parts.
+/// The same of about so many places, however many paths each of them then has, with the first `each` samples of a tile.
+PathSample draw_places(const PixelOrder& order, std::uint64_t paths, std::uint64_t places, std::uint64_t each,
+                       std::uint64_t seed, std::uint64_t draw = 0);
+
+inline constexpr std::uint64_t kListRun = 64;
+/// About `paths` elements of a list of `all`, drawn likewise: runs of kListRun, one of each of equal parts.
 PathSample draw_list(std::uint64_t all, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw = 0);
 
 }  // namespace carousel::shading

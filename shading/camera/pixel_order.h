@@ -31,6 +31,11 @@ class PixelOrder {
     return std::min<std::uint64_t>(kTile, width_ - column * kTile) * tile_height(row);
   }
 
+  /// The number of a pixel's tile, row by row.
+  std::uint64_t tile_of(std::uint32_t x, std::uint32_t y) const {
+    return std::uint64_t{y / kTile} * tile_columns() + x / kTile;
+  }
+
   std::uint64_t count() const { return std::uint64_t{width_} * height_ * samples_; }
   /// Precondition: ordinal < count(). A bijection.
   PixelSample at(std::uint64_t ordinal) const;

@@ -50,7 +50,7 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "topology.link.latency_cycles": 1, "topology.link.bytes_per_cycle": 1, "topology.link.depth": 1,
         "memory.l2_latency_cycles": 2, "memory.dram_latency_cycles": 2, "memory.dram_bytes_per_cycle": 8,
         "memory.fetch_ahead": 1, "memory.shape_buffer_kib": 1, "memory.dram.queue": 1, "memory.dram.channels": 1,
-        "memory.l2_banks": 1, "memory.l2_mshrs": 1, "memory.l2_lines_per_cycle": 1, "collections.ready": 1, "shading.cycles_per_shade": 1}
+        "memory.l2_banks": 1, "memory.l1_latency_cycles": 2, "memory.l1_mshrs": 1, "memory.l2_mshrs": 1, "memory.l2_lines_per_cycle": 1, "collections.ready": 1, "shading.cycles_per_shade": 1}
 
 
 def notices(lie, runs):

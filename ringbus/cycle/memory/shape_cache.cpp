@@ -34,6 +34,25 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, 
       port_lines_(static_cast<std::uint64_t>(config.l2_lines_per_cycle)),
       in_order_(banks_.size() == 1 && !writes_back_) {}
 
+ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients, Channel<std::uint64_t>& to_memory,
+                       Channel<std::uint64_t>& from_memory)
+    : ShapeCache(config, std::vector<Client>{}, to_memory, from_memory) {
+  own_caches_ = std::move(clients);
+}
+
+MemoryConfig ShapeCache::own_cache(const MemoryConfig& config) {
+  MemoryConfig out = config;
+  out.l2_kib = config.l1_kib;
+  out.ways = config.l1_ways;
+  out.l2_lines_per_cycle = config.l1_lines_per_cycle;
+  out.l2_mshrs = config.l1_mshrs;
+  out.l2_latency_cycles = config.l1_latency_cycles;
+  out.dram_latency_cycles = config.l2_latency_cycles;
+  out.l2_banks = 1;
+  out.l2_write = MemoryConfig::Write::kThrough;
+  return out;
+}
+
 void ShapeCache::warm(std::span<const std::uint64_t> lines, double part) {
   for (const std::uint64_t line : lines) {
     const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull,
@@ -47,6 +66,7 @@ Cycle ShapeCache::next() const {
   if (!answers_.empty()) first = std::min(first, answers_.top().ready);
   if (!outgoing_.empty()) first = std::min(first, outgoing_.top().ready);
   for (const Client& client : clients_) first = std::min(first, client.requests->next());
+  for (const OwnCache& client : own_caches_) first = std::min(first, client.requests->next());
   return first;
 }
 
@@ -60,8 +80,12 @@ void ShapeCache::run(Cycle end) {
       while (requests.next() <= now) take(c, requests.take(), now);
       next_ = std::min(next_, requests.next());
     }
-    for (; !answers_.empty() && answers_.top().ready <= now; answers_.pop())
-      clients_[answers_.top().client].answers->send(now + answer_latency_, {answers_.top().tag});
+    for (std::uint32_t c = 0; c < own_caches_.size(); ++c) {
+      Channel<std::uint64_t>& requests = *own_caches_[c].requests;
+      while (requests.next() <= now) take_line(c, requests.take(), now);
+      next_ = std::min(next_, requests.next());
+    }
+    for (; !answers_.empty() && answers_.top().ready <= now; answers_.pop()) answer(answers_.top(), now);
     if (!answers_.empty()) next_ = std::min(next_, answers_.top().ready);
     for (; !outgoing_.empty() && outgoing_.top().ready <= now; outgoing_.pop())
       to_memory_.send(now + memory_latency_, outgoing_.top().line);
@@ -91,34 +115,66 @@ void ShapeCache::to_memory(Cycle leaves, std::uint64_t request) {
 void ShapeCache::take(std::uint32_t client, const FetchRequest& request, Cycle now) {
   if (request.written > 0) [[unlikely]]
     return writes_back_ ? write_back(request, now) : write_through(request, now);
-  std::uint32_t index;
-  if (free_pending_.empty()) {
-    index = static_cast<std::uint32_t>(pending_.size());
-    pending_.emplace_back();
-  } else {
-    index = free_pending_.back();
-    free_pending_.pop_back();
-  }
-  pending_[index] = {client, request.tag, request.lines, 0};
+  const std::uint32_t index = begin({client, request.tag, request.lines});
   ++statistics_.requests;
   statistics_.lines += request.lines;
   for (std::uint32_t i = 0; i < request.lines; ++i) look_up({request.first_line + i, index}, now);
 }
 
-void ShapeCache::write_through(const FetchRequest& request, Cycle now) {
-  for (std::uint64_t line = request.first_line; line < request.first_line + request.lines; ++line) {
+/// A request of an own cache.
+void ShapeCache::take_line(std::uint32_t client, std::uint64_t request, Cycle now) {
+  const std::uint64_t line = request & ~(kWriteLine | kWholeLine);
+  if ((request & kWriteLine) == 0) {
+    ++statistics_.requests;
+    ++statistics_.lines;
+    return look_up({line, begin({client, 0, 1, 0, line})}, now);
+  }
+  if (!writes_back_) {
     cache_.touch(line);
     to_memory(take_port(bank_of(line), now), kWriteLine | line);
+    ++statistics_.written;
+    return;
+  }
+  look_up({line, (request & kWholeLine) != 0 ? kWholeWriter : kWriter}, now);
+  ++statistics_.kept;
+}
+
+std::uint32_t ShapeCache::begin(const Pending& pending) {
+  if (free_pending_.empty()) {
+    pending_.push_back(pending);
+    return static_cast<std::uint32_t>(pending_.size() - 1);
+  }
+  const std::uint32_t index = free_pending_.back();
+  free_pending_.pop_back();
+  pending_[index] = pending;
+  return index;
+}
+
+void ShapeCache::answer(const Answer& answer, Cycle now) {
+  if (own_caches_.empty())
+    clients_[answer.client].answers->send(now + answer_latency_, {answer.tag});
+  else
+    own_caches_[answer.client].answers->send(now + answer_latency_, answer.line);
+}
+
+void ShapeCache::write_through(const FetchRequest& request, Cycle now) {
+  for (std::uint64_t i = 0; i < request.lines; ++i) {
+    const std::uint64_t line = request.first_line + i;
+    cache_.touch(line);
+    to_memory(take_port(bank_of(line), now),
+              kWriteLine | line | (asks_a_cache_ && writes_whole(request, i) ? kWholeLine : 0));
     ++statistics_.written;
   }
 }
 
+/// Returns whether the request writes all of its i-th line.
+bool ShapeCache::writes_whole(const FetchRequest& request, std::uint64_t i) const {
+  return (i > 0 || request.skipped == 0) && (i + 1) * line_bytes_ <= std::uint64_t{request.skipped} + request.written;
+}
+
 void ShapeCache::write_back(const FetchRequest& request, Cycle now) {
-  const std::uint64_t end = std::uint64_t{request.skipped} + request.written;
-  for (std::uint64_t i = 0; i < request.lines; ++i) {
-    const bool whole = (i > 0 || request.skipped == 0) && (i + 1) * line_bytes_ <= end;
-    look_up({request.first_line + i, whole ? kWholeWriter : kWriter}, now);
-  }
+  for (std::uint64_t i = 0; i < request.lines; ++i)
+    look_up({request.first_line + i, writes_whole(request, i) ? kWholeWriter : kWriter}, now);
   statistics_.kept += request.lines;
 }
 
@@ -198,7 +254,7 @@ void ShapeCache::fill(std::uint64_t line, Cycle now) {
 
 void ShapeCache::complete(std::uint32_t index) {
   const Pending& pending = pending_[index];
-  answers_.push({pending.ready, next_turn_++, pending.client, pending.tag});
+  answers_.push({pending.ready, next_turn_++, pending.client, pending.tag, pending.line});
   free_pending_.push_back(index);
 }
 

@@ -25,6 +25,9 @@ namespace carousel::ringbus::cycle {
 /// one that is here is brought up to date, and others take no room. With `back` they stay here until they are replaced;
 /// one of which only a part is written is fetched first.
 ///
+/// A resource's own cache (`memory.l1_kib`) is one too, with an L2 in the place of memory: own_cache() names its
+/// parameters. It asks for lines one by one, and what is written goes through.
+///
 /// With `memory.l2_sector_bytes` "line" here means a sector (see fetched_bytes()), but for replacement.
 class ShapeCache final : public Agent {
  public:
@@ -32,13 +35,27 @@ class ShapeCache final : public Agent {
     Channel<FetchRequest>* requests = nullptr;
     Channel<FetchAnswer>* answers = nullptr;
   };
+  /// The end of an own cache's channels.
+  struct OwnCache {
+    Channel<std::uint64_t>* requests = nullptr;  ///< line numbers, with kWriteLine and kWholeLine
+    Channel<std::uint64_t>* answers = nullptr;
+  };
+  /// The parameters of a resource's own cache, in the place of those of the L2.
+  static MemoryConfig own_cache(const MemoryConfig& config);
+  /// Those of the cache that a resource asks.
+  static MemoryConfig nearest(const MemoryConfig& config) { return config.l1_kib > 0 ? own_cache(config) : config; }
   /// Half of the latency is spent on the way in, half on the way out, at least a cycle each.
   static Cycle request_latency(const MemoryConfig& config);
   static Cycle answer_latency(const MemoryConfig& config);
 
   ShapeCache(const MemoryConfig& config, std::vector<Client> clients, Channel<std::uint64_t>& to_memory,
              Channel<std::uint64_t>& from_memory);
+  /// An L2 behind own caches.
+  ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients, Channel<std::uint64_t>& to_memory,
+             Channel<std::uint64_t>& from_memory);
 
+  /// What it takes for memory is an L2.
+  void ask_a_cache() { asks_a_cache_ = true; }
   /// Holds part of these lines from the start.
   void warm(std::span<const std::uint64_t> lines, double part);
   std::vector<std::uint64_t> lines() const { return cache_.lines(); }
@@ -56,12 +73,14 @@ class ShapeCache final : public Agent {
   struct Pending {
     std::uint32_t client = 0, tag = 0, lines_missing = 0;
     Cycle ready = 0;
+    std::uint64_t line = 0;  // of an own cache
   };
   /// An answer that leaves at `ready`. Of answers that leave at one time the one that was complete first goes first.
   struct Answer {
     Cycle ready = 0;
     std::uint64_t turn = 0;
     std::uint32_t client = 0, tag = 0;
+    std::uint64_t line = 0;
     bool operator>(const Answer& o) const { return ready != o.ready ? ready > o.ready : turn > o.turn; }
   };
 
@@ -86,7 +105,11 @@ class ShapeCache final : public Agent {
 
   Bank& bank_of(std::uint64_t line) { return banks_.size() == 1 ? banks_[0] : banks_[line / parts_ % banks_.size()]; }
   void take(std::uint32_t client, const FetchRequest& request, Cycle now);
+  void take_line(std::uint32_t client, std::uint64_t request, Cycle now);
+  std::uint32_t begin(const Pending& pending);
+  void answer(const Answer& answer, Cycle now);
   void write_through(const FetchRequest& request, Cycle now);
+  bool writes_whole(const FetchRequest& request, std::uint64_t i) const;
   void write_back(const FetchRequest& request, Cycle now);
   void look_up(const LookUp& one, Cycle now);
   bool read(Bank& bank, const LookUp& one, Cycle now);
@@ -105,6 +128,8 @@ class ShapeCache final : public Agent {
   LineCache cache_;
   std::vector<Bank> banks_;
   std::vector<Client> clients_;
+  std::vector<OwnCache> own_caches_;  // instead of clients
+  bool asks_a_cache_ = false;         // is an own cache
   Channel<std::uint64_t>&to_memory_, &from_memory_;
   std::uint64_t port_lines_;  // a cycle
   bool in_order_;             // requests to memory leave in the order in which they are made

@@ -17,7 +17,7 @@ class ShapePort {
   ShapePort(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports)
       : requests_(*ports.fetch),
         answers_(*ports.fetched),
-        wire_(link, ShapeCache::request_latency(config)),
+        wire_(link, ShapeCache::request_latency(ShapeCache::nearest(config))),
         line_bytes_(fetched_bytes(config)) {}
 
   /// Asks for the lines of `span`; `tag` comes back when all are there. Requests are made in order of time.

@@ -25,6 +25,8 @@ struct FetchRequest {
 };
 /// Set in the line number of a request to memory that writes the line, which has no answer.
 inline constexpr std::uint64_t kWriteLine = std::uint64_t{1} << 63;
+/// Set besides when all of the line is written, in a request of a resource's own cache to the L2.
+inline constexpr std::uint64_t kWholeLine = std::uint64_t{1} << 62;
 /// All lines of the request are there.
 struct FetchAnswer {
   std::uint32_t tag = 0;

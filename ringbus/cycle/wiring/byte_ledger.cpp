@@ -37,9 +37,12 @@ ByteRow packets(const SimulatedMachine& machine, std::uint64_t width) {
 /// The resources count the lines for which they ask, the caches those that they look up.
 ByteRow shape_data(const SimulatedMachine& machine, const MemoryConfig& memory) {
   const std::uint64_t line = fetched_bytes(memory);
-  ByteRow row{"shape data", "L2", "resources", "L2's port",
-              line * static_cast<std::uint64_t>(memory.l2_lines_per_cycle * memory.l2_banks)};
-  for (const auto& cache : machine.memory().caches()) row.bytes += cache->statistics().lines * line;
+  const bool own = !machine.memory().own_caches().empty();
+  ByteRow row{
+      "shape data", own ? "L1" : "L2", "resources", own ? "L1's port" : "L2's port",
+      line * static_cast<std::uint64_t>(own ? memory.l1_lines_per_cycle : memory.l2_lines_per_cycle * memory.l2_banks)};
+  for (const auto& cache : own ? machine.memory().own_caches() : machine.memory().caches())
+    row.bytes += cache->statistics().lines * line;
   for (const auto& channels : machine.channels()) {
     const SidePorts side = channels->ports();
     row.messages += side.fetched->messages().sent;
@@ -79,24 +82,33 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
     add(addresses, down, kAddress);
     add(lines, up, line);
   });
+  const auto own_lines = static_cast<std::uint64_t>(config.memory.l1_lines_per_cycle);
+  ByteRow own_addresses{"line requests of L1", "L1", "L2", "address wires", kAddress * own_lines};
+  ByteRow own_data{"lines for L1", "L2", "L1", "L2's port", line * lines_per_cycle};
+  machine.memory().for_each_own_channel([&](const Channel<std::uint64_t>& down, const Channel<std::uint64_t>& up) {
+    add(own_addresses, down, kAddress);
+    add(own_data, up, line);
+  });
   // Entries that do not fit collection storage: to L2 with their requests, and on to DRAM in whole lines.
   ByteRow spilled{"lines of spilled entries", "L2", "DRAM", "DRAM's data wires", lines.width};
   for (const auto& cache : machine.memory().caches())
     spilled.bytes += (cache->statistics().written + cache->statistics().written_back) * line;
   spilled.bytes_taken = machine.memory().memory().lines_written() * line;
   spilled.messages = spilled.bytes / line;  // "line requests" has counted these messages
-  return {packets(machine, width),
-          new_rays,
-          completed,
-          requests,
-          shape_data(machine, config.memory),
-          addresses,
-          lines,
-          spilled,
-          questions,
-          answers,
-          jobs,
-          notes};
+  std::vector<ByteRow> rows{packets(machine, width),
+                            new_rays,
+                            completed,
+                            requests,
+                            shape_data(machine, config.memory),
+                            addresses,
+                            lines,
+                            spilled,
+                            questions,
+                            answers,
+                            jobs,
+                            notes};
+  if (!machine.memory().own_caches().empty()) rows.insert(rows.end(), {own_addresses, own_data});
+  return rows;
 }
 
 void check_byte_ledger(const std::vector<ByteRow>& rows) {

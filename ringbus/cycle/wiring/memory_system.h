@@ -18,7 +18,12 @@ class MemorySystem {
   MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients);
 
   const std::vector<std::unique_ptr<ShapeCache>>& caches() const { return caches_; }
-  const ShapeCache& cache_of(std::size_t resource) const { return *caches_[resource / shared_by_]; }
+  /// The resources' own, by resource; empty if they have none.
+  const std::vector<std::unique_ptr<ShapeCache>>& own_caches() const { return own_; }
+  /// The cache that a resource asks.
+  const ShapeCache& cache_of(std::size_t resource) const {
+    return own_.empty() ? *caches_[resource / shared_by_] : *own_[resource];
+  }
   MemoryAgent& memory() { return *memory_; }
   const MemoryAgent& memory() const { return *memory_; }
   /// Before the start. A machine with other caches than those that held the lines starts cold.
@@ -28,6 +33,11 @@ class MemorySystem {
   void for_each_channel(const Body& body) const {
     for (std::size_t c = 0; c < caches_.size(); ++c) body(*to_memory_[c], *from_memory_[c]);
   }
+  /// The same with those of the own caches.
+  template <class Body>
+  void for_each_own_channel(const Body& body) const {
+    for (std::size_t r = 0; r < own_.size(); ++r) body(*own_down_[r], *own_up_[r]);
+  }
   /// Announces arrivals between caches and memory.
   void connect(WakeupTable& wakeups) const;
   /// The least latency of any channel to a cache or to memory.
@@ -36,7 +46,8 @@ class MemorySystem {
  private:
   std::size_t shared_by_;
   std::vector<std::unique_ptr<Channel<std::uint64_t>>> to_memory_, from_memory_;  // by cache
-  std::vector<std::unique_ptr<ShapeCache>> caches_;
+  std::vector<std::unique_ptr<Channel<std::uint64_t>>> own_down_, own_up_;        // by resource
+  std::vector<std::unique_ptr<ShapeCache>> caches_, own_;
   std::unique_ptr<MemoryAgent> memory_;
 };
 

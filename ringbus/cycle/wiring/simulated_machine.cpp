@@ -71,6 +71,7 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
   };
   share(resources_);
   share(memory_->caches());
+  share(memory_->own_caches());
   share(network_.hubs());
   parts.back().push_back(&memory_->memory());
   parts.back().push_back(shading_.get());

@@ -228,6 +228,10 @@ INSTANTIATE_TEST_SUITE_P(
             "test.yaml:2:18: memory.l2_kib: a cache has whole sets, of 8 lines of 128 bytes, as many in each bank; "
             "expected a multiple of 4, found 9"},
         BadConfig{
+            "PartOfASetOfAnOwnCache", SCENE "memory: {l1_kib: 3, line_bytes: 256, l1_ways: 8}\n",
+            "test.yaml:2:18: memory.l1_kib: a cache has whole sets, of 8 lines of 256 bytes, as many in each bank; "
+            "expected a multiple of 2, found 3"},
+        BadConfig{
             "PartOfASector", SCENE "memory: {line_bytes: 64, l2_sector_bytes: 48}\n",
             "test.yaml:2:43: memory.l2_sector_bytes: a line has whole sectors; expected a divisor of 64, found 48"},
         BadConfig{"FaultyLinksOfIndependentResources",

@@ -140,6 +140,7 @@ std::vector<Factor> memory_and_shading() {
   return {
       {"memory.l2_kib", {"2", "1024"}, timed},
       {"memory.l2_banks", {"1", "2"}, timed},
+      {"memory.l1_kib", {"0", "1"}, timed},
       {"memory.l2_mshrs", {"0", "1"}, timed},
       {"memory.l2_sector_bytes", {"auto", "32"}, timed},
       {"memory.l2_write", all<MemoryConfig::Write>(), timed},

@@ -1,5 +1,6 @@
 #include "shading/camera/path_sample.h"
 
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -107,6 +108,27 @@ TEST(PathSample, FitsSmallPictures) {
     EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size());
     EXPECT_LT(*std::max_element(chosen.begin(), chosen.end()), order.count());
   }
+}
+
+// A tenth of 40 x 30 tiles in 30 places: every place has 4 tiles of a row, with all samples, in a rectangle of its own.
+TEST(PathSample, PlacesAreNeighboursWithAllTheirSamples) {
+  const PixelOrder order(320, 240, 4);
+  const PathSample sample = draw_places(order, order.count() / 10, 30, 4, 1);
+  EXPECT_NEAR(static_cast<double>(sample.count()), static_cast<double>(order.count()) / 10, 0.03 * 307200);
+  std::map<std::uint32_t, std::set<std::uint64_t>> places;
+  for (const PathSample::Run& run : sample.runs()) {
+    EXPECT_EQ(run.count, 4u * 64u);
+    EXPECT_EQ(run.first % (4 * 64), 0u);
+    places[run.place].insert(run.first / (4 * 64));
+  }
+  EXPECT_NEAR(static_cast<double>(places.size()), 30, 6);
+  for (const auto& [place, tiles] : places) {
+    EXPECT_EQ(*tiles.rbegin() - *tiles.begin() + 1, tiles.size()) << place;
+    EXPECT_EQ(*tiles.rbegin() / 40, *tiles.begin() / 40) << place;
+  }
+  std::set<std::uint64_t> bands;
+  for (const auto& [place, tiles] : places) bands.insert(*tiles.begin() / 40 / 10);
+  EXPECT_EQ(bands.size(), 3u) << "all over the picture";
 }
 
 TEST(PathSample, OfAListIsDrawnOverAllOfIt) {

@@ -209,7 +209,7 @@ class BankedMemory:
                 transfer = {"missing": self.line // UNIT, "line": None if write else line, "cache": cache}
                 for address in range(line * self.line, (line + 1) * self.line, UNIT):
                     channel, bank, row = self.place(address)
-                    self.channels[channel].arrivals[write].append((self.tick, Request(bank, row, write, transfer)))
+                    self.channels[channel].arrivals[bool(write)].append((self.tick, Request(bank, row, bool(write), transfer)))
         self.run(self.of_engine(now + 1))
         if any(channel.busy() for channel in self.channels):
             self.caches[0].clock.wake(now + 1)

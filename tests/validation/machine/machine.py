@@ -1,7 +1,7 @@
 """The whole machine."""
 from .clock import Clock, Trace
 from .dram import BankedMemory
-from .memory import Cache, Memory, ShapePort
+from .memory import Memory, ShapePort, caches_of
 from .network import Topology, connect
 from .shading import Shading
 from .tile import Control, Tile
@@ -30,10 +30,9 @@ class Machine:
             self.tiles = [IndependentTile(r, self, shapes[r], controls[r]) for r in range(resources)]
         else:
             self.tiles = [Tile(r, self, ends[r], shapes[r], controls[r]) for r in range(resources)]
-        shared = config["memory"]["shared_by"]
-        caches = [Cache(config, self.clock, shapes[first:first + shared]) for first in range(0, resources, shared)]
+        l2, caches = caches_of(config, self.clock, shapes)
         self.shading = Shading(self, controls)
-        self.parts = [*self.tiles, *ends[resources:], *caches, memory(config, caches), self.shading]
+        self.parts = [*self.tiles, *ends[resources:], *caches, memory(config, l2), self.shading]
 
     def run(self):
         """The cycle at which each ray has been shaded, by its name."""

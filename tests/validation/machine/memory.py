@@ -57,7 +57,8 @@ class ShapePort:
     """A resource's end of the wires to its cache."""
 
     def __init__(self, config, clock):
-        self.wire = SideWire(clock, config, way_there(config["memory"]["l2_latency_cycles"]))
+        m = config["memory"]
+        self.wire = SideWire(clock, config, way_there(m["l1_latency_cycles" if m.get("l1_kib") else "l2_latency_cycles"]))
         self.requests, self.answers = self.wire.channel, Channel(clock)
         self.line = piece_of(config)
 
@@ -83,9 +84,9 @@ class Bank:
 class Cache:
     """An L2 that some resources share. Each bank looks up so many lines a cycle."""
 
-    def __init__(self, config, clock, ports):
+    def __init__(self, config, clock, ports, own=()):
         m = config["memory"]
-        self.clock, self.ports = clock, ports
+        self.clock, self.ports, self.own = clock, ports, own  # resources, or their own caches
         self.piece = piece_of(config)
         self.lines = LineCache(m["l2_kib"] * 1024 // m["line_bytes"], m["ways"], m["line_bytes"] // self.piece)
         self.back = way_back(m["l2_latency_cycles"])
@@ -105,9 +106,17 @@ class Cache:
         for client, port in enumerate(self.ports):
             while port.requests.ready(now):
                 self.take(client, port.requests.take(), now)
+        for client, cache in enumerate(self.own):
+            while cache.to_memory.ready(now):
+                piece, write = cache.to_memory.take()
+                if write:
+                    self.look(piece, write if self.keeps_writes else "through", now)
+                else:
+                    self.look(piece, Request(client, piece, 1), now)
         for request in [request for request in self.complete if request.ready <= now]:
             self.complete.remove(request)
-            self.ports[request.client].answers.send(now + self.back, request.tag)
+            to = self.own[request.client].from_memory if self.own else self.ports[request.client].answers
+            to.send(now + self.back, request.tag)
         for leaves in [leaves for leaves in self.leaving if leaves[0] <= now]:
             self.leaving.remove(leaves)
             self.to_memory.send(now + self.memory_latency, leaves[1])
@@ -117,20 +126,19 @@ class Cache:
         request = Request(client, tag, lines)
         for piece in range(first, first + lines):
             begin = piece * self.piece
-            if tag is not None:
-                how = request
-            elif self.keeps_writes:
-                how = "whole" if address <= begin and begin + self.piece <= address + size else "part"
-            else:
-                how = "through"
-            bank = self.bank(piece)
-            if (bank.stopped and how != "through") or not self.look_up(bank, piece, how, now):
-                bank.stopped.append((piece, how))
+            whole = "whole" if address <= begin and begin + self.piece <= address + size else "part"
+            how = request if tag is not None else whole if self.keeps_writes else "through"
+            self.look(piece, how, now, whole)
+
+    def look(self, piece, how, now, whole="part"):
+        bank = self.bank(piece)
+        if (bank.stopped and how != "through") or not self.look_up(bank, piece, how, now, whole):
+            bank.stopped.append((piece, how))
 
     def bank(self, piece):
         return self.banks[piece // self.lines.pieces % len(self.banks)]
 
-    def look_up(self, bank, piece, how, now):
+    def look_up(self, bank, piece, how, now, whole="part"):
         """False, and nothing is done, if the piece must be fetched and cannot be."""
         there, under_way = self.lines.touch(piece), piece in self.waiting
         needs_it = how not in ("through", "whole")
@@ -141,7 +149,7 @@ class Cache:
         bank.looked_up = max(bank.looked_up, now * self.lines_a_cycle) + 1
         end = ceil_div(bank.looked_up, self.lines_a_cycle)
         if how == "through":
-            self.leave(end, (piece, True))
+            self.leave(end, (piece, whole))
         elif there or not needs_it:
             if not there:
                 self.insert(piece, end)
@@ -162,7 +170,7 @@ class Cache:
 
     def insert(self, piece, now):
         for written in self.lines.insert(piece):
-            self.leave(now, (written, True))
+            self.leave(now, (written, "whole"))
 
     def leave(self, at, what):
         self.leaving.append((at, what))
@@ -186,6 +194,22 @@ class Cache:
         if request.missing == 0:
             self.complete.append(request)
             self.clock.wake(request.ready)
+
+
+def caches_of(config, clock, ports):
+    """The caches, with the L2s behind the resources' own ones if they have any: L2s, all."""
+    m = config["memory"]
+    own = []
+    if m.get("l1_kib"):
+        nearest = dict(m, l2_kib=m["l1_kib"], ways=m["l1_ways"], l2_lines_per_cycle=m["l1_lines_per_cycle"],
+                       l2_mshrs=m["l1_mshrs"], l2_latency_cycles=m["l1_latency_cycles"], l2_banks=1, l2_write="through",
+                       dram_latency_cycles=m["l2_latency_cycles"])
+        own = [Cache({"memory": nearest}, clock, [port]) for port in ports]
+    shared, l2 = m["shared_by"], []
+    for first in range(0, len(ports), shared):
+        last = first + shared
+        l2.append(Cache(config, clock, [], own[first:last]) if own else Cache(config, clock, ports[first:last]))
+    return l2, own + l2
 
 
 class Memory:

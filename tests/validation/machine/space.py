@@ -66,6 +66,10 @@ def draw(seed, index):
         line = memory["line_bytes"]
         memory.update(l2_banks=pick([1, 2, 3, 8]), l2_mshrs=pick([0, 1, 2, 7]), l2_write=pick(["through", "back", "back"]),
                       l2_sector_bytes=pick(["auto", 32 if line > 32 else "auto", line // 2 if line > 32 else "auto"]))
+    if r.random() < 0.3:
+        ways = pick([1, 2, 4])
+        memory.update(l1_kib=max(1, ways * memory["line_bytes"] // 1024) * pick([1, 2, 8]), l1_ways=ways,
+                      l1_lines_per_cycle=pick([1, 2]), l1_mshrs=pick([0, 1, 3]), l1_latency_cycles=pick([1, 2, 5, 20]))
     sets = memory["ways"] * memory["line_bytes"] * memory.get("l2_banks", 1)  # a cache has whole sets in each bank
     step = sets // math.gcd(sets, 1024)
     memory["l2_kib"] = -(-memory["l2_kib"] // step) * step

@@ -224,5 +224,43 @@ TEST(L2WriteBack, WritesBackTheSectorsThatWereWritten) {
   EXPECT_THAT(bench.asked, ElementsAre(at(1101, 32), at(1200, kWriteLine | 1), at(1200, kWriteLine | 2)));
 }
 
+/// A cache of one resource with an L2 behind it: the test plays the resource and the memory.
+TEST(OwnCache, AsksTheL2ForLines) {
+  const MemoryConfig config =
+      load_config({"scene: {builtin: cornell}\nengine: {kind: cycle}\nmemory: {l1_kib: 1, l1_latency_cycles: 9, "
+                   "l1_lines_per_cycle: 2, l2_lines_per_cycle: 1, l2_latency_cycles: 31, dram_latency_cycles: 101}\n",
+                   "cache.yaml"})
+          .config.memory;
+  Channel<FetchRequest> requests;
+  Channel<FetchAnswer> answers;
+  Channel<std::uint64_t> down, up, to_memory, from_memory;
+  ShapeCache own(ShapeCache::own_cache(config), std::vector{ShapeCache::Client{&requests, &answers}}, down, up);
+  own.ask_a_cache();
+  ShapeCache l2(config, std::vector{ShapeCache::OwnCache{&down, &up}}, to_memory, from_memory);
+  const auto ask = [&](Cycle at, std::uint64_t line, std::uint32_t lines) {
+    requests.send(at + ShapeCache::request_latency(ShapeCache::nearest(config)), {line, lines, 5});
+  };
+  ask(0, 10, 3);
+  own.run(20);
+  l2.run(100);
+  // Half of 9, two lines a cycle; half of 31, one line a cycle; half of 101.
+  for (const Cycle at : {4 + 1 + 15 + 1 + 50, 4 + 1 + 15 + 2 + 50, 4 + 2 + 15 + 2 + 50}) {
+    EXPECT_EQ(to_memory.next(), at);
+    from_memory.send(200, to_memory.take());
+  }
+  l2.run(300);
+  EXPECT_EQ(up.next(), 200u + 16);
+  own.run(300);
+  EXPECT_EQ(answers.next(), 200u + 16 + 5);
+  EXPECT_EQ(answers.take().tag, 5u);
+  // A hit takes its latency and the time of its lines, and the L2 hears nothing.
+  ask(400, 10, 3);
+  own.run(500);
+  EXPECT_EQ(answers.next(), 400u + 9 + 2);
+  EXPECT_EQ(down.next(), kNever);
+  EXPECT_EQ(own.statistics().hits, 3u);
+  EXPECT_EQ(l2.statistics().misses, 3u);
+}
+
 }  // namespace
 }  // namespace carousel::ringbus::cycle

@@ -1,10 +1,14 @@
 // Nodes with boxes in 8 bits a plane: they contain the full ones, change no hit, and have the bytes of their formats.
+#include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include <gtest/gtest.h>
 
+#include "accel/box/slab.h"
 #include "accel/build/quantised_boxes.h"
+#include "accel/traverse/kernels.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "tests/ringbus/cycle/memory/timed_machine.h"
 
@@ -91,6 +95,46 @@ TEST(QuantisedNodes, ChangeNoHitAndFetchLess) {
     // run_text() has compared the hits with the reference tracer's.
     EXPECT_LT(small.result.cycle->memory_lines, full.result.cycle->memory_lines);
   }
+}
+
+/// The boxes of both structures one by one, in the scalar test, against the counter of the vector kernels.
+TEST(QuantisedNodes, CountBoxesThatOnlyRoundingHits) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 2000, 0), 60, 1);
+  const accel::Accel& full = scene.accel(bvh_of(8, BvhConfig::Storage::kFull));
+  accel::Accel small = full;
+  accel::quantise_boxes(small);
+  std::mt19937 random(7);
+  const auto corner = [&] {  // of any child
+    const accel::Node& node = full.nodes[random() % full.nodes.size()];
+    const auto lane = static_cast<std::size_t>(random() % node.count);
+    return Vec3{node.plane[0][lane], node.plane[4][lane], node.plane[2][lane]};
+  };
+  std::uint64_t expected = 0;
+  IntersectionCounts counts;
+  for (int i = 0; i < 2000; ++i) {
+    RayRecord record;
+    const Vec3 from = corner(), to = corner();
+    if (from == to) continue;
+    record.ray.origin = from - (to - from);
+    record.ray.direction = glm::normalize(to - from);
+    const accel::SlabRay slab(record.ray);
+    for (std::uint32_t n = 0; n < small.nodes.size(); ++n) {
+      const auto hits_of = [&](const accel::Accel& accel, int lane) {
+        const auto& plane = accel.nodes[n].plane;
+        const Aabb box{{plane[0][lane], plane[1][lane], plane[2][lane]},
+                       {plane[3][lane], plane[4][lane], plane[5][lane]}};
+        float entry = 0;
+        return accel::slab(slab, box, record.hit.t, entry);
+      };
+      for (int lane = 0; lane < small.nodes[n].count; ++lane) expected += hits_of(small, lane) && !hits_of(full, lane);
+      std::uint8_t mask = 0;
+      std::array<float, accel::kMaxWidth> nearest{};
+      accel::test_strip(small, {kNoInstance, accel::NodeRef::inner(n)}, ~0u, {&record, nullptr, 1},
+                        {&mask, nearest.data()}, counts);
+    }
+  }
+  EXPECT_GT(expected, 100u);
+  EXPECT_EQ(counts.extra_box_hits, expected);
 }
 
 TEST(QuantisedNodes, AreRefusedWhereTheyCannotHoldANode) {

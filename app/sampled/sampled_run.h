@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <stop_token>
+
+#include "app/run/prepare.h"
+#include "app/run/render_job.h"
+#include "app/sampled/place_census.h"
+#include "report/run/report.h"
+#include "ringbus/results/run_result.h"
+
+namespace carousel::app {
+
+/// The estimates for the whole frame from the run of a job with a sample. `memory` holds all requests of the run.
+report::Sampled estimates(const Prepared& prepared, const RenderJob& job, const PlaceCensus& places,
+                          const ringbus::RunResult& result, const ringbus::MemoryLog& memory);
+
+/// Simulates the whole frame, too, and says how far off each estimate of `report` is. Shows its progress on a terminal
+/// unless `quiet`. Interrupted, it marks the report as incomplete.
+void audit(const Prepared& prepared, const RenderJob& job, std::stop_token stop, bool quiet, report::Report& report);
+
+}  // namespace carousel::app

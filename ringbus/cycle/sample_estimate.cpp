@@ -1,0 +1,266 @@
+#include "ringbus/cycle/sample_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include "ringbus/cycle/bottleneck_search.h"
+#include "ringbus/cycle/progress_blocks.h"
+#include "ringbus/cycle/steady_state.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+/// Standard errors to either side that hold 95 %, of Student's distribution with as many degrees of freedom as there
+/// are neighbours to compare.
+constexpr double kErrors = 2.13;
+/// The part of the time that warm caches spare that is in doubt: waits for different lines overlap.
+constexpr double kUnsure = 0.5;
+
+Estimate around(double value, double error) {
+  return {value, std::max(0.0, value - error), value + error};
+}
+
+double over(double a, double b) {
+  return b > 0 ? a / b : 0;
+}
+
+/// Estimates of a / b, with the relative errors of both, as if they were independent.
+Estimate quotient(double value, double relative_a, double relative_b) {
+  return around(value, value * std::hypot(relative_a, relative_b));
+}
+
+double link_bytes(const RunResult& result) {
+  double bytes = 0;
+  for (const cycle::LinkUse& link : result.cycle->links) bytes += static_cast<double>(link.bytes);
+  return bytes;
+}
+
+IntersectionCounts tests_of(const RunResult& result) {
+  IntersectionCounts sum;
+  for (const ResourceStatistics& resource : result.resources) sum += resource.tests;
+  return sum;
+}
+
+bool of_memory(std::string_view name) {
+  return name == "memory_bandwidth" || name == "l2_port";
+}
+
+class Sample {
+ public:
+  Sample(const Config& config, const SampleRun& run)
+      : config_(config),
+        run_(run),
+        c_(*run.result.cycle),
+        rays_(static_cast<double>(run.result.rays_completed)),
+        times_(static_cast<double>(run.frame_paths) / static_cast<double>(run.paths)),
+        unseen_(std::sqrt(std::max(0.0, 1 - 1 / times_))) {
+    const std::uint64_t n = run.result.rays_completed;
+    begin_ = std::min(fill_rays(slots_of(config)), n / 4);
+    end_ = c_.all_begun ? c_.all_begun->completed : n;
+    too_small_ = end_ < begin_ + n / 4;
+    if (too_small_) begin_ = 0, end_ = n;
+    count_lines();
+  }
+
+  FrameValues estimate() const {
+    FrameValues out;
+    const double rays_error = error_of_rays(), time_error = error_of_time();
+    const double rest = (times_ - 1) * rays_, spared = rest * spared_cycles_a_ray();
+    const double cycles = static_cast<double>(c_.cycles) + rest * cycles_a_ray() - spared;
+    const double each = cycles / (times_ * rays_), unsure = kUnsure * spared / (times_ * rays_);
+    out.rays = around(times_ * rays_, times_ * rays_ * rays_error);
+    out.cycles_per_ray = around(each, each * time_error + unsure);
+    if (too_small_) out.cycles_per_ray.low = std::min(out.cycles_per_ray.low, least_cycles_a_ray() * (1 - time_error));
+    out.cycles = quotient(cycles, time_error + unsure / each, rays_error);
+    if (too_small_) out.cycles.low = out.cycles_per_ray.low * out.rays.low;
+    const Estimate& e = out.cycles_per_ray;
+    out.rays_per_kilocycle = {over(1000, e.value), over(1000, e.high), over(1000, e.low)};
+    const IntersectionCounts tests = tests_of(run_.result);
+    out.box_tests_per_ray = per_ray(static_cast<double>(tests.box), "box_tests");
+    out.triangle_tests_per_ray = per_ray(static_cast<double>(tests.triangle), "triangle_tests");
+    out.link_bytes_per_ray = per_ray(link_bytes(run_.result), "link_bandwidth");
+    const Estimate lines = frame_lines();
+    const double line = static_cast<double>(config_.memory.line_bytes) / out.rays.value;
+    out.memory_bytes_per_ray = {lines.value * line, lines.low * line, lines.high * line};
+    for (std::size_t i = 0; i < c_.uses.size(); ++i)
+      if (c_.uses[i].busy > 0) out.uses.push_back({c_.uses[i].name, use(i, cycles, lines)});
+    out.steady = over(static_cast<double>(end_ - begin_), rays_);
+    out.too_small = too_small_;
+    return out;
+  }
+
+ private:
+  /// The time of a ray between fill and drain.
+  double cycles_a_ray() const {
+    const double time = at_count(c_, end_, cycle_of) - at_count(c_, begin_, cycle_of);
+    if (too_small_) return static_cast<double>(c_.cycles) / rays_;
+    const std::size_t i = busiest();
+    const auto busy = [i](const cycle::ProgressSample& s) { return static_cast<double>(s.busy[i]); };
+    const double work = at_count(c_, end_, busy) - at_count(c_, begin_, busy);
+    return work > 0 ? time * static_cast<double>(c_.uses[i].busy) / work / rays_
+                    : time / static_cast<double>(end_ - begin_);
+  }
+
+  /// The time of a ray that the rest of the frame spares, as the testers wait less often for lines that no ray has
+  /// asked for before.
+  double spared_cycles_a_ray() const {
+    if (first_ <= 0) return 0;
+    double wait = 0;
+    for (const cycle::TileResult& tile : c_.tiles)
+      wait += static_cast<double>(tile.states[static_cast<std::size_t>(cycle::TileState::kMemory)]);
+    wait /= static_cast<double>(c_.tiles.size());
+    const double cold = wait * first_ / (first_ + again_) / rays_;
+    const double fewer = 1 - std::min(1.0, (grown(power_) / first_ - 1) / std::max(1e-9, times_ - 1));
+    return std::min(cold * fewer, cycles_a_ray() / 2);
+  }
+
+  /// The class whose parts are most of the time at work, other than those of the memory, which are busier while caches
+  /// are cold.
+  std::size_t busiest() const {
+    std::size_t best = 0;
+    double most = -1;
+    for (std::size_t i = 0; i < c_.uses.size(); ++i) {
+      const cycle::ClassUse& use = c_.uses[i];
+      const double busy = use.parts > 0 && !of_memory(use.name) ? static_cast<double>(use.busy) / use.parts : 0;
+      if (busy > most) most = busy, best = i;
+    }
+    return best;
+  }
+
+  /// The time of a ray if the busiest class had no pause.
+  double least_cycles_a_ray() const {
+    const cycle::ClassUse& use = c_.uses[busiest()];
+    return static_cast<double>(use.busy) / use.parts / rays_;
+  }
+
+  /// Relative error of the time a ray.
+  double error_of_time() const {
+    const std::vector<double> means = block_means(c_, begin_, end_, cycle_of);
+    return unseen_ * kErrors * over(standard_error(steps(means)), means.back() - means.front());
+  }
+
+  /// Relative error of the rays a path: a ratio of sums over places.
+  double error_of_rays() const {
+    const double each = rays_ / static_cast<double>(run_.paths);
+    const std::size_t places = run_.paths_of.size();
+    double squares = 0, before = 0;
+    for (std::size_t i = 0; i < places; ++i) {
+      const double rest = static_cast<double>(run_.rays_of[i]) - each * static_cast<double>(run_.paths_of[i]);
+      if (i > 0) squares += (rest - before) * (rest - before);
+      before = rest;
+    }
+    if (places < 2) return 1;
+    const double k = static_cast<double>(places);
+    return unseen_ * kErrors * std::sqrt(k / (k - 1) * squares / 2) / rays_;
+  }
+
+  std::optional<std::size_t> class_of(std::string_view name) const {
+    for (std::size_t i = 0; i < c_.uses.size(); ++i)
+      if (c_.uses[i].name == name) return i;
+    return std::nullopt;
+  }
+
+  /// Relative error of the work of a class a ray, or of that over its time.
+  double error_of_work(std::size_t i, bool over_time) const {
+    const auto busy = [i](const cycle::ProgressSample& s) { return static_cast<double>(s.busy[i]); };
+    const std::vector<double> work = block_means(c_, begin_, end_, busy),
+                              time = block_means(c_, begin_, end_, cycle_of);
+    const double all = work.back() - work.front();
+    if (!(all > 0)) return 0;
+    std::vector<double> terms = work;
+    if (over_time)
+      for (std::size_t k = 0; k < terms.size(); ++k) terms[k] -= all / (time.back() - time.front()) * time[k];
+    return unseen_ * kErrors * standard_error(steps(terms)) / all;
+  }
+
+  Estimate per_ray(double count, std::string_view name) const {
+    const auto i = class_of(name);
+    return around(count / rays_, i ? count / rays_ * error_of_work(*i, false) : 0);
+  }
+
+  /// The lines that the frame asks for first, if they grow by a power of its rays.
+  double grown(double by) const { return first_ * std::pow(times_, std::clamp(by, 0.0, 1.0)); }
+
+  void count_lines() {
+    const auto half = static_cast<std::uint64_t>(at_count(c_, run_.result.rays_completed / 2, cycle_of));
+    const std::size_t caches = std::max<std::size_t>(1, c_.caches.size());
+    std::unordered_map<std::uint64_t, std::size_t> seen;
+    double first_half = 0;
+    for (const MemoryRequest& request : run_.memory) {
+      if (!request.write && seen[request.address]++ < caches) {
+        ++first_;
+        first_half += request.cycle <= half;
+      } else {
+        ++again_;
+      }
+    }
+    if (first_half > 0) power_ = std::clamp(std::log2(first_ / first_half), 0.0, 1.0);
+  }
+
+  /// Lines of the frame's requests to memory.
+  Estimate frame_lines() const {
+    const auto i = class_of("memory_bandwidth");
+    const double again = times_ * again_, error = again * (i ? error_of_work(*i, false) : 0);
+    constexpr double kPowerError = 0.25;
+    return {grown(power_) + again, std::max(0.0, grown(power_ - kPowerError) + again - error),
+            grown(power_ + kPowerError) + again + error};
+  }
+
+  Estimate use(std::size_t i, double cycles, const Estimate& lines) const {
+    const cycle::ClassUse& use = c_.uses[i];
+    const double busy = static_cast<double>(use.busy), available = use.parts * cycles;
+    const double requests = static_cast<double>(run_.memory.size());
+    Estimate out;
+    if (use.name == "memory_bandwidth" && requests > 0) {
+      const double each = busy / requests / available;
+      out = {each * lines.value, each * lines.low, each * lines.high};
+    } else {
+      out = around(busy * times_ / available, busy * times_ / available * error_of_work(i, true));
+    }
+    return {std::min(1.0, out.value), std::min(1.0, out.low), std::min(1.0, out.high)};
+  }
+
+  const Config& config_;
+  const SampleRun& run_;
+  const cycle::CycleResult& c_;
+  double rays_, times_, unseen_;
+  std::uint64_t begin_ = 0, end_ = 0;
+  bool too_small_ = false;
+  double first_ = 0, again_ = 0;  // requests to memory: those of a cache that asks for a line first, and others
+  double power_ = 0;              // of the growth of the former
+};
+
+Estimate exactly(double value) {
+  return {value, value, value};
+}
+
+}  // namespace
+
+FrameValues exact_values(const Config& config, const RunResult& result) {
+  const cycle::CycleResult& c = *result.cycle;
+  const double rays = static_cast<double>(result.rays_completed), cycles = static_cast<double>(c.cycles);
+  const IntersectionCounts tests = tests_of(result);
+  const auto per_ray = [&](double count) { return exactly(over(count, rays)); };
+  FrameValues out;
+  out.rays = exactly(rays);
+  out.cycles = exactly(cycles);
+  out.cycles_per_ray = per_ray(cycles);
+  out.rays_per_kilocycle = exactly(over(1000 * rays, cycles));
+  out.box_tests_per_ray = per_ray(static_cast<double>(tests.box));
+  out.triangle_tests_per_ray = per_ray(static_cast<double>(tests.triangle));
+  out.link_bytes_per_ray = per_ray(link_bytes(result));
+  out.memory_bytes_per_ray = per_ray(static_cast<double>((c.memory_lines + c.memory_lines_written) *
+                                                         static_cast<std::uint64_t>(config.memory.line_bytes)));
+  for (const cycle::ClassUse& use : c.uses)
+    if (use.busy > 0) out.uses.push_back({use.name, exactly(over(static_cast<double>(use.busy), use.parts * cycles))});
+  return out;
+}
+
+FrameValues estimate_frame(const Config& config, const SampleRun& run) {
+  return Sample(config, run).estimate();
+}
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/foretell.h"
+#include "ringbus/results/memory_request.h"
+#include "ringbus/results/run_result.h"
+
+namespace carousel::ringbus {
+
+// The values of a whole frame, estimated from a run over some of its paths, which were drawn over all of it.
+
+/// The use of the parts of one class, as a fraction of the frame's time.
+struct ClassEstimate {
+  std::string_view name;  ///< as in CycleResult::uses
+  Estimate use;
+};
+
+/// Values of a frame with intervals of confidence of 95 %. Those of a frame that was run whole are exact.
+struct FrameValues {
+  Estimate rays, cycles, cycles_per_ray, rays_per_kilocycle;
+  Estimate box_tests_per_ray, triangle_tests_per_ray, memory_bytes_per_ray, link_bytes_per_ray;
+  std::vector<ClassEstimate> uses;  ///< of the classes that did anything
+  double steady = 1;                ///< part of the rays that were completed between fill and drain
+  bool too_small = false;           ///< the run is mostly fill and drain, so that the intervals are wide
+};
+
+/// A run over a part of a frame.
+struct SampleRun {
+  const RunResult& result;
+  const MemoryLog& memory;  ///< all requests of the run
+  std::uint64_t paths = 0, frame_paths = 0;
+  /// Paths and rays of each place, in the order in which they began.
+  std::vector<std::uint64_t> paths_of, rays_of;
+};
+
+/// The values of a run of the whole frame.
+FrameValues exact_values(const Config& config, const RunResult& result);
+
+/// The sample's fill and drain happen once in the frame, too. So its cycles T are extrapolated by the rate between
+/// them, m cycles a ray: frame = T + (frame's rays - sample's rays) m.
+/// - The rays that are completed between fill and drain are cheaper than others, or dearer: m is the time there over
+///   the work there of the busiest class of parts, times that class's work a ray of the whole sample.
+/// - Caches are cold. The first request of a cache for a line is one of the frame's, too; the number of such lines
+///   grows more slowly than that of the rays, by the power that it grew with in the sample's second half. All other
+///   requests are taken to be as many a ray as in the sample.
+///   The testers waited for first lines as long as for others, and the rest of the frame waits less by as many as it
+///   has fewer of them a ray. Half of the time that it so spares is added to the interval.
+/// - Errors are those of the differences between neighbouring places and between neighbouring blocks of completed rays
+///   (foretell.h), less the part of the frame that was simulated (K. Wolter, Introduction to Variance Estimation, 2nd
+///   edition 2007, sections 1.4 and 8.2).
+FrameValues estimate_frame(const Config& config, const SampleRun& run);
+
+}  // namespace carousel::ringbus

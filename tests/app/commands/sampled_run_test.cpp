@@ -1,0 +1,154 @@
+// Sampled runs as a user starts them. The truth that their estimates are compared with is a run of its own of the whole
+// frame, and the picture of that.
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "report/run/report_json.h"
+#include "tests/app/support/program.h"
+#include "tests/support/json_schema_check.h"
+
+namespace carousel {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+const char* const kMachine =
+    "scene: {builtin: terrain, triangles: 2000}\n"
+    "image: {width: 96, height: 64, samples: 1, max_depth: 3}\n"
+    "engine: {kind: cycle, threads: 1, what_if: false}\n"
+    "topology: {resources: 2}\n"
+    "rays: {slots_per_resource: 32}\n"
+    "packets: {rays: 8}\n"
+    "collections: {ready: 8}\n";
+
+Json run(const Program& program, std::vector<std::string> more, const std::string& out) {
+  std::vector<std::string> arguments{"run", "machine.yaml", "--out", out, "--force", "--quiet"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = program.run(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return Json::parse(program.read(out + "/report.json"));
+}
+
+const std::vector<std::string> kQuarter{"--set", "sampling.fraction=0.25"};
+
+/// The numbers of a frame that was run whole, from its own sections.
+std::map<std::string, double> truth_of(const Json& report) {
+  const double rays = report["rays"]["completed"], cycles = report["engine"]["cycles"];
+  double packets = 0, lines = 0;
+  for (const Json& row : report["bytes"]) {
+    if (row["what"] == "packets") packets = row["bytes"];
+    if (row["what"] == "lines") lines = row["bytes"];
+  }
+  return {{"rays", rays},
+          {"cycles", cycles},
+          {"cycles_per_ray", cycles / rays},
+          {"rays_per_kilocycle", report["throughput"]["whole"]["rays_per_kilocycle"]},
+          {"box_tests_per_ray", report["tests"]["box"]["per_ray"]},
+          {"triangle_tests_per_ray", report["tests"]["triangle"]["per_ray"]},
+          {"memory_bytes_per_ray", lines / rays},
+          {"link_bytes_per_ray", packets / rays}};
+}
+
+TEST(SampledRun, EstimatesTheWholeFrame) {
+  const Program program;
+  program.write("machine.yaml", kMachine);
+  const std::map<std::string, double> truth = truth_of(run(program, {}, "whole"));
+  std::vector<std::string> audited = kQuarter;
+  audited.push_back("--audit");
+  const Json report = run(program, audited, "sampled");
+  EXPECT_EQ(schema_problems(report::report_schema(), report), std::vector<std::string>{});
+  const Json& sampled = report["sampled"];
+  EXPECT_EQ(sampled["frame_paths"], 96 * 64);
+  EXPECT_NEAR(sampled["paths"].get<double>(), 96 * 64 / 4, 96 * 64 / 16);
+  EXPECT_EQ(report["rays"]["by_kind"]["camera"], sampled["paths"]) << "the other sections are about the sample";
+  for (const auto& [key, value] : truth) {
+    SCOPED_TRACE(key);
+    const double estimate = sampled[key]["estimate"];
+    EXPECT_NEAR(sampled[key]["whole"].get<double>(), value, 1e-9 * value);
+    EXPECT_NEAR(sampled[key]["error"].get<double>(), estimate / value - 1, 1e-9);
+    EXPECT_NEAR(estimate, value, (key == "memory_bytes_per_ray" ? 0.4 : 0.15) * value);  // few lines make these bytes
+    EXPECT_LE(sampled[key]["low"].get<double>(), value);
+    EXPECT_GE(sampled[key]["high"].get<double>(), value);
+  }
+  for (const Json& use : sampled["uses"]) {
+    EXPECT_NEAR(use["estimate"].get<double>(), use["whole"].get<double>(), 0.1) << use["name"];
+    EXPECT_LE(use["high"].get<double>(), 1);
+  }
+  EXPECT_THAT(program.read("sampled/report.html"), HasSubstr("Estimates for the whole frame"));
+}
+
+TEST(SampledRun, SaysWhatItIsOnTheTerminal) {
+  const Program program;
+  program.write("machine.yaml", kMachine);
+  std::vector<std::string> arguments{"run", "machine.yaml", "--audit"};
+  arguments.insert(arguments.end(), kQuarter.begin(), kQuarter.end());
+  const Outcome outcome = program.run(arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("SAMPLED +1,[0-9]+ of 6,144 paths"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("cycles per ray .* to .* whole .* error [+-]"));
+}
+
+TEST(SampledRun, ThePictureHoldsTheDrawnTilesAndNoOther) {
+  const Program program;
+  program.write("machine.yaml", kMachine);
+  run(program, {}, "whole");
+  const Json report = run(program, kQuarter, "sampled");
+  EXPECT_FALSE(report["digest"].contains("image")) << "a part of a picture is not the picture";
+  const auto read = [&](const std::string& folder) {
+    const auto image = OIIO::ImageInput::open((program.folder() / folder / "image.exr").string());
+    std::vector<float> rgb(96 * 64 * 3);
+    EXPECT_TRUE(image && image->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, rgb.data()));
+    return rgb;
+  };
+  const std::vector<float> whole = read("whole"), sampled = read("sampled");
+  std::size_t drawn = 0;
+  for (std::size_t pixel = 0; pixel < 96 * 64; ++pixel) {
+    const auto own = sampled.begin() + static_cast<std::ptrdiff_t>(3 * pixel);
+    if (own[0] == 0 && own[1] == 0 && own[2] == 0) continue;
+    ++drawn;
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(sampled[3 * pixel + i], whole[3 * pixel + i]) << pixel;
+  }
+  EXPECT_LE(drawn, report["sampled"]["paths"].get<std::size_t>());
+  EXPECT_GE(drawn, report["sampled"]["paths"].get<std::size_t>() / 2);
+}
+
+TEST(SampledRun, TheSameSeedDrawsTheSame) {
+  const Program program;
+  program.write("machine.yaml", kMachine);
+  const Json first = run(program, kQuarter, "a"), again = run(program, kQuarter, "b");
+  EXPECT_EQ(first["sampled"], again["sampled"]);
+  EXPECT_EQ(first["digest"], again["digest"]);
+}
+
+TEST(SampledRun, SaysSoWhereTheSampleIsTooSmall) {
+  const Program program;
+  program.write("machine.yaml", kMachine);
+  const Json report =
+      run(program, {"--set", "sampling.fraction=0.25", "--set", "rays.slots_per_resource=2048", "--audit"}, "sampled");
+  EXPECT_EQ(report["sampled"]["too_small"], true);
+  const Json& cycles = report["sampled"]["cycles_per_ray"];
+  EXPECT_LE(cycles["low"], cycles["whole"]);
+  EXPECT_GE(cycles["high"], cycles["whole"]);
+}
+
+TEST(SampledRun, RefusesWhereASampleMakesNoSense) {
+  const Program program;
+  program.write("machine.yaml", kMachine);
+  const auto refused = [&](std::vector<std::string> more, const char* message) {
+    more.insert(more.begin(), {"run", "machine.yaml"});
+    const Outcome outcome = program.run(more);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+  };
+  refused({"--audit"}, "this run has no estimates");
+  refused({"--set", "sampling.fraction=0.1", "--set", "engine.kind=native"}, "the native engine has no sampled runs");
+  refused({"--set", "sampling.fraction=0.1", "--set", "faults.resource.kind=stop"}, "happens once in a frame");
+  refused({"--set", "sampling.fraction=0.1", "--set", "workload={traffic: {rate: 0.1}}"}, "no rays to draw from");
+  refused({"--set", "sampling.fraction=0"}, "sampling.fraction");
+}
+
+}  // namespace
+}  // namespace carousel
