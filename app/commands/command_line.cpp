@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -325,6 +326,11 @@ int run_command_line(int argc, const char* const* argv) {
   return schema_command(arguments.schema);
 }
 
+ExitStatus no_thread() {
+  spdlog::error("cannot start a thread: not enough memory, address space or processes (ulimit -v, ulimit -u)");
+  return kUsage;
+}
+
 }  // namespace
 
 int main(int argc, const char* const* argv) {
@@ -344,15 +350,15 @@ int main(int argc, const char* const* argv) {
     spdlog::error("not enough memory; carousel check prints how much the configuration needs");
     return kUsage;
   } catch (const std::system_error& error) {
-    const bool starved = error.code() == std::errc::resource_unavailable_try_again;
-    spdlog::error(starved
-                      ? "cannot start a thread: not enough memory, address space or processes (ulimit -v, ulimit -u)"
-                      : fmt::format("internal error: {}", error.what()));
-    return starved ? kUsage : kBroken;
+    if (error.code() == std::errc::resource_unavailable_try_again) return no_thread();
+    spdlog::error("internal error: {}", error.what());
+    return kBroken;
   } catch (const SimulationError& error) {
     spdlog::error("{}", error.what());
     return kBroken;
   } catch (const std::exception& error) {
+    // oneTBB throws a std::runtime_error of this text.
+    if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos) return no_thread();
     spdlog::error("internal error: {}", error.what());
     return kBroken;
   }

@@ -97,7 +97,12 @@ class NativeRun {
     ended_ = 0;
     end_ = false;
     std::vector<std::jthread> threads;
-    for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
+    try {
+      for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
+    } catch (...) {  // no further thread can be started: those that run have to end
+      end_.store(true, std::memory_order_release);
+      throw;
+    }
     watch();
   }
 

@@ -79,7 +79,13 @@ class WindowRun {
   Cycle run() {
     {
       std::vector<std::jthread> threads;
-      for (std::size_t t = 1; t < parts_.size(); ++t) threads.emplace_back([this, t] { work(t); });
+      try {
+        for (std::size_t t = 1; t < parts_.size(); ++t) threads.emplace_back([this, t] { work_when_all_are_there(t); });
+      } catch (...) {  // no further thread can be started: the barrier would wait for it
+        begin(Start::kNever);
+        throw;
+      }
+      begin(Start::kNow);
       work(0);
     }
     if (error_) std::rethrow_exception(error_);
@@ -90,6 +96,18 @@ class WindowRun {
   struct alignas(64) Next {
     Cycle cycle = kNever;
   };
+
+  enum class Start { kNotYet, kNow, kNever };
+
+  void begin(Start start) {
+    start_.store(start, std::memory_order_release);
+    start_.notify_all();
+  }
+
+  void work_when_all_are_there(std::size_t thread) {
+    start_.wait(Start::kNotYet, std::memory_order_acquire);
+    if (start_.load(std::memory_order_acquire) == Start::kNow) work(thread);
+  }
 
   void work(std::size_t thread) {
     const std::vector<Agent*>& agents = parts_[thread];
@@ -173,6 +191,7 @@ class WindowRun {
   const std::function<bool(Cycle)>& keep_running_;
   Barrier barrier_;
   std::vector<Next> next_;
+  std::atomic<Start> start_{Start::kNotYet};
   std::atomic<bool> stop_{false};
   Cycle reached_ = 0;
   std::mutex mutex_;  // guards error_

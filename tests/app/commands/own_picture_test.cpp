@@ -16,11 +16,7 @@ TEST(OwnPicture, ExposureChangesThePngAlone) {
   ASSERT_EQ(program.run({"run", "a.yaml", "--out", "a"}).status, 0);
   ASSERT_EQ(program.run({"run", "a.yaml", "--out", "b", "--set", "image.exposure=1.5"}).status, 0);
   EXPECT_NE(program.read("a/image.png"), program.read("b/image.png"));
-  const auto undated = [&](const char* name) {  // OpenEXR notes the time in its header
-    std::string bytes = program.read(name);
-    return bytes.erase(bytes.find("capDate"), 40);
-  };
-  EXPECT_EQ(undated("a/image.exr"), undated("b/image.exr"));
+  EXPECT_EQ(program.read("a/image.exr"), program.read("b/image.exr"));
   const auto digest = [&](const char* name) { return nlohmann::json::parse(program.read(name))["digest"]; };
   EXPECT_EQ(digest("a/report.json"), digest("b/report.json"));
 }

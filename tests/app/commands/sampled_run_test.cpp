@@ -1,6 +1,5 @@
 // Sampled runs as a user starts them. The truth that their estimates are compared with is a run of its own of the whole
 // frame, and the picture of that.
-#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -8,6 +7,7 @@
 #include "report/run/report_json.h"
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
+#include "tests/support/read_exr.h"
 
 namespace carousel {
 namespace {
@@ -97,13 +97,10 @@ TEST(SampledRun, ThePictureHoldsTheDrawnTilesAndNoOther) {
   run(program, {}, "whole");
   const Json report = run(program, kQuarter, "sampled");
   EXPECT_FALSE(report["digest"].contains("image")) << "a part of a picture is not the picture";
-  const auto read = [&](const std::string& folder) {
-    const auto image = OIIO::ImageInput::open((program.folder() / folder / "image.exr").string());
-    std::vector<float> rgb(96 * 64 * 3);
-    EXPECT_TRUE(image && image->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, rgb.data()));
-    return rgb;
-  };
+  const auto read = [&](const std::string& folder) { return read_exr(program.folder() / folder / "image.exr").rgb; };
   const std::vector<float> whole = read("whole"), sampled = read("sampled");
+  ASSERT_EQ(whole.size(), std::size_t{96} * 64 * 3);
+  ASSERT_EQ(sampled.size(), whole.size());
   std::size_t drawn = 0;
   for (std::size_t pixel = 0; pixel < 96 * 64; ++pixel) {
     const auto own = sampled.begin() + static_cast<std::ptrdiff_t>(3 * pixel);

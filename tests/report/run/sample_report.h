@@ -43,7 +43,9 @@ inline Report sample_report() {
   r.resources = {a, b};
   r.links = {{0, 1, 16, 600, 1.5, 9, 7}, {1, 0, 16, 600, 2.5, 11, 0}};
   r.traffic = {1000, 1000, 4, 100, 5000, 900, 0.1, 0.09, 3.5, 16, {17.5, 16, 20, 31, 47}, {0.3, 0.6}, 12000};
-  r.shading = {2, 990, 0, std::nullopt, {{"shadow_rays", true, true, 1, "one light", {}}}};
+  r.shading.workers = 2;
+  r.shading.shaded = 990;
+  r.shading.effects = {{"shadow_rays", true, true, 1, "one light", {}}};
   r.verify = {990, 1, "pixel 3"};
   r.digest = {"0123", "4567"};
   r.host = {4, 2.0, 495, 0.01, 0.2, 1 << 20, 64 << 20, "avx2", {"cpu", "linux", 4, 1ull << 34}};

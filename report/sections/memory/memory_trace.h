@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "report/sections/dram.h"
+#include "report/sections/memory/dram.h"
 
 namespace carousel::report {
 

@@ -2,7 +2,7 @@
 
 #include "core/statistics/cache_counts.h"
 #include "core/statistics/shape_buffer_counts.h"
-#include "report/sections/dram.h"
+#include "report/sections/memory/dram.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
