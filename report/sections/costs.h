@@ -59,7 +59,7 @@ struct EnergyOf {
 
 template <class V>
 void describe(V& v, const EnergyOf& r) {
-  v.field("events", r.events, "", "events that cost energy");
+  v.field("events", r.events, "events", "events that cost energy");
   v.field("pj_each", ratio(r.joules, r.events) * 1e12, "pJ", "energy of an event, in the mean");
   v.field("joules", r.joules, "J", "energy of the run");
   v.field("nj_per_ray", ratio(r.joules, r.rays) * 1e9, "nJ/ray", "energy for each completed ray");
@@ -130,7 +130,7 @@ struct AreaOf {
 
 template <class V>
 void describe(V& v, const AreaOf& r) {
-  v.field("size", r.size, "", "size, in the unit of the part");
+  v.field("size", r.size, "units of the part", "units, bits, KiB or millimetres, as the part is counted");
   v.field("mm2", r.mm2, "mm2", "area");
 }
 

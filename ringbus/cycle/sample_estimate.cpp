@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "ringbus/cycle/bottleneck_search.h"
+#include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/progress_blocks.h"
 #include "ringbus/cycle/steady_state.h"
 
@@ -83,7 +84,7 @@ class Sample {
     out.triangle_tests_per_ray = per_ray(static_cast<double>(tests.triangle), "triangle_tests");
     out.link_bytes_per_ray = per_ray(link_bytes(run_.result), "link_bandwidth");
     const Estimate lines = frame_lines();
-    const double line = static_cast<double>(config_.memory.line_bytes) / out.rays.value;
+    const double line = static_cast<double>(cycle::fetched_bytes(config_.memory)) / out.rays.value;
     out.memory_bytes_per_ray = {lines.value * line, lines.low * line, lines.high * line};
     for (std::size_t i = 0; i < c_.uses.size(); ++i)
       if (c_.uses[i].busy > 0) out.uses.push_back({c_.uses[i].name, use(i, cycles, lines)});
@@ -252,8 +253,8 @@ FrameValues exact_values(const Config& config, const RunResult& result) {
   out.box_tests_per_ray = per_ray(static_cast<double>(tests.box));
   out.triangle_tests_per_ray = per_ray(static_cast<double>(tests.triangle));
   out.link_bytes_per_ray = per_ray(link_bytes(result));
-  out.memory_bytes_per_ray = per_ray(static_cast<double>((c.memory_lines + c.memory_lines_written) *
-                                                         static_cast<std::uint64_t>(config.memory.line_bytes)));
+  out.memory_bytes_per_ray =
+      per_ray(static_cast<double>((c.memory_lines + c.memory_lines_written) * cycle::fetched_bytes(config.memory)));
   for (const cycle::ClassUse& use : c.uses)
     if (use.busy > 0) out.uses.push_back({use.name, exactly(over(static_cast<double>(use.busy), use.parts * cycles))});
   return out;

@@ -198,11 +198,15 @@ INSTANTIATE_TEST_SUITE_P(
                   SCENE "engine: {kind: cycle}\ntopology: {overrides: [{resource: 1, testers: {any_hit: shader}}]}\n",
                   "test.yaml:3:57: topology.overrides.0.testers.any_hit: all resources have the same any-hit calls; "
                   "expected inline, found shader"},
-        BadConfig{"Lanes", SCENE "testers: {simd: {lanes: 4}}\n",
-                  "test.yaml:2:25: testers.simd.lanes: a choice of lanes is not built yet; expected 8, found 4"},
-        BadConfig{"LanesOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {simd: {lanes: 4}}}]}\n",
-                  "test.yaml:2:62: topology.overrides.0.testers.simd.lanes: a choice of lanes is not built yet; "
-                  "expected 8, found 4"},
+        BadConfig{"Lanes", SCENE "testers: {simd: {lanes: 65}}\n",
+                  "test.yaml:2:25: testers.simd.lanes: expected an integer from 1 to 64 (lanes), found 65"},
+        BadConfig{"LanesOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {simd: {lanes: 0}}}]}\n",
+                  "test.yaml:2:62: topology.overrides.0.testers.simd.lanes: expected an integer from 1 to 64 (lanes), "
+                  "found 0"},
+        BadConfig{
+            "WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
+            "test.yaml:2:56: topology.overrides.0.testers.window: a choice among arrived packets is not built yet; "
+            "expected 1, found 4"},
         BadConfig{"Multicast", SCENE "memory: {fetch: multicast}\n",
                   "test.yaml:2:17: memory.fetch: multicast is not built yet; expected packet or resource"},
         BadConfig{"FetchByPacketsWithoutData", SCENE "engine: {kind: cycle}\nmemory: {fetch: packet}\n",

@@ -78,8 +78,9 @@ TEST(CycleEngine, LedgersAddUp) {
       jobs += job == 0 ? 0 : shaded / job;
       // The banks are busy for the tests that the resource counted, rounded up a packet at a time.
       const TesterUnits& box = cell.config.testers.units[UnitKind::kBox];
-      EXPECT_GE(tile.units[UnitKind::kBox].busy * static_cast<std::uint64_t>(box.units),
-                out.result.resources[r].tests.box);
+      EXPECT_GE(
+          tile.units[UnitKind::kBox].busy * static_cast<std::uint64_t>(box.units * cell.config.testers.simd.lanes),
+          out.result.resources[r].tests.box);
       transforms += tile.units[UnitKind::kTransform].busy;
     }
     std::uint64_t hops = 0;
@@ -94,7 +95,7 @@ TEST(CycleEngine, LedgersAddUp) {
     std::uint64_t misses = 0;
     for (const CacheCounts& cache : c.caches) {
       EXPECT_EQ(cache.lines, cache.hits + cache.merged + cache.misses);
-      misses += cache.misses;
+      misses += cache.misses + cache.write_fetches;
     }
     EXPECT_EQ(misses, c.memory_lines);
     EXPECT_LE(c.memory_busy, c.cycles);

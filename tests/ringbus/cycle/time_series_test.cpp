@@ -67,7 +67,8 @@ TEST(CycleTimeSeries, AddsUpToTheTotalsOfTheRun) {
     };
     is("machine", "rays completed", out.result.rays_completed);
     is("machine", "shader workers busy", c.shading_busy);
-    const auto line = static_cast<std::uint64_t>(cell.config.memory.line_bytes);
+    const MemoryConfig& memory = cell.config.memory;
+    const auto line = static_cast<std::uint64_t>(memory.l2_sector_bytes.value_or(memory.line_bytes));
     is("machine", "bytes of DRAM", (c.memory_lines + c.memory_lines_written) * line);
     dram += c.memory_lines;
     std::uint64_t packet_cycles = 0, link_bytes = 0;

@@ -110,6 +110,10 @@ void expect_one_digest(const std::string& engine, int random_machines) {
 #endif
   std::mt19937 random(7919 * run_seed());
   for (int i = cell_count(random_machines); i > 0; --i) run(space.draw_cell(random, with));
+  // Few of the others form bundles that go back.
+  std::vector<std::string> back = with;
+  back.insert(back.end(), {"bundles.size=16", "bundles.split=untested", "bundles.min_rays=2"});
+  for (int i = cell_count(6); i > 0; --i) run(space.draw_cell(random, back));
 #ifndef __SANITIZE_THREAD__
   seen.expect_all();
 #endif
