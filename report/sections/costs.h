@@ -173,7 +173,7 @@ struct CostConstant {
 template <class V>
 void describe(V& v, const CostConstant& r) {
   v.field("key", r.key, "", "key of the configuration that sets it");
-  v.field("value", r.value, "", "value");
+  v.field("value", r.value, "unit of the row", "value");
   v.field("unit", r.unit, "", "unit of the value");
   v.field("basis", r.basis, "", "published, derived from published numbers, assumed, or given");
   v.field("source", r.source, "", "source of the value, and the rule that derives it");

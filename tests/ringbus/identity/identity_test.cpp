@@ -112,7 +112,9 @@ void expect_one_digest(const std::string& engine, int random_machines) {
   for (int i = cell_count(random_machines); i > 0; --i) run(space.draw_cell(random, with));
   // Few of the others form bundles that go back.
   std::vector<std::string> back = with;
-  back.insert(back.end(), {"bundles.size=16", "bundles.split=untested", "bundles.min_rays=2"});
+  back.insert(back.end(), {"bundles.size=16", "bundles.split=untested", "bundles.builder.threshold=100",
+                           "bundles.builder.same_origin=false", "bundles.builder.same_signs=false",
+                           "test.split_early=false", "collections.when_full=spill"});
   for (int i = cell_count(6); i > 0; --i) run(space.draw_cell(random, back));
 #ifndef __SANITIZE_THREAD__
   seen.expect_all();
