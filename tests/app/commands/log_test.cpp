@@ -143,11 +143,12 @@ TEST(Messages, TooLittleAddressSpaceEndsWithAMessage) {
   program.write("a.yaml", kSmall);
   rlimit old{};
   getrlimit(RLIMIT_AS, &old);
-  for (const rlim_t kib : {40'000, 50'000, 55'000, 60'000, 65'000, 70'000, 100'000, 400'000}) {
+  for (const rlim_t kib : {40'000, 50'000, 55'000, 60'000, 65'000, 100'000}) {
     for (const char* engine : {"engine.kind=native", "engine.kind=cycle"}) {
       const rlimit little{kib * 1024, old.rlim_max};
       setrlimit(RLIMIT_AS, &little);
-      const Outcome outcome = program.run({"run", "a.yaml", "--force", "--set", "engine.threads=2", "--set", engine});
+      const Outcome outcome = program.run({"run", "a.yaml", "--force", "--set", "engine.threads=2", "--set", engine,
+                                           "--set", "engine.what_if=false", "--set", "image.samples=1"});
       setrlimit(RLIMIT_AS, &old);
       EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << kib << " KiB: " << outcome.status << outcome.err;
       if (outcome.status != 0) {
