@@ -4,7 +4,7 @@
 export function readTable(id) {
   const table = document.getElementById(`table-${id}`);
   if (!table) return null;
-  const columns = [...table.tHead.rows[0].cells].map((th) => th.firstChild.textContent.trim());
+  const columns = [...table.tHead.rows[0].cells].map((th) => (th.firstChild?.textContent ?? '').trim());
   const rows = [...table.tBodies[0].rows].map((tr) =>
     [...tr.cells].map((td) => (td.dataset.v === undefined ? td.textContent : Number(td.dataset.v))));
   return {columns, rows, column: (name) => columns.indexOf(name)};
