@@ -39,7 +39,7 @@ class RenderJob {
   std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t path) const;
   /// The number of rays that no other ray causes, by which progress is measured.
   std::uint64_t first_rays() const { return drawn_ ? drawn_->count() : frame_rays_; }
-  /// The same of the whole frame, of which `sampling` may draw a part.
+  /// That number for the whole frame, of which `sampling` may draw a part.
   std::uint64_t frame_rays() const { return frame_rays_; }
 
   /// Number of the pieces of the frame that a sample consists of: tiles of the picture, or runs of the list.

@@ -19,7 +19,7 @@ struct ClassEstimate {
   Estimate use;
 };
 
-/// Values of a frame with intervals of confidence of 95 %. Those of a frame that was run whole are exact.
+/// Values of a frame with intervals of confidence of 95 %. The values of a frame that was run whole are exact.
 struct FrameValues {
   Estimate rays, cycles, cycles_per_ray, rays_per_kilocycle;
   Estimate box_tests_per_ray, triangle_tests_per_ray, memory_bytes_per_ray, link_bytes_per_ray;

@@ -1,7 +1,7 @@
 #include "scene/images/png_decode.h"
 
 #include <cstring>
-#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,8 +12,8 @@ namespace carousel::scene {
 
 namespace {
 
-/// libpng's state and the bytes that it reads. Its errors arrive as C++ exceptions no function of C has to pass on:
-/// `fail` jumps back to the caller, which throws.
+/// libpng's state and the bytes that it reads. An exception must not pass through libpng, which is C: so `fail` keeps
+/// the reason and jumps back to the function that called libpng, and the decoder throws after that.
 struct Reader {
   explicit Reader(std::span<const unsigned char> bytes) : rest(bytes) {
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, fail, ignore);

@@ -36,7 +36,7 @@ class PathSample {
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t together, std::uint64_t seed,
                       std::uint64_t draw = 0);
 
-/// The same of about so many places, however many paths each of them then has, with the first `each` samples of a tile.
+/// Draws about so many places, however many paths each of them then has, with the first `each` samples of a tile.
 PathSample draw_places(const PixelOrder& order, std::uint64_t paths, std::uint64_t places, std::uint64_t each,
                        std::uint64_t seed, std::uint64_t draw = 0);
 

@@ -42,7 +42,7 @@ class ShapeCache final : public Agent {
   };
   /// The parameters of a resource's own cache, in the place of those of the L2.
   static MemoryConfig own_cache(const MemoryConfig& config);
-  /// Those of the cache that a resource asks.
+  /// The parameters of the cache that a resource asks.
   static MemoryConfig nearest(const MemoryConfig& config) { return config.l1_kib > 0 ? own_cache(config) : config; }
   /// Half of the latency is spent on the way in, half on the way out, at least a cycle each.
   static Cycle request_latency(const MemoryConfig& config);
@@ -54,7 +54,7 @@ class ShapeCache final : public Agent {
   ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients, Channel<std::uint64_t>& to_memory,
              Channel<std::uint64_t>& from_memory);
 
-  /// What it takes for memory is an L2.
+  /// This cache asks an L2 where other caches ask the memory.
   void ask_a_cache() { asks_a_cache_ = true; }
   /// Holds part of these lines from the start.
   void warm(std::span<const std::uint64_t> lines, double part);
