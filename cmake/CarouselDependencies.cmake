@@ -18,3 +18,4 @@ find_package(Boost REQUIRED)   # headers only
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
+find_package(Protobuf QUIET)   # for timelines in Perfetto's format; without it they are JSON

@@ -96,7 +96,8 @@ void fit_area(LocatedConfig& located) {
     refuse("an area needs a process; expected energy.profile: n45 or n7, found none");
   if (c.area.fit == AreaConfig::Fit::kRefuse) {
     const double area = machine_area(c).mm2;
-    if (area > budget) refuse(fmt::format("expected a machine of at most {} mm2, found one of {:.4g}", budget, area));
+    if (area > budget)
+      refuse(fmt::format("expected a machine of at most {} mm2, found one of {:.4g}", *c.area.budget_mm2, area));
     return;
   }
   const std::int64_t given = c.topology.resources;
@@ -105,8 +106,8 @@ void fit_area(LocatedConfig& located) {
     if (validate_config(c, located.positions, {.force = true}).empty() && machine_area(c).mm2 <= budget) return;
   }
   c.topology.resources = given;
-  refuse(fmt::format("no number of resources makes a machine of at most {} mm2; with {} it has {:.4g}", budget, given,
-                     machine_area(c).mm2));
+  refuse(fmt::format("no number of resources makes a machine of at most {} mm2; with {} it has {:.4g}",
+                     *c.area.budget_mm2, given, machine_area(c).mm2));
 }
 
 }  // namespace carousel::app

@@ -75,6 +75,13 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   out.dram_lines_written = c.memory_lines_written;
   out.dram_busy_cycles = c.memory_busy;
   out.dram_utilisation = ratio(c.memory_busy, c.cycles);
+  if (c.ray_data)
+    out.ray_data = {c.ray_data->records.read,   c.ray_data->records.written, c.ray_data->states.read,
+                    c.ray_data->states.written, c.ray_data->film.read,       c.ray_data->film.written};
+  if (c.strips)
+    out.triangle_strips = {c.strips->triangles, c.strips->strips, c.strips->vertices, c.strips->bytes,
+                           c.strips->separate_bytes - c.strips->bytes};
+  if (config.l2_write == MemoryConfig::Write::kBack) out.drain = {c.drain.lines, c.drain.bytes, c.drain.cycles};
   if (c.dram) out.dram = dram_section(*c.dram);
   return out;
 }

@@ -88,6 +88,23 @@ void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResu
                            report.bottleneck->gains.size(), report.bottleneck->rays));
 }
 
+report::Report run_network(const Prepared& p, const InterruptScope& interrupt, bool quiet) {
+  std::optional<report::ProgressLine> line;
+  if (!quiet) line.emplace(stderr);
+  ringbus::RunOptions options;
+  options.threads = p.threads;
+  options.stop = interrupt.token();
+  options.progress = [&](std::uint64_t packets) {
+    if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
+  };
+  return traffic_report(p, ringbus::run_traffic(p.config(), options));
+}
+
+report::Report play_requests(const Prepared& p, const InterruptScope& interrupt) {
+  const ringbus::MemoryLog requests = read_memory_csv(find_beside(p.config_folder, p.config().workload.memory_trace));
+  return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
+}
+
 }  // namespace
 
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
@@ -121,21 +138,9 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   return report;
 }
 
-report::Report run_traffic(const Prepared& p, const InterruptScope& interrupt, bool quiet) {
-  std::optional<report::ProgressLine> line;
-  if (!quiet) line.emplace(stderr);
-  ringbus::RunOptions options;
-  options.threads = p.threads;
-  options.stop = interrupt.token();
-  options.progress = [&](std::uint64_t packets) {
-    if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
-  };
-  return traffic_report(p, ringbus::run_traffic(p.config(), options));
-}
-
-report::Report run_memory(const Prepared& p, const InterruptScope& interrupt) {
-  const ringbus::MemoryLog requests = read_memory_csv(find_beside(p.config_folder, p.config().workload.memory_trace));
-  return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
+report::Report run_without_rays(const Prepared& p, const InterruptScope& interrupt, bool quiet) {
+  return p.config().workload.kind == WorkloadConfig::Kind::kTraffic ? run_network(p, interrupt, quiet)
+                                                                    : play_requests(p, interrupt);
 }
 
 }  // namespace carousel::app

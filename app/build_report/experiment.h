@@ -3,7 +3,7 @@
 #include "app/host/interrupt.h"
 #include "app/run/prepare.h"
 #include "app/run/render_job.h"
-#include "app/run/trace_events.h"
+#include "app/trace/trace_file.h"
 #include "report/run/report.h"
 #include "ringbus/results/memory_request.h"
 
@@ -18,10 +18,8 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& prepar
                         const InterruptScope& interrupt, bool quiet, TraceFile* trace = nullptr,
                         ringbus::MemoryLog* memory = nullptr);
 
-/// Simulates the network alone, without rays.
-report::Report run_traffic(const Prepared& prepared, const InterruptScope& interrupt, bool quiet);
-
-/// Plays requests to the memory alone. Throws ConfigError and FileError.
-report::Report run_memory(const Prepared& prepared, const InterruptScope& interrupt);
+/// Runs a workload without rays: synthetic traffic on the network alone, or requests to the memory alone. Throws
+/// ConfigError and FileError.
+report::Report run_without_rays(const Prepared& prepared, const InterruptScope& interrupt, bool quiet);
 
 }  // namespace carousel::app

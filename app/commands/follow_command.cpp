@@ -181,6 +181,12 @@ int follow_command(const FollowArguments& arguments) {
   if (p.config().bundles.size > 0)
     refuse("bundles.size",
            fmt::format("found {}; follow knows rays by themselves only; expected 0", p.config().bundles.size));
+  if (const Placement placement = p.config().rays.placement;
+      p.config().engine.kind == EngineKind::kCycle &&
+      (placement == Placement::kFirstTaker || placement == Placement::kAddressed))
+    refuse("rays.placement", fmt::format("found {}; follow does not see new rays on their way to a slot; expected "
+                                         "balanced or round_robin",
+                                         enum_name(placement)));
   const RayPlace place = place_of(p, arguments);
   RenderJob job(p);
   ringbus::FollowedRay ray;

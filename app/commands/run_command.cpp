@@ -17,8 +17,8 @@
 #include "app/run/hit_recorder.h"
 #include "app/run/memory_csv.h"
 #include "app/run/render_job.h"
-#include "app/run/trace_events.h"
 #include "app/sampled/sampled_run.h"
+#include "app/trace/trace_file.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
@@ -64,28 +64,6 @@ void write_report(const std::filesystem::path& folder, const RunArguments& argum
   write_file(folder / "report.json", report::json_text(json) + "\n");
 }
 
-/// Simulates the network alone, without rays.
-int run_traffic_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
-                        OutputFolder& output) {
-  const report::Report report = run_traffic(p, interrupt, arguments.quiet);
-  finish(arguments, report, report::traffic_table(report), output, [&] {
-    write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
-    write_report(output.staging(), arguments, report);
-  });
-  return verdict(report, interrupt.status());
-}
-
-/// Plays requests to the memory alone.
-int run_memory_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
-                       OutputFolder& output) {
-  const report::Report report = run_memory(p, interrupt);
-  finish(arguments, report, report::memory_table(report), output, [&] {
-    write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
-    write_report(output.staging(), arguments, report);
-  });
-  return verdict(report, interrupt.status());
-}
-
 /// A workload without rays has no hits that could be written.
 void require_no_hits(const RunArguments& arguments, std::string_view workload) {
   const auto refuse = [&](bool wanted, const char* option) {
@@ -97,6 +75,19 @@ void require_no_hits(const RunArguments& arguments, std::string_view workload) {
   refuse(!arguments.dump_rays.empty(), "--dump-rays");
   refuse(!arguments.dump_memory.empty(), "--dump-memory");
   refuse(!arguments.trace.file.empty(), "--trace");
+}
+
+/// Runs a workload without rays: the network or the memory alone.
+int run_without_rays_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
+                             OutputFolder& output) {
+  const bool traffic = p.config().workload.kind == WorkloadConfig::Kind::kTraffic;
+  require_no_hits(arguments, traffic ? "synthetic traffic has" : "memory requests have");
+  const report::Report report = run_without_rays(p, interrupt, arguments.quiet);
+  finish(arguments, report, traffic ? report::traffic_table(report) : report::memory_table(report), output, [&] {
+    write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
+    write_report(output.staging(), arguments, report);
+  });
+  return verdict(report, interrupt.status());
 }
 
 /// Only a simulated machine has a memory.
@@ -141,14 +132,7 @@ int run_command(const RunArguments& arguments) {
   });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
-  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
-    require_no_hits(arguments, "synthetic traffic has");
-    return run_traffic_command(arguments, p, interrupt, *output);
-  }
-  if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) {
-    require_no_hits(arguments, "memory requests have");
-    return run_memory_command(arguments, p, interrupt, *output);
-  }
+  if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *output);
   require_memory(arguments, p.config());
   require_estimates(arguments, p.config());
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "app/run/prepare.h"
-#include "app/run/trace_events.h"
+#include "app/trace/trace_file.h"
 
 namespace carousel::app {
 

@@ -6,10 +6,6 @@
 
 #include "app/run/prepare.h"
 
-namespace CLI {
-class App;
-}
-
 namespace carousel::app {
 
 struct StressArguments : ConfigArguments {  // without a configuration the queues are tested by themselves
@@ -26,9 +22,6 @@ struct StressArguments : ConfigArguments {  // without a configuration the queue
   std::string out;  ///< folder; empty: out/stress, or out/<name of the configuration>
   bool json = false, quiet = false, force = false;
 };
-
-/// Adds the options of `carousel stress`.
-void add_stress_options(CLI::App& command, StressArguments& arguments);
 
 /// `carousel stress`: tests queue designs under load, by themselves and, with a configuration, inside its ring; prints
 /// a table and writes stress.json and stress.html. Returns the exit status: 1 if a queue lost, duplicated, reordered or

@@ -8,10 +8,6 @@
 
 #include "app/run/prepare.h"
 
-namespace CLI {
-class App;
-}
-
 namespace carousel::app {
 
 struct SweepArguments : ConfigArguments {
@@ -27,9 +23,6 @@ struct SweepArguments : ConfigArguments {
   std::string pareto, out;
   bool dry_run = false, retry_failed = false, ask = false, tell = false, json = false, quiet = false;
 };
-
-/// Adds the options of `carousel sweep`.
-void add_sweep_options(CLI::App& command, SweepArguments& arguments);
 
 /// `carousel sweep`: many runs of one configuration with other values of some keys. Returns the exit status: kBroken if
 /// a point failed.

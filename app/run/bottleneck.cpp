@@ -25,6 +25,7 @@ class PilotWorkload final : public Workload {
       job_.set_sample(&sample_.emplace(job_.draw(paths, ringbus::slots_of(prepared.config()))));
   }
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
+  PathMemory path_memory(const RayTag& tag) const override { return job_.workload().path_memory(tag); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return job_.workload().generate(worker, max_rays, out);
   }
@@ -50,10 +51,9 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   if (!quiet) line.emplace(stderr);
   const auto show = [&](const ringbus::SearchProgress& at) {
     if (!line) return;
-    const double part = std::min(1.0, report::ratio(at.completed, at.rays));
-    line->update((static_cast<double>(at.done) + part) / static_cast<double>(at.of), at.completed, "rays",
-                 fmt::format("bottleneck, {}, {} of {}: {}", at.stage, std::min(at.done + 1, at.of), at.of,
-                             at.name.empty() ? "as configured" : at.name));
+    const double under_way = report::ratio(at.under_way, at.rays);
+    line->update(std::min(1.0, (static_cast<double>(at.done) + under_way) / static_cast<double>(at.of)), at.completed,
+                 "rays", fmt::format("bottleneck, {}, {} of {} simulations done", at.stage, at.done, at.of));
   };
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
       prepared.config(), prepared.accel, prepared.scene_size(),

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -119,6 +120,20 @@ void build_accel(Prepared& p) {
   }
 }
 
+/// Refuses a machine that does not fit the prepared structure, and one that the host's memory does not hold.
+void require_room(const Prepared& p, bool keep_hits) {
+  with_positions(p.located.positions, [&] {
+    if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
+      throw ConfigError(std::move(issues));
+    if (std::vector<ConfigIssue> issues = ringbus::cycle::check_shape_buffer(p.config(), p.accel); !issues.empty())
+      throw ConfigError(std::move(issues));
+  });
+  const MemoryNeed need = estimate(p.config(), keep_hits, p.scene, p.accel);
+  spdlog::debug("memory: about {} of {} usable", report::bytes_text(need.total()),
+                report::bytes_text(usable_memory_bytes()));
+  require_fit(need, usable_memory_bytes(), p.located.positions);
+}
+
 /// Does all preparation after reading the configuration.
 void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
@@ -141,21 +156,13 @@ void prepare_located(Prepared& p, bool keep_hits) {
 
 }  // namespace
 
-void require_room(const Prepared& p, bool keep_hits) {
-  with_positions(p.located.positions, [&] {
-    if (std::vector<ConfigIssue> issues = ringbus::check_storage(p.config(), p.accel); !issues.empty())
-      throw ConfigError(std::move(issues));
-    if (std::vector<ConfigIssue> issues = ringbus::cycle::check_shape_buffer(p.config(), p.accel); !issues.empty())
-      throw ConfigError(std::move(issues));
-  });
-  const MemoryNeed need = estimate(p.config(), keep_hits, p.scene, p.accel);
-  spdlog::debug("memory: about {} of {} usable", report::bytes_text(need.total()),
-                report::bytes_text(usable_memory_bytes()));
-  require_fit(need, usable_memory_bytes(), p.located.positions);
-}
-
 scene::View view_of(const Config& config) {
   return {config.camera, static_cast<float>(config.image.width) / static_cast<float>(config.image.height)};
+}
+
+bool Prepared::has_rays() const {
+  using enum WorkloadConfig::Kind;
+  return config().workload.kind != kTraffic && config().workload.kind != kMemoryTrace;
 }
 
 float Prepared::scene_size() const {
@@ -172,6 +179,12 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   if (before_scene) before_scene(p.config());
   prepare_located(p, keep_hits);
   return p;
+}
+
+void set_machine(Prepared& p, LocatedConfig located) {
+  p.located = std::move(located);
+  fit_area(p.located);
+  if (p.has_rays()) require_room(p, false);
 }
 
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets) {

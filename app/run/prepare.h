@@ -34,6 +34,7 @@ struct Prepared {
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }
+  bool has_rays() const;  ///< whether the workload is rays, for which there is a scene
   /// Scale of entry distances, for the policy `nearest`.
   float scene_size() const;
 };
@@ -47,9 +48,9 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 /// The same for a configuration given as text; files that it names are looked for in the working folder.
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {});
 
-/// Refuses a machine that does not fit the prepared structure, and one that the host's memory does not hold. Throws a
-/// ConfigError.
-void require_room(const Prepared& prepared, bool keep_hits);
+/// Gives a prepared scene another machine, that of a configuration with the same scene and structure. Refuses one that
+/// exceeds its area, that does not fit the structure, or that the host's memory does not hold. Throws a ConfigError.
+void set_machine(Prepared& prepared, LocatedConfig located);
 
 /// The view of the configured picture.
 scene::View view_of(const Config& config);

@@ -1,4 +1,4 @@
-// bench_cycle: measures the speed of the cycle engine, on the network alone and on rays, beside other simulators.
+// bench_cycle: measures the speed of the cycle engine, on the network, the memory and rays, beside other simulators.
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 #include "bench/common/machine_info.h"
 #include "bench/common/scenes.h"
 #include "bench/cycle/cycle_speed.h"
+#include "bench/cycle/memory_speed.h"
 #include "core/system/atomic_file.h"
 #include "core/system/executor.h"
 
@@ -33,6 +34,11 @@ void run(const CycleOptions& o) {
     fmt::print(stderr, "traffic: {}\n", one.name);
     result.traffic.push_back(measure_traffic(one, result.repetitions));
   }
+  for (const MemoryCase& one : memory_cases(o.quick ? 5'000 : 500'000)) {
+    if (!wanted(one.name)) continue;
+    fmt::print(stderr, "memory: {}\n", one.name);
+    result.memory.push_back(measure_memory(one, result.repetitions));
+  }
   if (!o.no_rays) {
     const scene::Scene scene = make_scene({"terrain", o.quick ? 5'000 : 100'000, {}});
     const accel::Accel accel = accel::build(scene, {}, *make_sequential_executor());
@@ -53,9 +59,10 @@ void run(const CycleOptions& o) {
 
 int main(int argc, char** argv) {
   carousel::bench::CycleOptions o;
-  CLI::App app("Speed of the cycle engine: synthetic traffic, and rays through a whole machine", "bench_cycle");
+  CLI::App app("Speed of the cycle engine: synthetic traffic, memory alone, and rays through a whole machine",
+               "bench_cycle");
   app.add_flag("--quick", o.quick, "a smoke test: few packets, few rays, one repetition");
-  app.add_flag("--no-rays", o.no_rays, "traffic only");
+  app.add_flag("--no-rays", o.no_rays, "traffic and memory only");
   app.add_option("--repetitions", o.repetitions, "of each case; tables show the median, least and greatest")
       ->check(CLI::Range(1, 100));
   app.add_option("--only", o.only, "only cases whose name holds this text");

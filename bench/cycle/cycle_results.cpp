@@ -26,7 +26,8 @@ std::string to_json_text(const CycleBenchResult& r) {
             {{"booksim2_flit_hops_per_cpu_second", Peers::kBookSimFlitHops},
              {"arches_rays_per_second", Peers::kArchesRays}}},
            {"traffic", Json::array()},
-           {"rays", Json::array()}};
+           {"rays", Json::array()},
+           {"memory", Json::array()}};
   for (const TrafficSpeed& t : r.traffic)
     out["traffic"].push_back({{"name", t.name},
                               {"resources", t.resources},
@@ -48,6 +49,11 @@ std::string to_json_text(const CycleBenchResult& r) {
                            {"times_arches", s.rays_per_cpu_second.median / Peers::kArchesRays},
                            {"aim_rays", aim_rays(s.resources)},
                            {"aim_hops", kAimHops}});
+  for (const MemorySpeed& m : r.memory)
+    out["memory"].push_back({{"name", m.name},
+                             {"requests", m.requests},
+                             {"cycles", m.cycles},
+                             {"requests_per_cpu_second", json_of(m.requests_per_cpu_second)}});
   return out.dump(2) + "\n";
 }
 
@@ -70,6 +76,11 @@ std::string cycle_tables(const CycleBenchResult& r) {
                        1e-3 * s.rays_per_cpu_second.max, 1e-3 * aim_rays(s.resources),
                        s.rays_per_cpu_second.median / Peers::kArchesRays, 1e-6 * s.hops_per_cpu_second.median,
                        static_cast<double>(s.hops) / static_cast<double>(s.rays), 1e-3 * s.rays_per_wall_second.median);
+  out += "\n| memory alone | M requests per CPU-second | cycles a request |\n|---|---:|---:|\n";
+  for (const MemorySpeed& m : r.memory)
+    out += fmt::format("| {} | {:.2f} ({:.2f} to {:.2f}) | {:.1f} |\n", m.name, 1e-6 * m.requests_per_cpu_second.median,
+                       1e-6 * m.requests_per_cpu_second.min, 1e-6 * m.requests_per_cpu_second.max,
+                       static_cast<double>(m.cycles) / static_cast<double>(m.requests));
   return out;
 }
 

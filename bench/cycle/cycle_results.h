@@ -34,11 +34,19 @@ struct RaySpeed {
   Spread rays_per_cpu_second, hops_per_cpu_second, rays_per_wall_second;
 };
 
+/// Requests to the memory alone.
+struct MemorySpeed {
+  std::string name;
+  std::uint64_t requests = 0, cycles = 0;
+  Spread requests_per_cpu_second;
+};
+
 struct CycleBenchResult {
   MachineInfo machine;
   int repetitions = 0;
   std::vector<TrafficSpeed> traffic;
   std::vector<RaySpeed> rays;
+  std::vector<MemorySpeed> memory;
 };
 
 std::string to_json_text(const CycleBenchResult& result);

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/config/edit_distance.h"
+#include "core/config/memory_rules.h"
 #include "core/config/network_rules.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
@@ -26,7 +27,7 @@ class Rules {
 
   std::vector<ConfigIssue> check() {
     one_scene();
-    memory_fits();
+    config::check_memory(c, [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
     camera_has_a_view();
     raster_needs_a_pinhole();
     all_is_built();
@@ -37,7 +38,6 @@ class Rules {
     ordered_needs_strips();
     query_needs_a_file();
     hashed_homes_spill();
-    caches_have_whole_sets();
     config::check_network(c, options_.force,
                           [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
     sampling_fits();
@@ -98,41 +98,6 @@ class Rules {
             fmt::format("primary: raster needs a pinhole; expected 0, or primary: rays, found {}", c.camera.aperture));
     if (c.workload.kind != WorkloadConfig::Kind::kRays)
       issue("primary", "this workload has no camera; expected rays, found raster");
-  }
-
-  void memory_fits() {
-    if (c.workload.kind == WorkloadConfig::Kind::kMemoryTrace && !cycle())
-      issue("engine.kind", "workload: memory_trace runs in virtual time; expected cycle, found native");
-    quantised_nodes_fit();
-    if (c.memory.dram.preset == DramConfig::Preset::kPipe) return;
-    constexpr std::int64_t kTransaction = 32;  // bytes
-    const auto whole = [&](const char* key, std::int64_t bytes) {
-      if (bytes % kTransaction != 0)
-        issue(key, fmt::format("DRAM with banks moves 32 bytes at a time; expected a multiple of 32, found {}", bytes));
-    };
-    whole("memory.line_bytes", c.memory.line_bytes);
-    if (c.memory.l2_sector_bytes) whole("memory.l2_sector_bytes", *c.memory.l2_sector_bytes);
-    whole("memory.dram.interleave_bytes", c.memory.dram.interleave_bytes);
-  }
-
-  // A quantised node holds boxes of its children and references, and is decoded as a whole.
-  void quantised_nodes_fit() {
-    if (c.bvh.storage != BvhConfig::Storage::kQuantised) return;
-    constexpr std::string_view without = ", or bvh.storage: full";
-    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
-      issue("bvh.elements", fmt::format("quantised nodes hold boxes; expected boxes{}; found spheres", without));
-    if (c.bvh.mixed_triangles > 0)
-      issue("bvh.mixed_triangles",
-            fmt::format("quantised nodes hold no triangles; expected 0{}; found {}", without, c.bvh.mixed_triangles));
-    if (c.bvh.top_triangles > 0)
-      issue("bvh.top_triangles",
-            fmt::format("quantised nodes hold no triangles; expected 0{}; found {}", without, c.bvh.top_triangles));
-    if (c.packets.shapes == PacketShapes::kSingle)
-      issue("packets.shapes",
-            fmt::format("a quantised node is decoded as a whole; expected strip{}; found single", without));
-    if (c.accuracy.box != BoxLevel::kConservative)
-      issue("accuracy.box", fmt::format("larger boxes could add hits to those of {}; expected conservative{}",
-                                        enum_name(c.accuracy.box), without));
   }
 
   bool cycle() const { return c.engine.kind == EngineKind::kCycle; }
@@ -278,34 +243,6 @@ class Rules {
   void ordered_needs_strips() {
     if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip)
       issue("packets.shapes", "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
-  }
-
-  void caches_have_whole_sets() {
-    cache_has_whole_sets("l2_kib", c.memory.l2_kib, "ways", c.memory.ways, c.memory.l2_banks);
-    if (c.memory.l1_kib > 0) cache_has_whole_sets("l1_kib", c.memory.l1_kib, "l1_ways", c.memory.l1_ways, 1);
-    if (c.memory.l2_sector_bytes && c.memory.line_bytes % *c.memory.l2_sector_bytes != 0)
-      issue("memory.l2_sector_bytes", fmt::format("a line has whole sectors; expected a divisor of {}, found {}",
-                                                  c.memory.line_bytes, *c.memory.l2_sector_bytes));
-  }
-
-  void cache_has_whole_sets(const char* size, std::int64_t kib, const char* set, std::int64_t ways,
-                            std::int64_t banks) {
-    const std::int64_t lines = kib * 1024 / c.memory.line_bytes;
-    if (ways > lines) {
-      issue(fmt::format("memory.{}", set),
-            fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the cache; "
-                        "expected at most {}, found {}",
-                        kib, lines, c.memory.line_bytes, lines, ways));
-      return;
-    }
-    // Sets that a cache does not have would be left out of it.
-    const std::int64_t bytes = ways * c.memory.line_bytes * banks;
-    const std::int64_t step = bytes / std::gcd(bytes, std::int64_t{1024});
-    if (kib % step != 0)
-      issue(fmt::format("memory.{}", size),
-            fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; expected a multiple of "
-                        "{}, found {}",
-                        ways, c.memory.line_bytes, step, kib));
   }
 
   void hashed_homes_spill() {

@@ -7,21 +7,24 @@ namespace carousel {
 /// Use of a cache of shape data.
 struct CacheCounts {
   std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0, written = 0, kept = 0, write_fetches = 0,
-                written_back = 0, port_waits = 0, mshr_waits = 0, port_busy = 0;
+                written_back = 0, drained = 0, pushed = 0, port_waits = 0, mshr_waits = 0, port_busy = 0;
 
   static constexpr auto counters() {
     using C = CacheCounts;
     return std::array{
-        Counter{"requests", &C::requests, "strips", "strips requested"},
+        Counter{"requests", &C::requests, "requests", "requests for lines"},
         Counter{"lines", &C::lines, "lines", "lines looked up"},
         Counter{"hits", &C::hits, "lines", "lines found"},
         Counter{"merged", &C::merged, "lines", "lines already on their way from memory"},
         Counter{"misses", &C::misses, "lines", "lines fetched from memory"},
-        Counter{"written", &C::written, "lines", "lines written through to memory: spilled collection entries"},
+        Counter{"written", &C::written, "lines",
+                "lines written through to memory: spilled collection entries, and data of rays and paths"},
         Counter{"kept", &C::kept, "lines", "lines written that stay here until they are replaced"},
         Counter{"write_fetches", &C::write_fetches, "lines",
                 "lines fetched from memory since a part of them was written"},
         Counter{"written_back", &C::written_back, "lines", "written lines that went to memory when they were replaced"},
+        Counter{"drained", &C::drained, "lines", "written lines that went to memory when the run was over"},
+        Counter{"pushed", &C::pushed, "strips", "strips and transforms sent to resources that did not ask for them"},
         Counter{"port_waits", &C::port_waits, "lines", "lines for which the ports of their bank were not free at once"},
         Counter{"mshr_waits", &C::mshr_waits, "lines", "lines that waited until their bank could fetch another line"},
         Counter{"port_busy_cycles", &C::port_busy, "cycles", "cycles in which the ports looked up lines, of all banks"},

@@ -6,7 +6,7 @@ namespace carousel {
 
 /// Use of a resource's shape buffer.
 struct ShapeBufferCounts {
-  std::uint64_t hits = 0, merged = 0, misses = 0, evictions = 0, room_waits = 0;
+  std::uint64_t hits = 0, merged = 0, misses = 0, evictions = 0, room_waits = 0, pushed = 0, pushed_in_vain = 0;
 
   static constexpr auto counters() {
     using C = ShapeBufferCounts;
@@ -15,6 +15,10 @@ struct ShapeBufferCounts {
         Counter{"merged", &C::merged, "strips", "strips and transforms that were already on their way"},
         Counter{"misses", &C::misses, "strips", "strips and transforms that were fetched"},
         Counter{"evictions", &C::evictions, "strips", "strips and transforms that gave up their places"},
+        Counter{"pushed", &C::pushed, "strips",
+                "strips and transforms that came because another resource asked for them"},
+        Counter{"pushed_in_vain", &C::pushed_in_vain, "strips",
+                "those that were there already or on their way, or for which no places were free"},
         Counter{"room_waits", &C::room_waits, "waits", "waits of a packet or ray for places that others needed"},
     };
   }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/types/ids.h"
@@ -29,6 +30,12 @@ struct ShadeWork {
   friend bool operator==(const ShadeWork&, const ShadeWork&) = default;
 };
 
+/// The data that shading keeps of a path.
+struct PathMemory {
+  std::uint32_t state_bytes = 0;       ///< its state while its rays are in flight; 0 if there is none
+  std::optional<std::uint32_t> pixel;  ///< to which it adds its light; absent if there is no picture
+};
+
 using RayBatch = std::vector<RayRequest>;
 using HitBatch = std::vector<RayResult>;
 
@@ -52,6 +59,9 @@ class Workload {
   /// The work of the effects of the surface that a completed ray has hit, for which a simulated shader worker is
   /// charged besides. Call before the ray is given to shade().
   virtual ShadeWork extra_work(const RayResult& /*result*/) const { return {}; }
+
+  /// The places in memory of the path of a ray in flight.
+  virtual PathMemory path_memory(const RayTag& /*tag*/) const { return {}; }
 
   /// Takes completed rays, in any order and mix, each ray exactly once; appends the rays they give rise to.
   virtual void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) = 0;

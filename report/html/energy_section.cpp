@@ -13,7 +13,8 @@ std::string parts_of(const Json& report, const Json& schema, const std::string& 
   const double all = number_at(report, section + "." + value);
   const Json* parts = find(report, section + ".parts");
   if (!parts || all <= 0) return "";
-  Table shares{section + "-shares", title, {{""}}}, table{section + "-parts", title, {{"part"}}};
+  Table shares{section + "-shares", std::string("Shares: ") + title, {{"of"}}},
+      table{section + "-parts", title, {{"part"}}};
   const Json& meanings = schema_at(schema, "properties." + section + ".properties.parts");
   bool named = false;
   shares.rows.push_back({cell("the machine")});

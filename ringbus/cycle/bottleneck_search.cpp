@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/cycle/foretell.h"
+#include "ringbus/cycle/pilot_runs.h"
 #include "ringbus/cycle/steady_state.h"
 #include "ringbus/cycle/what_if.h"
 
@@ -24,13 +26,7 @@ class Search {
  public:
   Search(const Config& config, const accel::Accel& accel, float scene_size, const PilotFactory& make_pilot,
          const SearchedRun& run, const RunOptions& options, const SearchObserver& observe)
-      : config_(config),
-        accel_(accel),
-        scene_size_(scene_size),
-        make_pilot_(make_pilot),
-        run_(run),
-        options_(options),
-        observe_(observe) {
+      : config_(config), accel_(accel), run_(run), pilots_(accel, scene_size, make_pilot, run, options, observe) {
     // The bottleneck is that of the whole machine, before a resource stops.
     stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
     if (stops_) config_.faults.resource = {};
@@ -44,8 +40,7 @@ class Search {
     const std::vector<std::vector<std::size_t>> groups = grouped();
     out_.paths = pilot_paths(config_, run_.paths, frame, first / (groups.size() + 1));
     begin("first pilot", groups.size());
-    simulate_base();
-    for (const std::vector<std::size_t>& group : groups) screen(group);
+    screen(groups);
     std::vector<std::size_t> worth = worth_a_second_look();
     const std::uint64_t larger =
         pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
@@ -58,7 +53,7 @@ class Search {
       if (doubled == kDoublings) return without_gains();
       out_.paths = std::min(run_.paths, 2 * out_.paths);
       // Half as many classes, so that a larger pilot takes no longer.
-      if (out_.paths < run_.paths) worth.resize(std::min(worth.size(), std::max(kFewest, worth.size() / 2)));
+      worth.resize(std::min(worth.size(), std::max(kFewest, worth.size() / 2)));
       begin("larger pilot", worth.size());
       simulate_base();
     }
@@ -80,38 +75,30 @@ class Search {
     return out_;
   }
 
-  void begin(const char* stage, std::size_t lifts) {
-    state_ = {stage,     "", 0,
-              lifts + 1, 0,  run_.result.rays_completed * out_.paths / std::max<std::uint64_t>(1, run_.paths)};
+  void begin(const char* stage, std::size_t lifts) { pilots_.begin(stage, lifts + 1, out_.paths); }
+
+  std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
+    std::vector<RunResult> results = pilots_.simulate(machines);
+    out_.complete &= pilots_.complete();
+    return results;
   }
 
-  RunResult simulate(const Config& machine) {
-    const std::unique_ptr<Workload> pilot = make_pilot_(machine, out_.paths);
-    RunOptions options = options_;
-    // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.
-    options.warm = {&run_.result.cycle->cached_lines,
-                    1 - static_cast<double>(out_.paths) / static_cast<double>(run_.paths)};
-    options.progress = [&](std::uint64_t completed) {
-      state_.completed = completed;
-      if (observe_) observe_(state_);
-    };
-    options.progress(0);
-    RunResult result = run_cycle(machine, accel_, scene_size_, *pilot, options);
-    out_.complete &= result.complete;
-    ++state_.done;
-    return result;
-  }
-
-  /// The run itself is the pilot if that is the whole frame.
-  void simulate_base() {
+  /// The run itself is the pilot if that is the whole frame. Returns true if nothing is left to simulate for it.
+  bool base_is_the_run() {
     out_.whole = out_.paths >= run_.paths;
-    if (out_.whole && !stops_) {
-      base_ = run_.result;
-      ++state_.done;
-    } else if (out_.complete) {
-      base_ = simulate(config_);
-    }
+    if (!out_.whole || stops_) return false;
+    set_base(run_.result);
+    pilots_.leave_out_one();
+    return true;
+  }
+
+  void set_base(RunResult base) {
+    base_ = std::move(base);
     out_.rays = base_.rays_completed;
+  }
+
+  void simulate_base() {
+    if (!base_is_the_run()) set_base(std::move(simulate({&config_}).front()));
   }
 
   Foretelling foretelling() const {
@@ -141,27 +128,51 @@ class Search {
     return out;
   }
 
-  /// Relaxes the classes of a group together, and parts of it by themselves if that may gain enough.
-  void screen(const std::vector<std::size_t>& group) {
-    if (group.size() == 1) return lift(group, 0);
-    std::vector<const WhatIf*> lifts;
-    for (const std::size_t i : group) lifts.push_back(&lifts_[i]);
-    if (const std::optional<Config> machine = relaxed_together(config_, lifts)) {
-      if (!out_.complete) return;
-      state_.name = fmt::format("{} and {} more", lifts_[group.front()].name, group.size() - 1);
-      const RunResult relaxed = simulate(*machine);
-      if (!out_.complete) return;
-      const Estimate gain = foretelling().gain({&*relaxed.cycle, relaxed.rays_completed}, 0);
-      // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
-      if (gain.value < kEnough) {
-        for (const std::size_t i : group) note(i, gain, group.size());
-        return;
+  /// Simulates the pilot as configured and with the classes of each group relaxed together; then parts of the groups
+  /// for which that may gain enough, down to single classes.
+  void screen(std::vector<std::vector<std::size_t>> groups) {
+    bool have_base = base_is_the_run();
+    while (!groups.empty()) {
+      std::vector<std::vector<std::size_t>> tried, parts;
+      std::deque<Config> together;
+      std::vector<const Config*> machines;
+      if (!have_base) machines.push_back(&config_);
+      for (std::vector<std::size_t>& group : groups) {
+        std::vector<const WhatIf*> lifts;
+        for (const std::size_t i : group) lifts.push_back(&lifts_[i]);
+        std::optional<Config> machine = group.size() == 1 ? lifts.front()->relaxed : relaxed_together(config_, lifts);
+        if (!machine) {
+          halve(group, parts);
+          continue;
+        }
+        machines.push_back(&together.emplace_back(std::move(*machine)));
+        tried.push_back(std::move(group));
       }
+      std::vector<RunResult> results = simulate(machines);
+      if (!out_.complete) return;
+      if (!have_base) {
+        set_base(std::move(results.front()));
+        results.erase(results.begin());
+        have_base = true;
+      }
+      for (std::size_t k = 0; k < tried.size(); ++k) {
+        const Estimate gain = foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0);
+        if (tried[k].size() == 1) relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
+        // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
+        if (tried[k].size() == 1 || gain.value < kEnough)
+          for (const std::size_t i : tried[k]) note(i, gain, tried[k].size());
+        else
+          halve(tried[k], parts);
+      }
+      groups = std::move(parts);
     }
-    state_.of += 2;
+  }
+
+  void halve(const std::vector<std::size_t>& group, std::vector<std::vector<std::size_t>>& parts) {
     const auto half = group.begin() + static_cast<std::ptrdiff_t>(group.size() / 2);
-    screen({group.begin(), half});
-    screen({half, group.end()});
+    parts.emplace_back(group.begin(), half);
+    parts.emplace_back(half, group.end());
+    pilots_.expect_more(2);
   }
 
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
@@ -172,13 +183,19 @@ class Search {
 
   /// Relaxes each of these classes, unless that was done with this pilot before.
   void lift(const std::vector<std::size_t>& which, double deviation) {
+    std::vector<std::size_t> missing;
+    std::vector<const Config*> machines;
+    for (const std::size_t i : which)
+      if (relaxed_[i].paths != out_.paths) {
+        missing.push_back(i);
+        machines.push_back(&lifts_[i].relaxed);
+      }
+    std::vector<RunResult> results = simulate(machines);
+    if (!out_.complete) return;
+    for (std::size_t k = 0; k < missing.size(); ++k) relaxed_[missing[k]] = {std::move(results[k]), out_.paths};
     for (const std::size_t i : which) {
-      if (!out_.complete) return;
-      state_.name = lifts_[i].name;
-      Relaxed& relaxed = relaxed_[i];
-      if (relaxed.paths != out_.paths) relaxed = {simulate(lifts_[i].relaxed), out_.paths};
-      if (!out_.complete) return;
-      note(i, foretelling().gain({&*relaxed.result.cycle, relaxed.result.rays_completed}, deviation), 1);
+      const RunResult& result = relaxed_[i].result;
+      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation), 1);
     }
   }
 
@@ -235,16 +252,12 @@ class Search {
 
   Config config_;
   const accel::Accel& accel_;
-  float scene_size_;
-  const PilotFactory& make_pilot_;
   const SearchedRun& run_;
-  const RunOptions& options_;
-  const SearchObserver& observe_;
+  PilotRuns pilots_;
   bool stops_ = false;
   std::vector<WhatIf> lifts_;
   std::map<std::size_t, Relaxed> relaxed_;  // by index of lifts_
   RunResult base_;
-  SearchProgress state_;
   Bottleneck out_;
 };
 

@@ -1,15 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "core/types/workload.h"
-#include "ringbus/results/run_result.h"
+#include "ringbus/cycle/pilot_runs.h"
 
 namespace carousel::ringbus {
 
@@ -37,25 +34,6 @@ struct Bottleneck {
   std::vector<Gain> gains;        ///< greatest first
 };
 
-/// The run whose bottleneck is searched for.
-struct SearchedRun {
-  const RunResult& result;
-  std::uint64_t paths = 0;  ///< paths, or rays of a list, that the frame begins
-};
-
-/// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
-/// machine.
-using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths)>;
-
-/// How far a search has come.
-struct SearchProgress {
-  std::string stage, name;       ///< the pilot; the class that is simulated, empty for the machine as configured
-  std::size_t done = 0, of = 1;  ///< simulations of this stage
-  std::uint64_t completed = 0;   ///< rays of this one
-  std::uint64_t rays = 0;        ///< that it will have, about
-};
-using SearchObserver = std::function<void(const SearchProgress&)>;
-
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
 /// frame (foretell.h). A resource that stops is left out of account.
 ///
@@ -65,7 +43,10 @@ using SearchObserver = std::function<void(const SearchProgress&)>;
 /// naming, at most six, for a second, larger one. All pilots have together about as many rays as the run, but each has
 /// as many as the machine needs to be seen between fill and drain; where that is most of the frame, the pilot is the
 /// frame. The last pilot is compared with the run. If it is not like it, it is doubled, twice at most, for half of the
-/// classes; after that nothing is found out. Throws as run_cycle.
+/// classes; after that nothing is found out.
+///
+/// As many simulations run at once as options.threads; `make_pilot` and its workloads are then called by several
+/// threads at once, each workload by one. The answer does not depend on that. Throws as run_cycle.
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe = {});

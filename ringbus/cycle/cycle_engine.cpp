@@ -155,6 +155,12 @@ class CycleRun {
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
     });
+    if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->use();
+    if (config_.bvh.leaves == BvhConfig::Leaves::kStrips) c.strips = machine_.shapes().strips().use();
+    if (complete) {
+      c.drain = machine_.drain(end);
+      c.drain.bytes = c.drain.lines * fetched_bytes(config_.memory);
+    }
     for (const auto& cache : machine_.memory().caches()) {
       c.caches.push_back(cache->statistics());
       c.cached_lines.push_back(cache->lines());

@@ -18,7 +18,7 @@ class ProgressLog {
     next_ = sample.completed + step_;
     samples_.push_back(std::move(sample));
     if (samples_.size() < kMost) return;
-    for (std::size_t i = 0; 2 * i < kMost; ++i) samples_[i] = std::move(samples_[2 * i]);
+    for (std::size_t i = 1; 2 * i < kMost; ++i) samples_[i] = std::move(samples_[2 * i]);
     samples_.resize(kMost / 2);
     step_ *= 2;
     next_ = samples_.back().completed + step_;

@@ -11,8 +11,8 @@
 #include "ringbus/faults/resource_fault.h"
 #include "ringbus/native/native_machine.h"
 #include "ringbus/native/native_recorder.h"
-#include "ringbus/native/ray_rounds.h"
 #include "ringbus/protocol/port_logic.h"
+#include "ringbus/protocol/ray_rounds.h"
 #include "ringbus/resource/resource.h"
 
 namespace carousel::ringbus {

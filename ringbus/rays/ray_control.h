@@ -73,6 +73,8 @@ class RayControl {
   std::size_t free_slots() const;
   /// How often rays had to wait because there were too few free slots.
   std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
+  /// Rays that travel wait where they are sent from.
+  void count_slot_wait() { slot_waits_.fetch_add(1, std::memory_order_relaxed); }
   /// How often a slot was handed out.
   std::uint64_t slots_used() const { return slots_used_.load(std::memory_order_relaxed); }
 

@@ -15,6 +15,8 @@
 #include "ringbus/results/byte_row.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/dram_use.h"
+#include "ringbus/results/ray_data_use.h"
+#include "ringbus/results/strip_use.h"
 #include "ringbus/results/trace.h"
 
 namespace carousel::ringbus::cycle {
@@ -111,6 +113,9 @@ struct CycleResult {
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;
+  std::optional<RayDataUse> ray_data;  ///< if any is in memory
+  CacheDrain drain;
+  std::optional<StripUse> strips;                           ///< with `bvh.leaves: strips`
   std::optional<DramUse> dram;                              ///< of DRAM with banks
   Cycle shading_busy = 0;                                   ///< worker-cycles, without resources that help
   std::uint64_t shading_products = 0, shading_lookups = 0;  ///< of ShadeWork

@@ -61,6 +61,9 @@ class PathTracer : public Workload {
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
   ShadeWork extra_work(const RayResult& result) const override;
+  PathMemory path_memory(const RayTag& tag) const override {
+    return {plan_.path_state_bytes(), pool_.state(tag.path).pixel};
+  }
 
   /// Pixel and sample of a path whose rays are in flight.
   std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t path) const {

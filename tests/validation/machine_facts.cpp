@@ -94,6 +94,7 @@ class RecordedWorkload final : public Workload {
     return made;
   }
   ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
+  PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     std::vector<Name>& batch = shaded_.emplace_back();
     for (const RayResult& result : completed) {

@@ -5,9 +5,11 @@ const machine = (config, sets) => ({command: 'run', config, sets});
 const shape = (name, ...more) => machine('demo', [...cycle, `topology.shape=${name}`, ...more]);
 
 export const pages = {
-  // All sections of a simulated machine: gains, cull planes, faults, verification.
-  machine: machine('demo', [...cycle, 'image.width=16', 'engine.what_if=true', 'topology.resources=2', 'cull_planes.count=2',
-    'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}']),
+  // All sections of a simulated machine: gains, cull planes, faults, verification, energy and area.
+  // `drawn`: charts that must be there; others are left out where there is too little to show.
+  machine: {...machine('demo', [...cycle, 'image.width=16', 'engine.what_if=true', 'topology.resources=2', 'cull_planes.count=2',
+    'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}', 'energy.profile=n45']),
+    drawn: ['fig-energy', 'fig-area']},
   native: machine('bundles', [...small, 'engine.kind=native', 'primary=raster']),
   traffic: machine('traffic', ['workload.traffic.packets=2000']),
   accuracy: {command: 'accuracy', config: 'demo', sets: [...small, 'image.width=8', 'image.height=8', 'scene.triangles=200'],

@@ -80,6 +80,7 @@ async function check(where, page, command, json) {
   if (Object.keys(charts).length !== figures) fault(where, `${figures} figures and ${Object.keys(charts).length} charts`);
   if (figures === 0) fault(where, 'no charts');
   for (const [id, {marks, items}] of Object.entries(charts)) if (marks < 3 || items === 0) fault(where, `${id} has no marks`);
+  for (const id of all[where.split(',')[0]].drawn ?? []) if (!charts[id]) fault(where, `${id} is not drawn`);
   if (wide > 0) fault(where, `the page is ${wide} pixels wider than the window`);
   const wrong = command === 'run' ? [...wrongTables(tables, json), ...wrongCharts(charts, json)]
     : wrongStudy(command, {tables, charts}, json);

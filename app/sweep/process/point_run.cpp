@@ -3,7 +3,6 @@
 #include <chrono>
 #include <new>
 
-#include "app/area/machine_area.h"
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
 #include "app/host/interrupt.h"
@@ -34,19 +33,14 @@ std::optional<PointError> run_point(const SweepSetup& setup, Prepared& prepared,
   try {
     const auto start = std::chrono::steady_clock::now();
     const InterruptScope interrupt;
-    prepared.located = load_config(setup.source, point.sets);
-    fit_area(prepared.located);
+    set_machine(prepared, load_config(setup.source, point.sets));
     prepared.threads = point_threads(prepared.config());
-    const bool traffic = prepared.config().workload.kind == WorkloadConfig::Kind::kTraffic;
     report::Report report;
-    if (traffic) {
-      report = run_traffic(prepared, interrupt, true);
-    } else if (prepared.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) {
-      report = run_memory(prepared, interrupt);
-    } else {
-      require_room(prepared, false);
+    if (prepared.has_rays()) {
       RenderJob job(prepared);
       report = run_rays({setup.config.string(), point.sets}, prepared, job, interrupt, true);
+    } else {
+      report = run_without_rays(prepared, interrupt, true);
     }
     std::optional<PointError> error;
     if (verdict(report, kInterrupted) != kDone) error = {"verification", "a verification or comparison failed"};

@@ -13,6 +13,7 @@ struct BvhConfig {
   enum class Elements { kBoxes, kSpheres } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
   enum class Storage { kFull, kQuantised } storage = Storage::kFull;
+  enum class Leaves { kTriangles, kStrips } leaves = Leaves::kTriangles;
   std::int64_t top_triangles = 0;
 };
 
@@ -26,6 +27,12 @@ template <>
 inline constexpr auto kEnumNames<BvhConfig::Storage> = [] {
   using enum BvhConfig::Storage;
   return names<BvhConfig::Storage>({{kFull, "full"}, {kQuantised, "quantised"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<BvhConfig::Leaves> = [] {
+  using enum BvhConfig::Leaves;
+  return names<BvhConfig::Leaves>({{kTriangles, "triangles"}, {kStrips, "strips"}});
 }();
 
 namespace config {
@@ -46,6 +53,8 @@ void describe(V& v, BvhConfig& c) {
       "storage", c.storage,
       "Nodes hold their children's boxes as floats, or in 8 bits a plane, outward; these have 64 bytes up to a width "
       "of 6, and 80 above.");
+  v.choice("leaves", c.leaves,
+           "Leaves hold three vertices for each triangle, or strips of triangles that share vertices.");
   v.field(
       "top_triangles", c.top_triangles, IntRange{0, 16}, "triangles",
       "A mesh that stands in the world without a transform and is one leaf of at most this size has no structure of "

@@ -16,6 +16,9 @@ struct MemoryConfig {
   std::int64_t l2_banks = 1, l2_mshrs = 0;
   std::optional<std::int64_t> l2_sector_bytes;  ///< absent: a whole line
   enum class Write { kThrough, kBack } l2_write = Write::kThrough;
+  std::int64_t l2_ray_ways = 0, l2_answer_bytes_per_cycle = 0;
+  enum class RayRecords { kResource, kMaster } ray_records = RayRecords::kResource;
+  enum class ShadingData { kFree, kMemory } path_state = ShadingData::kFree, film = ShadingData::kFree;
   std::int64_t l1_kib = 0, l1_ways = 8, l1_lines_per_cycle = 1, l1_mshrs = 0, l1_latency_cycles = 20;
   DramConfig dram;
 };
@@ -30,6 +33,18 @@ template <>
 inline constexpr auto kEnumNames<MemoryConfig::Write> = [] {
   using enum MemoryConfig::Write;
   return names<MemoryConfig::Write>({{kThrough, "through"}, {kBack, "back"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<MemoryConfig::RayRecords> = [] {
+  using enum MemoryConfig::RayRecords;
+  return names<MemoryConfig::RayRecords>({{kResource, "resource"}, {kMaster, "master"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<MemoryConfig::ShadingData> = [] {
+  using enum MemoryConfig::ShadingData;
+  return names<MemoryConfig::ShadingData>({{kFree, "free"}, {kMemory, "memory"}});
 }();
 
 namespace config {
@@ -51,6 +66,11 @@ void describe(V& v, MemoryConfig& c) {
                   "The part of a line that is fetched by itself. With auto it is the whole line.");
   v.choice("l2_write", c.l2_write,
            "A line that is written goes on to memory at once, or when it is replaced in the shared cache.");
+  v.field("l2_ray_ways", c.l2_ray_ways, IntRange{0, 63}, "ways",
+          "The ways of a shared cache that hold data of rays and paths only; shapes take the others. With 0 all data "
+          "takes all ways.");
+  v.field("l2_answer_bytes_per_cycle", c.l2_answer_bytes_per_cycle, IntRange{0, 4096}, "bytes/cycle",
+          "The width of the wires on which a shared cache answers, one request at a time. With 0 there is no limit.");
   v.field("l1_kib", c.l1_kib, IntRange{0, 1 << 20}, "KiB",
           "The size of a resource's own cache, before the shared one. With 0 there is none.");
   v.field("l1_ways", c.l1_ways, IntRange{1, 64}, "ways", "The associativity of a resource's own cache.");
@@ -68,6 +88,13 @@ void describe(V& v, MemoryConfig& c) {
   v.choice(
       "fetch", c.fetch,
       "Shape data is fetched by the issuer of a packet, which brings it along, by each resource, or once for all.");
+  v.choice("ray_records", c.ray_records,
+           "The record of a ray is in its resource only, or a master copy is in memory, from which the resource reads "
+           "it and to which it comes back.");
+  v.choice("path_state", c.path_state,
+           "The state of a path is where shading needs it, or it is written to memory with each of its rays and read "
+           "when that is shaded.");
+  v.choice("film", c.film, "Light is added to the picture for nothing, or a pixel is read from memory and written.");
   v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets",
           "The number of packets whose shapes are fetched in advance.");
   v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB",

@@ -4,29 +4,15 @@
 #include <vector>
 
 #include "core/statistics/dram_counts.h"
-#include "report/sections/latency.h"
+#include "report/sections/memory/read_latency.h"
 
 namespace carousel::report {
-
-/// The latencies of reads. The quantiles are those of report::Latency, in other words.
-struct ReadLatency {
-  Latency of;
-};
-
-template <class V>
-void describe(V& v, const ReadLatency& r) {
-  v.field("mean", r.of.mean, "DRAM cycles", "mean latency");
-  v.field("p50", r.of.p50, "DRAM cycles", "median latency");
-  v.field("p95", r.of.p95, "DRAM cycles", "latency that 19 of 20 reads did not exceed");
-  v.field("p99", r.of.p99, "DRAM cycles", "latency that 99 of 100 reads did not exceed");
-  v.field("max", r.of.max, "DRAM cycles", "greatest latency");
-}
 
 struct DramChannel {
   DramCounts counts;
   std::uint64_t bytes = 0;
   double utilisation = 0;
-  ReadLatency latency;
+  ReadLatency latency{.unit = "DRAM cycles"};
 };
 
 template <class V>

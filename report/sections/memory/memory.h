@@ -3,6 +3,7 @@
 #include "core/statistics/cache_counts.h"
 #include "core/statistics/shape_buffer_counts.h"
 #include "report/sections/memory/dram.h"
+#include "report/sections/memory/ray_data.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -37,6 +38,9 @@ struct Memory {
   std::optional<Cache> own_caches;
   std::uint64_t dram_lines = 0, dram_bytes = 0, dram_lines_written = 0, dram_busy_cycles = 0;
   double dram_utilisation = 0;
+  std::optional<RayData> ray_data;
+  std::optional<CacheDrain> drain;
+  std::optional<TriangleStrips> triangle_strips;
   std::optional<Dram> dram;
 };
 
@@ -47,9 +51,13 @@ void describe(V& v, const Memory& r) {
   v.section("own_caches", r.own_caches, "use of the resources' own caches, all together");
   v.field("dram_lines", r.dram_lines, "lines", "lines, or sectors, read from DRAM");
   v.field("dram_bytes", r.dram_bytes, "bytes", "bytes read from DRAM");
-  v.field("dram_lines_written", r.dram_lines_written, "lines", "lines of spilled collection entries written to DRAM");
+  v.field("dram_lines_written", r.dram_lines_written, "lines",
+          "lines written to DRAM: spilled collection entries, and data of rays and paths");
   v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "cycles in which DRAM moved lines");
   v.field("dram_utilisation", r.dram_utilisation, "fraction", "fraction of the run's cycles in which DRAM moved lines");
+  v.section("ray_data", r.ray_data, "data of rays and paths in memory");
+  v.section("triangle_strips", r.triangle_strips, "leaves in strips of triangles");
+  v.section("drain", r.drain, "written lines that were in caches at the end of the run");
   v.section("dram", r.dram, "DRAM with banks");
 }
 

@@ -6,24 +6,11 @@
 
 namespace carousel::report {
 
-struct RequestLatency {
-  Latency of;
-};
-
-template <class V>
-void describe(V& v, const RequestLatency& r) {
-  v.field("mean", r.of.mean, "cycles", "mean latency");
-  v.field("p50", r.of.p50, "cycles", "median latency");
-  v.field("p95", r.of.p95, "cycles", "latency that 19 of 20 reads did not exceed");
-  v.field("p99", r.of.p99, "cycles", "latency that 99 of 100 reads did not exceed");
-  v.field("max", r.of.max, "cycles", "greatest latency");
-}
-
 /// The memory alone (workload: {memory_trace: FILE}).
 struct MemoryTrace {
   std::uint64_t requests = 0, reads = 0, writes = 0, bytes = 0, last_taken_cycle = 0;
   double bytes_per_cycle = 0, gigabytes_per_second = 0;
-  RequestLatency latency;
+  ReadLatency latency;
   std::optional<Dram> dram;
 };
 

@@ -15,6 +15,7 @@ namespace carousel::ringbus::cycle {
 ///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte), or with ordered traversal the next
 ///   node 12 (key 8, entry 4)
 ///   per shape of a strip of boxes: nearest entry 4, for policies that read them
+///   per new ray that looks for a slot: its record 64; with addressed placement its address 2
 ///   with `carry: data` the shapes that are tested (ShapeMemory::shapes()), and below an instance what is stored of its
 ///   transform
 class PacketSize {
@@ -33,6 +34,8 @@ class PacketSize {
   /// Bytes of an answer with `rays` of the packet's rays: without the shapes.
   std::uint32_t answer_bytes(const Packet& packet, std::uint32_t rays, bool treelet) const {
     std::uint32_t bytes = 16 + 4 * rays;
+    if (packet.kind == PacketKind::kRays)
+      bytes += static_cast<std::uint32_t>(sizeof(RayRecord) * packet.requests.size() + 2 * packet.addresses.size());
     if (packet.kind != PacketKind::kTest) return bytes;
     if (ordered_)
       bytes += 12 * rays;

@@ -27,7 +27,7 @@ void BankedMemory::run(Cycle end) {
     clients_[tag % clients_of_line_].answers->send(dram_.engine_end(done) + answer_latency_, tag / clients_of_line_);
   };
   for (next_ = next(); next_ < end; next_ = next()) {
-    const Cycle now = next_;
+    const Cycle now = last_step_ = next_;
     if (samples_.due(now)) [[unlikely]]
       samples_.until(now, [this](Cycle, std::span<std::uint64_t> row) { row[0] = dram_.served_bytes(); });
     const DramCycle arrival = dram_.of_engine(now);

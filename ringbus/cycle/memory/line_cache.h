@@ -61,6 +61,13 @@ class LineCache {
     if (!states_.empty()) states_[first].here |= bit(part);
     return out;
   }
+  /// Marks all parts as not written, and appends those that were to `parts`.
+  void take_written(std::vector<std::uint64_t>& parts) {
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      for (std::uint64_t p = 0; p < parts_; ++p)
+        if ((states_[i].written >> p & 1) != 0) parts.push_back(lines_[i] * parts_ + p);
+    for (State& state : states_) state.written = 0;
+  }
   /// The part, which has just been touched or inserted, is written.
   void written(std::uint64_t part) { states_[line_of(part) % sets_ * ways_].written |= bit(part); }
 

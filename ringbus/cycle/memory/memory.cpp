@@ -9,7 +9,7 @@ Memory::Memory(const MemoryConfig& config, std::vector<Client> clients)
 
 void Memory::run(Cycle end) {
   for (next_ = next(); next_ < end;) {
-    const Cycle now = next_;
+    const Cycle now = last_step_ = next_;
     next_ = kNever;
     if (samples_.due(now)) [[unlikely]]
       samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) {

@@ -39,6 +39,9 @@ class MemoryAgent : public Agent {
 
   std::uint64_t lines() const { return lines_; }  ///< read
   std::uint64_t lines_written() const { return lines_written_; }
+  Cycle last_step() const { return last_step_; }
+  /// The time at which all that it has taken so far is done.
+  virtual Cycle idle_from() const = 0;
   /// Cycles that moving the lines took, the last one rounded up.
   virtual Cycle busy() const = 0;
   virtual double peak_bytes_per_cycle() const = 0;
@@ -68,6 +71,7 @@ class MemoryAgent : public Agent {
   std::vector<Client> clients_;
   std::uint64_t lines_ = 0, lines_written_ = 0;
   Cycle next_ = 0;  // next(), at the end of the last run()
+  Cycle last_step_ = 0;
   CounterSamples samples_;
   MemoryLog* log_ = nullptr;
 };

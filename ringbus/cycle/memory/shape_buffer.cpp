@@ -8,6 +8,7 @@ namespace carousel::ringbus::cycle {
 
 ShapeBuffer::ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports)
     : port_(config, link, ports),
+      pushed_(ports.pushed),
       places_(static_cast<std::uint64_t>(config.shape_buffer_kib) * 1024 / kPlaceBytes),
       free_places_(places_),
       buckets_(64, kNone),
@@ -64,11 +65,12 @@ void ShapeBuffer::drop(UserState& state, User user) {
 
 // ---- the issue queue
 
-void ShapeBuffer::take_ahead(User user, const ShapeNeed& need, Cycle now) {
+void ShapeBuffer::take_ahead(User user, const ShapeNeed& need, Cycle now, std::uint64_t others) {
   UserState& state = state_of(user);
   state.state = State::kWaits;
   state.ahead = true;
   state.need = need;
+  state.others = others;
   queue_.push_back(user);
   serve(now);
 }
@@ -136,7 +138,7 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
       while (free_places_ < places(need[which])) evict_oldest();
       entry = allocate(need[which]);
       hold(entry);
-      port_.request(need[which], entry, now);
+      port_.request(need[which], entry, now, state.ahead ? state.others : 0);
       ++fetches_;
       ++counts_.misses;
     } else {
@@ -214,78 +216,9 @@ void ShapeBuffer::take_answers(Cycle now) {
     let_go(static_cast<std::uint32_t>(&entry - entries_.data()));
     idle = true;
   }
+  if (pushed_ != nullptr) [[unlikely]]
+    take_pushed(now);
   if (idle) serve(now);
-}
-
-// ---- entries
-
-std::uint32_t ShapeBuffer::find(const ShapeSpan& span) const {
-  std::uint32_t at = buckets_[bucket(span)];
-  while (at != kNone && entries_[at].span != span) at = entries_[at].chain;
-  return at;
-}
-
-std::uint32_t ShapeBuffer::allocate(const ShapeSpan& span) {
-  if (++used_ > buckets_.size()) grow_buckets();
-  std::uint32_t index = free_entry_;
-  if (index == kNone) {
-    index = static_cast<std::uint32_t>(entries_.size());
-    entries_.emplace_back();
-  } else {
-    free_entry_ = entries_[index].chain;
-  }
-  std::uint32_t& first = buckets_[bucket(span)];
-  entries_[index] = Entry{};
-  entries_[index].span = span;
-  entries_[index].chain = first;
-  first = index;
-  free_places_ -= places(span);
-  return index;
-}
-
-void ShapeBuffer::grow_buckets() {
-  buckets_.assign(2 * buckets_.size(), kNone);
-  --shift_;
-  std::vector<bool> free(entries_.size());
-  for (std::uint32_t at = free_entry_; at != kNone; at = entries_[at].chain) free[at] = true;
-  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
-    if (free[i]) continue;
-    std::uint32_t& first = buckets_[bucket(entries_[i].span)];
-    entries_[i].chain = first;
-    first = i;
-  }
-}
-
-void ShapeBuffer::evict_oldest() {
-  const std::uint32_t index = oldest_;
-  hold(index);  // takes it from the list
-  Entry& entry = entries_[index];
-  std::uint32_t* at = &buckets_[bucket(entry.span)];
-  while (*at != index) at = &entries_[*at].chain;
-  *at = entry.chain;
-  entry.chain = free_entry_;
-  free_entry_ = index;
-  free_places_ += places(entry.span);
-  --used_;
-  ++counts_.evictions;
-}
-
-void ShapeBuffer::hold(std::uint32_t index) {
-  Entry& entry = entries_[index];
-  if (entry.holders++ > 0 || !entry.here) return;
-  (entry.older == kNone ? oldest_ : entries_[entry.older].newer) = entry.newer;
-  (entry.newer == kNone ? newest_ : entries_[entry.newer].older) = entry.older;
-  idle_places_ -= places(entry.span);
-}
-
-void ShapeBuffer::let_go(std::uint32_t index) {
-  Entry& entry = entries_[index];
-  if (--entry.holders > 0 || !entry.here) return;
-  entry.older = newest_;
-  entry.newer = kNone;
-  (newest_ == kNone ? oldest_ : entries_[newest_].newer) = index;
-  newest_ = index;
-  idle_places_ += places(entry.span);
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -42,8 +43,9 @@ class ShapeBuffer {
   /// `to`, which holds nothing, gets all that `from` has, which must be all there.
   void hand_over(User from, User to);
 
-  /// Takes what a packet that joins the issue queue will need, as soon as there is room.
-  void take_ahead(User user, const ShapeNeed& need, Cycle now);
+  /// Takes what a packet that joins the issue queue will need, as soon as there is room. Where it is fetched, `others`
+  /// (a bit for each client of the cache) get it too.
+  void take_ahead(User user, const ShapeNeed& need, Cycle now, std::uint64_t others = 0);
   /// Tells whether all that `user` took is there.
   bool is_here(User user) const { return users_[user].state == State::kHolds && users_[user].missing == 0; }
   /// The first packet leaves the issue queue. Its user must have all; afterwards it holds it like a test.
@@ -52,7 +54,7 @@ class ShapeBuffer {
   void clear_queue(Cycle now);
 
   /// The time at which the next answer comes from the cache.
-  Cycle next() const { return port_.next(); }
+  Cycle next() const { return pushed_ == nullptr ? port_.next() : std::min(port_.next(), pushed_->next()); }
   /// Takes in the answers that have come.
   void take_answers(Cycle now);
   /// The wires to the cache, by which spilled collection entries go as well.
@@ -87,6 +89,7 @@ class ShapeBuffer {
     std::array<std::uint32_t, 2> entries{kNone, kNone};
     std::array<std::uint32_t, 2> next_wait{kNone, kNone};  // behind it at the same entry: 2 * user + which of its spans
     ShapeNeed need;                                        // while it waits for room
+    std::uint64_t others = 0;                              // that get it too; of a packet of the issue queue
   };
 
   UserState& state_of(User user);
@@ -101,11 +104,13 @@ class ShapeBuffer {
   void drop(UserState& state, User user);
   void serve(Cycle now);
   void grow_buckets();
+  void take_pushed(Cycle now);
   std::size_t bucket(const ShapeSpan& span) const {
     return static_cast<std::size_t>((span.address + span.bytes) * 0x9e3779b97f4a7c15ull >> shift_);
   }
 
   ShapePort port_;
+  Channel<PushedShapes>* pushed_;
   std::uint64_t places_, free_places_, idle_places_ = 0;  // idle: of spans that are here and nobody holds
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> buckets_;

@@ -9,6 +9,22 @@
 
 namespace carousel::ringbus::cycle {
 
+namespace {
+
+/// Shapes stand below; spilled entries, records and states of paths above (SpillMemory, RayData).
+constexpr std::uint64_t kFirstRayData = std::uint64_t{1} << 40;
+
+/// So many ways of an L2.
+LineCache line_cache(const MemoryConfig& config, std::int64_t ways) {
+  const auto line_bytes = static_cast<std::uint64_t>(config.line_bytes);
+  const std::uint64_t sets =
+      static_cast<std::uint64_t>(config.l2_kib) * 1024 / line_bytes / static_cast<std::uint64_t>(config.ways);
+  return {sets * static_cast<std::uint64_t>(ways) * line_bytes, line_bytes, static_cast<std::uint64_t>(ways),
+          line_bytes / fetched_bytes(config), config.l2_write == MemoryConfig::Write::kBack};
+}
+
+}  // namespace
+
 Cycle ShapeCache::request_latency(const MemoryConfig& config) {
   return way_there(config.l2_latency_cycles);
 }
@@ -25,18 +41,21 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, 
       parts_(static_cast<std::uint64_t>(config.line_bytes) / line_bytes_),
       writes_back_(config.l2_write == MemoryConfig::Write::kBack),
       mshrs_(static_cast<std::uint64_t>(config.l2_mshrs)),
-      cache_(static_cast<std::uint64_t>(config.l2_kib) * 1024, static_cast<std::uint64_t>(config.line_bytes),
-             static_cast<std::uint64_t>(config.ways), parts_, writes_back_),
+      answer_bytes_(static_cast<std::uint64_t>(config.l2_answer_bytes_per_cycle)),
+      cache_(line_cache(config, config.ways - config.l2_ray_ways)),
+      first_ray_line_(kFirstRayData / line_bytes_),
       banks_(static_cast<std::size_t>(config.l2_banks)),
       clients_(std::move(clients)),
       to_memory_(to_memory),
       from_memory_(from_memory),
       port_lines_(static_cast<std::uint64_t>(config.l2_lines_per_cycle)),
-      in_order_(banks_.size() == 1 && !writes_back_) {}
+      in_order_(banks_.size() == 1 && !writes_back_) {
+  if (config.l2_ray_ways > 0) ray_ways_.emplace(line_cache(config, config.l2_ray_ways));
+}
 
-ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients, Channel<std::uint64_t>& to_memory,
-                       Channel<std::uint64_t>& from_memory)
-    : ShapeCache(config, std::vector<Client>{}, to_memory, from_memory) {
+ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients, std::vector<Client> others,
+                       Channel<std::uint64_t>& to_memory, Channel<std::uint64_t>& from_memory)
+    : ShapeCache(config, std::move(others), to_memory, from_memory) {
   own_caches_ = std::move(clients);
 }
 
@@ -50,6 +69,8 @@ MemoryConfig ShapeCache::own_cache(const MemoryConfig& config) {
   out.dram_latency_cycles = config.l2_latency_cycles;
   out.l2_banks = 1;
   out.l2_write = MemoryConfig::Write::kThrough;
+  out.l2_ray_ways = 0;
+  out.l2_answer_bytes_per_cycle = 0;
   return out;
 }
 
@@ -57,8 +78,26 @@ void ShapeCache::warm(std::span<const std::uint64_t> lines, double part) {
   for (const std::uint64_t line : lines) {
     const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull,
                         drawn = (mixed ^ (mixed >> 31)) * 0xbf58476d1ce4e5b9ull;
-    if (static_cast<double>(drawn >> 11) * 0x1p-53 < part) cache_.insert(line);
+    if (static_cast<double>(drawn >> 11) * 0x1p-53 < part) ways_of(line).insert(line);
   }
+}
+
+std::vector<std::uint64_t> ShapeCache::lines() const {
+  std::vector<std::uint64_t> lines = cache_.lines();
+  if (ray_ways_) {
+    const std::vector<std::uint64_t> others = ray_ways_->lines();
+    lines.insert(lines.end(), others.begin(), others.end());
+  }
+  return lines;
+}
+
+void ShapeCache::drain(Cycle now) {
+  std::vector<std::uint64_t> written;
+  cache_.take_written(written);
+  if (ray_ways_) ray_ways_->take_written(written);
+  std::sort(written.begin(), written.end());
+  for (const std::uint64_t line : written) to_memory_.send(now + memory_latency_, kWriteLine | line);
+  statistics_.drained += written.size();
 }
 
 Cycle ShapeCache::next() const {
@@ -75,14 +114,15 @@ void ShapeCache::run(Cycle end) {
     const Cycle now = next_;
     while (from_memory_.next() <= now) fill(from_memory_.take(), now);
     next_ = from_memory_.next();
-    for (std::uint32_t c = 0; c < clients_.size(); ++c) {
-      Channel<FetchRequest>& requests = *clients_[c].requests;
-      while (requests.next() <= now) take(c, requests.take(), now);
-      next_ = std::min(next_, requests.next());
-    }
-    for (std::uint32_t c = 0; c < own_caches_.size(); ++c) {
+    const std::uint32_t own_caches = static_cast<std::uint32_t>(own_caches_.size());
+    for (std::uint32_t c = 0; c < own_caches; ++c) {
       Channel<std::uint64_t>& requests = *own_caches_[c].requests;
       while (requests.next() <= now) take_line(c, requests.take(), now);
+      next_ = std::min(next_, requests.next());
+    }
+    for (std::uint32_t c = 0; c < clients_.size(); ++c) {
+      Channel<FetchRequest>& requests = *clients_[c].requests;
+      while (requests.next() <= now) take(own_caches + c, requests.take(), now);
       next_ = std::min(next_, requests.next());
     }
     for (; !answers_.empty() && answers_.top().ready <= now; answers_.pop()) answer(answers_.top(), now);
@@ -115,7 +155,8 @@ void ShapeCache::to_memory(Cycle leaves, std::uint64_t request) {
 void ShapeCache::take(std::uint32_t client, const FetchRequest& request, Cycle now) {
   if (request.written > 0) [[unlikely]]
     return writes_back_ ? write_back(request, now) : write_through(request, now);
-  const std::uint32_t index = begin({client, request.tag, request.lines});
+  const std::uint32_t push = request.others == 0 ? 0 : begin_push(request);
+  const std::uint32_t index = begin({client, request.tag, request.lines, 0, 0, request.lines, push});
   ++statistics_.requests;
   statistics_.lines += request.lines;
   for (std::uint32_t i = 0; i < request.lines; ++i) look_up({request.first_line + i, index}, now);
@@ -130,7 +171,7 @@ void ShapeCache::take_line(std::uint32_t client, std::uint64_t request, Cycle no
     return look_up({line, begin({client, 0, 1, 0, line})}, now);
   }
   if (!writes_back_) {
-    cache_.touch(line);
+    ways_of(line).touch(line);
     to_memory(take_port(bank_of(line), now), kWriteLine | line);
     ++statistics_.written;
     return;
@@ -139,28 +180,10 @@ void ShapeCache::take_line(std::uint32_t client, std::uint64_t request, Cycle no
   ++statistics_.kept;
 }
 
-std::uint32_t ShapeCache::begin(const Pending& pending) {
-  if (free_pending_.empty()) {
-    pending_.push_back(pending);
-    return static_cast<std::uint32_t>(pending_.size() - 1);
-  }
-  const std::uint32_t index = free_pending_.back();
-  free_pending_.pop_back();
-  pending_[index] = pending;
-  return index;
-}
-
-void ShapeCache::answer(const Answer& answer, Cycle now) {
-  if (own_caches_.empty())
-    clients_[answer.client].answers->send(now + answer_latency_, {answer.tag});
-  else
-    own_caches_[answer.client].answers->send(now + answer_latency_, answer.line);
-}
-
 void ShapeCache::write_through(const FetchRequest& request, Cycle now) {
   for (std::uint64_t i = 0; i < request.lines; ++i) {
     const std::uint64_t line = request.first_line + i;
-    cache_.touch(line);
+    ways_of(line).touch(line);
     to_memory(take_port(bank_of(line), now),
               kWriteLine | line | (asks_a_cache_ && writes_whole(request, i) ? kWholeLine : 0));
     ++statistics_.written;
@@ -189,7 +212,7 @@ void ShapeCache::look_up(const LookUp& one, Cycle now) {
 /// Returns whether the line could be looked up.
 bool ShapeCache::read(Bank& bank, const LookUp& one, Cycle now) {
   Pending& pending = pending_[one.request];
-  if (cache_.touch(one.line)) {
+  if (ways_of(one.line).touch(one.line)) {
     pending.ready = std::max(pending.ready, take_port(bank, now));
     ++statistics_.hits;
     if (--pending.lines_missing == 0) complete(one.request);
@@ -209,11 +232,11 @@ bool ShapeCache::read(Bank& bank, const LookUp& one, Cycle now) {
 }
 
 bool ShapeCache::write(Bank& bank, const LookUp& one, Cycle now) {
-  const bool here = cache_.touch(one.line);
+  const bool here = ways_of(one.line).touch(one.line);
   if (here || (one.request == kWholeWriter && !missing_.has(one.line))) {
     const Cycle looked_up = take_port(bank, now);
     if (!here) insert(one.line, looked_up);
-    cache_.written(one.line);
+    ways_of(one.line).written(one.line);
     return true;
   }
   if (!can_fetch(bank) && !missing_.has(one.line)) return false;
@@ -229,7 +252,7 @@ bool ShapeCache::write(Bank& bank, const LookUp& one, Cycle now) {
 // ---- lines that come
 
 void ShapeCache::insert(std::uint64_t line, Cycle now) {
-  const LineCache::Replaced replaced = cache_.insert(line);
+  const LineCache::Replaced replaced = ways_of(line).insert(line);
   for (std::uint64_t written = replaced.written; written != 0; written &= written - 1) {
     to_memory(now, kWriteLine | (replaced.first_part + static_cast<std::uint64_t>(std::countr_zero(written))));
     ++statistics_.written_back;
@@ -239,7 +262,7 @@ void ShapeCache::insert(std::uint64_t line, Cycle now) {
 void ShapeCache::fill(std::uint64_t line, Cycle now) {
   insert(line, now);
   missing_.come(line, [&](std::uint32_t index) {
-    if (index == kWriter) return cache_.written(line);
+    if (index == kWriter) return ways_of(line).written(line);
     Pending& pending = pending_[index];
     pending.ready = std::max(pending.ready, now);
     if (--pending.lines_missing == 0) complete(index);
@@ -250,12 +273,6 @@ void ShapeCache::fill(std::uint64_t line, Cycle now) {
     const LookUp one = bank.waiting.front();
     if (!(one.request >= kWholeWriter ? write(bank, one, now) : read(bank, one, now))) return;
   }
-}
-
-void ShapeCache::complete(std::uint32_t index) {
-  const Pending& pending = pending_[index];
-  answers_.push({pending.ready, next_turn_++, pending.client, pending.tag, pending.line});
-  free_pending_.push_back(index);
 }
 
 std::string ShapeCache::describe() const {

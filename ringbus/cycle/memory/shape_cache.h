@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <queue>
 #include <span>
 #include <vector>
@@ -34,6 +35,7 @@ class ShapeCache final : public Agent {
   struct Client {
     Channel<FetchRequest>* requests = nullptr;
     Channel<FetchAnswer>* answers = nullptr;
+    Channel<PushedShapes>* pushed = nullptr;  ///< with `memory.fetch: multicast`
   };
   /// The end of an own cache's channels.
   struct OwnCache {
@@ -50,15 +52,18 @@ class ShapeCache final : public Agent {
 
   ShapeCache(const MemoryConfig& config, std::vector<Client> clients, Channel<std::uint64_t>& to_memory,
              Channel<std::uint64_t>& from_memory);
-  /// An L2 behind own caches.
-  ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients, Channel<std::uint64_t>& to_memory,
-             Channel<std::uint64_t>& from_memory);
+  /// An L2 behind own caches. `others` ask it beside them.
+  ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients, std::vector<Client> others,
+             Channel<std::uint64_t>& to_memory, Channel<std::uint64_t>& from_memory);
 
   /// This cache asks an L2 where other caches ask the memory.
   void ask_a_cache() { asks_a_cache_ = true; }
   /// Holds part of these lines from the start.
   void warm(std::span<const std::uint64_t> lines, double part);
-  std::vector<std::uint64_t> lines() const { return cache_.lines(); }
+  std::vector<std::uint64_t> lines() const;
+  /// The run is over: sends all lines that have been written and are still here to memory, in the order of their
+  /// addresses.
+  void drain(Cycle now);
 
   Cycle next() const override;
   bool polled() const override { return false; }
@@ -73,7 +78,9 @@ class ShapeCache final : public Agent {
   struct Pending {
     std::uint32_t client = 0, tag = 0, lines_missing = 0;
     Cycle ready = 0;
-    std::uint64_t line = 0;  // of an own cache
+    std::uint64_t line = 0;   // of an own cache
+    std::uint32_t lines = 1;  // of the answer
+    std::uint32_t push = 0;   // 1 + a place in pushes_; 0: the answer is for the client alone
   };
   /// An answer that leaves at `ready`. Of answers that leave at one time the one that was complete first goes first.
   struct Answer {
@@ -81,6 +88,7 @@ class ShapeCache final : public Agent {
     std::uint64_t turn = 0;
     std::uint32_t client = 0, tag = 0;
     std::uint64_t line = 0;
+    std::uint32_t lines = 1, push = 0;
     bool operator>(const Answer& o) const { return ready != o.ready ? ready > o.ready : turn > o.turn; }
   };
 
@@ -103,6 +111,8 @@ class ShapeCache final : public Agent {
   };
   static constexpr std::uint32_t kWriter = ~0u, kWholeWriter = kWriter - 1;  // writes a part of a line, or all of it
 
+  /// The ways in which a line may stand.
+  LineCache& ways_of(std::uint64_t line) { return ray_ways_ && line >= first_ray_line_ ? *ray_ways_ : cache_; }
   Bank& bank_of(std::uint64_t line) { return banks_.size() == 1 ? banks_[0] : banks_[line / parts_ % banks_.size()]; }
   void take(std::uint32_t client, const FetchRequest& request, Cycle now);
   void take_line(std::uint32_t client, std::uint64_t request, Cycle now);
@@ -120,15 +130,21 @@ class ShapeCache final : public Agent {
   void to_memory(Cycle leaves, std::uint64_t request);
   Cycle take_port(Bank& bank, Cycle now);
   void complete(std::uint32_t index);
+  std::uint32_t begin_push(const FetchRequest& request);
+  void push(std::uint32_t index, Cycle arrival);
 
   Cycle answer_latency_, memory_latency_;
   std::uint64_t line_bytes_, parts_;  // a line of the messages, and their number in one of the cache
   bool writes_back_;
-  std::uint64_t mshrs_;  // of a bank; 0: no bound
+  std::uint64_t mshrs_;         // of a bank; 0: no bound
+  std::uint64_t answer_bytes_;  // a cycle; 0: no limit
+  Cycle answers_free_ = 0;      // the wires of answers are taken up to this cycle
   LineCache cache_;
+  std::optional<LineCache> ray_ways_;  // with `memory.l2_ray_ways`, for all but shapes
+  std::uint64_t first_ray_line_;
   std::vector<Bank> banks_;
   std::vector<Client> clients_;
-  std::vector<OwnCache> own_caches_;  // instead of clients
+  std::vector<OwnCache> own_caches_;  // numbered before the clients
   bool asks_a_cache_ = false;         // is an own cache
   Channel<std::uint64_t>&to_memory_, &from_memory_;
   std::uint64_t port_lines_;  // a cycle
@@ -138,6 +154,12 @@ class ShapeCache final : public Agent {
   std::uint64_t next_turn_ = 0;
   std::vector<Pending> pending_;
   std::vector<std::uint32_t> free_pending_;
+  struct Push {
+    PushedShapes shapes;
+    std::uint64_t clients = 0;  // a bit each
+  };
+  std::vector<Push> pushes_;
+  std::vector<std::uint32_t> free_pushes_;
   MissingLines missing_;  // with pending requests
   Cycle next_ = 0;        // next(), at the end of the last run()
   Statistics statistics_;

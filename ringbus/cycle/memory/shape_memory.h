@@ -8,6 +8,7 @@
 
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
+#include "ringbus/cycle/memory/leaf_strips.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -24,13 +25,14 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
 /// each instance's transform, from a 64-byte border on, in equal room for all of them. With `bvh.storage: quantised`
-/// nodes have 64 or 80 bytes, and each primitive of a leaf 64.
+/// nodes have 64 or 80 bytes, and each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
 class ShapeMemory {
  public:
   ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh = {})
       : accel_(accel),
         quantised_(bvh.storage == BvhConfig::Storage::kQuantised),
         node_bytes_(bytes_of_node(accel, bvh)),
+        strips_(bvh.leaves == BvhConfig::Leaves::kStrips ? LeafStrips(accel) : LeafStrips()),
         blocks_at_((accel.nodes.size() * node_bytes_ + bytes_behind_nodes() + 63) / 64 * 64),
         instances_at_((blocks_at_ + bytes_of_leaves() + 63) / 64 * 64),
         instance_bytes_(accel::instance_bytes(accuracy)),
@@ -46,6 +48,7 @@ class ShapeMemory {
       const std::uint64_t behind = behind_before_[node + 1] - behind_before_[node];
       return {address + behind_before_[node], static_cast<std::uint32_t>(node_bytes_ + behind)};
     }
+    if (strips_.holds(key.ref)) return {blocks_at_ + strips_.begin(key.ref), strips_.bytes(key.ref)};
     if (quantised_)
       return {blocks_at_ + std::uint64_t{primitives_before_[key.ref.first_block()]} * kQuantisedLeafBytes,
               key.ref.triangles() * kQuantisedLeafBytes};
@@ -69,6 +72,9 @@ class ShapeMemory {
     return {whole.address + std::min(before, whole.bytes - bytes), bytes};
   }
 
+  /// With `bvh.leaves: strips`.
+  const LeafStrips& strips() const { return strips_; }
+
   /// The transform data that testing in `instance` needs; no bytes above the instances and where rays are not moved.
   ShapeSpan transform(std::uint32_t instance) const {
     if (instance == kNoInstance || accel_.instances[instance].transform.identity) return {};
@@ -90,6 +96,7 @@ class ShapeMemory {
   }
   /// Fills in primitives_before_ where each primitive has a leaf's bytes for itself; the bytes in all.
   std::uint64_t bytes_of_leaves() {
+    if (strips_.bytes() > 0) return strips_.bytes();
     if (!quantised_) return accel_.blocks.size() * sizeof(accel::TriangleBlock);
     std::uint32_t primitives = 0;
     primitives_before_.reserve(accel_.blocks.size());
@@ -129,6 +136,7 @@ class ShapeMemory {
   std::vector<std::uint32_t> primitives_before_;  // by block; of quantised structures
   std::vector<std::uint64_t> behind_before_;      // bytes, by node; empty when there are none
   std::uint32_t node_bytes_;
+  LeafStrips strips_;
   std::uint64_t blocks_at_, instances_at_;
   std::uint32_t instance_bytes_, promoted_bytes_, instance_room_;
 };

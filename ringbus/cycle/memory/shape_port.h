@@ -21,9 +21,15 @@ class ShapePort {
         line_bytes_(fetched_bytes(config)) {}
 
   /// Asks for the lines of `span`; `tag` comes back when all are there. Requests are made in order of time.
-  void request(const ShapeSpan& span, std::uint32_t tag, Cycle now) {
+  /// The clients in `others` get the bytes too.
+  void request(const ShapeSpan& span, std::uint32_t tag, Cycle now, std::uint64_t others = 0) {
     FetchRequest message = lines_of(span);
     message.tag = tag;
+    if (others != 0) [[unlikely]] {
+      message.others = others;
+      message.wanted = span.bytes;
+      message.skipped = static_cast<std::uint32_t>(span.address % line_bytes_);
+    }
     requests_.send(wire_.send(message.bytes(), now), message);
     lines_ += message.lines;
   }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/types/workload.h"
+#include "ringbus/cycle/time/clock.h"
 #include "ringbus/rays/ray_id.h"
 
 namespace carousel::ringbus::cycle {
@@ -16,11 +17,14 @@ struct NewRays {
     kDiscard,  ///< discard all work and every packet that comes back, and note when that is done
     kGoOn,     ///< go on without the resource that has stopped
   } order = Order::kTake;
-  std::uint64_t records = 0;  ///< loaded for them into ray stores, those of bundles included
+  std::uint64_t records = 0;            ///< loaded for them into ray stores, those of bundles included
+  RayBatch rays{};                      ///< instead of IDs: rays that travel to find slots
+  std::vector<ResourceId> addresses{};  ///< of `rays`, one each with `placement: addressed`, of 2 bytes
 
   /// An order has 4 bytes.
   std::uint64_t bytes() const {
-    return records * sizeof(RayRecord) + (order == Order::kTake ? 4 * ids.size() : std::uint64_t{4});
+    return records * sizeof(RayRecord) + 2 * addresses.size() +
+           (order == Order::kTake ? 4 * ids.size() : std::uint64_t{4});
   }
 };
 
@@ -33,6 +37,7 @@ struct CompletedRays {
     kLastBeat,  ///< it has stopped: nothing will come from it any more
     kDrained,   ///< none of its packets, fetches and any-hit calls is under way
   } note = Note::kDone;
+  std::vector<Cycle> placed{};  ///< where rays travel: the times at which they were given those slots
 
   /// A record says where it lay, so the slots need no bytes of their own. A note has 4.
   std::uint64_t bytes() const { return rays.size() * sizeof(RayRecord) + (note == Note::kDone ? 0 : 4); }

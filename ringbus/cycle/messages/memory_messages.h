@@ -19,14 +19,22 @@ struct FetchRequest {
   std::uint32_t tag = 0;
   std::uint32_t written = 0;  ///< bytes that it writes; 0 when it asks
   std::uint32_t skipped = 0;  ///< bytes of the first line before those that it writes
+  std::uint32_t wanted = 0;   ///< with `others`: the bytes that it asks for, behind the skipped ones
+  std::uint64_t others = 0;   ///< clients of the cache that get the same bytes without asking, a bit each
 
-  /// Address 8, number of lines 4, tag 4, and what is written.
-  std::uint64_t bytes() const { return 16 + std::uint64_t{written}; }
+  /// Address 8, number of lines 4, tag 4, a mask of 8 where there are others, and what is written.
+  std::uint64_t bytes() const { return 16 + std::uint64_t{written} + (others != 0 ? 8 : 0); }
 };
 /// Set in the line number of a request to memory that writes the line, which has no answer.
 inline constexpr std::uint64_t kWriteLine = std::uint64_t{1} << 63;
 /// Set besides when all of the line is written, in a request of a resource's own cache to the L2.
 inline constexpr std::uint64_t kWholeLine = std::uint64_t{1} << 62;
+/// Shapes that come to a resource because another has asked for them (`memory.fetch: multicast`).
+struct PushedShapes {
+  std::uint64_t address = 0;
+  std::uint32_t size = 0;
+  std::uint64_t bytes() const { return size; }
+};
 /// All lines of the request are there.
 struct FetchAnswer {
   std::uint32_t tag = 0;

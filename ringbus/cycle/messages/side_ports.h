@@ -28,6 +28,7 @@ struct SidePorts {
   Channel<HelpNote>* help = nullptr;
   Channel<AnyHitQuestion>* questions = nullptr;  ///< null, like `answers`, with `any_hit: inline`
   Channel<AnyHitAnswer>* answers = nullptr;
+  Channel<PushedShapes>* pushed = nullptr;  ///< from its cache; null unless `memory.fetch: multicast`
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -28,12 +28,16 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       helpers_(clients_, settings.link),
       jobs_(settings.workers),
       made_(settings.workers),
+      rays_travel_(machine.control.rays_travel()),
       load_free_(clients_.size()),
       id_wires_(clients_.size(), SideWire(settings.link, latency_)),
       answer_wires_(clients_.size(), SideWire(settings.link, latency_)),
       samples_(observed.samples, kFirstHeldCounter + clients_.size()),
       held_(clients_.size()) {
   for (const auto& store : machine.stores) placed_at_.emplace_back(store->slots());
+  if (rays_travel_)
+    free_slots_.assign(settings.addressed ? clients_.size() : 1,
+                       settings.addressed ? slots_ / clients_.size() : slots_);
   if (fault_.kind == FaultsConfig::Resource::Kind::kStop) ledger_ = std::make_unique<OutstandingRays>();
   for (std::uint32_t w = static_cast<std::uint32_t>(settings.workers); w-- > 0;) idle_.push_back(w);
   const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
@@ -49,6 +53,7 @@ Cycle ShadingAgent::next() const {
     if (!done()) first = std::min(first, client.completed->next());
     if (client.questions != nullptr) first = std::min(first, client.questions->next());
   }
+  if (data_) first = std::min(first, data_->next());
   return std::min(first, helpers_.next());
 }
 
@@ -61,6 +66,8 @@ void ShadingAgent::step(Cycle now) {
   started_ = true;
   now_ = now;
   take_completed(now);
+  if (data_) [[unlikely]]
+    take_ray_data(now);
   if (give_up_at_ <= now) give_up(now);
   take_questions(now);
   // Shading that takes no time ends in the cycle in which it starts.
@@ -77,14 +84,22 @@ void ShadingAgent::take_completed(Cycle now) {
         on_note(r, done.note, now);
         continue;
       }
-      machine_.control.free(ResourceId(r), done.slots);
-      for (const std::uint32_t slot : done.slots)
-        if (slot < placed_at_[r].size()) residence_.add(now - placed_at_[r][slot]);
-      held_[r].change(now, -static_cast<std::int64_t>(done.slots.size()));
+      if (rays_travel_) {
+        free_slots_[free_slots_.size() == 1 ? 0 : r] += done.slots.size();
+        for (const Cycle placed : done.placed) residence_.add(now - placed);
+      } else {
+        machine_.control.free(ResourceId(r), done.slots);
+        for (const std::uint32_t slot : done.slots)
+          if (slot < placed_at_[r].size()) residence_.add(now - placed_at_[r][slot]);
+        held_[r].change(now, -static_cast<std::int64_t>(done.slots.size()));
+      }
       if (ledger_) ledger_->remove(done.rays);
       if (recording_.ray != nullptr) [[unlikely]]
         note_taken(done.rays, now);
-      for (const RayResult& ray : done.rays) queues_.push(ray);
+      if (data_) [[unlikely]]
+        data_->completed(ResourceId(r), done.slots, now);
+      for (const RayResult& ray : done.rays)
+        if (!data_ || !data_->fetch_state(ray, now)) queues_.push(ray);
     }
   }
 }
@@ -121,6 +136,8 @@ bool ShadingAgent::finish_jobs(Cycle now) {
     emitted_ += job.made;
     if (recording_.ray != nullptr) [[unlikely]]
       note_made(made_[worker], job.began, now);
+    if (data_) [[unlikely]]
+      data_->made(made_[worker], now);
     gathered_.insert(gathered_.end(), made_[worker].begin(), made_[worker].end());
     made_[worker].clear();
   }
@@ -128,7 +145,13 @@ bool ShadingAgent::finish_jobs(Cycle now) {
   const std::size_t before = gathered_.size();
   if (recording_.ray != nullptr) [[unlikely]]
     note_shaded(now);
+  if (data_) [[unlikely]]
+    data_->will_shade(shaded_);
   workload_.shade(WorkerId(0), shaded_, gathered_);
+  if (data_) [[unlikely]] {
+    data_->made(std::span(gathered_).subspan(before), now);
+    data_->shaded(shaded_, now);
+  }
   if (recording_.ray != nullptr) [[unlikely]]
     note_made(std::span(gathered_).subspan(before), now, now);
   trace_.note(now, StepKind::kShade, 0, shaded_.size());
@@ -219,42 +242,11 @@ void ShadingAgent::place(Cycle now) {
     gathered_.clear();
     placed = true;
   }
-  if (placed) send_groups(now);
-}
-
-void ShadingAgent::send_groups(Cycle now) {
-  const RayIdLayout& layout = machine_.stores.front()->layout();
-  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
-    groups_.clear();
-    machine_.control.collect(ResourceId(r), groups_);
-    for (RayGroup& group : groups_) {
-      Cycle loaded = std::max(now, builder_free_);
-      std::uint64_t loads = 0;
-      for (const RayId id : group.ids) {
-        const RayStore& store = *machine_.stores[layout.owner(id).value];
-        const std::uint32_t slot = layout.slot(id);
-        std::size_t records = 1;
-        std::vector<Cycle>& placed_at = placed_at_[layout.owner(id).value];
-        if (store.is_bundle(slot)) {
-          records += store.rays_of(slot).size();
-          for (const std::uint32_t ray : store.rays_of(slot)) placed_at[ray] = now;
-        } else {
-          placed_at[slot] = now;
-        }
-        Cycle& port = load_free_[layout.owner(id).value];
-        port = std::max(port, now) + load_cycles_ * records;
-        loaded = std::max(loaded, port);
-        loads += records;
-        if (recording_.ray != nullptr) [[unlikely]]
-          note_placed(id, r, now);
-        held_[layout.owner(id).value].change(now, static_cast<std::int64_t>(records));
-      }
-      trace_.note(now, StepKind::kPlace, 0, group.ids.size());
-      const Cycle arrival = id_wires_[r].send(4 * group.ids.size(), loaded);
-      if (recording_.ray != nullptr) [[unlikely]]
-        note_arrival(arrival);
-      clients_[r].new_rays->send(arrival, {std::move(group.ids), NewRays::Order::kTake, loads});
-    }
+  if (rays_travel_) {
+    gather_travellers();
+    send_travellers(now);
+  } else if (placed) {
+    send_groups(now);
   }
 }
 

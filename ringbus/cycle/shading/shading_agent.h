@@ -13,6 +13,7 @@
 #include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
+#include "ringbus/cycle/shading/ray_data.h"
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "ringbus/cycle/shading/shade_queues.h"
 #include "ringbus/cycle/shading/shading_samples.h"
@@ -49,6 +50,11 @@ class ShadingAgent final : public Agent {
   /// Keeps references to the machine and the workload. `clients` by resource.
   ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload, const Observation& observed,
                std::vector<SidePorts> clients);
+
+  /// From now on data of rays and paths is in memory.
+  void keep_in_memory(std::unique_ptr<RayData> data) { data_ = std::move(data); }
+  /// Null if there is none.
+  const RayData* ray_data() const { return data_.get(); }
 
   Cycle next() const override;
   bool polled() const override { return false; }
@@ -109,7 +115,7 @@ class ShadingAgent final : public Agent {
   void note_taken(const HitBatch& rays, Cycle now);
   void note_shaded(Cycle now);
   void note_placed(RayId id, std::uint32_t home, Cycle now);
-  void note_arrival(Cycle arrival);
+  void note_arrival(std::span<const RayId> ids, Cycle arrival);
   void read(Cycle at, std::span<std::uint64_t> row) const;
   void take_completed(Cycle now);
   void take_questions(Cycle now);
@@ -121,6 +127,14 @@ class ShadingAgent final : public Agent {
   std::size_t take_camera_rays(std::uint32_t worker);
   void place(Cycle now);
   void send_groups(Cycle now);
+  void place_group(std::uint32_t issuer, const RayGroup& group, Cycle now);
+  void send_group(std::uint32_t issuer, RayGroup&& group, Cycle now);
+  void take_ray_data(Cycle now);
+  // Where rays travel to find slots (shading_travel.cpp).
+  void gather_travellers();
+  void add_traveller(std::uint32_t issuer, const RayGroup& group);
+  void send_travellers(Cycle now);
+  bool reserve_slots(const RayGroup& group);
   void on_note(std::uint32_t resource, CompletedRays::Note note, Cycle now);
   void give_up(Cycle now);
   void restart(Cycle now);
@@ -149,6 +163,18 @@ class ShadingAgent final : public Agent {
   std::vector<RayBatch> made_;  // by worker: the camera rays of its job
   HitBatch shaded_;
   std::vector<RayGroup> groups_;
+  std::unique_ptr<RayData> data_;              // in memory
+  HitBatch stated_;                            // scratch
+  std::vector<RayData::Group> loaded_groups_;  // scratch
+  std::vector<RayData::Place> places_;         // scratch
+  bool rays_travel_;
+  struct Traveller {
+    std::uint32_t issuer = 0;
+    RayGroup group;
+    bool counted = false;  // as one that waits
+  };
+  std::deque<Traveller> travellers_;               // that wait for free slots
+  std::vector<std::uint64_t> free_slots_;          // by resource that addresses name, or of all in the first place
   std::vector<Cycle> load_free_;                   // by resource
   std::vector<SideWire> id_wires_, answer_wires_;  // likewise
   bool source_finished_ = false, source_dry_ = false, started_ = false;

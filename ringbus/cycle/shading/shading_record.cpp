@@ -1,4 +1,6 @@
 // Notes of ray control and shading for the life of a ray, where that is asked for.
+#include <algorithm>
+
 #include "ringbus/cycle/shading/shading_agent.h"
 
 namespace carousel::ringbus::cycle {
@@ -37,9 +39,11 @@ void ShadingAgent::note_placed(RayId id, std::uint32_t home, Cycle now) {
                                    .packet = layout.slot(id)});
 }
 
-/// The group that was placed last has been sent.
-void ShadingAgent::note_arrival(Cycle arrival) {
-  if (recording_.ray->facts.empty()) return;
+/// A group has been sent.
+void ShadingAgent::note_arrival(std::span<const RayId> ids, Cycle arrival) {
+  if (recording_.ray->facts.empty() ||
+      std::none_of(ids.begin(), ids.end(), [&](RayId id) { return recording_.ray->ray->is(id); }))
+    return;
   RayFact& last = recording_.ray->facts.back();
   if (last.kind == RayFact::Kind::kPlaced && last.end == 0) last.end = arrival;
 }

@@ -16,6 +16,7 @@ struct ShadingSettings {
   std::size_t slots = 0;        ///< of all resources
   std::size_t packet_rays = 1;  ///< new rays that make a group
   std::uint64_t seed = 1;
+  bool addressed = false;  ///< rays travel to the resources that they name
 };
 
 inline ShadingSettings shading_settings(const Config& config) {
@@ -26,7 +27,8 @@ inline ShadingSettings shading_settings(const Config& config) {
           static_cast<std::size_t>(shader_workers(config)),
           static_cast<std::size_t>(config.topology.resources * config.rays.slots_per_resource),
           static_cast<std::size_t>(config.packets.rays),
-          static_cast<std::uint64_t>(config.image.seed)};
+          static_cast<std::uint64_t>(config.image.seed),
+          config.rays.placement == Placement::kAddressed};
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -17,10 +17,10 @@ class CompletedPort {
         record_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(link.bytes_per_cycle))),
         latency_(control_latency(link)) {}
 
-  /// Takes the rays and the slots they leave; both are empty afterwards.
-  void send(HitBatch& done, std::vector<std::uint32_t>& slots, Cycle now) {
+  /// Takes the rays, the slots they leave and CompletedRays::placed; all are empty afterwards.
+  void send(HitBatch& done, std::vector<std::uint32_t>& slots, std::vector<Cycle>&& placed, Cycle now) {
     free_at_ = std::max(free_at_, now) + done.size() * record_cycles_;
-    completed_.send(free_at_ + latency_, {std::move(done), std::move(slots)});
+    completed_.send(free_at_ + latency_, {std::move(done), std::move(slots), {}, std::move(placed)});
     done.clear();
     slots.clear();
   }

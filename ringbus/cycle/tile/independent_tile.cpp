@@ -173,7 +173,7 @@ void IndependentTile::hand_over(Cycle now) {
     note_done(now);
   trace_.note(now, StepKind::kComplete, 0, completed_.size());
   record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(completed_.size())});
-  completed_port_.send(completed_, freed_slots_, now);
+  completed_port_.send(completed_, freed_slots_, {}, now);
 }
 
 void IndependentTile::note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key) {

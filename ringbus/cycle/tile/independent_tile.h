@@ -10,12 +10,12 @@
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
-#include "ringbus/cycle/tile/ray_walk.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/resource_samples.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
+#include "ringbus/cycle/tile/walk/ray_walk.h"
 #include "ringbus/protocol/machine.h"
 
 namespace carousel::ringbus::cycle {

@@ -19,6 +19,7 @@ enum class ResourceCounter : std::uint8_t {
   kPackets,      ///< packets of its own under way, times cycles
   kCompleted,    ///< rays
   kTested,       ///< rays
+  kHeld,         ///< rays that have travelled here, in slots, times cycles
   kEnd,
 };
 constexpr std::size_t counter_index(ResourceCounter counter) {

@@ -22,6 +22,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
               settings.resource.bundles.builder.rays_per_cycle),
       shapes_(settings.memory, settings.link, ports_),
       completed_port_(settings.link, ports_),
+      travelling_(machine, id, settings.link),
       help_(settings.link, ports_),
       packet_size_(settings.resource.collections, settings.resource.packets.carry),
       link_bytes_(static_cast<Cycle>(settings.link.bytes_per_cycle)),
@@ -31,7 +32,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
       broadcasts_(machine.topology.broadcasts()),
-      fetch_by_resource_(settings.memory.fetch == MemoryConfig::Fetch::kResource),
+      fetch_by_resource_(settings.memory.fetch != MemoryConfig::Fetch::kPacket),
+      multicast_(settings.memory, id, machine.topology.resources()),
       contexts_fetch_(!machine.stays &&
                       (fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet)),
       partial_(settings.resource.collections.partial),
@@ -78,6 +80,7 @@ Cycle Tile::next_beside_ring() const {
   consider(ports_.new_rays->next());
   consider(shapes_.next());
   consider(help_.next());
+  consider(travelling_.next());
   if (ports_.answers != nullptr) consider(ports_.answers->next());
   return may_send_ ? std::min(first, next_credit()) : first;
 }
@@ -92,7 +95,7 @@ Cycle Tile::next_credit() const {
 }
 
 bool Tile::wants_credit() const {
-  return machine_.flow.bubble() && !issue_.empty() && is_ready(issue_.front());
+  return machine_.flow.bubble() && ((!issue_.empty() && is_ready(issue_.front())) || travelling_.waiting());
 }
 
 Cycle Tile::next_egress() const {
@@ -108,6 +111,7 @@ Cycle Tile::next_egress() const {
 
 bool Tile::dispatch_wanted() const {
   // Collections that are not full are issued when the dispatch stage has nothing else to do.
+  if (travelling_.waiting()) return true;
   if (issue_.empty() ? !resource_.idle() : is_ready(issue_.front())) return true;
   return std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now_; });
 }
@@ -199,18 +203,9 @@ TileState Tile::classify() const {
 
 // ---- arrivals beside the ring
 
-void Tile::take_new_rays(Cycle now) {
-  while (ports_.new_rays->next() <= now) {
-    NewRays rays = ports_.new_rays->take();
-    if (rays.order != NewRays::Order::kTake)
-      on_order(rays.order, now);
-    else if (!logic_.only_forwards())
-      logic_.admission.add(std::move(rays.ids));
-  }
-}
-
 bool Tile::admit() {
-  if (logic_.admission.empty()) return false;
+  const bool loaded = travelling_.admit(now_, logic_.admission);
+  if (logic_.admission.empty()) return loaded;
   const bool moved = logic_.admission.admit(resource_, [this](std::span<const RayId> rays) {
     trace_.note(now_, StepKind::kNewRays, 0, rays.size());
     if (recording_.ray != nullptr) [[unlikely]]
@@ -227,15 +222,6 @@ bool Tile::send(Cycle now) {
   bool moved = false;
   for (OutPort& out : ports_.out) moved |= out.send(now);
   return moved;
-}
-
-void Tile::hand_over(Cycle now) {
-  if (done_.empty()) return;
-  if (recording_.ray != nullptr) [[unlikely]]
-    note_done(now);
-  sink_.record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(done_.size())});
-  trace_.note(now, StepKind::kComplete, 0, done_.size());
-  completed_port_.send(done_, done_slots_, now);
 }
 
 // ---- the end, good or bad
@@ -273,13 +259,15 @@ ResourceAgent::Busy Tile::busy() const {
 }
 
 bool Tile::at_rest() const {
-  return logic_.at_rest() && issue_.empty() &&
+  return logic_.at_rest() && travelling_.at_rest() && rays_out_ == 0 && issue_.empty() &&
          std::all_of(ports_.out.begin(), ports_.out.end(), [](const OutPort& out) { return out.empty(); });
 }
 
 std::string Tile::describe() const {
   if (at_rest()) return "";
   std::string text = logic_.describe() + fmt::format(", {} to be issued", issue_.size());
+  if (!travelling_.at_rest()) text += ", new rays wait for packets or records";
+  if (rays_out_ > 0) text += fmt::format(", {} packets of new rays out", rays_out_);
   for (std::size_t port = 0; port < ports_.out.size(); ++port)
     if (const std::string packet = blocked(port); !packet.empty())
       text += fmt::format("; {} cannot leave, {} more behind it", packet, ports_.out[port].egress() - 1);

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "ringbus/cycle/fabric/packet_size.h"
+#include "ringbus/cycle/memory/multicast.h"
 #include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/messages/side_wire.h"
+#include "ringbus/cycle/rays/travelling_rays.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/context_phases.h"
@@ -20,10 +22,10 @@
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/tile/spill_memory.h"
-#include "ringbus/cycle/tile/subtree_visits.h"
-#include "ringbus/cycle/tile/subtree_walk.h"
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/tile_settings.h"
+#include "ringbus/cycle/tile/walk/subtree_visits.h"
+#include "ringbus/cycle/tile/walk/subtree_walk.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/protocol/answers.h"
 #include "ringbus/protocol/port_logic.h"
@@ -139,6 +141,13 @@ class Tile final : public ResourceAgent {
   Cycle partial_may_go(Cycle now) const;
   bool send(Cycle now);
 
+  // New rays that travel (tile_rays.cpp).
+  bool send_new_rays(Cycle now);
+  void visit_with_rays(std::size_t d, Cycle now);
+  void retire_rays(std::size_t d, Cycle now);
+  Cycle take_slots(Packet& packet, Cycle now);
+  void come_home(PacketId id, Cycle now);
+
   // When a resource has stopped (tile_stop.cpp).
   bool fault_is_due() const {
     return sink_.statistics().rays_completed >= static_cast<std::uint64_t>(fault_.after_rays);
@@ -193,12 +202,15 @@ class Tile final : public ResourceAgent {
   Tester tester_;
   ShapeBuffer shapes_;  // users: contexts, then places of the issue queue, then rays in subtrees
   CompletedPort completed_port_;
+  TravellingRays travelling_;
+  std::size_t rays_out_ = 0;  // packets of its own with new rays
   ShadeHelp help_;
   PacketSize packet_size_;
   Cycle link_bytes_, ids_per_cycle_;
   SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;
+  Multicast multicast_;
   bool contexts_fetch_;  // packets travel, and wait in the contexts of others for shapes
   Partial partial_;
   Cycle memory_latency_;  // of a miss

@@ -131,7 +131,8 @@ bool Tile::fill_issue(Cycle now) {
     Issue issue{*id, static_cast<ShapeBuffer::User>(contexts_.size() + issued_++ % issue_places_)};
     issue.takes_data = fetches_ahead(packet);
     // The issuer cannot know whether all rays have their copies, so it takes the transform in any case.
-    if (issue.takes_data) shapes_.take_ahead(issue.user, shape_data(packet, true), now);
+    if (issue.takes_data)
+      shapes_.take_ahead(issue.user, shape_data(packet, true), now, multicast_.others(machine_.topology, packet));
     read_spilled(issue, now);
     issue_.push_back(issue);
   }

@@ -80,7 +80,7 @@ bool Tile::handle(Cycle now) {
     next_in_ = d + 1 == ports_.in.size() ? 0 : d + 1;
     return true;
   }
-  return handle_issue(now);
+  return send_new_rays(now) || handle_issue(now);
 }
 
 bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
@@ -114,6 +114,10 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   const PacketFate fate = logic_.fate(packet);
   if (fate == PacketFate::kRetire || fate == PacketFate::kDiscard) {
     const bool retires = fate == PacketFate::kRetire;
+    if (packet.kind == PacketKind::kRays) {
+      retire_rays(d, now);
+      return true;
+    }
     in.take(now);
     occupy_dispatch(now, retires ? packet.members.size() : 0, SliceKind::kRetire, id);
     retires ? retire_at_owner(id) : discard_at_owner(id);
@@ -121,6 +125,10 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   }
   OutPort& out = out_for(packet);
   if (!out.has_place()) return false;
+  if (fate == PacketFate::kTakeRays) {
+    visit_with_rays(d, now);
+    return true;
+  }
   // With a bus, others hear the packet at the same time, and its owner waits for the answers of those with rays of it.
   const bool heard = broadcasts_ && packet.kind == PacketKind::kTest;
   if (logic_.only_forwards()) {

@@ -23,6 +23,7 @@ void Tile::read(Cycle at, std::span<std::uint64_t> row) {
   put(ResourceCounter::kPackets, trips_.packet_cycles(at));
   put(ResourceCounter::kCompleted, sink_.statistics().rays_completed);
   put(ResourceCounter::kTested, sink_.statistics().local_rays);
+  put(ResourceCounter::kHeld, travelling_.held(at));
   read_ports(ports_.out, at, kFirstPortCounter, row);
 }
 

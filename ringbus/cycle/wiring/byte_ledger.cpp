@@ -48,6 +48,19 @@ ByteRow shape_data(const SimulatedMachine& machine, const MemoryConfig& memory) 
     row.messages += side.fetched->messages().sent;
   }
   for (const auto& resource : machine.resources()) row.bytes_taken += resource->lines_asked() * line;
+  if (own || machine.shading().ray_data() == nullptr) return row;
+  // An L2 answers resources, and ray control and shading, by the same ports; ray_data() has the others.
+  row.bytes -= machine.shading().ray_data()->lines() * line;
+  return row;
+}
+
+/// Lines of rays and paths that ray control and shading have read.
+ByteRow ray_data(const SimulatedMachine& machine, const MemoryConfig& memory) {
+  const std::uint64_t line = fetched_bytes(memory);
+  ByteRow row{"ray data", "L2", "shading", "L2's port",
+              line * static_cast<std::uint64_t>(memory.l2_lines_per_cycle * memory.l2_banks)};
+  row.bytes = row.bytes_taken = machine.shading().ray_data()->lines() * line;
+  for (const auto& channels : machine.ray_data()) row.messages += channels->ports().fetched->messages().sent;
   return row;
 }
 
@@ -89,10 +102,12 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
     add(own_addresses, down, kAddress);
     add(own_data, up, line);
   });
-  // Entries that do not fit collection storage: to L2 with their requests, and on to DRAM in whole lines.
-  ByteRow spilled{"lines of spilled entries", "L2", "DRAM", "DRAM's data wires", lines.width};
+  // Entries that do not fit collection storage, and data of rays and paths: to L2 with their requests, and on to DRAM
+  // in whole lines.
+  ByteRow spilled{"written lines", "L2", "DRAM", "DRAM's data wires", lines.width};
   for (const auto& cache : machine.memory().caches())
-    spilled.bytes += (cache->statistics().written + cache->statistics().written_back) * line;
+    spilled.bytes +=
+        (cache->statistics().written + cache->statistics().written_back + cache->statistics().drained) * line;
   spilled.bytes_taken = machine.memory().memory().lines_written() * line;
   spilled.messages = spilled.bytes / line;  // "line requests" has counted these messages
   std::vector<ByteRow> rows{packets(machine, width),
@@ -107,6 +122,17 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
                             answers,
                             jobs,
                             notes};
+  if (machine.shading().ray_data() != nullptr) {
+    ByteRow asked{"requests of ray data", "shading", "L2", "request wires", width};
+    for (const auto& channels : machine.ray_data()) add(asked, *channels->ports().fetch);
+    rows.insert(rows.end(), {asked, ray_data(machine, config.memory)});
+  }
+  if (config.memory.fetch == MemoryConfig::Fetch::kMulticast) {
+    ByteRow pushed{"multicast shapes", "L2", "resources", "wires of answers",
+                   static_cast<std::uint64_t>(config.memory.l2_answer_bytes_per_cycle)};
+    for (const auto& channels : machine.channels()) add(pushed, *channels->ports().pushed);
+    rows.push_back(pushed);
+  }
   if (!machine.memory().own_caches().empty()) rows.insert(rows.end(), {own_addresses, own_data});
   return rows;
 }

@@ -60,6 +60,8 @@ class SeriesWriter {
     Sums held = zeros();
     for (std::size_t r = 0; r < resources; ++r)
       machine_.shading().samples().add_to(held, interval_, kFirstHeldCounter + r);
+    for (const auto& resource : machine_.resources())
+      resource->samples().add_to(held, interval_, counter_index(ResourceCounter::kHeld));
     row({"machine", "rays held", "rays", Kind::kMean}, held);
     row({"machine", "ray IDs in collections", "entries", Kind::kMean}, all(counter_index(ResourceCounter::kIds)));
     row({"machine", "open collections", "entries", Kind::kMean}, all(counter_index(ResourceCounter::kCollections)));
@@ -95,7 +97,10 @@ class SeriesWriter {
     };
     row({part, "rays completed", "rays", Kind::kSum}, own(counter_index(ResourceCounter::kCompleted)));
     row({part, "rays tested", "rays", Kind::kSum}, own(counter_index(ResourceCounter::kTested)));
-    row({part, "rays held", "rays", Kind::kMean}, of_shading(kFirstHeldCounter + r));
+    // Ray control counts them where it gives out the slots, and otherwise the resource does.
+    Sums held = of_shading(kFirstHeldCounter + r);
+    samples.add_to(held, interval_, counter_index(ResourceCounter::kHeld));
+    row({part, "rays held", "rays", Kind::kMean}, held);
     row({part, "ray IDs in collections", "entries", Kind::kMean}, own(counter_index(ResourceCounter::kIds)));
     row({part, "open collections", "entries", Kind::kMean}, own(counter_index(ResourceCounter::kCollections)));
     row({part, "packets under way", "packets", Kind::kMean}, own(counter_index(ResourceCounter::kPackets)));

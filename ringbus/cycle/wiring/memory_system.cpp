@@ -4,7 +4,8 @@
 
 namespace carousel::ringbus::cycle {
 
-MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients)
+MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients,
+                           const std::vector<ShapeCache::Client>& shading)
     : shared_by_(static_cast<std::size_t>(config.memory.shared_by)) {
   std::vector<MemoryAgent::Client> memory_clients;
   std::vector<ShapeCache::OwnCache> own;
@@ -24,8 +25,11 @@ MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::C
       return std::vector(all.begin() + static_cast<std::ptrdiff_t>(first),
                          all.begin() + static_cast<std::ptrdiff_t>(last));
     };
-    caches_.push_back(own.empty() ? std::make_unique<ShapeCache>(config.memory, sharers(clients), down, up)
-                                  : std::make_unique<ShapeCache>(config.memory, sharers(own), down, up));
+    std::vector<ShapeCache::Client> askers;
+    if (own.empty()) askers = sharers(clients);
+    if (!shading.empty()) askers.push_back(shading[caches_.size()]);
+    const std::vector<ShapeCache::OwnCache> before = own.empty() ? std::vector<ShapeCache::OwnCache>{} : sharers(own);
+    caches_.push_back(std::make_unique<ShapeCache>(config.memory, before, std::move(askers), down, up));
     memory_clients.push_back({&down, &up});
   }
   memory_ = make_memory(config, std::move(memory_clients));
@@ -34,6 +38,18 @@ MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::C
 void MemorySystem::warm(const WarmCaches& from) {
   if (from.lines == nullptr || from.lines->size() != caches_.size()) return;
   for (std::size_t c = 0; c < caches_.size(); ++c) caches_[c]->warm((*from.lines)[c], from.part);
+}
+
+CacheDrain MemorySystem::drain(Cycle end) {
+  CacheDrain out;
+  const std::uint64_t before = memory_->lines_written();
+  memory_->log(nullptr);
+  const Cycle begin = std::max(end, memory_->last_step());
+  for (const auto& cache : caches_) cache->drain(begin);
+  memory_->run(kNever);
+  out.lines = memory_->lines_written() - before;
+  if (out.lines > 0) out.cycles = memory_->idle_from() - end;
+  return out;
 }
 
 void MemorySystem::connect(WakeupTable& wakeups) const {

@@ -8,14 +8,19 @@
 #include "ringbus/cycle/memory/shape_cache.h"
 #include "ringbus/cycle/time/wakeup_table.h"
 #include "ringbus/results/class_use.h"
+#include "ringbus/results/ray_data_use.h"
 
 namespace carousel::ringbus::cycle {
 
 /// The caches, each shared by some neighbouring resources, and the memory behind them.
 class MemorySystem {
  public:
-  /// `clients` by resource.
-  MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients);
+  /// `clients` by resource. `shading`: by L2, or none.
+  MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients,
+               const std::vector<ShapeCache::Client>& shading = {});
+  static std::size_t shared_caches(const Config& config) {
+    return static_cast<std::size_t>((config.topology.resources - 1) / config.memory.shared_by + 1);
+  }
 
   const std::vector<std::unique_ptr<ShapeCache>>& caches() const { return caches_; }
   /// The resources' own, by resource; empty if they have none.
@@ -38,6 +43,8 @@ class MemorySystem {
   void for_each_own_channel(const Body& body) const {
     for (std::size_t r = 0; r < own_.size(); ++r) body(*own_down_[r], *own_up_[r]);
   }
+  /// The run was over at `end`: caches write back all that they hold for memory.
+  CacheDrain drain(Cycle end);
   /// Announces arrivals between caches and memory.
   void connect(WakeupTable& wakeups) const;
   /// The least latency of any channel to a cache or to memory.

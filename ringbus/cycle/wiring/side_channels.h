@@ -12,7 +12,9 @@ namespace carousel::ringbus::cycle {
 class SideChannels {
  public:
   /// `helps`: the resource shades when it has nothing to test; `calls_shader`: it asks shading for any-hit calls.
-  SideChannels(bool helps, bool calls_shader) {
+  /// `multicasts`: its cache sends it shapes for which others have asked.
+  SideChannels(bool helps, bool calls_shader, bool multicasts) {
+    if (multicasts) pushed_ = std::make_unique<Channel<PushedShapes>>();
     if (helps) help_ = std::make_unique<Help>();
     if (calls_shader) any_hit_ = std::make_unique<AnyHit>();
   }
@@ -27,6 +29,7 @@ class SideChannels {
       side.questions = &any_hit_->questions;
       side.answers = &any_hit_->answers;
     }
+    side.pushed = pushed_.get();
     return side;
   }
 
@@ -36,6 +39,7 @@ class SideChannels {
     wakeups.connect(completed_, resource, shading);
     wakeups.connect(fetch_, resource, cache);
     wakeups.connect(fetched_, cache, resource);
+    if (pushed_) wakeups.connect(*pushed_, cache, resource);
     if (any_hit_) {
       wakeups.connect(any_hit_->questions, resource, shading);
       wakeups.connect(any_hit_->answers, shading, resource);
@@ -59,6 +63,7 @@ class SideChannels {
   Channel<CompletedRays> completed_;
   Channel<FetchRequest> fetch_;
   Channel<FetchAnswer> fetched_;
+  std::unique_ptr<Channel<PushedShapes>> pushed_;
   std::unique_ptr<Help> help_;
   std::unique_ptr<AnyHit> any_hit_;
 };

@@ -12,8 +12,11 @@ namespace carousel::ringbus::cycle {
 namespace {
 
 /// Packets that are tested where they are issued need no flow control: one for each context, and those whose shapes are
-/// being fetched.
-std::uint32_t local_packets(const Config& config) {
+/// being fetched. Where new rays travel in them, they are as many as in other networks.
+std::optional<std::uint32_t> local_packets(const Config& config) {
+  const Placement placement = config.rays.placement;
+  if (config.topology.resources > 1 && (placement == Placement::kFirstTaker || placement == Placement::kAddressed))
+    return std::nullopt;
   return static_cast<std::uint32_t>(config.testers.contexts + 1 + config.memory.fetch_ahead);
 }
 
@@ -35,10 +38,10 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
     const ResourceId id(r);
-    channels_.push_back(
-        std::make_unique<SideChannels>(config.shading.idle_resources_shade, calls_shader(config, accel)));
+    channels_.push_back(std::make_unique<SideChannels>(config.shading.idle_resources_shade, calls_shader(config, accel),
+                                                       config.memory.fetch == MemoryConfig::Fetch::kMulticast));
     const SidePorts& side = sides.emplace_back(channels_.back()->ports());
-    cache_clients.push_back({side.fetch, side.fetched});
+    cache_clients.push_back({side.fetch, side.fetched, side.pushed});
     TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
     if (recorder_) settings.recording = recorder_->of_resource(id);
     if (shared_.topology.has_packets()) {
@@ -52,7 +55,19 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   }
   shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
   if (recorder_) shading_->record(recorder_->of_shading());
-  memory_ = std::make_unique<MemorySystem>(config, cache_clients);
+  std::vector<ShapeCache::Client> ray_data_clients;
+  if (RayData::wanted(config.memory)) {
+    std::vector<SidePorts> ends;
+    for (std::size_t i = 0; i < MemorySystem::shared_caches(config); ++i) {
+      const SidePorts& end = ends.emplace_back(ray_data_.emplace_back(std::make_unique<RayDataChannels>())->ports());
+      ray_data_clients.push_back({end.fetch, end.fetched});
+    }
+    const RayStore& store = *shared_.stores.front();
+    const std::uint32_t records = store.slots() + store.room().loaded + store.room().own;
+    const RayData::Settings settings{config.memory, config.topology.link, records};
+    shading_->keep_in_memory(std::make_unique<RayData>(settings, workload, ends));
+  }
+  memory_ = std::make_unique<MemorySystem>(config, cache_clients, ray_data_clients);
   memory_->memory().sample(observed.samples);
   memory_->memory().log(observed.memory);
   for (std::uint32_t h = 0; h < network_.hubs().size(); ++h) {
@@ -89,6 +104,7 @@ void SimulatedMachine::connect(WakeupTable& wakeups) const {
   network_.connect(wakeups, resources_);
   for (std::size_t r = 0; r < resources_.size(); ++r)
     channels_[r]->connect(wakeups, *resources_[r], *shading_, memory_->cache_of(r));
+  for (std::size_t c = 0; c < ray_data_.size(); ++c) ray_data_[c]->connect(wakeups, *shading_, *memory_->caches()[c]);
   memory_->connect(wakeups);
 }
 

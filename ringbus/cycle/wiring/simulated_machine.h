@@ -12,6 +12,7 @@
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/wiring/memory_system.h"
 #include "ringbus/cycle/wiring/network.h"
+#include "ringbus/cycle/wiring/ray_data_channels.h"
 #include "ringbus/cycle/wiring/recorder.h"
 #include "ringbus/cycle/wiring/side_channels.h"
 #include "ringbus/protocol/machine.h"
@@ -30,6 +31,7 @@ class SimulatedMachine {
   const MemorySystem& memory() const { return *memory_; }
   /// Before the start.
   void warm(const WarmCaches& caches) { memory_->warm(caches); }
+  const ShapeMemory& shapes() const { return shape_memory_; }
   /// Null unless a timeline or the life of a ray is recorded.
   Recorder* recorder() const { return recorder_.get(); }
   const ShadingAgent& shading() const { return *shading_; }
@@ -46,6 +48,10 @@ class SimulatedMachine {
   /// Every agent that waits for something, a line each, and the circle of waits if there is one; empty when all are at
   /// rest.
   std::string describe_waits() const;
+  /// After close(), and when all else has been counted: caches write back all that they hold for memory.
+  CacheDrain drain(Cycle end) const { return memory_->drain(end); }
+  /// By L2: those of ray control and shading to the data of rays and paths, if any is in memory.
+  const std::vector<std::unique_ptr<RayDataChannels>>& ray_data() const { return ray_data_; }
   /// The run is over at `end`: all agents make their last readings.
   void close(Cycle end) const;
   /// Calls `body` with each wire and the port by which it leaves its node.
@@ -73,7 +79,8 @@ class SimulatedMachine {
   Machine shared_;
   ShapeMemory shape_memory_;
   Network network_;
-  std::vector<std::unique_ptr<SideChannels>> channels_;  // by resource
+  std::vector<std::unique_ptr<SideChannels>> channels_;     // by resource
+  std::vector<std::unique_ptr<RayDataChannels>> ray_data_;  // by L2
   std::vector<std::unique_ptr<ResourceAgent>> resources_;
   std::unique_ptr<Recorder> recorder_;  // null: nothing is recorded
   std::unique_ptr<MemorySystem> memory_;

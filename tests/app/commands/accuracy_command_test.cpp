@@ -5,7 +5,7 @@
 #include "app/accuracy/unit_cost.h"
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::accuracy_command_test {
 namespace {
 
 using testing::HasSubstr;
@@ -172,4 +172,4 @@ TEST(AccuracyCommandErrors, TrafficHasNoPictures) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::accuracy_command_test

@@ -12,7 +12,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/random_runs.h"
 
-namespace carousel {
+namespace carousel::certify_command_test {
 namespace {
 
 using nlohmann::json;
@@ -256,4 +256,4 @@ TEST(Certificate, JudgesAnyNumbers) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::certify_command_test

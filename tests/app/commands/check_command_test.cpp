@@ -6,7 +6,7 @@
 #include "core/config/write.h"
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::check_command_test {
 namespace {
 
 using testing::HasSubstr;
@@ -56,6 +56,8 @@ TEST(CheckCommand, RefusesTheMachinesThatARunRefuses) {
       {cycle + "workload: {rays_from: nowhere.csv}\n",
        "a.yaml:3:23: workload.rays_from: expected a file of rays beside the configuration or in the working directory, "
        "found 'nowhere.csv', which is not there"},
+      {cycle + "energy: {profile: n7}\narea: {budget_mm2: 0.001, fit: refuse}\n",
+       "a.yaml:4:20: area.budget_mm2: expected a machine of at most 0.001 mm2, found one of "},
   };
   for (const auto& machine : machines) {
     program.write("a.yaml", machine.text);
@@ -97,4 +99,4 @@ TEST(MemoryNeed, KeepingHitsCounts) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::check_command_test

@@ -8,7 +8,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::command_line_test {
 namespace {
 
 using testing::HasSubstr;
@@ -93,4 +93,4 @@ TEST(CommandLine, PrintsSchemas) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::command_line_test

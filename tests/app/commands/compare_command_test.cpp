@@ -4,7 +4,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::compare_command_test {
 namespace {
 
 using testing::HasSubstr;
@@ -179,4 +179,4 @@ TEST(CycleRun, EndsWithStatusOneWhenItIsStuck) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::compare_command_test

@@ -6,7 +6,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::cull_plane_report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -59,4 +59,4 @@ TEST(CullPlaneReport, IsLeftOutWithoutPlanes) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::cull_plane_report_test

@@ -7,7 +7,7 @@
 #include "tests/scene/gltf/gltf_builder.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::effects_run_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -118,4 +118,4 @@ TEST(EffectsRun, InspectSaysWhatASceneCallsFor) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::effects_run_test

@@ -12,7 +12,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::interrupted_run_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -126,4 +126,4 @@ TEST_F(InterruptedRun, ASecondSignalEndsItAtOnce) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::interrupted_run_test

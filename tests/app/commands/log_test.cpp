@@ -7,7 +7,7 @@
 #include "tests/app/support/program.h"
 #include "tests/scene/gltf/gltf_builder.h"
 
-namespace carousel {
+namespace carousel::log_test {
 namespace {
 
 using testing::AllOf;
@@ -160,4 +160,4 @@ TEST(Messages, TooLittleAddressSpaceEndsWithAMessage) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::log_test

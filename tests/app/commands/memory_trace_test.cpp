@@ -7,7 +7,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::memory_trace_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -97,4 +97,4 @@ TEST(MemoryTrace, RefusesBadFilesByTheirPlaces) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::memory_trace_test

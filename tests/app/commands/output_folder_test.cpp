@@ -13,7 +13,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::output_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST_F(OutputFolder, TheTableFitsTheTerminal) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::output_folder_test

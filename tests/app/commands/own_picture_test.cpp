@@ -5,7 +5,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::own_picture_test {
 namespace {
 
 const char* const kSmall = "scene: {builtin: cornell}\nimage: {width: 16, height: 12, samples: 1}\n";
@@ -38,4 +38,4 @@ TEST(OwnPicture, ACameraThatRepeatsTheScenesGivesItsPicture) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::own_picture_test

@@ -7,7 +7,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::report_command_test {
 namespace {
 
 using testing::HasSubstr;
@@ -79,4 +79,4 @@ TEST_F(RunPage, NeedsAReport) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::report_command_test

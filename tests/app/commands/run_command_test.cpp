@@ -13,7 +13,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::run_command_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -245,4 +245,4 @@ TEST(RunCommand, AnInterruptLeavesAPartialReport) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::run_command_test

@@ -9,7 +9,7 @@
 #include "tests/support/json_schema_check.h"
 #include "tests/support/read_exr.h"
 
-namespace carousel {
+namespace carousel::sampled_run_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -148,4 +148,4 @@ TEST(SampledRun, RefusesWhereASampleMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::sampled_run_test

@@ -7,7 +7,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::stress_command_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -99,4 +99,4 @@ TEST(StressCommand, RefusesWhatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::stress_command_test

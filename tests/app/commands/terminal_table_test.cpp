@@ -10,7 +10,7 @@
 #include "report/run/terminal_words.h"
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::terminal_table_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -132,4 +132,4 @@ TEST_F(TerminalTable, CycleRunsHaveNoNativeValuesAndNativeRunsNoTimesOutsideHost
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::terminal_table_test

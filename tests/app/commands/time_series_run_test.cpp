@@ -6,7 +6,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::time_series_run_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -83,4 +83,4 @@ TEST(TimeSeriesRun, OfTheNativeEngineIsInSecondsOfTheHost) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::time_series_run_test

@@ -8,7 +8,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::trace_run_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -166,4 +166,4 @@ TEST(TraceRun, RefusesWhatItCannotDoBeforeTheRun) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::trace_run_test

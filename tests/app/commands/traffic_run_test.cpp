@@ -6,7 +6,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::traffic_run_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -77,4 +77,4 @@ TEST(TrafficRun, HasNoHitsToWrite) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::traffic_run_test

@@ -7,7 +7,7 @@
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
 
-namespace carousel {
+namespace carousel::verdict_run_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -77,4 +77,4 @@ TEST_F(VerdictRun, TheBoundOfABusIsThatOfOneMedium) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::verdict_run_test

@@ -15,7 +15,7 @@
 #include "core/system/error.h"
 #include "tests/app/keys/key_rows.h"
 
-namespace carousel {
+namespace carousel::key_effects_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -183,4 +183,4 @@ TEST_F(KeyEffects, TheTests) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::key_effects_test

@@ -14,7 +14,7 @@
 #include "core/types/cost_table.h"
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::energy_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -199,4 +199,4 @@ TEST_F(EnergyRun, IsAbsentWithoutAProfile) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::energy_test

@@ -10,7 +10,7 @@
 
 #include "tests/app/support/program.h"
 
-namespace carousel {
+namespace carousel::query_test {
 namespace {
 
 /// By row of hits.csv: kind, hit, and t.
@@ -69,4 +69,4 @@ TEST(Query, AnyFindsAHitWhereThereIsAClosestOne) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::query_test

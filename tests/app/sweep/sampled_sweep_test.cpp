@@ -6,7 +6,7 @@
 
 #include "tests/app/sweep/sweep_program.h"
 
-namespace carousel {
+namespace carousel::sampled_sweep_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -49,4 +49,4 @@ TEST(SampledSweep, RefusesAFractionThatIsNone) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::sampled_sweep_test

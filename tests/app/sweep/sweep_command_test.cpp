@@ -6,7 +6,7 @@
 
 #include "tests/app/sweep/sweep_program.h"
 
-namespace carousel {
+namespace carousel::sweep_command_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -166,4 +166,4 @@ TEST_F(SweepCommand, TheTableFitsAndNamesItsResults) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::sweep_command_test

@@ -14,7 +14,7 @@
 #include "tests/support/full_disk.h"
 #include "tests/support/random_runs.h"
 
-namespace carousel {
+namespace carousel::sweep_survival_test {
 namespace {
 
 using testing::HasSubstr;
@@ -159,4 +159,4 @@ TEST_F(SweepSurvival, OneSweepAtATimeWorksInAFolder) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::sweep_survival_test

@@ -3,7 +3,7 @@
 
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::bus_broadcast_test {
 namespace {
 
 class BusCrossings : public TimedRun {
@@ -70,4 +70,4 @@ TEST_F(BusCrossings, AnswersCarryNoShapes) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::bus_broadcast_test

@@ -6,18 +6,13 @@
 #include "tests/app/keys/base_machines.h"
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::byte_ledger_test {
 namespace {
 
 class ByteLedger : public TimedRun {
  protected:
-  static std::uint64_t bytes(const Json& report, const std::string& what) { return row(report, what)["bytes"]; }
-  static std::uint64_t messages(const Json& report, const std::string& what) { return row(report, what)["messages"]; }
-  static Json row(const Json& report, const std::string& what) {
-    for (const Json& row : report["bytes"])
-      if (row["what"] == what) return row;
-    ADD_FAILURE() << what;
-    return {};
+  static std::uint64_t messages(const Json& report, const std::string& what) {
+    return ledger_row(report, what)["messages"];
   }
 };
 
@@ -80,7 +75,7 @@ TEST_F(ByteLedger, SpilledEntriesTravelBothWays) {
     written += cache["written"].get<std::uint64_t>();
   }
   ASSERT_GT(written, 0u);
-  EXPECT_EQ(bytes(r, "lines of spilled entries"), written * 64);
+  EXPECT_EQ(bytes(r, "written lines"), written * 64);
   EXPECT_EQ(r["memory"]["dram_lines_written"], written);
   EXPECT_GT(messages(r, "shape requests"), requests);  // writes are requests without an answer
   EXPECT_EQ(bytes(r, "shape requests"),
@@ -136,4 +131,4 @@ TEST(SideWire, AMessageOccupiesItForItsWidths) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::byte_ledger_test

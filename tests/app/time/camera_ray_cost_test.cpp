@@ -3,7 +3,7 @@
 
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::camera_ray_cost_test {
 namespace {
 
 class CameraRayCost : public TimedRun {
@@ -50,4 +50,4 @@ TEST_F(CameraRayCost, IsPaidForEachRay) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::camera_ray_cost_test

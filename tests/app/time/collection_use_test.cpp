@@ -3,7 +3,7 @@
 
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::collection_use_test {
 namespace {
 
 class CollectionUse : public TimedRun {
@@ -66,4 +66,4 @@ TEST_F(CollectionUse, OrderedTraversalAdmitsAsManyRaysAsThereArePlaces) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::collection_use_test

@@ -4,7 +4,7 @@
 #include "core/system/error.h"
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::partial_collections_test {
 namespace {
 
 class PartialCollections : public TimedRun {
@@ -65,4 +65,4 @@ TEST_F(PartialCollections, TheNativeEngineHasNoClockToWaitBy) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::partial_collections_test

@@ -5,7 +5,7 @@
 
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::ray_ways_test {
 namespace {
 
 class RayWays : public TimedRun {
@@ -147,4 +147,4 @@ TEST_F(RayWays, ALargeRunIsSampled) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::ray_ways_test

@@ -8,7 +8,7 @@
 #include "tests/app/time/timed_run.h"
 #include "tests/support/random_runs.h"
 
-namespace carousel {
+namespace carousel::resource_ledger_test {
 namespace {
 
 class ResourceLedger : public TimedRun {
@@ -87,4 +87,4 @@ TEST_F(ResourceLedger, PartsAddUpOnRandomMachines) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::resource_ledger_test

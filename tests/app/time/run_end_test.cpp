@@ -3,7 +3,7 @@
 
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::run_end_test {
 namespace {
 
 class RunEnd : public TimedRun {
@@ -32,4 +32,4 @@ TEST_F(RunEnd, IsTheCycleAfterTheLastRayWasShaded) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::run_end_test

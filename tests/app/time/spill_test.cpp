@@ -3,7 +3,7 @@
 
 #include "tests/app/time/timed_run.h"
 
-namespace carousel {
+namespace carousel::spill_test {
 namespace {
 
 class Spill : public TimedRun {
@@ -74,4 +74,4 @@ TEST_F(Spill, APacketWaitsForItsEntries) {
 }
 
 }  // namespace
-}  // namespace carousel
+}  // namespace carousel::spill_test

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,15 @@ class TimedRun : public testing::Test {
     app::run_command(arguments);
     return Json::parse(program_.read("out/report.json"));
   }
+
+  /// The row of the ledger of bytes for one kind of message.
+  static Json ledger_row(const Json& report, const std::string& what) {
+    for (const Json& row : report["bytes"])
+      if (row["what"] == what) return row;
+    ADD_FAILURE() << what;
+    return {{"bytes", 0}, {"messages", 0}};
+  }
+  static std::uint64_t bytes(const Json& report, const std::string& what) { return ledger_row(report, what)["bytes"]; }
 
   Program program_;
 };

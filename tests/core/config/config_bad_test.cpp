@@ -122,9 +122,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"TwoScenes", "scene: {file: a.glb, builtin: cornell}\n",
                   "test.yaml:1:31: scene.builtin: expected either file or builtin, found both; another scene takes the "
                   "place of both with --set 'scene={file: NAME}'"},
-        BadConfig{"CyclePlacement", SCENE "engine: {kind: cycle}\nrays: {placement: addressed}\n",
-                  "test.yaml:3:19: rays.placement: the cycle engine has no addressed; expected balanced or "
-                  "round_robin"},
+        BadConfig{"TravelWithoutPackets",
+                  SCENE "engine: {kind: cycle}\nrays: {placement: addressed}\ntopology: {shape: independent}\n",
+                  "test.yaml:3:19: rays.placement: independent resources have no packets in which rays could travel; "
+                  "expected balanced or round_robin, found addressed"},
+        BadConfig{
+            "TravelWhenAResourceStops",
+            SCENE "engine: {kind: cycle}\nrays: {placement: first_taker}\nfaults: {resource: {kind: stop}}\n",
+            "test.yaml:3:19: rays.placement: the cycle engine does not place travelling rays anew when a resource "
+            "has stopped; expected balanced or round_robin, found first_taker"},
+        BadConfig{"AllWaysForRays", SCENE "memory: {ways: 4, l2_ray_ways: 4}\n",
+                  "test.yaml:2:32: memory.l2_ray_ways: shapes need a way too; expected less than memory.ways = 4, "
+                  "found 4"},
         BadConfig{"Shape", SCENE "topology: {shape: bus}\n",
                   "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
                   "point_to_point"},
@@ -207,8 +216,9 @@ INSTANTIATE_TEST_SUITE_P(
             "WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
             "test.yaml:2:56: topology.overrides.0.testers.window: a choice among arrived packets is not built yet; "
             "expected 1, found 4"},
-        BadConfig{"Multicast", SCENE "memory: {fetch: multicast}\n",
-                  "test.yaml:2:17: memory.fetch: multicast is not built yet; expected packet or resource"},
+        BadConfig{"MulticastPastOwnCaches", SCENE "engine: {kind: cycle}\nmemory: {fetch: multicast, l1_kib: 4}\n",
+                  "test.yaml:3:36: memory.l1_kib: a shared cache multicasts to shape buffers; expected 0, or "
+                  "memory.fetch: resource; found 4"},
         BadConfig{"FetchByPacketsWithoutData", SCENE "engine: {kind: cycle}\nmemory: {fetch: packet}\n",
                   "test.yaml:3:17: memory.fetch: packets that carry a reference bring no shapes along; expected "
                   "resource, or packets.carry: data, whose bytes are charged on every hop; found packet"},

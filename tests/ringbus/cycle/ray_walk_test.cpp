@@ -1,5 +1,5 @@
 // A ray's way through a tree: nearest first, and what its stack moves.
-#include "ringbus/cycle/tile/ray_walk.h"
+#include "ringbus/cycle/tile/walk/ray_walk.h"
 
 #include <bit>
 

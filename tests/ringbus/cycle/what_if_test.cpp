@@ -95,11 +95,12 @@ RunResult run_whole(TestScene& scene, const Config& config) {
   return run_cycle(config, scene.accel(config.bvh), scene.size(), workload, on_threads(1));
 }
 
-Bottleneck search(TestScene& scene, const Config& config, std::uint64_t paths, const RunResult& run) {
+Bottleneck search(TestScene& scene, const Config& config, std::uint64_t paths, const RunResult& run,
+                  std::size_t threads = 1) {
   const PilotFactory pilots = [&](const Config&, std::uint64_t some) {
     return std::make_unique<FirstPaths>(scene.new_workload(), some);
   };
-  return find_bottleneck(config, scene.accel(config.bvh), scene.size(), pilots, {run, paths}, on_threads(1));
+  return find_bottleneck(config, scene.accel(config.bvh), scene.size(), pilots, {run, paths}, on_threads(threads));
 }
 
 TEST(WhatIf, NamesThePlantedBottleneck) {
@@ -114,6 +115,28 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
     for (const Gain& gain : found.gains) all += fmt::format("\n  {} {:+.3f}", gain.name, gain.gain);
     EXPECT_EQ(found.gains.front().name, plant.name) << all;
     EXPECT_GT(found.gains.front().gain, 0.2) << plant.name;
+  }
+}
+
+// Simulations run at the same time where there are threads. The gains are the same.
+TEST(SearchThreads, FindTheSame) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 6000, 2);
+  Config config = generous_machine();
+  config.rays.slots_per_resource = 16;
+  config.shading.workers = 1;
+  const RunResult run = run_whole(scene, config);
+  const Bottleneck alone = search(scene, config, 6000, run);
+  ASSERT_FALSE(alone.gains.empty()) << alone.unlike;
+  EXPECT_FALSE(alone.whole);
+  const Bottleneck found = search(scene, config, 6000, run, 3);
+  EXPECT_EQ(found.paths, alone.paths);
+  EXPECT_EQ(found.deviation, alone.deviation);
+  ASSERT_EQ(found.gains.size(), alone.gains.size());
+  for (std::size_t i = 0; i < alone.gains.size(); ++i) {
+    EXPECT_EQ(found.gains[i].name, alone.gains[i].name);
+    EXPECT_EQ(found.gains[i].gain, alone.gains[i].gain) << alone.gains[i].name;
+    EXPECT_EQ(found.gains[i].low, alone.gains[i].low) << alone.gains[i].name;
+    EXPECT_EQ(found.gains[i].together, alone.gains[i].together) << alone.gains[i].name;
   }
 }
 

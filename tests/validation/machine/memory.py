@@ -71,7 +71,7 @@ class ShapePort:
 
 class Request:
     def __init__(self, client, tag, missing):
-        self.client, self.tag, self.ready, self.missing = client, tag, 0, missing
+        self.client, self.tag, self.ready, self.missing, self.pieces = client, tag, 0, missing, missing
 
 
 class Bank:
@@ -88,7 +88,11 @@ class Cache:
         m = config["memory"]
         self.clock, self.ports, self.own = clock, ports, own  # resources, or their own caches
         self.piece = piece_of(config)
-        self.lines = LineCache(m["l2_kib"] * 1024 // m["line_bytes"], m["ways"], m["line_bytes"] // self.piece)
+        pieces = m["line_bytes"] // self.piece
+        sets, rays = m["l2_kib"] * 1024 // m["line_bytes"] // m["ways"], m.get("l2_ray_ways", 0)
+        self.lines = LineCache(sets * (m["ways"] - rays), m["ways"] - rays, pieces)
+        self.ray_lines = LineCache(sets * rays, rays, pieces) if rays else self.lines
+        self.answer_bytes, self.answers_free = m.get("l2_answer_bytes_per_cycle", 0), 0
         self.back = way_back(m["l2_latency_cycles"])
         self.to_memory, self.from_memory = Channel(clock), Channel(clock)
         self.memory_latency = way_there(m["dram_latency_cycles"])
@@ -116,7 +120,11 @@ class Cache:
         for request in [request for request in self.complete if request.ready <= now]:
             self.complete.remove(request)
             to = self.own[request.client].from_memory if self.own else self.ports[request.client].answers
-            to.send(now + self.back, request.tag)
+            arrival = now + self.back
+            if self.answer_bytes:
+                self.answers_free = max(self.answers_free, now) + ceil_div(request.pieces * self.piece, self.answer_bytes)
+                arrival = self.answers_free - 1 + self.back
+            to.send(arrival, request.tag)
         for leaves in [leaves for leaves in self.leaving if leaves[0] <= now]:
             self.leaving.remove(leaves)
             self.to_memory.send(now + self.memory_latency, leaves[1])
@@ -135,12 +143,15 @@ class Cache:
         if (bank.stopped and how != "through") or not self.look_up(bank, piece, how, now, whole):
             bank.stopped.append((piece, how))
 
+    def ways(self, piece):
+        return self.ray_lines if piece * self.piece >= 1 << 40 else self.lines
+
     def bank(self, piece):
         return self.banks[piece // self.lines.pieces % len(self.banks)]
 
     def look_up(self, bank, piece, how, now, whole="part"):
         """False, and nothing is done, if the piece must be fetched and cannot be."""
-        there, under_way = self.lines.touch(piece), piece in self.waiting
+        there, under_way = self.ways(piece).touch(piece), piece in self.waiting
         needs_it = how not in ("through", "whole")
         if how == "whole" and under_way:
             needs_it = True
@@ -157,7 +168,7 @@ class Cache:
                 how.ready = max(how.ready, end)
                 self.one_less(how)
             else:
-                self.lines.write(piece)
+                self.ways(piece).write(piece)
         else:
             if not under_way:
                 self.waiting[piece] = []
@@ -169,7 +180,7 @@ class Cache:
         return True
 
     def insert(self, piece, now):
-        for written in self.lines.insert(piece):
+        for written in self.ways(piece).insert(piece):
             self.leave(now, (written, "whole"))
 
     def leave(self, at, what):
@@ -180,7 +191,7 @@ class Cache:
         self.insert(piece, now)
         for request in self.waiting.pop(piece):
             if request is None:
-                self.lines.write(piece)
+                self.ways(piece).write(piece)
                 continue
             request.ready = max(request.ready, now)
             self.one_less(request)
@@ -202,7 +213,7 @@ def caches_of(config, clock, ports):
     own = []
     if m.get("l1_kib"):
         nearest = dict(m, l2_kib=m["l1_kib"], ways=m["l1_ways"], l2_lines_per_cycle=m["l1_lines_per_cycle"],
-                       l2_mshrs=m["l1_mshrs"], l2_latency_cycles=m["l1_latency_cycles"], l2_banks=1, l2_write="through",
+                       l2_mshrs=m["l1_mshrs"], l2_latency_cycles=m["l1_latency_cycles"], l2_banks=1, l2_write="through", l2_ray_ways=0, l2_answer_bytes_per_cycle=0,
                        dram_latency_cycles=m["l2_latency_cycles"])
         own = [Cache({"memory": nearest}, clock, [port]) for port in ports]
     shared, l2 = m["shared_by"], []

@@ -18,6 +18,8 @@ class Packet:
         self.owners = set()
         self.blocks = 0           # of collection storage that its retirement may take
         self.due = 0              # on a bus: answers that have not come
+        self.records = None       # of new rays that look for slots: (ray, address)
+        self.left = 0             # then: resources after the next one
 
 
 class Token:
@@ -128,6 +130,8 @@ class PacketSize:
         """`answered`: rays of an answer on a bus, which brings no shapes."""
         n = len(packet.rays) if answered is None else answered
         size = 16 + 4 * n
+        if packet.records is not None:
+            return ceil_div(size + sum(64 if address is None else 66 for _, address in packet.records), self.width)
         if not packet.memberships:
             node = self.nodes[packet.node]
             if self.ordered:
@@ -191,7 +195,7 @@ class Bus:
             self.in_ports[here].take(now)
             packet = token.packet
             for r in listeners:
-                passes = not token.answers and not packet.memberships and r not in packet.owners
+                passes = not token.answers and not packet.memberships and packet.records is None and r not in packet.owners
                 self.out_ports[r].push(Token(packet, 0, token.cycles, token.rays, token.answers, passes), now, False)
                 assert self.out_ports[r].send(now)
             self.free_at, self.turn = now + token.cycles, here + 1
@@ -202,6 +206,8 @@ class Bus:
         packet, t = token.packet, self.topology
         if token.answers:
             return [packet.owner]
+        if packet.records is not None:
+            return [self.topology.next(here, packet.direction)]
         if packet.memberships:
             return [packet.home if here == packet.owner else packet.owner]
         return [r for r in range(t.resources) if r != here and (t.visit_all or r in packet.owners)]

@@ -3,6 +3,7 @@ import heapq
 from collections import deque
 
 from .clock import ceil_div
+from .travel import Sender
 from .tree import Ray
 
 
@@ -126,6 +127,8 @@ class Shading:
         self.controls, self.node = controls, config["topology"]["resources"]
         self.control = RayControl(config, machine.initial_tests)
         self.shade = s["cycles_per_shade"]
+        travel = config["rays"]["placement"] in ("first_taker", "addressed")
+        self.sender = Sender(config, ceil_div(64, link["bytes_per_cycle"]), controls) if travel else None
         self.lookup, self.products_per_cycle = s["cycles_per_lookup"], s["products_per_cycle"]
         self.record = ceil_div(64, link["bytes_per_cycle"])
         self.slots = config["rays"]["slots_per_resource"] * self.node
@@ -143,7 +146,10 @@ class Shading:
         for r, control in enumerate(self.controls):
             while control.completed.ready(now):
                 rays = control.completed.take()
-                self.control.free[r].extend(ray.slot for ray in rays)
+                if self.sender:
+                    self.sender.completed(r, rays)
+                else:
+                    self.control.free[r].extend(ray.slot for ray in rays)
                 for ray in rays:
                     self.queues.push(ray)
         while self.finish_jobs(now) or self.start_jobs(now):
@@ -206,6 +212,11 @@ class Shading:
 
     def place(self, now):
         last = self.queues.empty() and not self.jobs
+        if self.sender:
+            if len(self.gathered) >= self.group or (last and self.gathered):
+                self.sender.submit(self.gathered)
+                self.gathered = []
+            return self.sender.send(now)
         groups = self.control.place_waiting()
         if len(self.gathered) >= self.group or (last and self.gathered):
             groups += self.control.submit(self.gathered)

@@ -52,7 +52,7 @@ def draw(seed, index):
                     "distribute": pick(["fifo_fill", "load", "round_robin"]), "effects": pick(["auto", "all"])},
     }
     if config["packets"]["shapes"] == "strip":
-        config["bvh"]["storage"] = pick(["full", "quantised"])
+        config["bvh"].update(storage=pick(["full", "quantised"]), leaves=pick(["triangles", "triangles", "strips"]))
     preset = pick(["pipe", "pipe", "gddr6_14", "hbm2_2", "lpddr5_6400"])
     config["memory"]["dram"] = {"preset": preset, "channels": pick([1, 2, 3]), "interleave_bytes": pick([32, 64, 256]),
                                 "mapping": pick(["row_bank_column_group", "row_bank_group_column",
@@ -66,6 +66,8 @@ def draw(seed, index):
         line = memory["line_bytes"]
         memory.update(l2_banks=pick([1, 2, 3, 8]), l2_mshrs=pick([0, 1, 2, 7]), l2_write=pick(["through", "back", "back"]),
                       l2_sector_bytes=pick(["auto", 32 if line > 32 else "auto", line // 2 if line > 32 else "auto"]))
+    if r.random() < 0.4:
+        memory.update(l2_answer_bytes_per_cycle=pick([1, 16, 64]), l2_ray_ways=pick([0, *range(memory["ways"])]))
     if r.random() < 0.3:
         ways = pick([1, 2, 4])
         memory.update(l1_kib=max(1, ways * memory["line_bytes"] // 1024) * pick([1, 2, 8]), l1_ways=ways,
@@ -80,4 +82,6 @@ def draw(seed, index):
         config["memory"]["fetch"] = "resource"
     elif r.random() < 0.15:
         config["topology"]["shape"] = "bus"
+    if config["topology"]["shape"] != "independent" and r.random() < 0.25:
+        config["rays"]["placement"] = pick(["first_taker", "addressed"])
     return config

@@ -8,6 +8,7 @@ from .shape_buffer import ShapeBuffer
 from .testers import Testers
 from .tile_issue import Issues
 from .tile_tests import STARTING, Context, Tests
+from .travel import Travel
 from .walk import Visits
 
 
@@ -27,7 +28,7 @@ class Control:
         self.completed.send(self.free_at + self.latency, rays)
 
 
-class Tile(Issues, Tests):
+class Tile(Issues, Tests, Travel):
     def __init__(self, number, machine, ports, shapes, control):
         config = machine.config
         self.number, self.machine, self.clock, self.trace = number, machine, machine.clock, machine.trace
@@ -47,8 +48,10 @@ class Tile(Issues, Tests):
         self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
         self.bubble = config["topology"]["flow"] == "bubble" and not self.topology.bus
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
+        self.start_travel(config)
         self.contexts = [Context() for _ in range(config["testers"]["contexts"])]
-        each = (config["testers"]["contexts"] + 1 + config["memory"]["fetch_ahead"] if self.stays
+        each = (config["testers"]["contexts"] + 1 + config["memory"]["fetch_ahead"]
+                if self.stays and not (self.travel and self.topology.resources > 1)
                 else self.topology.in_flight)
         first = number * self.topology.directions * each
         self.free = [[Packet(first + d * each + i, number, d) for i in range(each)]
@@ -71,7 +74,7 @@ class Tile(Issues, Tests):
             if context.phase == STARTING and context.at <= now:
                 self.start(context, now)
         while self.control.new_rays.ready(now):
-            self.admission.append(self.control.new_rays.take())
+            (self.groups if self.travel else self.admission).append(self.control.new_rays.take())
         again = True
         while again:
             again = self.finish_tests(now)
@@ -83,6 +86,7 @@ class Tile(Issues, Tests):
                 again |= out.send(now)
         if self.done:
             self.trace.note(now, self.number, "complete", 0, len(self.done))
+            self.slots.extend(ray.slot for ray in self.done)
             self.control.complete(self.done, now)
             self.done = []
         if (ripe := self.resource.collections.next_ripe()) is not None:
@@ -101,7 +105,7 @@ class Tile(Issues, Tests):
     # ---- new rays
 
     def admit(self, now):
-        moved = False
+        moved = self.rays_loaded(now)
         while self.admission:
             rays = self.admission[0]
             count = min(len(rays), self.resource.storage.admissible())
@@ -140,7 +144,7 @@ class Tile(Issues, Tests):
             if self.in_ports[d].ready(now) and self.handle_arrival(d, now):
                 self.next_in = (d + 1) % count
                 return True
-        return self.handle_issue(now)
+        return self.send_new_rays(now) or self.handle_issue(now)
 
     def handle_arrival(self, d, now):
         port, out = self.in_ports[d], self.out_ports[d]
@@ -165,6 +169,8 @@ class Tile(Issues, Tests):
             if packet.due == 0:
                 self.retire(packet, now)
             return True
+        if packet.records is not None:
+            return self.handle_rays(port, out, packet, now)
         if packet.owner == self.number:
             port.take(now)
             self.dispatch(now, len(packet.rays))
@@ -193,13 +199,15 @@ class Tile(Issues, Tests):
         if self.topology.bus:
             return self.say(packet, ready)
         skip = self.topology.skip(packet, self.number)
-        cycles = self.size.cycles(packet, self.resource.traversal.is_treelet(packet.node))
+        treelet = packet.records is None and self.resource.traversal.is_treelet(packet.node)
+        cycles = self.size.cycles(packet, treelet)
         self.out_ports[packet.direction].push(Token(packet, skip, cycles), ready,
                                               not self.topology.visit_all and skip > 0)
 
     def say(self, packet, ready):
         """To all who hear it, or to the packet's owner the answer for the rays that live here."""
-        treelet, tests = self.resource.traversal.is_treelet(packet.node), not packet.memberships
+        tests = not packet.memberships and packet.records is None
+        treelet = packet.records is None and self.resource.traversal.is_treelet(packet.node)
         answers = tests and packet.owner != self.number
         rays = len(self.resource.local_members(packet)) if answers else len(packet.rays)
         if tests and not answers:

@@ -236,7 +236,7 @@ TEST(OwnCache, AsksTheL2ForLines) {
   Channel<std::uint64_t> down, up, to_memory, from_memory;
   ShapeCache own(ShapeCache::own_cache(config), std::vector{ShapeCache::Client{&requests, &answers}}, down, up);
   own.ask_a_cache();
-  ShapeCache l2(config, std::vector{ShapeCache::OwnCache{&down, &up}}, to_memory, from_memory);
+  ShapeCache l2(config, std::vector{ShapeCache::OwnCache{&down, &up}}, {}, to_memory, from_memory);
   const auto ask = [&](Cycle at, std::uint64_t line, std::uint32_t lines) {
     requests.send(at + ShapeCache::request_latency(ShapeCache::nearest(config)), {line, lines, 5});
   };

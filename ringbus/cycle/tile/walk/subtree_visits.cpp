@@ -1,4 +1,4 @@
-#include "ringbus/cycle/tile/subtree_visits.h"
+#include "ringbus/cycle/tile/walk/subtree_visits.h"
 
 #include <algorithm>
 #include <utility>

@@ -6,7 +6,7 @@
 #include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
-#include "ringbus/cycle/tile/subtree_walk.h"
+#include "ringbus/cycle/tile/walk/subtree_walk.h"
 #include "ringbus/cycle/time/event_wheel.h"
 
 namespace carousel::ringbus::cycle {

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/tile/subtree_walk.h"
+#include "ringbus/cycle/tile/walk/subtree_walk.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
 
-#include "app/commands/sweep_command.h"
+#include "app/command_line/command_options.h"
 
 namespace carousel::app {
 

@@ -1,4 +1,4 @@
-#include "ringbus/native/ray_rounds.h"
+#include "ringbus/protocol/ray_rounds.h"
 
 #include <algorithm>
 #include <optional>

@@ -7,7 +7,7 @@
 #include "accel/structure/accel.h"
 #include "core/statistics/intersection_counts.h"
 #include "ringbus/cycle/testers/unit_passes.h"
-#include "ringbus/cycle/tile/ray_walk.h"
+#include "ringbus/cycle/tile/walk/ray_walk.h"
 #include "ringbus/resource/resource.h"
 
 namespace carousel::ringbus::cycle {

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/tile/ray_walk.h"
+#include "ringbus/cycle/tile/walk/ray_walk.h"
 
 #include <algorithm>
 #include <utility>

@@ -19,12 +19,13 @@ struct TraceArguments {
   std::size_t events = 1'000'000;  ///< most events
 };
 
-/// A file of events in Chrome's JSON, which ui.perfetto.dev and chrome://tracing open. A cycle stands for a
-/// microsecond.
+/// A file of events that ui.perfetto.dev opens: Perfetto's protobuf if its name ends in .pftrace or .perfetto-trace, or
+/// Chrome's JSON, which chrome://tracing opens as well. A cycle stands for a microsecond.
 class TraceFile {
  public:
   /// Makes the file, so that nothing is simulated for a file that cannot be written. Throws FileError, and a
-  /// ConfigError for a window that is none. `native`: times are nanoseconds of the host.
+  /// ConfigError for a window that is none or a format that this build does not write. `native`: times are nanoseconds
+  /// of the host.
   TraceFile(const TraceArguments& arguments, bool native);
 
   const std::string& name() const { return name_; }
@@ -40,6 +41,7 @@ class TraceFile {
 
  private:
   std::string name_;
+  bool perfetto_;
   AtomicFile file_;
   ringbus::TimelineOptions wanted_;
   std::size_t most_;

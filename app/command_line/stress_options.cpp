@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "app/commands/stress_command.h"
+#include "app/command_line/command_options.h"
 #include "core/config/config.h"
 #include "ringbus/stress/pattern.h"
 

@@ -1,0 +1,36 @@
+#include "app/command_line/common_options.h"
+
+#include <fmt/format.h>
+
+namespace carousel::app {
+
+void add_set_option(CLI::App& command, std::vector<std::string>& sets) {
+  command
+      .add_option(
+          "--set", sets,
+          "Set one key of the configuration, e.g. image.width=256; may be repeated (default: the file's values)")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+}
+
+void add_log_options(CLI::App& command, LogArguments& arguments) {
+  command
+      .add_option("--log-level", arguments.level,
+                  "Messages to print: debug, info, warning or error (default: warning; info in a --log-file)")
+      ->check(CLI::IsMember(log_levels()))
+      ->type_name("LEVEL");
+  command
+      .add_option("--log-file", arguments.file,
+                  "Write messages with their times to a file; the terminal gets warnings and errors (default: none)")
+      ->type_name("FILE");
+}
+
+void add_config_options(CLI::App& command, ConfigArguments& arguments, const char* without) {
+  const std::string absent = without == nullptr ? "" : fmt::format(" (default: {})", without);
+  command.add_option("config", arguments.config, "Configuration file, YAML or JSON" + absent)
+      ->required(without == nullptr)
+      ->type_name("FILE");
+  add_set_option(command, arguments.sets);
+}
+
+}  // namespace carousel::app

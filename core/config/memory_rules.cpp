@@ -1,0 +1,155 @@
+#include "core/config/memory_rules.h"
+
+#include <numeric>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace carousel::config {
+
+namespace {
+
+class MemoryRules {
+ public:
+  MemoryRules(const Config& config, const RuleBreach& breach) : c(config), breach_(breach) {}
+
+  void check() {
+    if (c.workload.kind == WorkloadConfig::Kind::kMemoryTrace && !cycle())
+      breach_("engine.kind", "workload: memory_trace runs in virtual time; expected cycle, found native");
+    quantised_nodes_fit();
+    leaves_fit();
+    shared_caches_fit();
+    travelling_rays_fit();
+    caches_have_whole_sets();
+    master_copies_fit();
+    if (c.memory.dram.preset == DramConfig::Preset::kPipe) return;
+    constexpr std::int64_t kTransaction = 32;  // bytes
+    const auto whole = [&](const char* key, std::int64_t bytes) {
+      if (bytes % kTransaction != 0)
+        breach_(key,
+                fmt::format("DRAM with banks moves 32 bytes at a time; expected a multiple of 32, found {}", bytes));
+    };
+    whole("memory.line_bytes", c.memory.line_bytes);
+    if (c.memory.l2_sector_bytes) whole("memory.l2_sector_bytes", *c.memory.l2_sector_bytes);
+    whole("memory.dram.interleave_bytes", c.memory.dram.interleave_bytes);
+  }
+
+ private:
+  // A quantised node holds boxes of its children and references, and is decoded as a whole.
+  void quantised_nodes_fit() {
+    if (c.bvh.storage != BvhConfig::Storage::kQuantised) return;
+    constexpr std::string_view without = ", or bvh.storage: full";
+    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
+      breach_("bvh.elements", fmt::format("quantised nodes hold boxes; expected boxes{}; found spheres", without));
+    if (c.bvh.mixed_triangles > 0)
+      breach_("bvh.mixed_triangles",
+              fmt::format("quantised nodes hold no triangles; expected 0{}; found {}", without, c.bvh.mixed_triangles));
+    if (c.bvh.top_triangles > 0)
+      breach_("bvh.top_triangles",
+              fmt::format("quantised nodes hold no triangles; expected 0{}; found {}", without, c.bvh.top_triangles));
+    if (c.packets.shapes == PacketShapes::kSingle)
+      breach_("packets.shapes",
+              fmt::format("a quantised node is decoded as a whole; expected strip{}; found single", without));
+    if (c.accuracy.box != BoxLevel::kConservative)
+      breach_("accuracy.box", fmt::format("larger boxes could add hits to those of {}; expected conservative{}",
+                                          enum_name(c.accuracy.box), without));
+  }
+
+  // A strip of triangles is decoded as a whole.
+  void leaves_fit() {
+    if (c.bvh.leaves != BvhConfig::Leaves::kStrips) return;
+    if (c.packets.shapes == PacketShapes::kSingle)
+      breach_("packets.shapes",
+              "a strip of triangles is decoded as a whole; expected strip, or bvh.leaves: triangles; found single");
+  }
+
+  void master_copies_fit() {
+    if (!cycle() || c.memory.ray_records != MemoryConfig::RayRecords::kMaster) return;
+    if (c.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
+      breach_(
+          "memory.ray_records",
+          "rays are not placed anew from master copies when a resource has stopped; expected resource, found master");
+    if (c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed)
+      breach_("memory.ray_records",
+              fmt::format("a packet brings the records of rays that travel; expected resource, or "
+                          "another rays.placement than {}; found master",
+                          enum_name(c.rays.placement)));
+  }
+
+  void travelling_rays_fit() {
+    if (!cycle() || (c.rays.placement != Placement::kFirstTaker && c.rays.placement != Placement::kAddressed)) return;
+    if (c.topology.shape == TopologyShape::kIndependent)
+      breach_("rays.placement",
+              fmt::format("independent resources have no packets in which rays could travel; expected "
+                          "balanced or round_robin, found {}",
+                          enum_name(c.rays.placement)));
+    if (c.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
+      breach_("rays.placement", fmt::format("the cycle engine does not place travelling rays anew when a resource has "
+                                            "stopped; expected balanced or round_robin, found {}",
+                                            enum_name(c.rays.placement)));
+  }
+
+  void shared_caches_fit() {
+    if (c.memory.l2_ray_ways >= c.memory.ways)
+      breach_("memory.l2_ray_ways", fmt::format("shapes need a way too; expected less than memory.ways = {}, found {}",
+                                                c.memory.ways, c.memory.l2_ray_ways));
+    if (c.memory.fetch != MemoryConfig::Fetch::kMulticast) return;
+    if (c.packets.carry == PacketCarry::kData && cycle())
+      breach_("memory.fetch",
+              "a packet that carries its shapes' data gets them from its issuer; expected packet, found multicast");
+    if (c.topology.shape == TopologyShape::kIndependent)
+      breach_("memory.fetch",
+              "independent resources have no packets whose shapes others want; expected resource, found multicast");
+    if (c.memory.l1_kib > 0)
+      breach_("memory.l1_kib",
+              fmt::format("a shared cache multicasts to shape buffers; expected 0, or memory.fetch: resource; found {}",
+                          c.memory.l1_kib));
+    if (c.memory.shared_by > 64)
+      breach_("memory.shared_by",
+              fmt::format("a request names up to 64 resources to multicast to; expected at most 64, or memory.fetch: "
+                          "resource; found {}",
+                          c.memory.shared_by));
+  }
+
+  void caches_have_whole_sets() {
+    cache_has_whole_sets("l2_kib", c.memory.l2_kib, "ways", c.memory.ways, c.memory.l2_banks);
+    if (c.memory.l1_kib > 0) cache_has_whole_sets("l1_kib", c.memory.l1_kib, "l1_ways", c.memory.l1_ways, 1);
+    if (c.memory.l2_sector_bytes && c.memory.line_bytes % *c.memory.l2_sector_bytes != 0)
+      breach_("memory.l2_sector_bytes", fmt::format("a line has whole sectors; expected a divisor of {}, found {}",
+                                                    c.memory.line_bytes, *c.memory.l2_sector_bytes));
+  }
+
+  void cache_has_whole_sets(const char* size, std::int64_t kib, const char* set, std::int64_t ways,
+                            std::int64_t banks) {
+    const std::int64_t lines = kib * 1024 / c.memory.line_bytes;
+    if (ways > lines) {
+      breach_(fmt::format("memory.{}", set),
+              fmt::format("a cache of {} KiB has {} lines of {} bytes, and a set is no larger than the cache; "
+                          "expected at most {}, found {}",
+                          kib, lines, c.memory.line_bytes, lines, ways));
+      return;
+    }
+    // Sets that a cache does not have would be left out of it.
+    const std::int64_t bytes = ways * c.memory.line_bytes * banks;
+    const std::int64_t step = bytes / std::gcd(bytes, std::int64_t{1024});
+    if (kib % step != 0)
+      breach_(
+          fmt::format("memory.{}", size),
+          fmt::format("a cache has whole sets, of {} lines of {} bytes, as many in each bank; expected a multiple of "
+                      "{}, found {}",
+                      ways, c.memory.line_bytes, step, kib));
+  }
+
+  bool cycle() const { return c.engine.kind == EngineKind::kCycle; }
+
+  const Config& c;
+  const RuleBreach& breach_;
+};
+
+}  // namespace
+
+void check_memory(const Config& config, const RuleBreach& breach) {
+  MemoryRules(config, breach).check();
+}
+
+}  // namespace carousel::config

@@ -1,0 +1,93 @@
+// The spans that a shape buffer holds: found by address, and replaced when nobody has held them for longest.
+#include "ringbus/cycle/memory/shape_buffer.h"
+
+namespace carousel::ringbus::cycle {
+
+std::uint32_t ShapeBuffer::find(const ShapeSpan& span) const {
+  std::uint32_t at = buckets_[bucket(span)];
+  while (at != kNone && entries_[at].span != span) at = entries_[at].chain;
+  return at;
+}
+
+std::uint32_t ShapeBuffer::allocate(const ShapeSpan& span) {
+  if (++used_ > buckets_.size()) grow_buckets();
+  std::uint32_t index = free_entry_;
+  if (index == kNone) {
+    index = static_cast<std::uint32_t>(entries_.size());
+    entries_.emplace_back();
+  } else {
+    free_entry_ = entries_[index].chain;
+  }
+  std::uint32_t& first = buckets_[bucket(span)];
+  entries_[index] = Entry{};
+  entries_[index].span = span;
+  entries_[index].chain = first;
+  first = index;
+  free_places_ -= places(span);
+  return index;
+}
+
+void ShapeBuffer::grow_buckets() {
+  buckets_.assign(2 * buckets_.size(), kNone);
+  --shift_;
+  std::vector<bool> free(entries_.size());
+  for (std::uint32_t at = free_entry_; at != kNone; at = entries_[at].chain) free[at] = true;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    if (free[i]) continue;
+    std::uint32_t& first = buckets_[bucket(entries_[i].span)];
+    entries_[i].chain = first;
+    first = i;
+  }
+}
+
+void ShapeBuffer::evict_oldest() {
+  const std::uint32_t index = oldest_;
+  hold(index);  // takes it from the list
+  Entry& entry = entries_[index];
+  std::uint32_t* at = &buckets_[bucket(entry.span)];
+  while (*at != index) at = &entries_[*at].chain;
+  *at = entry.chain;
+  entry.chain = free_entry_;
+  free_entry_ = index;
+  free_places_ += places(entry.span);
+  --used_;
+  ++counts_.evictions;
+}
+
+void ShapeBuffer::hold(std::uint32_t index) {
+  Entry& entry = entries_[index];
+  if (entry.holders++ > 0 || !entry.here) return;
+  (entry.older == kNone ? oldest_ : entries_[entry.older].newer) = entry.newer;
+  (entry.newer == kNone ? newest_ : entries_[entry.newer].older) = entry.older;
+  idle_places_ -= places(entry.span);
+}
+
+void ShapeBuffer::let_go(std::uint32_t index) {
+  Entry& entry = entries_[index];
+  if (--entry.holders > 0 || !entry.here) return;
+  entry.older = newest_;
+  entry.newer = kNone;
+  (newest_ == kNone ? oldest_ : entries_[newest_].newer) = index;
+  newest_ = index;
+  idle_places_ += places(entry.span);
+}
+
+/// Shapes for which another resource has asked: they are kept if they find places that nobody holds or waits for.
+void ShapeBuffer::take_pushed(Cycle now) {
+  while (pushed_->next() <= now) {
+    const PushedShapes shapes = pushed_->take();
+    const ShapeSpan span{shapes.address, shapes.size};
+    ++counts_.pushed;
+    if (!room_.empty() || find(span) != kNone || free_places_ + idle_places_ < places(span)) {
+      ++counts_.pushed_in_vain;
+      continue;
+    }
+    while (free_places_ < places(span)) evict_oldest();
+    const std::uint32_t entry = allocate(span);
+    entries_[entry].here = true;
+    entries_[entry].holders = 1;
+    let_go(entry);
+  }
+}
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "core/types/workload.h"
+#include "ringbus/results/run_result.h"
+
+namespace carousel::ringbus {
+
+/// The run whose bottleneck is searched for.
+struct SearchedRun {
+  const RunResult& result;
+  std::uint64_t paths = 0;  ///< paths, or rays of a list, that the frame begins
+};
+
+/// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
+/// machine.
+using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths)>;
+
+/// How far a search has come.
+struct SearchProgress {
+  std::string stage;             ///< the pilot
+  std::size_t done = 0, of = 1;  ///< simulations of this stage
+  std::uint64_t under_way = 0;   ///< rays that simulations under way have completed
+  std::uint64_t rays = 0;        ///< that each will have, about
+  std::uint64_t completed = 0;   ///< rays of all simulations of this stage
+};
+/// Called by one thread at a time, not always the same.
+using SearchObserver = std::function<void(const SearchProgress&)>;
+
+/// Simulates parts of a frame, its pilots, on machines of several configurations. Keeps references to its arguments.
+class PilotRuns {
+ public:
+  PilotRuns(const accel::Accel& accel, float scene_size, const PilotFactory& make_pilot, const SearchedRun& run,
+            const RunOptions& options, const SearchObserver& observe)
+      : accel_(accel),
+        scene_size_(scene_size),
+        make_pilot_(make_pilot),
+        run_(run),
+        options_(options),
+        observe_(observe) {}
+
+  /// A pilot of so many paths, which this number of machines will get.
+  void begin(const char* stage, std::size_t machines, std::uint64_t paths);
+  void expect_more(std::size_t machines) { state_.of += machines; }
+  void leave_out_one() { ++state_.done; }
+
+  /// Simulates these machines, as many at once as there are threads: that takes less time than to simulate one after
+  /// the other on all threads. The results are in the order of the machines, and undefined once complete() is false.
+  /// Throws as run_cycle.
+  std::vector<RunResult> simulate(const std::vector<const Config*>& machines);
+
+  /// False if a simulation was interrupted; no further one is begun.
+  bool complete() const { return complete_; }
+
+ private:
+  RunResult simulate(const Config& machine, std::size_t threads);
+
+  const accel::Accel& accel_;
+  float scene_size_;
+  const PilotFactory& make_pilot_;
+  const SearchedRun& run_;
+  const RunOptions& options_;
+  const SearchObserver& observe_;
+  std::uint64_t paths_ = 0;
+  std::mutex mutex_;  // of the members below, and of the observer
+  SearchProgress state_;
+  bool complete_ = true;
+};
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,166 @@
+#include "ringbus/cycle/shading/ray_data.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+// Places in the simulated memory, beyond shapes and spilled entries.
+constexpr std::uint64_t kRecords = std::uint64_t{1} << 50, kStates = std::uint64_t{1} << 51,
+                        kFilm = std::uint64_t{1} << 52;
+constexpr std::uint32_t kPixelBytes = 16;  // four floats
+
+MemoryConfig of_shared_cache(MemoryConfig memory) {
+  memory.l1_kib = 0;
+  return memory;
+}
+
+}  // namespace
+
+RayData::RayData(const Settings& settings, const Workload& workload, const std::vector<SidePorts>& caches)
+    : memory_(settings.memory),
+      slots_(settings.slots),
+      shared_by_(static_cast<std::uint32_t>(settings.memory.shared_by)),
+      line_bytes_(static_cast<std::uint64_t>(settings.memory.line_bytes)),
+      workload_(workload) {
+  for (const SidePorts& cache : caches) ports_.emplace_back(of_shared_cache(memory_), settings.link, cache);
+}
+
+bool RayData::wanted(const MemoryConfig& memory) {
+  return memory.ray_records == MemoryConfig::RayRecords::kMaster ||
+         memory.path_state == MemoryConfig::ShadingData::kMemory || memory.film == MemoryConfig::ShadingData::kMemory;
+}
+
+// ---- places
+
+ShapeSpan RayData::record_at(ResourceId resource, std::uint32_t slot) const {
+  return {kRecords + (std::uint64_t{resource.value} * slots_ + slot) * sizeof(RayRecord), sizeof(RayRecord)};
+}
+
+/// States begin at borders of lines.
+ShapeSpan RayData::state_at(std::uint32_t path, std::uint32_t bytes) const {
+  return {kStates + path * (ceil_div(bytes, line_bytes_) * line_bytes_), bytes};
+}
+
+ShapeSpan RayData::pixel_at(std::uint32_t pixel) {
+  return {kFilm + std::uint64_t{pixel} * kPixelBytes, kPixelBytes};
+}
+
+// ---- records
+
+std::uint32_t RayData::begin() {
+  if (free_.empty()) {
+    waiting_.emplace_back();
+    return static_cast<std::uint32_t>(waiting_.size() - 1);
+  }
+  const std::uint32_t index = free_.back();
+  free_.pop_back();
+  return index;
+}
+
+void RayData::fetch(Group&& group, std::span<const Place> places, Cycle now) {
+  const std::uint32_t index = begin();
+  waiting_[index].kind = Kind::kRecord;
+  waiting_[index].missing = places.size();
+  waiting_[index].group = std::move(group);
+  for (const auto& [resource, slot] : places) {
+    const ShapeSpan span = record_at(resource, slot);
+    port_of(resource).write(span, now);
+    port_of(resource).request(span, index, now);
+    use_.records.written += span.bytes;
+    use_.records.read += span.bytes;
+  }
+}
+
+void RayData::completed(ResourceId resource, std::span<const std::uint32_t> slots, Cycle now) {
+  if (!keeps_records()) return;
+  for (const std::uint32_t slot : slots) {
+    port_of(resource).write(record_at(resource, slot), now);
+    use_.records.written += sizeof(RayRecord);
+  }
+}
+
+// ---- paths
+
+bool RayData::fetch_state(const RayResult& ray, Cycle now) {
+  const std::uint32_t bytes = keeps_states() ? workload_.path_memory(ray.tag).state_bytes : 0;
+  if (bytes == 0) return false;
+  const std::uint32_t index = begin();
+  waiting_[index].kind = Kind::kState;
+  waiting_[index].missing = 1;
+  waiting_[index].ray = ray;
+  const ShapeSpan span = state_at(ray.tag.path, bytes);
+  port_of(span).request(span, index, now);
+  use_.states.read += span.bytes;
+  return true;
+}
+
+void RayData::made(std::span<const RayRequest> rays, Cycle now) {
+  for (const RayRequest& ray : rays) {
+    if (ray.tag.path >= in_flight_.size()) in_flight_.resize(ray.tag.path + std::size_t{1});
+    ++in_flight_[ray.tag.path];
+    const std::uint32_t bytes = keeps_states() ? workload_.path_memory(ray.tag).state_bytes : 0;
+    if (bytes == 0) continue;
+    const ShapeSpan span = state_at(ray.tag.path, bytes);
+    port_of(span).write(span, now);
+    use_.states.written += bytes;
+  }
+}
+
+void RayData::will_shade(const HitBatch& rays) {
+  pixels_.clear();
+  for (const RayResult& ray : rays) pixels_.push_back(workload_.path_memory(ray.tag).pixel);
+}
+
+void RayData::shaded(const HitBatch& rays, Cycle now) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (--in_flight_[rays[i].tag.path] > 0 || memory_.film != MemoryConfig::ShadingData::kMemory || !pixels_[i])
+      continue;
+    const std::uint32_t index = begin();
+    waiting_[index].kind = Kind::kFilm;
+    waiting_[index].missing = 1;
+    waiting_[index].pixel = *pixels_[i];
+    const ShapeSpan span = pixel_at(*pixels_[i]);
+    port_of(span).request(span, index, now);
+    use_.film.read += span.bytes;
+  }
+}
+
+// ---- answers
+
+Cycle RayData::next() const {
+  Cycle first = kNever;
+  for (const ShapePort& port : ports_) first = std::min(first, port.next());
+  return first;
+}
+
+void RayData::take(Cycle now, HitBatch& rays, std::vector<Group>& groups) {
+  for (ShapePort& port : ports_) {
+    while (port.next() <= now) {
+      const std::uint32_t index = port.take();
+      Waiting& waiting = waiting_[index];
+      if (--waiting.missing > 0) continue;
+      free_.push_back(index);
+      if (waiting.kind == Kind::kRecord) {
+        groups.push_back(std::move(waiting.group));
+        waiting.group = {};
+      } else if (waiting.kind == Kind::kState) {
+        rays.push_back(waiting.ray);
+      } else {
+        const ShapeSpan span = pixel_at(waiting.pixel);
+        port.write(span, now);
+        use_.film.written += span.bytes;
+      }
+    }
+  }
+}
+
+std::uint64_t RayData::lines() const {
+  std::uint64_t lines = 0;
+  for (const ShapePort& port : ports_) lines += port.lines();
+  return lines;
+}
+
+}  // namespace carousel::ringbus::cycle
