@@ -7,6 +7,7 @@
 
 #include "accel/build/blas.h"
 #include "accel/build/bounding_spheres.h"
+#include "accel/build/group_levels.h"
 #include "accel/build/quantised_boxes.h"
 #include "accel/build/sah_build.h"
 #include "accel/planes/cull_planes.h"
@@ -53,9 +54,12 @@ class AccelBuilder {
     place_instances();
     build_blases();
     join_blases();
-    const std::size_t first_of_top = accel_.nodes.size();
-    build_tlas();
-    for (std::size_t i = first_of_top; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
+    const std::size_t above = accel_.nodes.size();
+    fill_instances();
+    const TopMembers top = top_members();
+    first_of_top_ = accel_.nodes.size();
+    build_tlas(top);
+    for (std::size_t i = above; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
     for (const TriangleBlock& block : accel_.blocks)
       for (const std::uint32_t primitive : block.primitive)
         accel_.has_non_opaque |= primitive != kNoPrimitive && (primitive & kNonOpaqueBit) != 0;
@@ -133,9 +137,9 @@ class AccelBuilder {
     }
   }
 
-  void build_tlas() {
-    std::vector<BuildPrimitive> primitives;
-    int blas_depth = 0;
+  bool is_baked(std::size_t i) const { return sources_[blas_of_[i]] != &scene_.meshes[scene_.instances[i].mesh.value]; }
+
+  void fill_instances() {
     for (std::size_t i = 0; i < accel_.instances.size(); ++i) {
       const PlacedBlas& placed = blases_[blas_of_[i]];
       if (placed.blas.tree.triangles == 0) continue;
@@ -143,14 +147,36 @@ class AccelBuilder {
       node.root = placed.place(placed.blas.tree.root);
       node.strip_size = placed.blas.tree.root_strip_size;
       node.triangles = placed.blas.tree.triangles;
-      const bool baked = sources_[blas_of_[i]] != &scene_.meshes[scene_.instances[i].mesh.value];
-      node.world = baked ? placed.blas.box
-                         : world_box(scene_.instances[i].world_from_model, placed.blas.box, accel_.accuracy.transform);
-      blas_depth = std::max(blas_depth, placed.blas.tree.depth);
+      node.world = is_baked(i)
+                       ? placed.blas.box
+                       : world_box(scene_.instances[i].world_from_model, placed.blas.box, accel_.accuracy.transform);
+      blas_depth_ = std::max(blas_depth_, placed.blas.tree.depth);
+    }
+  }
+
+  // Builds the levels between the top one and the meshes.
+  TopMembers top_members() {
+    if (config_.levels > 2 && !scene_.placements.empty()) {
+      const auto box_of = [&](std::uint32_t i) {
+        return is_baked(i) ? PlacedBox{accel_.instances[i].world, {}}
+                           : PlacedBox{blases_[blas_of_[i]].blas.box, scene_.instances[i].world_from_model};
+      };
+      return build_group_levels(scene_, config_, box_of, executor_, accel_);
+    }
+    TopMembers top;
+    for (std::uint32_t i = 0; i < accel_.instances.size(); ++i)
+      if (accel_.instances[i].triangles > 0) top.instances.push_back(i);
+    return top;
+  }
+
+  void build_tlas(const TopMembers& top) {
+    std::vector<BuildPrimitive> primitives;
+    for (const std::uint32_t i : top.instances) {
+      const InstanceNode& node = accel_.instances[i];
       BuildPrimitive p;
       p.lo = node.world.lo;
       p.hi = node.world.hi;
-      p.index = static_cast<std::uint32_t>(i);
+      p.index = i;
       primitives.push_back(p);
     }
     int tlas_depth = 1;
@@ -170,19 +196,22 @@ class AccelBuilder {
       accel_.root = {kNoInstance, tree.root};
       tlas_depth = tree.depth;
     }
-    accel_.max_depth = tlas_depth + blas_depth;
+    accel_.max_depth = tlas_depth + top.groups_depth + blas_depth_;
   }
 
   // Small leaves are tested where their boxes would be, also those that are whole meshes of the world: so a node of the
   // top level may hold primitives and instances (US 12394134, paragraph 8: leaf nodes that reference primitives in
   // world space, and leaf nodes that reference instances).
   void mix_nodes() {
-    for (Node& node : accel_.nodes)
+    for (std::size_t i = 0; i < accel_.nodes.size(); ++i) {
+      Node& node = accel_.nodes[i];
       for (int lane = 0; lane < node.count; ++lane)
-        if (holds(node.child[lane])) node.direct |= static_cast<std::uint8_t>(1u << lane);
+        if (holds(node.child[lane], i >= first_of_top_)) node.direct |= static_cast<std::uint8_t>(1u << lane);
+    }
   }
-  bool holds(NodeRef child) const {
+  bool holds(NodeRef child, bool in_top) const {
     if (!child.is_instance()) return !child.is_inner() && child.triangles() <= config_.mixed_triangles;
+    if (!in_top) return false;  // a group's member, which has a frame of its own
     const InstanceNode& instance = accel_.instances[child.instance_index()];
     return instance.transform.identity && !instance.root.is_inner() &&
            instance.root.triangles() <= config_.top_triangles;
@@ -191,8 +220,8 @@ class AccelBuilder {
   void add_only_child(Node& root, std::uint32_t instance) {
     const InstanceNode& node = accel_.instances[instance];
     // Without a transform the world box is the union of the boxes below it: passing one of those implies it, no
-    // earlier entered, so it decides nothing and rays may start below it.
-    if (node.transform.identity) accel_.root = {instance, node.root};
+    // earlier entered, so it decides nothing and rays may start below it. So does a group's, whatever its transform.
+    if (node.transform.identity || node.group) accel_.root = {instance, node.root};
     root.count = 1;
     root.triangles = node.triangles;
     root.child[0] = NodeRef::instance(instance);
@@ -211,6 +240,8 @@ class AccelBuilder {
   std::vector<const scene::Mesh*> sources_;  // one a BLAS
   std::vector<std::unique_ptr<scene::Mesh>> baked_;
   std::vector<std::uint32_t> blas_of_;  // one an instance
+  int blas_depth_ = 0;
+  std::size_t first_of_top_ = 0;  // node
   std::vector<PlacedBlas> blases_;
 };
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "accel/structure/cull_plane.h"
+#include "accel/structure/group_placement.h"
 #include "accel/structure/node.h"
 #include "accel/structure/node_spheres.h"
 #include "accel/transform/transform.h"
@@ -19,10 +20,14 @@ struct InstanceNode {
   InstanceTransform transform;
   Aabb world;                   ///< a hit has to lie in it (DESIGN.md section 3)
   std::uint8_t strip_size = 0;  ///< shapes below the root
+  bool group = false;           ///< of a group's structure, described by a GroupPlacement
+  bool member = false;          ///< of a group: a ray's way to it leads through a group's nodes
   std::uint32_t triangles = 0;
 };
 
-/// Two levels: a TLAS over instances and a BLAS a mesh, all nodes in one array and all triangles in another.
+/// Two levels: a TLAS over instances and a BLAS a mesh, all nodes in one array and all triangles in another. With
+/// `bvh.levels` above 2 there are structures over groups between them, a structure shared by all placements of its
+/// group, up to eight levels in all (US 12394134, paragraph 5).
 /// Immutable once built; any thread may read. The top level's root is an inner node, with no children when the
 /// scene is empty.
 struct Accel {
@@ -34,7 +39,9 @@ struct Accel {
   bool shared_normals = false;          ///< of siblings; `planes` repeats them
   bool planes_first = false;            ///< a child's planes are tested before its box
   std::uint64_t plane_bytes = 0;        ///< of the planes, normals that are shared counted once
-  std::vector<InstanceNode> instances;  ///< indexed as Scene::instances
+  std::vector<InstanceNode> instances;  ///< indexed as Scene::instances; behind these the placements of groups
+  std::vector<GroupPlacement> groups;   ///< of the last of the instances; empty with two levels
+  std::vector<std::uint32_t> members;   ///< of these placements: indices of instances
   NodeKey root;                         ///< as root_key()
   const AnyHit* any_hit = nullptr;      ///< answers any-hit calls, set before tracing; null: every surface is opaque
   AccuracyConfig accuracy;              ///< arithmetic of the tests on it
@@ -48,15 +55,35 @@ struct Accel {
   bool calls_any_hit() const { return has_non_opaque && any_hit != nullptr; }
   std::size_t size_bytes() const {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
-           plane_bytes + instances.size() * sizeof(InstanceNode);
+           plane_bytes + instances.size() * sizeof(InstanceNode) + groups.size() * sizeof(GroupPlacement) +
+           members.size() * sizeof(std::uint32_t);
   }
   /// The node at which every ray starts: the top level's root, or the root of the only instance.
   NodeKey root_key() const { return root; }
   /// The node a child lane leads to; an instance child leads to the root of its BLAS.
   NodeKey child_key(NodeKey parent, int lane) const {
     const NodeRef ref = nodes[parent.ref.node()].child[lane];
-    if (ref.is_instance()) return {ref.instance_index(), instances[ref.instance_index()].root};
-    return {parent.instance, ref};
+    if (!ref.is_instance()) return {parent.instance, ref};
+    const std::uint32_t instance = instance_at(parent.instance, ref);
+    return {instance, instances[instance].root};
+  }
+  /// The instance that a child of a node leads to: in the top level its own number, in a group that of a member.
+  std::uint32_t instance_at(std::uint32_t parent, NodeRef child) const {
+    if (parent == kNoInstance) [[likely]]
+      return child.instance_index();
+    return members[group(parent).first_member + child.instance_index()];
+  }
+  /// Of an instance that is the placement of a group.
+  const GroupPlacement& group(std::uint32_t instance) const {
+    return groups[instance - (instances.size() - groups.size())];
+  }
+  bool is_group(std::uint32_t instance) const {
+    return !groups.empty() && instance != kNoInstance && instances[instance].group;
+  }
+  /// True where rays come out of a group's nodes: they are then tested against the world box of what they come to.
+  bool enters_member(NodeKey key) const {
+    return !groups.empty() && key.instance != kNoInstance && instances[key.instance].member &&
+           instances[key.instance].root == key.ref;
   }
   /// The leaf that `node` holds itself in a lane of its `direct`. In the top level it belongs to an instance without a
   /// transform.

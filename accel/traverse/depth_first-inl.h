@@ -12,6 +12,7 @@
 
 #include "accel/box/double_slab-inl.h"
 #include "accel/box/slab-inl.h"
+#include "accel/box/wide_slab-inl.h"
 #include "accel/planes/cull_lanes-inl.h"
 #include "accel/primitive/local_ray.h"
 #include "accel/primitive/triangle_block-inl.h"
@@ -186,24 +187,26 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Sla
   }
 }
 
-/// Two stacks: one for the nodes above the instances and one for the nodes of an instance.
+/// Two stacks: one for the nodes of the top level and one for the nodes of an instance. Groups have their own.
 struct TraceStacks {
   DepthFirstStack at[2];
 };
 
-/// Goes on into an instance without a transform: true, and `ref` is its root.
+/// Goes on into an instance without a transform: true, and `ref` is its root. Not into a group, which has a frame of
+/// its own in any case.
 template <class Slab>
 HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, LocalRay<Slab>& frame) {
   const InstanceNode& instance = accel.instances[ref.instance_index()];
-  if (!instance.transform.identity) return false;
+  if (!instance.transform.identity || instance.group) return false;
   frame.instance = ref.instance_index();
   ref = instance.root;
   return true;
 }
 
-/// Traces `record`'s ray below an instance with a transform. True when a search for any hit has found one.
+/// Traces `record`'s ray below an instance with a transform, or one that is a group or in a group. True when a search
+/// for any hit has found one.
 template <class Slab>
-HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord& record, TraceStacks& stacks,
+HWY_NOINLINE bool trace_instance(const Accel& accel, std::uint32_t instance, RayRecord& record, TraceStacks& stacks,
                                  TraversalCounts& counts);
 
 /// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform
@@ -219,16 +222,80 @@ HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& recor
       return test_leaf(accel, ref, ~0u, frame, hit) && any_hit ? Then::kStop : Then::kPop;
     }
     if (enter_instance(accel, ref, frame)) return Then::kEnter;
-    return trace_instance<Slab>(accel, ref, record, stacks, counts) ? Then::kStop : Then::kPop;
+    return trace_instance<Slab>(accel, ref.instance_index(), record, stacks, counts) ? Then::kStop : Then::kPop;
   });
 }
 
+/// A ray in the space of a group.
+HWY_INLINE WideSlabRay group_ray(const Accel& accel, std::uint32_t group, const Ray& world,
+                                 IntersectionCounts& counts) {
+  const InstanceNode& node = accel.instances[group];
+  counts.transforms += !node.transform.identity;
+  counts.transforms_in_double += node.transform.promoted;
+  return {node.transform.to_model(world), accel.group(group).slack_of(world, node.world)};
+}
+
+/// The children among `lanes` of a group's node that the ray meets, with entries.
+HWY_INLINE std::uint32_t met_members(const Accel& accel, NodeRef ref, std::uint32_t lanes, const WideSlabLanes& ray,
+                                     float tmax, float* entry, IntersectionCounts& counts) {
+  const Node& node = accel.nodes[ref.node()];
+  lanes &= (1u << node.count) - 1;  // an infinite slack would let the ray into lanes without a box
+  counts.box += static_cast<std::uint64_t>(std::popcount(lanes));
+  const std::uint32_t mask = slab_node(node, ray, tmax, entry) & lanes;
+  if (HWY_UNLIKELY(!accel.full_nodes.empty()) && mask != 0) count_extra_hits(accel, ref, ray, tmax, mask, counts);
+  return mask;
+}
+
+/// The test of a ray that has come out of a group's nodes to one of the group's members: a hit has to lie in its
+/// instance's world box, and lies in the world boxes of the groups around it. True if it is missed.
 template <class Slab>
-HWY_NOINLINE bool trace_instance(const Accel& accel, NodeRef instance, RayRecord& record, TraceStacks& stacks,
+HWY_INLINE bool misses_member(const Accel& accel, std::uint32_t instance, const RayRecord& record,
+                              IntersectionCounts& counts) {
+  float entry;
+  ++counts.box;
+  return !slab(Slab(record.ray, far_widening(accel.accuracy.box)), accel.instances[instance].world, record.hit.t,
+               entry);
+}
+
+/// Traces `record`'s ray below a node of a group's structure. True when a search for any hit has found one.
+template <class Slab>
+HWY_NOINLINE bool trace_group(const Accel& accel, NodeKey key, RayRecord& record, TraceStacks& stacks,
+                              TraversalCounts& counts) {
+  const WideSlabLanes ray = in_registers(group_ray(accel, key.instance, record.ray, counts));
+  const Hit& hit = record.hit;
+  DepthFirstStack stack;
+  DepthFirstStack::Entry* top = stack.entries;
+  NodeRef ref = key.ref;
+  for (;;) {
+    if (ref.is_inner()) {
+      alignas(64) float entry[kMaxWidth];
+      const std::uint32_t mask = met_members(accel, ref, ~0u, ray, hit.t, entry, counts);
+      if (mask != 0) {
+        ref = nearest_child(accel, accel.nodes[ref.node()], mask, entry, top);
+        continue;
+      }
+    } else {
+      const std::uint32_t member = accel.instance_at(key.instance, ref);
+      if (!misses_member<Slab>(accel, member, record, counts) &&
+          trace_instance<Slab>(accel, member, record, stacks, counts))
+        return true;
+    }
+    do {
+      if (top == stack.entries) return false;
+      --top;
+    } while (top->entry > hit.t);
+    ref = NodeRef::from_bits(top->ref);
+  }
+}
+
+template <class Slab>
+HWY_NOINLINE bool trace_instance(const Accel& accel, std::uint32_t instance, RayRecord& record, TraceStacks& stacks,
                                  TraversalCounts& counts) {
+  const NodeRef root = accel.instances[instance].root;
+  if (HWY_UNLIKELY(accel.instances[instance].group))
+    return trace_group<Slab>(accel, {instance, root}, record, stacks, counts);
   FrameStorage<Slab> below;
-  enter_frame(accel, instance.instance_index(), record, &below.ray, counts);
-  const NodeRef root = accel.instances[instance.instance_index()].root;
+  enter_frame(accel, instance, record, &below.ray, counts);
   return trace_frame(accel, root, record, below.ray, stacks, 1, counts);
 }
 

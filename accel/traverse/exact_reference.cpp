@@ -82,6 +82,7 @@ bool meets(const Ray& ray, const WideBox& box, double tmin, double tmax, double&
 
 ExactReference::ExactReference(const scene::Scene& scene, const Accel& accel)
     : scene_(scene), accel_(accel), baked_off_(scene.instances.size(), 0.0) {
+  double largest = 0;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Affine& m = scene.instances[i].world_from_model;
     if (!accel.instances[i].transform.identity || (m.linear == Mat3(1.0f) && m.translation == Vec3(0.0f))) continue;
@@ -91,7 +92,9 @@ ExactReference::ExactReference(const scene::Scene& scene, const Accel& accel)
         for (int c = 0; c < 3; ++c) terms += std::fabs(double(m.linear[c][row]) * p[c]);
         baked_off_[i] = std::max(baked_off_[i], 0x1p-21 * terms + 0x1p-140);  // four roundings to float, or underflow
       }
+    largest = std::max(largest, baked_off_[i]);
   }
+  baked_off_.resize(accel.instances.size(), largest);  // of groups: there may be any instance in them
 }
 
 /// One ray on its way.
@@ -140,6 +143,9 @@ class ExactReference::Search {
       placed_for_ = key.instance;
       if (key.instance == kNoInstance)
         placed_ = Placement();
+      else if (accel_.is_group(key.instance))
+        placed_ = Placement(scene_.placements[accel_.group(key.instance).placement].world_from_group,
+                            baked_off_[key.instance]);
       else if (accel_.instances[key.instance].transform.identity)  // baked, or placed nowhere
         placed_ = Placement(scene::Affine{}, baked_off_[key.instance]);
       else
@@ -151,8 +157,9 @@ class ExactReference::Search {
       WideBox box = placed_.place(node, lane);
       if (const NodeRef child = node.child[lane]; child.is_instance())
         for (int a = 0; a < 3; ++a) {
-          box.lo[a] -= baked_off_[child.instance_index()];
-          box.hi[a] += baked_off_[child.instance_index()];
+          const double off = baked_off_[accel_.instance_at(key.instance, child)];
+          box.lo[a] -= off;
+          box.hi[a] += off;
         }
       double entry;
       if (meets(ray_, box, ray_.tmin, best_.t_hi, entry)) stack.push_back({accel_.child_key(key, lane), entry});

@@ -44,7 +44,7 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
       ref = NodeRef::from_bits(walker.top->ref);
     }
     if (HWY_UNLIKELY(ref.is_instance()) && !enter_instance(accel, ref, frame)) {
-      if (trace_instance<Slab>(accel, ref, *walker.record, stacks, counts)) return false;
+      if (trace_instance<Slab>(accel, ref.instance_index(), *walker.record, stacks, counts)) return false;
       continue;
     }
     if (ref.is_inner()) {

@@ -57,8 +57,8 @@ HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key,
   counts += own;
 }
 
-// Slab: SlabRay, or DoubleSlabRay for accuracy.box: double.
-template <class Slab>
+// Slab: SlabRay, or DoubleSlabRay for accuracy.box: double. kMember: Accel::enters_member() of the key.
+template <class Slab, bool kMember>
 void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
                 IntersectionCounts& counts) {
   const Node& node = accel.nodes[key.ref.node()];
@@ -76,6 +76,11 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
       hits.masks[i] = 0;
       continue;
     }
+    if constexpr (kMember)
+      if (misses_member<Slab>(accel, key.instance, record, counts)) {
+        hits.masks[i] = 0;
+        continue;
+      }
     const bool move = transform != nullptr && !transform->identity;
     const Ray model = move ? transform->to_model(record.ray) : record.ray;
     const Slab ray(model, widening);
@@ -107,7 +112,29 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
     if (lanes >> lane & 1) hits.nearest[lane] = nearest[lane];
 }
 
+/// The nodes of a group: boxes alone.
 template <class Slab>
+void test_members(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                  const StripHits& hits, IntersectionCounts& counts) {
+  const bool enters = accel.enters_member(key);
+  for (std::size_t i = 0; i < members.count; ++i) {
+    RayRecord& record = member<16>(members, i);
+    hits.masks[i] = 0;
+    if ((record.tag.flags & kRayDone) != 0) continue;
+    if (enters && misses_member<Slab>(accel, key.instance, record, counts)) continue;
+    alignas(64) float entry[kMaxWidth];
+    const WideSlabLanes ray = in_registers(group_ray(accel, key.instance, record.ray, counts));
+    const std::uint32_t mask = met_members(accel, key.ref, lanes, ray, record.hit.t, entry, counts);
+    for (std::uint32_t left = mask; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      hits.nearest[lane] = std::min(hits.nearest[lane], entry[lane]);
+    }
+    hits.masks[i] = static_cast<std::uint8_t>(mask);
+    if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
+  }
+}
+
+template <class Slab, bool kMember>
 void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
                     IntersectionCounts& counts) {
   lanes &= (1u << key.ref.triangles()) - 1;
@@ -116,6 +143,8 @@ void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const 
   for (std::size_t i = 0; i < members.count; ++i) {
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
+    if constexpr (kMember)
+      if (misses_member<Slab>(accel, key.instance, record, counts)) continue;
     tests += tested;
     const std::uint64_t any_hit_calls = counts.any_hit_calls;
     FrameStorage<Slab> frame;
@@ -127,25 +156,42 @@ void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const 
   }
 }
 
-template <class Slab>
+template <class Slab, bool kMember>
 void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
                  IntersectionCounts& counts) {
   if (key.ref.is_inner())
-    test_boxes<Slab>(accel, key, lanes, members, hits, counts);
+    test_boxes<Slab, kMember>(accel, key, lanes, members, hits, counts);
   else
-    test_triangles<Slab>(accel, key, lanes, members, counts);
+    test_triangles<Slab, kMember>(accel, key, lanes, members, counts);
+}
+
+template <class Slab>
+void test_any_level(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                    const StripHits& hits, IntersectionCounts& counts) {
+  if (HWY_UNLIKELY(accel.is_group(key.instance)))
+    test_members<Slab>(accel, key, lanes, members, hits, counts);
+  else if (HWY_UNLIKELY(accel.enters_member(key)))
+    test_shapes<Slab, true>(accel, key, lanes, members, hits, counts);
+  else
+    test_shapes<Slab, false>(accel, key, lanes, members, hits, counts);
 }
 
 template <class Slab>
 void trace_one_by_one(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& total) {
   TraceStacks stacks;
   TraversalCounts counts(members.culls);
+  const bool enters = accel.enters_member(key), in_group = accel.is_group(key.instance);
   for (std::size_t i = 0; i < members.count; ++i) {
     RayRecord& record = member<4>(members, i);
     if (record.tag.flags & kRayDone) continue;
-    FrameStorage<Slab> frame;
-    enter_frame(accel, key.instance, record, &frame.ray, counts);
-    trace_frame(accel, key.ref, record, frame.ray, stacks, 0, counts);
+    if (enters && misses_member<Slab>(accel, key.instance, record, counts)) continue;
+    if (in_group) {
+      trace_group<Slab>(accel, key, record, stacks, counts);
+    } else {
+      FrameStorage<Slab> frame;
+      enter_frame(accel, key.instance, record, &frame.ray, counts);
+      trace_frame(accel, key.ref, record, frame.ray, stacks, 0, counts);
+    }
     settle(record);
   }
   total += counts;
@@ -214,7 +260,7 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, I
 void TestStrip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
                IntersectionCounts& counts) {
   const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
-  (in_double ? test_shapes<DoubleSlabRay> : test_shapes<SlabRay>)(accel, key, lanes, members, hits, counts);
+  (in_double ? test_any_level<DoubleSlabRay> : test_any_level<SlabRay>)(accel, key, lanes, members, hits, counts);
 }
 
 void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
@@ -223,6 +269,7 @@ void TraceSubtree(const Accel& accel, NodeKey key, const RayMembers& members, In
 }
 
 void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
+  if (accel.is_group(key.instance) || accel.enters_member(key)) return TraceSubtree(accel, key, members, counts);
   const bool in_double = accel.accuracy.box == BoxLevel::kDouble;
   (in_double ? trace_in_turn<DoubleSlabRay> : trace_in_turn<SlabRay>)(accel, key, members, counts);
 }

@@ -6,6 +6,7 @@
 #include "app/build_report/cycle_sections.h"
 #include "app/build_report/effects.h"
 #include "app/build_report/energy_report.h"
+#include "app/build_report/levels_section.h"
 #include "app/build_report/ring_sections.h"
 #include "app/build_report/series.h"
 #include "app/host/machine_info.h"
@@ -110,6 +111,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   r.carousel = program_info();
   r.config = config_json(config);
   r.scene = summary(prepared);
+  if (!prepared.accel.groups.empty()) r.levels = levels_section(prepared.accel);
   r.host = host(prepared, result);
   r.host.raster_seconds = job.raster_seconds();
   r.raster = job.raster();

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "accel/build/build.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
@@ -22,6 +23,7 @@
 #include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
 #include "app/sampled/sampled_run.h"
+#include "core/system/executor.h"
 #include "report/text/number_text.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
@@ -105,14 +107,26 @@ report::Report play_requests(const Prepared& p, const InterruptScope& interrupt)
   return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
 }
 
+/// The structure without planes, spheres and levels of groups.
+accel::Accel two_levels(const Prepared& p) {
+  BvhConfig bvh;
+  bvh.width = p.config().bvh.width;
+  accel::Accel accel = accel::build(p.scene, bvh, *make_tbb_executor(p.threads), p.config().accuracy);
+  accel.any_hit = p.accel.any_hit;
+  return accel;
+}
+
 }  // namespace
 
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
                         const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory) {
   std::optional<accel::VerifyingWorkload> verifying;
-  std::optional<accel::Accel> plain;  // planes and spheres are verified as well
+  std::optional<accel::Accel> plain;  // planes, spheres and levels are verified as well
   if (p.config().verify == Verify::kReference) {
-    if (!accel::is_plain(p.accel)) plain = accel::plain_copy(p.accel);
+    if (!p.accel.groups.empty())
+      plain = two_levels(p);
+    else if (!accel::is_plain(p.accel))
+      plain = accel::plain_copy(p.accel);
     verifying.emplace(job.workload(), plain ? *plain : p.accel);
   }
   const bool picture = p.config().workload.kind == WorkloadConfig::Kind::kRays;

@@ -12,29 +12,31 @@ struct LevelNodes {
 };
 using Levels = std::vector<LevelNodes>;  // by depth
 
-/// Counts the nodes below roots. A mesh is gone through once, however often it is placed.
+/// Counts the nodes below roots. A mesh or a group is gone through once, however often it is placed.
 class NodeCounter {
  public:
   explicit NodeCounter(const accel::Accel& accel) : accel_(accel) {}
 
-  Levels below(accel::NodeRef root) {
+  Levels below(accel::NodeKey root) {
     struct Open {
-      accel::NodeRef ref;
+      accel::NodeKey key;
       std::size_t depth;
     };
     Levels levels;
     std::vector<Open> open{{root, 0}};
     while (!open.empty()) {
-      const auto [ref, depth] = open.back();
+      const auto [key, depth] = open.back();
       open.pop_back();
-      if (ref.is_instance()) {
-        add(levels, mesh(accel_.instances[ref.instance_index()].root), depth);
-        continue;
+      add(levels, {key.ref.is_inner() ? LevelNodes{1, 0} : LevelNodes{0, 1}}, depth);
+      if (!key.ref.is_inner()) continue;
+      const accel::Node& node = accel_.nodes[key.ref.node()];
+      for (int lane = 0; lane < node.count; ++lane) {
+        const accel::NodeKey child = accel_.child_key(key, lane);
+        if (node.child[lane].is_instance())
+          add(levels, placed(child), depth + 1);
+        else
+          open.push_back({child, depth + 1});
       }
-      add(levels, {ref.is_inner() ? LevelNodes{1, 0} : LevelNodes{0, 1}}, depth);
-      if (!ref.is_inner()) continue;
-      const accel::Node& node = accel_.nodes[ref.node()];
-      for (std::size_t lane = 0; lane < node.count; ++lane) open.push_back({node.child[lane], depth + 1});
     }
     return levels;
   }
@@ -48,19 +50,19 @@ class NodeCounter {
     }
   }
 
-  const Levels& mesh(accel::NodeRef root) {
-    const auto known = meshes_.find(root.bits());
-    return known != meshes_.end() ? known->second : meshes_.emplace(root.bits(), below(root)).first->second;
+  const Levels& placed(accel::NodeKey root) {
+    const auto known = placed_.find(root.ref.bits());
+    return known != placed_.end() ? known->second : placed_.emplace(root.ref.bits(), below(root)).first->second;
   }
 
   const accel::Accel& accel_;
-  std::unordered_map<std::uint32_t, Levels> meshes_;
+  std::unordered_map<std::uint32_t, Levels> placed_;  // by root
 };
 
 }  // namespace
 
 report::Nodes nodes_section(const accel::Accel& accel, const std::vector<NodeCounts>& work) {
-  const Levels levels = NodeCounter(accel).below(accel.root_key().ref);
+  const Levels levels = NodeCounter(accel).below(accel.root_key());
   report::Nodes out;
   for (std::size_t depth = 0; depth < std::max(levels.size(), work.size()); ++depth) {
     report::NodeDepth& row = out.by_depth.emplace_back();

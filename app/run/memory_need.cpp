@@ -42,7 +42,8 @@ MemoryNeed frame_need(const Config& config, bool keep_hits) {
 }
 
 std::uint64_t scene_bytes(const scene::Scene& scene) {
-  std::uint64_t bytes = scene.instances.size() * sizeof(scene::Instance);
+  std::uint64_t bytes =
+      scene.instances.size() * sizeof(scene::Instance) + scene.placements.size() * sizeof(scene::GroupPlacement);
   for (const scene::Image& image : scene.images) bytes += image.rgba.size();
   for (const scene::Mesh& mesh : scene.meshes) {
     bytes += mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3);
@@ -76,7 +77,8 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
   need.scene = scene_bytes(scene);
   if (need.paths > 0) need.paths = paths_in_flight(config) * shading::plan_effects(scene, config).path_state_bytes();
   need.accel = accel.size_bytes();
-  if (config.verify == Verify::kReference && !accel::is_plain(accel)) need.accel += accel.size_bytes();  // plain_copy()
+  if (config.verify == Verify::kReference && (!accel::is_plain(accel) || !accel.groups.empty()))
+    need.accel += accel.size_bytes();  // another structure to verify with
   need.ring = ringbus::estimate_memory(config, accel.max_depth);
   return need;
 }

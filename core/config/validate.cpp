@@ -33,6 +33,7 @@ class Rules {
     all_is_built();
     stored_transform_fits();
     planes_and_bundles_fit();
+    levels_fit();
     shapes_reach_the_resources();
     effects_are_known();
     ordered_needs_strips();
@@ -64,6 +65,10 @@ class Rules {
     }
     if (c.scene.procedural && c.scene.builtin != BuiltinScene::kSpheres)
       issue("scene.procedural", "only the built-in spheres are procedural primitives; expected false, found true");
+    if (c.scene.levels != SceneConfig{}.levels && c.scene.builtin != BuiltinScene::kInstances)
+      issue("scene.levels",
+            fmt::format("only the built-in scene of instances has a depth to choose; expected 2, found {}",
+                        c.scene.levels));
     if (!c.scene.file.empty() && c.scene.builtin)
       issue("scene.builtin",
             "expected either file or builtin, found both; another scene takes the place of both with --set "
@@ -156,6 +161,18 @@ class Rules {
     }
     if (c.cull_planes.count > 0) planes_need_bounded_errors();
     if (c.bundles.size > 0) bundles_fit();
+  }
+
+  // Nodes of a group are tested with a slack of each ray's own (accel/structure/group_placement.h).
+  void levels_fit() {
+    if (c.bvh.levels == 2) return;
+    constexpr std::string_view what = "{} not tested within groups of instances; expected 2, or {}; found {}";
+    if (c.bundles.size > 0) issue("bvh.levels", fmt::format(what, "bundles are", "bundles.size: 0", c.bvh.levels));
+    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
+      issue("bvh.levels", fmt::format(what, "spheres are", "bvh.elements: boxes", c.bvh.levels));
+    if (c.cull_planes.count > 0 && c.cull_planes.levels != CullPlanesConfig::Levels::kBlas)
+      issue("bvh.levels",
+            fmt::format(what, "cull planes above the instances are", "cull_planes.levels: blas", c.bvh.levels));
   }
 
   // A bundle has one owner, which tests all of its rays at one visit.

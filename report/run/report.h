@@ -10,6 +10,7 @@
 #include "report/sections/engine.h"
 #include "report/sections/faults.h"
 #include "report/sections/host.h"
+#include "report/sections/levels.h"
 #include "report/sections/link.h"
 #include "report/sections/memory/memory.h"
 #include "report/sections/memory/memory_trace.h"
@@ -45,6 +46,7 @@ struct Report {
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
   std::optional<Nodes> nodes;
+  std::optional<Levels> levels;
   std::optional<CullPlanes> cull_planes;
   std::optional<Packets> packets;
   std::optional<Collections> collections;
@@ -86,6 +88,7 @@ void describe(V& v, const Report& r) {
   v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
   v.section("tests", r.tests, "tests and other work of testing rays");
   v.section("nodes", r.nodes, "nodes of the structure by depth; absent where single rays go down without packets");
+  v.section("levels", r.levels, "instances of instances, when the structure has more than two levels");
   v.section("cull_planes", r.cull_planes, "size of the cull planes and work that they spare, when there are any");
   v.section("packets", r.packets, "packets of all resources");
   v.section("collections", r.collections, "collections: rays waiting for a node");

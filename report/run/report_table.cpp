@@ -256,6 +256,10 @@ std::string report_table(const Report& report) {
   if (report.incomplete) table.line("INCOMPLETE", "the work was interrupted; this is the part that was done");
   table.line("scene", "{}: {} triangles, {} instances{}", report.scene.name, grouped(report.scene.triangles),
              grouped(report.scene.instances), image_text(report.config));
+  if (report.levels)
+    table.line("levels", "{}: {} groups in {} placements; {} of nodes, {} if groups were not shared",
+               report.levels->levels, grouped(report.levels->groups), grouped(report.levels->placements),
+               bytes_text(report.levels->node_bytes), bytes_text(report.levels->node_bytes_unshared));
   const bool simulated = report.engine.cycles.has_value();
   table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
              simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);

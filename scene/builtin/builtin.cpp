@@ -26,7 +26,7 @@ Scene make_builtin(const SceneConfig& config) {
     case BuiltinScene::kTerrain:
       return make_terrain(triangles(), config.seed);
     case BuiltinScene::kInstances:
-      return make_instances(checked_count(config.instances, "scene.instances"), config.seed);
+      return make_instances(checked_count(config.instances, "scene.instances"), config.seed, config.levels);
     case BuiltinScene::kSliver:
       return make_sliver(triangles(), config.seed);
   }

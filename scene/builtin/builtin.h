@@ -17,8 +17,9 @@ Scene make_cornell();
 Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural = false);
 /// A height field of fractal noise coloured by height and slope, one mesh of about `triangles`.
 Scene make_terrain(std::int64_t triangles, std::int64_t seed);
-/// `instances` placements of a few small meshes: rotated, scaled unequally, every fourth mirrored.
-Scene make_instances(std::int64_t instances, std::int64_t seed);
+/// `instances` placements of a few small meshes: rotated, scaled unequally, every fourth mirrored. With more than two
+/// `levels` they stand in groups of groups: 3 levels have one depth of groups.
+Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t levels = 2);
 /// A burst of needles, `triangles` of them, length over width from 10 to 100,000.
 Scene make_sliver(std::int64_t triangles, std::int64_t seed);
 

@@ -3,11 +3,12 @@
 #include <numbers>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
+#include "scene/builtin/nested_groups.h"
+#include "scene/builtin/random_rotation.h"
 #include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
@@ -40,23 +41,8 @@ void add_shapes(Scene& scene) {
   });
 }
 
-/// A rotation drawn evenly from all of them: Shoemake, "Uniform random rotations", Graphics Gems III, 1992.
-Mat3 random_rotation(HashRandom& random) {
-  const float tau = 2 * std::numbers::pi_v<float>;
-  const float u = random.uniform(), a = tau * random.uniform(), b = tau * random.uniform();
-  const float r = std::sqrt(1 - u), s = std::sqrt(u);
-  return glm::mat3_cast(glm::quat(s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b)));
-}
-
-}  // namespace
-
-Scene make_instances(std::int64_t instances, std::int64_t seed) {
-  Scene scene;
-  scene.name = "instances";
-  add_shapes(scene);
-  const auto shapes = static_cast<std::uint32_t>(scene.meshes.size());
-  const MaterialId ground_material = add_material(scene, "ground", {0.30f, 0.31f, 0.33f}, 0, 0.95f);
-
+/// Places the shapes one by one and returns the radius of the disc that they lie on.
+float scatter(Scene& scene, std::int64_t instances, std::int64_t seed, std::uint32_t shapes) {
   // A sunflower: point k at angle k * golden angle and radius sqrt(k) keeps an even density (Vogel 1979).
   const float golden = std::numbers::pi_v<float> * (3 - std::sqrt(5.0f));
   const float disc = std::sqrt(static_cast<float>(instances)) * 0.62f;
@@ -75,6 +61,20 @@ Scene make_instances(std::int64_t instances, std::int64_t seed) {
     instance.world_from_model.translation = {radius * std::cos(angle), 0.75f + 1.6f * wave, radius * std::sin(angle)};
     scene.instances.push_back(instance);
   }
+  return disc;
+}
+
+}  // namespace
+
+Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t levels) {
+  Scene scene;
+  scene.name = "instances";
+  add_shapes(scene);
+  const auto shapes = static_cast<std::uint32_t>(scene.meshes.size());
+  const MaterialId ground_material = add_material(scene, "ground", {0.30f, 0.31f, 0.33f}, 0, 0.95f);
+
+  const float disc =
+      levels > 2 ? place_groups(scene, instances, seed, levels - 2, shapes) : scatter(scene, instances, seed, shapes);
 
   Mesh ground;
   ground.name = "ground";

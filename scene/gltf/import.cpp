@@ -46,6 +46,9 @@ void read_used_meshes(MeshReader& reader, DracoReader& draco, tinygltf::Model& m
     }
   }
   for (Instance& instance : scene.instances) instance.mesh = *ids[instance.mesh.value];
+  for (Group& group : scene.groups)
+    for (Group::Member& member : group.members)
+      if (!member.is_group) member.index = ids[member.index]->value;
 }
 
 Scene import(std::span<const std::byte> bytes, const std::string& file, std::optional<std::filesystem::path> folder,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "scene/gltf/hierarchy.h"
 #include "scene/gltf/transform.h"
 
 namespace carousel::scene {
@@ -34,21 +35,25 @@ class NodeReader {
     struct Visit {
       int node;
       DMat4 parent;
+      std::size_t parent_entry;
     };
     std::vector<Visit> stack;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.push_back({*root, DMat4(1)});
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root)
+      stack.push_back({*root, DMat4(1), Hierarchy::kWorld});
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
       const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
       const std::string path = json_path("/nodes", static_cast<std::size_t>(visit.node));
-      const DMat4 world = visit.parent * node_transform(document_, node, path);
+      const DMat4 local = node_transform(document_, node, path), world = visit.parent * local;
+      const std::size_t entry = hierarchy_.add(visit.parent_entry, local, world, scene_.instances.size());
       if (const auto mesh = mesh_of(visit.node, node)) add_instances(node, *mesh, world, path);
       if (node.camera >= 0) add_camera(node, world, path);
       add_light(node, world, path);
       for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-        stack.push_back({*child, world});
+        stack.push_back({*child, world, entry});
     }
+    hierarchy_.write(scene_);
   }
 
  private:
@@ -79,6 +84,7 @@ class NodeReader {
     const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
     if (extension == node.extensions.end()) {
       budget_.spend(1, path);
+      hierarchy_.add_own(DMat4(1));
       add_instance(mesh, world, path);
       return;
     }
@@ -115,6 +121,7 @@ class NodeReader {
       if (!local)
         document_.fail(json_path(where, "ROTATION"),
                        "the quaternion of instance " + std::to_string(i) + " has length zero");
+      hierarchy_.add_own(*local);
       add_instance(mesh, world * *local, path);
     }
   }
@@ -179,6 +186,7 @@ class NodeReader {
   ImportBudget& budget_;
   const MaterialId default_material_;
   Scene& scene_;
+  Hierarchy hierarchy_;
   std::vector<Mesh> spheres_;
   std::map<std::pair<float, std::uint32_t>, std::uint32_t> sphere_ids_;  // by radius and material
 };

@@ -126,12 +126,37 @@ struct Affine {
   Vec3 translation{0};
 };
 
+/// Stands for the world, where a group's placement would be named.
+inline constexpr std::uint32_t kNoPlacement = 0xffffffffu;
+
 /// One placement of a mesh; the index of an instance in Scene::instances is what hits name. Order: depth-first
 /// node order of the default scene, EXT_mesh_gpu_instancing expanded in place. A singular linear part is
 /// allowed here; accel bakes such instances into world space.
 struct Instance {
   MeshId mesh;
   Affine world_from_model;
+  std::uint32_t placement = kNoPlacement;  ///< in Scene::placements: of the innermost group that it belongs to
+  std::uint32_t member = 0;                ///< of that group
+};
+
+/// Instances and groups that are placed together. A group stands in Scene::groups before those that
+/// have it for a member.
+struct Group {
+  struct Member {
+    bool is_group = false;
+    std::uint32_t index = 0;  ///< in Scene::groups, or of a mesh
+    friend bool operator==(const Member&, const Member&) = default;
+  };
+  std::vector<Member> members;  ///< two at least, in the order of the instances
+};
+
+/// One placement of a group, in the world or in another group, which is placed before it. Members of one group stand in
+/// the same way in each of its placements, but for the rounding of the composed transforms.
+struct GroupPlacement {
+  std::uint32_t group = 0;              ///< in Scene::groups
+  Affine world_from_group;              ///< composed as Instance::world_from_model is; may be singular
+  std::uint32_t parent = kNoPlacement;  ///< in Scene::placements
+  std::uint32_t member = 0;             ///< of the parent's group
 };
 
 struct Camera {
@@ -174,7 +199,9 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
-  std::vector<Instance> instances;
+  std::vector<Instance> instances;         ///< all there are, also those within groups
+  std::vector<Group> groups;               ///< the hierarchy beside it, which changes nothing that a ray meets
+  std::vector<GroupPlacement> placements;  ///< of groups
   std::vector<PunctualLight> lights;
   std::vector<Camera> cameras;  ///< at least one: the file's, or one that was made up
   Sky sky;

@@ -15,6 +15,7 @@ struct BvhConfig {
   enum class Storage { kFull, kQuantised } storage = Storage::kFull;
   enum class Leaves { kTriangles, kStrips } leaves = Leaves::kTriangles;
   std::int64_t top_triangles = 0;
+  std::int64_t levels = 2;
 };
 
 template <>
@@ -60,6 +61,9 @@ void describe(V& v, BvhConfig& c) {
       "A mesh that stands in the world without a transform and is one leaf of at most this size has no structure of "
       "its "
       "own; its triangles are tested with the other children of their parent in the top level. With 0 there are none.");
+  v.field("levels", c.levels, IntRange{2, 8}, "levels",
+          "The largest number of structures that a ray is in one below another: the top level, groups of instances "
+          "within groups, and a mesh. With 2 every instance is in the top level.");
 }
 
 }  // namespace config

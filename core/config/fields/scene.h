@@ -31,6 +31,7 @@ struct SceneConfig {
   bool procedural = false;
   std::int64_t triangles = 20000;
   std::int64_t instances = 1000;
+  std::int64_t levels = 2;
   std::int64_t seed = 1;
   std::int64_t camera = 0;
   std::optional<SkyConfig> sky;
@@ -54,6 +55,9 @@ void describe(V& v, SceneConfig& c) {
           "The approximate number of triangles of the built-in spheres, terrain and sliver.");
   v.field("instances", c.instances, IntRange{1, 10'000'000}, "instances",
           "The number of instances of the built-in scene of instances.");
+  v.field("levels", c.levels, IntRange{2, 8}, "levels",
+          "With more than 2 the built-in scene of instances consists of groups, within groups down to this depth, each "
+          "of them placed many times.");
   v.field("seed", c.seed, kSeed, "", "The seed of the built-in spheres, terrain, instances and sliver.");
   v.field("camera", c.camera, IntRange{0, 65535}, "", "The index of the camera among those of the scene.");
   v.section("sky", c.sky,

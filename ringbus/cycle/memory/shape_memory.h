@@ -24,7 +24,8 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
-/// each instance's transform, from a 64-byte border on, in equal room for all of them. With `bvh.storage: quantised`
+/// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
+/// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
 /// nodes have 64 or 80 bytes, and each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
 class ShapeMemory {
  public:
@@ -37,7 +38,10 @@ class ShapeMemory {
         instances_at_((blocks_at_ + bytes_of_leaves() + 63) / 64 * 64),
         instance_bytes_(accel::instance_bytes(accuracy)),
         promoted_bytes_(accel::promoted_bytes(accuracy)),
-        instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) + 63) / 64 * 64) {}
+        instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) +
+                        (accel.groups.empty() ? 0 : accel::kMemberBytes + accel::kGroupBytes) + 63) /
+                       64 * 64),
+        records_(record_order(accel)) {}
 
   /// The strip below `key`: a node with its children's boxes and planes, or a leaf's triangles.
   ShapeSpan strip(accel::NodeKey key) const {
@@ -75,11 +79,22 @@ class ShapeMemory {
   /// With `bvh.leaves: strips`.
   const LeafStrips& strips() const { return strips_; }
 
-  /// The transform data that testing in `instance` needs; no bytes above the instances and where rays are not moved.
+  /// True if a test at `key` reads its instance's record although no ray is transformed there.
+  bool reads_record(accel::NodeKey key) const {
+    return accel_.enters_member(key) ||
+           (accel_.is_group(key.instance) && accel_.instances[key.instance].transform.identity);
+  }
+  /// The data of its instance that testing in `instance` needs; no bytes above the instances, and where rays are not
+  /// moved outside groups.
   ShapeSpan transform(std::uint32_t instance) const {
-    if (instance == kNoInstance || accel_.instances[instance].transform.identity) return {};
-    return {instances_at_ + std::uint64_t{instance} * instance_room_,
-            accel_.instances[instance].transform.promoted ? promoted_bytes_ : instance_bytes_};
+    if (instance == kNoInstance) return {};
+    const accel::InstanceNode& node = accel_.instances[instance];
+    std::uint32_t bytes = node.group || node.member ? accel::kMemberBytes : 0;
+    if (node.group) bytes += accel::kGroupBytes;
+    if (!node.transform.identity) bytes += node.transform.promoted ? promoted_bytes_ : instance_bytes_;
+    if (bytes == 0) return {};
+    const std::uint64_t record = records_.empty() ? instance : records_[instance];
+    return {instances_at_ + record * instance_room_, bytes};
   }
 
  private:
@@ -105,6 +120,18 @@ class ShapeMemory {
       for (const std::uint32_t primitive : block.primitive) primitives += primitive != accel::kNoPrimitive;
     }
     return std::uint64_t{primitives} * kQuantisedLeafBytes;
+  }
+
+  /// Members of one placement of a group stand one behind the other, so that the first tells where all are.
+  static std::vector<std::uint32_t> record_order(const accel::Accel& accel) {
+    std::vector<std::uint32_t> records;
+    if (accel.groups.empty()) return records;
+    records.resize(accel.instances.size());
+    std::uint32_t next = 0;
+    for (const std::uint32_t member : accel.members) records[member] = next++;
+    for (std::size_t i = 0; i < records.size(); ++i)
+      if (!accel.instances[i].member) records[i] = next++;
+    return records;
   }
 
   std::uint32_t child_bytes(std::uint32_t index, int lane) const {
@@ -139,6 +166,7 @@ class ShapeMemory {
   LeafStrips strips_;
   std::uint64_t blocks_at_, instances_at_;
   std::uint32_t instance_bytes_, promoted_bytes_, instance_room_;
+  std::vector<std::uint32_t> records_;  // by instance: the place of its record; empty: its number
 };
 
 }  // namespace carousel::ringbus::cycle

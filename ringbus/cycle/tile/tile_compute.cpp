@@ -15,7 +15,7 @@ Tile::Context* Tile::free_context() {
 /// The shapes of a packet's tests, and what is stored of their instance's transform.
 ShapeNeed Tile::shape_data(const Packet& packet, bool transform) const {
   return {resource_.is_treelet(packet.key) ? memory_.strip(packet.key) : memory_.shapes(packet.key, packet.lanes),
-          transform ? memory_.transform(packet.key.instance) : ShapeSpan{}};
+          transform || memory_.reads_record(packet.key) ? memory_.transform(packet.key.instance) : ShapeSpan{}};
 }
 
 void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {

@@ -36,12 +36,12 @@ class TransformAccount {
     if (!store_) return true;
     std::vector<std::uint32_t>& kept = kept_[slot];
     if (std::find(kept.begin(), kept.end(), instance) != kept.end()) {
-      bytes_.read += accel::kTransformedRayBytes;
+      bytes_.read += ray_bytes(instance);
       return false;
     }
     kept.push_back(instance);
-    bytes_.written += accel::kTransformedRayBytes;
-    held_ += accel::kTransformedRayBytes;
+    bytes_.written += ray_bytes(instance);
+    held_ += ray_bytes(instance);
     bytes_.peak = std::max(bytes_.peak, held_);
     return true;
   }
@@ -59,7 +59,7 @@ class TransformAccount {
   /// The ray in `slot` is done.
   void forget(std::uint32_t slot) {
     if (!store_) return;
-    held_ -= accel::kTransformedRayBytes * kept_[slot].size();
+    for (const std::uint32_t instance : kept_[slot]) held_ -= ray_bytes(instance);
     kept_[slot].clear();
   }
   /// True if rays are transformed in double for this instance, at a level that is not.
@@ -74,6 +74,11 @@ class TransformAccount {
   const TransformedRayBytes& bytes() const { return bytes_; }
 
  private:
+  /// Of a copy; one in a group's space has the slack of its tests besides.
+  std::uint64_t ray_bytes(std::uint32_t instance) const {
+    return accel::kTransformedRayBytes + (accel_.is_group(instance) ? 3 * sizeof(float) : 0);
+  }
+
   const accel::Accel& accel_;
   bool store_, forward_, full_;
   std::vector<std::vector<std::uint32_t>> kept_;  // by slot: the instances it has a copy for

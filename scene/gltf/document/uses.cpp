@@ -6,7 +6,7 @@ namespace carousel::scene {
 
 namespace {
 
-const Json& entries(const Json& json, const char* key) {
+const Json& used_entries(const Json& json, const char* key) {
   static const Json none = Json::array();
   const auto entry = json.find(key);
   return entry == json.end() ? none : *entry;
@@ -17,7 +17,7 @@ void mark(std::vector<bool>& used, const Json& owner, const char* key) {
 }
 
 void mark_all(std::vector<bool>& used, const Json& owner, const char* key) {
-  for (const Json& index : entries(owner, key)) used.at(index.get<std::size_t>()) = true;
+  for (const Json& index : used_entries(owner, key)) used.at(index.get<std::size_t>()) = true;
 }
 
 /// Marks the textures of a material, its layers included.
@@ -50,27 +50,27 @@ bool reads_tex_coords(const Json& material, int set) {
 
 Uses uses_of(const Json& json) {
   Uses out;
-  const auto size = [&](const char* key) { return entries(json, key).size(); };
+  const auto size = [&](const char* key) { return used_entries(json, key).size(); };
   out.textures.resize(size("textures"));
   out.images.resize(size("images"));
   out.samplers.resize(size("samplers"));
   out.cameras.resize(size("cameras"));
   out.accessors.resize(size("accessors"));
-  for (const Json& material : entries(json, "materials")) mark_textures(out.textures, material);
+  for (const Json& material : used_entries(json, "materials")) mark_textures(out.textures, material);
   for (std::size_t t = 0; t < out.textures.size(); ++t) {
     if (!out.textures[t]) continue;
     const Json& texture = json["textures"][t];
     mark(out.images, texture, "source");
     mark(out.samplers, texture, "sampler");
-    for (const Json& extension : entries(texture, "extensions")) mark(out.images, extension, "source");
+    for (const Json& extension : used_entries(texture, "extensions")) mark(out.images, extension, "source");
   }
-  for (const Json& node : entries(json, "nodes")) {
+  for (const Json& node : used_entries(json, "nodes")) {
     mark(out.cameras, node, "camera");
     const Json::json_pointer instancing("/extensions/EXT_mesh_gpu_instancing");
     if (node.contains(instancing)) mark_all(out.accessors, node.at(instancing), "attributes");
   }
-  for (const Json& mesh : entries(json, "meshes")) {
-    for (const Json& primitive : entries(mesh, "primitives")) {
+  for (const Json& mesh : used_entries(json, "meshes")) {
+    for (const Json& primitive : used_entries(mesh, "primitives")) {
       mark_all(out.accessors, primitive, "attributes");
       mark(out.accessors, primitive, "indices");
     }

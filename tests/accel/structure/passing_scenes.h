@@ -38,9 +38,10 @@ class HashedStop final : public AnyHit {
 
 /// A built-in scene half of whose triangles may let rays through, with `balls` spheres, likewise, in two meshes: one of
 /// spheres alone that is placed twice, stretched and mirrored, and one that holds triangles as well.
-inline scene::Scene passing_scene(BuiltinScene builtin, std::uint32_t balls, std::uint64_t seed) {
+inline scene::Scene passing_scene(BuiltinScene builtin, std::uint32_t balls, std::uint64_t seed,
+                                  std::int64_t levels = 2) {
   Random random(seed);
-  scene::Scene scene = small_builtin(builtin, 250, 6);
+  scene::Scene scene = small_builtin(builtin, 250, levels > 2 ? 20 : 6, levels);
   const MaterialId blended(static_cast<std::uint32_t>(scene.materials.size()));
   scene.materials.emplace_back().alpha_mode = scene::AlphaMode::kBlend;
   scene.materials.back().base_color.a = 0.5f;

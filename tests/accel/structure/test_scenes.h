@@ -52,8 +52,10 @@ inline scene::Scene icosphere_scene(int level, const Vec3& centre = Vec3{0}, flo
 }
 
 /// A built-in scene of a size that brute force can stand.
-inline scene::Scene small_builtin(BuiltinScene builtin, std::int64_t triangles = 300, std::int64_t instances = 12) {
+inline scene::Scene small_builtin(BuiltinScene builtin, std::int64_t triangles = 300, std::int64_t instances = 12,
+                                  std::int64_t levels = 2) {
   SceneConfig config;
+  config.levels = levels;
   config.builtin = builtin;
   config.triangles = triangles;
   config.instances = instances;

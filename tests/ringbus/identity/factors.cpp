@@ -33,6 +33,7 @@ const Values kSwitch{"false", "true"};
 std::vector<Factor> scene_and_engine() {
   return {
       {"scene.builtin", all<BuiltinScene>()},
+      {"scene.levels", {"2", "5"}, {"scene.builtin=instances"}},
       {"test.non_opaque", kSwitch},          // half of the triangles, and spheres; rays have flags
       {"test.away", {"0.5", "100"}},         // rays start so many extents away from the scene
       {"test.storage", {"ample", "least"}},  // of collections
@@ -50,6 +51,7 @@ std::vector<Factor> scene_and_engine() {
       {"bvh.elements", all<BvhConfig::Elements>()},
       {"bvh.mixed_triangles", {"0", "2"}},
       {"bvh.top_triangles", {"0", "4"}},
+      {"bvh.levels", {"2", "3", "8"}},
   };
 }
 

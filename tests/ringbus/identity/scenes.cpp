@@ -21,10 +21,10 @@ void remove_some_scales(scene::Scene& scene) {
 
 TestScene& Scenes::of(const Cell& cell) {
   const BuiltinScene builtin = cell.config.scene.builtin.value_or(BuiltinScene::kCornell);
-  std::unique_ptr<TestScene>& made = scenes_[{builtin, cell.non_opaque, cell.away}];
+  std::unique_ptr<TestScene>& made = scenes_[{builtin, cell.config.scene.levels, cell.non_opaque, cell.away}];
   if (!made) {
-    scene::Scene scene =
-        cell.non_opaque ? accel::passing_scene(builtin, 20, run_seed()) : builtin_scene(builtin, 600, 300);
+    scene::Scene scene = cell.non_opaque ? accel::passing_scene(builtin, 20, run_seed(), cell.config.scene.levels)
+                                         : builtin_scene(builtin, 600, 300, cell.config.scene.levels);
     if (builtin == BuiltinScene::kInstances) remove_some_scales(scene);
     made = std::make_unique<TestScene>(std::move(scene), kPaths, kBounces, cell.away,
                                        cell.non_opaque ? &accept_some_ : nullptr);

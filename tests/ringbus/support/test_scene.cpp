@@ -21,15 +21,16 @@ std::string levels(const AccuracyConfig& a) {
 }
 
 std::string structure(const BvhConfig& b, const CullPlanesConfig& p) {
-  return fmt::format("{} {} {} {} {} planes {} {} {} {} {} {}", b.width, b.leaf_triangles, enum_name(b.storage),
-                     enum_name(b.elements), b.mixed_triangles, p.count, enum_name(p.nodes), enum_name(p.fit),
-                     p.shared_normals, enum_name(p.order), enum_name(p.levels));
+  return fmt::format("{} {} {} {} {} {} {} planes {} {} {} {} {} {}", b.width, b.leaf_triangles, enum_name(b.storage),
+                     enum_name(b.elements), b.mixed_triangles, b.top_triangles, b.levels, p.count, enum_name(p.nodes),
+                     enum_name(p.fit), p.shared_normals, enum_name(p.order), enum_name(p.levels));
 }
 
 }  // namespace
 
-scene::Scene builtin_scene(BuiltinScene builtin, std::int64_t triangles, std::int64_t instances) {
+scene::Scene builtin_scene(BuiltinScene builtin, std::int64_t triangles, std::int64_t instances, std::int64_t levels) {
   SceneConfig config;
+  config.levels = levels;
   config.builtin = builtin;
   config.triangles = triangles;
   config.instances = instances;

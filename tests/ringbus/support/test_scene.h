@@ -12,7 +12,8 @@
 
 namespace carousel::ringbus {
 
-scene::Scene builtin_scene(BuiltinScene builtin, std::int64_t triangles, std::int64_t instances);
+scene::Scene builtin_scene(BuiltinScene builtin, std::int64_t triangles, std::int64_t instances,
+                           std::int64_t levels = 2);
 
 /// A scene, the rays that are sent into it, and what the reference tracer finds for them at each level of accuracy.
 /// Structures are built once a configuration. With `any_hit` rays also have flags.

@@ -51,7 +51,8 @@ void SubtreeVisits::go_on(std::uint32_t index, Cycle now) {
   }
   const WalkStep& step = visit.ways.steps[ray.step];
   ShapeNeed need{memory_.strip(step.key), {}};
-  if (step.tests.tests[UnitKind::kTransform] > 0) need[1] = memory_.transform(step.key.instance);
+  if (step.tests.tests[UnitKind::kTransform] > 0 || memory_.reads_record(step.key))
+    need[1] = memory_.transform(step.key.instance);
   ray.phase = Ray::Phase::kWaits;
   if (shapes_.take(first_user_ + index, need, now)) test(index, now);
 }

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "core/system/executor.h"
+#include "scene/model/scene.h"
+
+namespace carousel::accel {
+
+/// What lies in an instance, as seen from where it is placed: with a baked instance its world box, placed nowhere.
+struct PlacedBox {
+  Aabb box;
+  scene::Affine world_from_box;
+};
+
+/// The members of the top level, when all levels below it are built.
+struct TopMembers {
+  std::vector<std::uint32_t> instances;
+  int groups_depth = 0;  ///< strips of groups' nodes on the longest way down
+};
+
+/// Builds the structures over groups that `config.levels` leaves room for and appends them to the structure, whose
+/// instances are there already, with their roots and world boxes: one structure for all placements of a group below
+/// which there is as much room, an entry of Accel::instances for each placement. What lies deeper joins the lowest
+/// group that is kept, as do the members of groups with less than two members, or with a placement that is singular.
+TopMembers build_group_levels(const scene::Scene& scene, const BvhConfig& config,
+                              const std::function<PlacedBox(std::uint32_t)>& box_of, Executor& executor, Accel& accel);
+
+}  // namespace carousel::accel

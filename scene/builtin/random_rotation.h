@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "core/types/vec.h"
+#include "scene/builtin/hash_random.h"
+
+namespace carousel::scene {
+
+/// A rotation drawn evenly from all of them: Shoemake, "Uniform random rotations", Graphics Gems III, 1992.
+inline Mat3 random_rotation(HashRandom& random) {
+  const float tau = 2 * std::numbers::pi_v<float>;
+  const float u = random.uniform(), a = tau * random.uniform(), b = tau * random.uniform();
+  const float r = std::sqrt(1 - u), s = std::sqrt(u);
+  return glm::mat3_cast(glm::quat(s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b)));
+}
+
+}  // namespace carousel::scene
