@@ -165,6 +165,18 @@ INSTANTIATE_TEST_SUITE_P(
             SCENE "cull_planes: {count: 2, levels: tlas}\naccuracy: {transform: inverse_matrix}\n",
             "test.yaml:3:23: accuracy.transform: cull planes above the instances could lose hits of inverse_matrix; "
             "expected two_step, two_step_double or transpose_if_rotation, or cull_planes.levels: blas"},
+        BadConfig{"BundlesInGroups", SCENE "bundles: {size: 8}\nbvh: {levels: 3}\n",
+                  "test.yaml:3:15: bvh.levels: bundles are not tested within groups of instances; expected 2, or "
+                  "bundles.size: 0; found 3"},
+        BadConfig{"SpheresInGroups", SCENE "bvh: {levels: 3, elements: spheres}\n",
+                  "test.yaml:2:15: bvh.levels: spheres are not tested within groups of instances; expected 2, or "
+                  "bvh.elements: boxes; found 3"},
+        BadConfig{"TopPlanesAboveGroups", SCENE "cull_planes: {count: 2, levels: all}\nbvh: {levels: 8}\n",
+                  "test.yaml:3:15: bvh.levels: cull planes above the instances are not tested within groups of "
+                  "instances; expected 2, or cull_planes.levels: blas; found 8"},
+        BadConfig{"LevelsOfAnotherScene", "scene: {builtin: cornell, levels: 3}\n",
+                  "test.yaml:1:35: scene.levels: only the built-in scene of instances has a depth to choose; expected "
+                  "2, found 3"},
         BadConfig{"CullPlanesOfFastTriangles", SCENE "cull_planes: {count: 2}\naccuracy: {triangle: fast}\n",
                   "test.yaml:3:22: accuracy.triangle: cull planes could lose hits of fast; expected watertight or "
                   "exact, or cull_planes.count: 0"},

@@ -38,7 +38,7 @@ std::string Cell::text() const {
 
 bool is_accepted(const Config& config) {
   Config with_scene = config;
-  with_scene.scene.builtin = BuiltinScene::kCornell;
+  if (!with_scene.scene.builtin) with_scene.scene.builtin = BuiltinScene::kCornell;
   return validate_config(with_scene, KeyPositions()).empty();
 }
 

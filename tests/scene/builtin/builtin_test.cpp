@@ -45,6 +45,36 @@ TEST(Builtin, IsDeterministic) {
   }
 }
 
+TEST(Builtin, NestsInstancesInGroupsThatArePlacedManyTimes) {
+  for (const std::int64_t levels : {3, 4, 5, 6, 7, 8})
+    for (const std::int64_t instances : {1, 7, 300, 2000}) {
+      SceneConfig config = config_of(BuiltinScene::kInstances);
+      config.levels = levels;
+      config.instances = instances;
+      const Scene scene = make_builtin(config);
+      EXPECT_TRUE(same_geometry(scene, make_builtin(config)));
+      ASSERT_EQ(scene.instances.size(), static_cast<std::size_t>(instances) + 1);  // and the ground
+      std::vector<int> depth;
+      int deepest = 0;
+      for (const GroupPlacement& p : scene.placements) {
+        depth.push_back(p.parent == kNoPlacement ? 1 : 1 + depth.at(p.parent));
+        deepest = std::max(deepest, depth.back());
+        if (p.parent == kNoPlacement) continue;
+        const Group::Member& member = scene.groups[scene.placements[p.parent].group].members.at(p.member);
+        EXPECT_TRUE(member.is_group && member.index == p.group);
+      }
+      for (const Instance& i : scene.instances) {
+        if (i.placement == kNoPlacement) continue;
+        const Group::Member& member = scene.groups[scene.placements[i.placement].group].members.at(i.member);
+        EXPECT_TRUE(!member.is_group && member.index == i.mesh.value);
+      }
+      if (instances >= 300) {
+        EXPECT_EQ(deepest, levels - 2);
+        EXPECT_GT(scene.placements.size(), scene.groups.size());
+      }
+    }
+}
+
 TEST(Builtin, SeedChangesTheSeededOnes) {
   for (const BuiltinScene kind : kAll) {
     if (kind == BuiltinScene::kCornell) continue;
