@@ -13,7 +13,7 @@ namespace carousel::scene {
 namespace {
 
 constexpr std::uint32_t kVariants = 3;  // of groups at each depth
-constexpr double kSpacing = 1.24;       // of a sunflower's points, in radii of what stands there
+constexpr double kSpacing = 1.0;  // of a sunflower's points, in radii of what stands there: as dense at all depths
 
 /// The linear part and the translation of a placement, in double: they are rounded once, when all are multiplied.
 struct Map {
@@ -79,7 +79,7 @@ class Nested {
   /// Turned about the vertical, tilted a little, and every fourth mirrored.
   Map random_place(std::int64_t k, double radius, float most_tilt) {
     const float turn = random_.uniform(0, 2 * std::numbers::pi_v<float>), tilt = random_.uniform(-most_tilt, most_tilt);
-    const double scale = random_.uniform(0.75f, 1.0f);
+    const double scale = random_.uniform(0.85f, 1.0f);
     const DMat3 upright(std::cos(turn), 0, -std::sin(turn), 0, 1, 0, std::sin(turn), 0, std::cos(turn));
     const DMat3 tilted(1, 0, 0, 0, std::cos(tilt), std::sin(tilt), 0, -std::sin(tilt), std::cos(tilt));
     const DMat3 scaled(k % 4 == 3 ? -scale : scale, 0, 0, 0, scale, 0, 0, 0, scale);
