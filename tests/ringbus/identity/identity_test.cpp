@@ -116,12 +116,6 @@ void expect_one_digest(const std::string& engine, int random_machines) {
                            "bundles.builder.same_origin=false", "bundles.builder.same_signs=false",
                            "test.split_early=false", "collections.when_full=spill"});
   for (int i = cell_count(6); i > 0; --i) run(space.draw_cell(random, back));
-  // Or bundles so narrow that all of their rays miss a box: pairs from far away.
-  std::vector<std::string> narrow = with;
-  narrow.insert(narrow.end(),
-                {"bundles.size=2", "test.away=100", "bundles.builder.threshold=100",
-                 "bundles.builder.same_origin=false", "bundles.builder.same_signs=false", "test.split_early=false"});
-  for (int i = cell_count(3); i > 0; --i) run(space.draw_cell(random, narrow));
 #ifndef __SANITIZE_THREAD__
   seen.expect_all();
 #endif
