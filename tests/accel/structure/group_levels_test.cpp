@@ -232,7 +232,7 @@ RayBatch aimed_rays(const scene::Scene& scene, std::size_t count, std::uint64_t 
     const std::array<Vec3, 3> p = random_triangle(shown, random);
     const Vec3 at = i % 3 == 0 ? p[0] : p[0] + random.uniform() * (p[1] - p[0]);
     const float least = glm::length(p[1] - p[0]) + glm::length(p[2] - p[0]);
-    const float away = least * std::pow(3 * size / least, random.uniform());
+    const float away = least * std::pow(3 * size / least, i % 4 == 0 ? 0.0f : random.uniform());
     const Vec3 from = at + away * glm::normalize(random.in_box(Vec3{-1}, Vec3{1}) + Vec3{1e-3f});
     rays.push_back(ray_to(from, i % 2 == 0 ? at - from : (at - from) * (1 / away)));
   }
@@ -255,6 +255,22 @@ TEST(GroupLevels, ChangeNoHitInHardGroups) {
         }
       }
     }
+}
+
+// Squares that fill their boxes: composed translations are rounded, so that each stands elsewhere in each placement.
+TEST(GroupLevels, ChangeNoHitOfSquaresFarFromTheOrigin) {
+  scene::Scene scene = empty_scene();
+  (void)add_mesh(scene, soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  scene.groups = {{{{false, 0}, {false, 0}, {false, 0}}}};
+  Random random(43);
+  const Vec3 members[] = {{0.1f, 0.7f, 0.3f}, {1.3f, -0.6f, 2.9f}, {-1.7f, 0.2f, 1.1f}};
+  for (std::uint32_t k = 0; k < 12; ++k) {
+    const Vec3 at = k == 0 ? Vec3{0} : random.in_box(Vec3{-2e4f}, Vec3{2e4f});
+    scene.placements.push_back({0, {Mat3(1.0f), at}});
+    for (std::uint32_t m = 0; m < 3; ++m)
+      scene.instances.push_back({MeshId(0), {Mat3(1.0f), Vec3(DVec3(at) + DVec3(members[m]))}, k, m});
+  }
+  expect_equal(scene, aimed_rays(scene, 1500, 44));
 }
 
 // A member that has no inverse is baked; a group that has none gives its members to the group around it.

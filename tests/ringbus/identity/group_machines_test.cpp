@@ -1,10 +1,12 @@
 // Instances of instances: machines with structures of two to eight levels have the digest of the two-level reference,
 // on a nested built-in scene and on a file whose nodes are groups of groups.
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
 #include "core/config/load.h"
+#include "ringbus/cycle/memory/shape_memory.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/ringbus/support/test_machine.h"
 #include "tests/scene/gltf/gltf_builder.h"
@@ -101,6 +103,34 @@ TEST(GroupMachines, AreCountedAndCharged) {
   const Outcome flat = run(2), three = run(3), six = run(6);
   EXPECT_GT(three.sum.tests.transforms, flat.sum.tests.transforms);
   EXPECT_GT(six.sum.tests.transforms, three.sum.tests.transforms);
+}
+
+// 48 bytes of a transform; of members the world box and a number, of groups a slack besides.
+TEST(GroupMachines, HaveRecordsOfMembersOneBehindTheOther) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300, 5), 1, 0);
+  BvhConfig bvh;
+  bvh.levels = 5;
+  const accel::Accel& accel = scene.accel(bvh);
+  const cycle::ShapeMemory memory(accel, {}, bvh);
+  const std::size_t own = accel.instances.size() - accel.groups.size();
+  std::set<std::uint64_t> addresses;
+  for (std::uint32_t i = 0; i < accel.instances.size(); ++i) {
+    const accel::InstanceNode& node = accel.instances[i];
+    const cycle::ShapeSpan record = memory.transform(i);
+    EXPECT_EQ(record.bytes,
+              (node.transform.identity ? 0u : 48u) + (node.group || node.member ? 28u : 0u) + (node.group ? 16u : 0u));
+    if (record.bytes > 0) {
+      EXPECT_TRUE(addresses.insert(record.address).second);
+    }
+    EXPECT_EQ(node.group, i >= own);
+    if (!node.group) continue;
+    const std::uint32_t first = accel.group(i).first_member;
+    const accel::NodeKey key{i, node.root};
+    for (std::uint32_t m = 0; m < 4; ++m)  // as many as the fourth root of 300
+      EXPECT_EQ(memory.transform(accel.members[first + m]).address,
+                memory.transform(accel.members[first]).address + 128 * m);
+    EXPECT_FALSE(memory.reads_record(key) && !node.member);
+  }
 }
 
 }  // namespace
