@@ -283,7 +283,7 @@ HWY_NOINLINE bool trace_group(const Accel& accel, NodeKey key, RayRecord& record
     do {
       if (top == stack.entries) return false;
       --top;
-    } while (top->entry > hit.t);
+    } while (hit.t < top->entry);
     ref = NodeRef::from_bits(top->ref);
   }
 }
