@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/statistics/worth_naming.h"
+
 namespace carousel::report {
 
 namespace {
@@ -42,7 +44,7 @@ std::string gain_text(const BottleneckGain& gain) {
 Bottleneck judge_gains(Bottleneck found) {
   const BottleneckGain* named = nullptr;
   for (const BottleneckGain& gain : found.gains)
-    if (named == nullptr && gain.low > 0 && gain.gain >= kWorthIt) named = &gain;
+    if (named == nullptr && worth_naming(gain.gain, gain.low)) named = &gain;
   found.limits = named == nullptr ? "" : named->name;
   found.rivals.clear();
   for (const BottleneckGain& gain : found.gains)

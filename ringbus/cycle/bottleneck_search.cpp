@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/statistics/worth_naming.h"
 #include "ringbus/cycle/foretell.h"
 #include "ringbus/cycle/pilot_runs.h"
 #include "ringbus/cycle/steady_state.h"
@@ -49,15 +50,23 @@ class Search {
       begin("second pilot", worth.size());
       simulate_base();
     }
-    for (int doubled = 0; out_.complete && !judge(); ++doubled) {
-      if (doubled == kDoublings) return without_gains();
+    for (int doubled = 0; out_.complete; ++doubled) {
+      const bool alike = judge();
+      if (alike) {
+        lift(worth, out_.deviation);
+        worth = perhaps_noise();
+        if (worth.empty()) break;
+      }
+      if (doubled == kDoublings) {
+        if (alike) break;
+        return without_gains();
+      }
       out_.paths = std::min(run_.paths, 2 * out_.paths);
       // Half as many classes, so that a larger pilot takes no longer.
       worth.resize(std::min(worth.size(), std::max(kFewest, worth.size() / 2)));
       begin("larger pilot", worth.size());
       simulate_base();
     }
-    lift(worth, out_.deviation);
     if (!out_.complete) return without_gains();
     std::stable_sort(out_.gains.begin(), out_.gains.end(),
                      [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
@@ -205,10 +214,28 @@ class Search {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < out_.gains.size(); ++i)
       if (out_.gains[i].together == 1 && (out_.whole || out_.gains[i].high >= kEnough)) out.push_back(i);
-    std::stable_sort(out.begin(), out.end(),
-                     [&](std::size_t a, std::size_t b) { return out_.gains[a].gain > out_.gains[b].gain; });
+    greatest_first(out);
     if (!out_.whole && out.size() > kMost) out.resize(kMost);
     return out;
+  }
+
+  /// Where no class can be named: those that may gain enough, the greatest gain first. A larger pilot tells
+  /// these from noise.
+  std::vector<std::size_t> perhaps_noise() const {
+    std::vector<std::size_t> out;
+    if (out_.whole) return out;
+    for (std::size_t i = 0; i < out_.gains.size(); ++i) {
+      const Gain& gain = out_.gains[i];
+      if (worth_naming(gain.gain, gain.low)) return {};
+      if (gain.together == 1 && gain.gain >= kWorthIt) out.push_back(i);
+    }
+    greatest_first(out);
+    return out;
+  }
+
+  void greatest_first(std::vector<std::size_t>& classes) const {
+    std::stable_sort(classes.begin(), classes.end(),
+                     [&](std::size_t a, std::size_t b) { return out_.gains[a].gain > out_.gains[b].gain; });
   }
 
   /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
