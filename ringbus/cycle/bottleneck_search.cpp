@@ -219,17 +219,14 @@ class Search {
     return out;
   }
 
-  /// Where no class can be named: those that may gain enough, the greatest gain first. A larger pilot tells
-  /// these from noise.
+  /// The classes that may gain enough, the greatest gain first, if that one may be noise; else none. A larger pilot
+  /// tells it from noise.
   std::vector<std::size_t> perhaps_noise() const {
     std::vector<std::size_t> out;
-    if (out_.whole) return out;
-    for (std::size_t i = 0; i < out_.gains.size(); ++i) {
-      const Gain& gain = out_.gains[i];
-      if (worth_naming(gain.gain, gain.low)) return {};
-      if (gain.together == 1 && gain.gain >= kWorthIt) out.push_back(i);
-    }
+    for (std::size_t i = 0; i < out_.gains.size() && !out_.whole; ++i)
+      if (out_.gains[i].together == 1 && out_.gains[i].gain >= kWorthIt) out.push_back(i);
     greatest_first(out);
+    if (out.empty() || worth_naming(out_.gains[out.front()].gain, out_.gains[out.front()].low)) return {};
     return out;
   }
 
