@@ -110,12 +110,18 @@ void expect_one_digest(const std::string& engine, int random_machines) {
 #endif
   std::mt19937 random(7919 * run_seed());
   for (int i = cell_count(random_machines); i > 0; --i) run(space.draw_cell(random, with));
-  // Few of the others form bundles that go back.
-  std::vector<std::string> back = with;
-  back.insert(back.end(), {"bundles.size=16", "bundles.split=untested", "bundles.builder.threshold=100",
-                           "bundles.builder.same_origin=false", "bundles.builder.same_signs=false",
-                           "test.split_early=false", "collections.when_full=spill"});
-  for (int i = cell_count(6); i > 0; --i) run(space.draw_cell(random, back));
+  // Few of the others form bundles that go back, or small ones that miss a box together.
+  const std::vector<std::string> bundles{"bundles.builder.threshold=100", "bundles.builder.same_origin=false",
+                                         "test.split_early=false"},
+      back{"bundles.size=16", "bundles.split=untested", "bundles.builder.same_signs=false",
+           "collections.when_full=spill"},
+      alike{"bundles.size=2", "bundles.builder.same_signs=true", "bundles.order=any_hit_first", "bvh.elements=boxes"};
+  for (const std::vector<std::string>& more : {back, alike}) {
+    std::vector<std::string> all = with;
+    all.insert(all.end(), bundles.begin(), bundles.end());
+    all.insert(all.end(), more.begin(), more.end());
+    for (int i = cell_count(10); i > 0; --i) run(space.draw_cell(random, all));
+  }
 #ifndef __SANITIZE_THREAD__
   seen.expect_all();
 #endif
