@@ -1,14 +1,13 @@
 #include "core/config/validate.h"
 
 #include <algorithm>
-#include <bit>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "core/config/bound_rules.h"
 #include "core/config/edit_distance.h"
 #include "core/config/memory_rules.h"
 #include "core/config/network_rules.h"
@@ -27,20 +26,22 @@ class Rules {
 
   std::vector<ConfigIssue> check() {
     one_scene();
-    config::check_memory(c, [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
+    const config::RuleBreach breach = [this](const std::string& key, std::string message) {
+      issue(key, std::move(message));
+    };
+    config::check_memory(c, breach);
     camera_has_a_view();
     raster_needs_a_pinhole();
     all_is_built();
     stored_transform_fits();
-    planes_and_bundles_fit();
-    levels_fit();
+    verification_fits();
+    config::check_bounds(c, breach);
     shapes_reach_the_resources();
     effects_are_known();
     ordered_needs_strips();
     query_needs_a_file();
     hashed_homes_spill();
-    config::check_network(c, options_.force,
-                          [this](const std::string& key, std::string message) { issue(key, std::move(message)); });
+    config::check_network(c, options_.force, breach);
     sampling_fits();
     vary_names_keys();
     return std::move(issues_);
@@ -147,101 +148,13 @@ class Rules {
                                            forward ? "visit" : "build", enum_name(*a.invert)));
   }
 
-  void planes_and_bundles_fit() {
+  void verification_fits() {
     if (c.verify == Verify::kEffects && c.shading.effects.choice != ShadingConfig::Effects::Choice::kAuto)
       issue("verify",
             "effects compares the effects that the scene calls for with all effects; expected shading.effects: auto");
     if (c.verify == Verify::kEffects && c.workload.kind == WorkloadConfig::Kind::kRaysFrom)
       issue("verify",
             "a list of rays is not shaded, so effects change nothing; expected none or reference, found effects");
-    if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
-      constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
-      if (c.cull_planes.count > 0) issue("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
-      if (c.bundles.size > 0) issue("bvh.elements", fmt::format(what, "bundles", "bundles.size: 0"));
-    }
-    if (c.cull_planes.count > 0) planes_need_bounded_errors();
-    if (c.bundles.size > 0) bundles_fit();
-  }
-
-  // Nodes of a group are tested with a slack of each ray's own (accel/structure/group_placement.h).
-  void levels_fit() {
-    if (c.bvh.levels == 2) return;
-    constexpr std::string_view what = "{} not tested within groups of instances; expected 2, or {}; found {}";
-    if (c.bundles.size > 0) issue("bvh.levels", fmt::format(what, "bundles are", "bundles.size: 0", c.bvh.levels));
-    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
-      issue("bvh.levels", fmt::format(what, "spheres are", "bvh.elements: boxes", c.bvh.levels));
-    if (c.cull_planes.count > 0 && c.cull_planes.levels != CullPlanesConfig::Levels::kBlas)
-      issue("bvh.levels",
-            fmt::format(what, "cull planes above the instances are", "cull_planes.levels: blas", c.bvh.levels));
-  }
-
-  // A bundle has one owner, which tests all of its rays at one visit.
-  void bundles_fit() {
-    const BundlesConfig& b = c.bundles;
-    if (b.size == 1) issue("bundles.size", "expected 2 rays or more, or 0 for none; found 1");
-    if (b.size > c.rays.slots_per_resource)
-      issue("bundles.size",
-            fmt::format("a bundle's rays live in one resource; expected at most rays.slots_per_resource = "
-                        "{}, found {}",
-                        c.rays.slots_per_resource, b.size));
-    if (b.strict && b.order == BundlesConfig::Order::kAnyHitOnly)
-      issue("bundles.strict",
-            "any_hit_only takes bundles along where only some of their rays hit; expected false, found true");
-    constexpr std::string_view without = ", or bundles.size: 0";
-    if (c.collections.traversal == Traversal::kOrdered)
-      issue("collections.traversal",
-            fmt::format("rays of a bundle go several ways at once; expected spread or treelet, found ordered{}",
-                        without));
-    if (c.packets.shapes == PacketShapes::kSingle)
-      issue("packets.shapes",
-            fmt::format("a bundle is tested against a whole strip; expected strip, found single{}", without));
-    if (c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed)
-      issue("rays.placement",
-            fmt::format("bundles are made before their rays have slots; expected balanced or round_robin, "
-                        "found {}{}",
-                        enum_name(c.rays.placement), without));
-    if (c.topology.shape == TopologyShape::kIndependent)
-      issue("topology.shape",
-            fmt::format("independent resources trace single rays; expected a ring or another network, "
-                        "found independent{}",
-                        without));
-    if (std::bit_width(static_cast<std::uint64_t>(c.topology.resources - 1)) +
-            std::bit_width(static_cast<std::uint64_t>(2 * c.rays.slots_per_resource)) >
-        32)
-      issue("rays.slots_per_resource",
-            fmt::format("IDs of 32 bits name bundles as well; expected fewer slots than {}{}",
-                        c.rays.slots_per_resource, without));
-  }
-
-  // The slack of the plane test covers the rounding of these kernels. For the others there is no bound.
-  void planes_need_bounded_errors() {
-    if (c.accuracy.triangle != TriangleLevel::kWatertight && c.accuracy.triangle != TriangleLevel::kExact)
-      issue("accuracy.triangle", fmt::format("cull planes could lose hits of {}; expected watertight or exact, or "
-                                             "cull_planes.count: 0",
-                                             enum_name(c.accuracy.triangle)));
-    if (c.accuracy.box != BoxLevel::kConservative)
-      issue("accuracy.box", fmt::format("cull planes go with conservative boxes; expected conservative, found {}, or "
-                                        "cull_planes.count: 0",
-                                        enum_name(c.accuracy.box)));
-    if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas &&
-        c.accuracy.transform == TransformLevel::kInverseMatrix)
-      issue("accuracy.transform",
-            fmt::format("cull planes above the instances could lose hits of {}; expected two_step, "
-                        "two_step_double or transpose_if_rotation, or cull_planes.levels: blas",
-                        enum_name(c.accuracy.transform)));
-    if (c.cull_planes.object == CullPlanesConfig::Object::kOrientedBox) {
-      if (c.cull_planes.count < 6)
-        issue("cull_planes.count",
-              fmt::format("an oriented box has six faces; expected 6 or more, found {}, or cull_planes.object: planes",
-                          c.cull_planes.count));
-      if (c.cull_planes.shared_normals)
-        issue("cull_planes.shared_normals",
-              "each oriented box has axes of its own; expected false, found true, or cull_planes.object: planes");
-    }
-    if (c.cull_planes.depth.first > c.cull_planes.depth.last)
-      issue("cull_planes.depth.first",
-            fmt::format("no node has such a depth; expected at most cull_planes.depth.last = {}, found {}",
-                        c.cull_planes.depth.last, c.cull_planes.depth.first));
   }
 
   void effects_are_known() {
