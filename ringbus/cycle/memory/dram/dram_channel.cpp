@@ -73,7 +73,7 @@ DramChannel::Issued DramChannel::step() {
   const DramRequest* const arrived = take_arrivals(now);
   writing_ = next_kind();
   if (changed || writing_ != planned_writes_)
-    plan(now, true);
+    plan(now);
   else if (arrived != nullptr && arrived->write == writing_ && refresh_ == Refresh::kNone)
     consider(arrived->bank, now);
   bool column = column_.at <= now, row = row_.at <= now;
@@ -83,7 +83,7 @@ DramChannel::Issued DramChannel::step() {
       row = !column;
     } else if (!column_.active && column_.bank == row_.bank) {
       // The row of a request that is served in this cycle stays open.
-      row_ = first_row(queues_[writing_].others() & ~activated_ & ~(std::uint64_t{1} << row_.bank), now);
+      first_row(queues_[writing_].others() & ~activated_ & ~(std::uint64_t{1} << row_.bank), now, row_);
       row = row_.at <= now;
     }
   }
@@ -95,13 +95,10 @@ DramChannel::Issued DramChannel::step() {
     refresh(now, wake);
     changed = refresh_ == Refresh::kNone;
   }
-  if (column || row || changed) {
-    // Behind a read or a write no bank but its own has another time.
-    const bool rows = row || changed || row_.at <= now || row_.bank == column_.bank;
-    const std::uint32_t bank = column_.bank;
-    plan(now + 1, rows);
-    if (!rows && refresh_ == Refresh::kNone) consider_row(bank, now + 1);
-  }
+  if (changed)
+    plan(now + 1);
+  else if (column || row)
+    plan_behind(now + 1, column, row);
   wake = std::min({wake, column_.at, row_.at});
   for (const bool write : {false, true})
     if (!arrivals_[write].empty() && queues_[write].size() < places_)

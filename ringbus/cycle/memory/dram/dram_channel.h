@@ -93,11 +93,15 @@ class DramChannel {
   bool next_kind() const;
   DramCycle column_time(std::uint32_t bank, bool write) const;
   DramCycle activate_gate(const Group& group) const;
-  void plan(DramCycle from, bool rows);
+  void plan(DramCycle from);
+  void plan_columns(DramCycle from);
+  void plan_rows(DramCycle from);
+  void plan_behind(DramCycle from, bool column, bool row);
+  void consider_active(std::uint32_t index, DramCycle from);
   void consider(std::uint32_t bank, DramCycle now);
   void consider_column(std::uint32_t bank, DramCycle from);
   void consider_row(std::uint32_t bank, DramCycle from);
-  Plan first_row(std::uint64_t banks, DramCycle from) const;
+  void first_row(std::uint64_t banks, DramCycle from, Plan& row) const;
   void set_row(std::uint32_t bank, std::uint64_t row);
   void refresh(DramCycle now, DramCycle& wake);
   Issued issue_column(const Plan& column, DramCycle now);
