@@ -18,7 +18,7 @@ struct DramRequest {
 /// The requests of one kind that have a place in a channel's controller, in a line for each bank.
 ///
 /// All requests of a bank that are for its open row wait for the same cycle, and so do all others of that bank. So the
-/// controller looks at two of each bank only: the oldest of both.
+/// controller looks at two of each bank only: the oldest of both. A channel has at most 64 banks.
 class DramQueue {
  public:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
