@@ -9,11 +9,17 @@ DramChannel::DramChannel(const DramTiming& timing, std::size_t places)
       places_(places),
       high_(places - places / 4),
       low_(places / 4),
+      queues_{DramQueue(timing.all_banks()), DramQueue(timing.all_banks())},
       banks_(timing.all_banks()),
       groups_(timing.pseudo_channels * timing.groups),
       pseudos_(timing.pseudo_channels),
       refresh_due_(timing.refi),
-      next_(timing.refi) {}
+      next_(timing.refi) {
+  for (std::uint32_t i = 0; i < banks_.size(); ++i) {
+    banks_[i].group = i / timing.banks;
+    banks_[i].pseudo = groups_[i / timing.banks].pseudo = i / timing.banks / timing.groups;
+  }
+}
 
 void DramChannel::push(const DramRequest& request, DramCycle now) {
   idle_until(now);
@@ -27,23 +33,23 @@ void DramChannel::idle_until(DramCycle now) {
 }
 
 /// At most one request a cycle takes a place.
-void DramChannel::take_arrivals(DramCycle now) {
+const DramRequest* DramChannel::take_arrivals(DramCycle now) {
   for (const bool write : {false, true}) {
     std::deque<Arrival>& arrivals = arrivals_[write];
     if (arrivals.empty() || arrivals.front().at > now || queues_[write].size() >= places_) continue;
-    queues_[write].push_back({arrivals.front().request, now});
+    arrived_ = arrivals.front().request;
     arrivals.pop_front();
+    queues_[write].push(arrived_, now, banks_[arrived_.bank].row);
     last_taken_ = now;
-    return;
+    return &arrived_;
   }
+  return nullptr;
 }
 
-void DramChannel::choose_kind() {
+/// Whether writes are served next. Without a request that comes or leaves, its answer stays.
+bool DramChannel::next_kind() const {
   const std::size_t reads = queues_[0].size(), writes = queues_[1].size();
-  if (writing_)
-    writing_ = writes > (reads > 0 ? low_ : 0);
-  else
-    writing_ = writes >= high_ || (reads == 0 && writes > 0);
+  return writing_ ? writes > (reads > 0 ? low_ : 0) : writes >= high_ || (reads == 0 && writes > 0);
 }
 
 void DramChannel::use_row_bus(DramCycle until) {
@@ -55,84 +61,63 @@ void DramChannel::use_column_bus(DramCycle until) {
   if (!timing_.two_buses) row_bus_ = until;
 }
 
-/// The earliest cycle of the read or write of a request whose row is open.
-DramCycle DramChannel::column_time(const Entry& entry) const {
-  const std::uint32_t bank = entry.request.bank, group = bank / timing_.banks;
-  const std::size_t kind = entry.request.write;
-  return std::max({banks_[bank].column[kind], groups_[group].column[kind],
-                   pseudos_[group / timing_.groups].column[kind], column_bus_});
-}
-
-DramCycle DramChannel::activate_time(std::uint32_t bank) const {
-  const std::uint32_t group = bank / timing_.banks;
-  const Pseudo& pseudo = pseudos_[group / timing_.groups];
-  return std::max(
-      {banks_[bank].activate, groups_[group].activate, pseudo.activate, pseudo.last[pseudo.turn], row_bus_});
-}
-
 DramChannel::Issued DramChannel::step() {
   const DramCycle now = next_;
+  if (now > now_) writing_ = next_kind();  // in the cycle behind the last step, which may have been skipped
+  bool changed = false;
   if (now >= refresh_due_ && refresh_ == Refresh::kNone) {
     refresh_ = Refresh::kClose;
     refresh_due_ += timing_.refi;
+    changed = true;
   }
-  take_arrivals(now);
-  choose_kind();
-  std::vector<Entry>& queue = queues_[writing_];
-  constexpr std::size_t kNone = ~std::size_t{0};
-  std::size_t active = kNone, column = kNone, row = kNone;
-  std::size_t other_row = kNone;  // the row command behind `row` that is for another bank
-  DramCycle wake = refresh_due_;
-  const auto same_bank = [&](std::size_t a, std::size_t b) { return queue[a].request.bank == queue[b].request.bank; };
-  const auto consider = [&](std::size_t& chosen, std::size_t index, DramCycle at) {
-    if (at > now)
-      wake = std::min(wake, at);
-    else if (chosen == kNone)
-      chosen = index;
-  };
-  for (std::size_t i = 0; i < active_.size() && active == kNone; ++i) consider(active, i, column_time(active_[i]));
-  if (refresh_ == Refresh::kNone && (active == kNone || timing_.two_buses)) {
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      const Bank& bank = banks_[queue[i].request.bank];
-      if (bank.row == queue[i].request.row) {
-        if (column == kNone) consider(column, i, column_time(queue[i]));
-      } else {
-        std::size_t& chosen = row != kNone && !same_bank(row, i) ? other_row : row;
-        if (bank.row == kClosed)
-          consider(chosen, i, activate_time(queue[i].request.bank));
-        else if (bank.activated == 0)
-          consider(chosen, i, std::max(bank.precharge, row_bus_));
-      }
-      // Behind these nothing goes before them.
-      if (!timing_.two_buses ? column != kNone || row != kNone
-                             : column != kNone && row != kNone && (other_row != kNone || !same_bank(column, row)))
-        break;
+  const DramRequest* const arrived = take_arrivals(now);
+  writing_ = next_kind();
+  if (changed || writing_ != planned_writes_)
+    plan(now);
+  else if (arrived != nullptr && arrived->write == writing_ && refresh_ == Refresh::kNone)
+    consider(arrived->bank, now);
+  bool column = column_.at <= now, row = row_.at <= now;
+  if (column && row) {
+    if (!timing_.two_buses) {
+      column = column_.active || column_.order < row_.order;
+      row = !column;
+    } else if (!column_.active && column_.bank == row_.bank) {
+      // The row of a request that is served in this cycle stays open.
+      first_row(queues_[writing_].others() & ~activated_ & ~(std::uint64_t{1} << row_.bank), now, row_);
+      row = row_.at <= now;
     }
-    // The row of a request that is served in this cycle stays open.
-    if (active == kNone && column != kNone && row != kNone && queue[row].request.bank == queue[column].request.bank)
-      row = other_row;
   }
   Issued issued;
-  bool any = false;
-  if (active != kNone) {
-    issued = issue_column(active_, active, now);
-    any = true;
-  } else if (column != kNone) {
-    issued = issue_column(queue, column, now);
-    if (row != kNone && row > column) --row;
-    any = true;
+  if (column) issued = issue_column(column_, now);
+  if (row) issue_row(row_, now);
+  DramCycle wake = refresh_due_;
+  if (refresh_ != Refresh::kNone && active_.empty()) {
+    refresh(now, wake);
+    changed = refresh_ == Refresh::kNone;
   }
-  if (row != kNone && (timing_.two_buses || !any)) {
-    issue_row(queue, row, now);
-    any = true;
-  }
-  if (refresh_ != Refresh::kNone && active_.empty()) refresh(now, wake);
+  if (changed)
+    plan(now + 1);
+  else if (column || row)
+    plan_behind(now + 1, column, row);
+  wake = std::min({wake, column_.at, row_.at});
   for (const bool write : {false, true})
     if (!arrivals_[write].empty() && queues_[write].size() < places_)
       wake = std::min(wake, arrivals_[write].front().at);
-  next_ = any ? now + 1 : std::max(wake, now + 1);
+  next_ = std::max(wake, now + 1);
   now_ = now + 1;
   return issued;
+}
+
+void DramChannel::set_row(std::uint32_t bank, std::uint64_t row) {
+  banks_[bank].row = row;
+  const std::uint64_t bit = std::uint64_t{1} << bank;
+  open_ = row == kClosed ? open_ & ~bit : open_ | bit;
+  for (DramQueue& queue : queues_) {
+    if (row == kClosed)
+      queue.close_row(bank);
+    else
+      queue.open_row(bank, row);
+  }
 }
 
 /// Closes all rows with one command as soon as all may be closed, and refreshes when all banks could be activated.
@@ -150,9 +135,10 @@ void DramChannel::refresh(DramCycle now, DramCycle& wake) {
       return;
     }
     if (open) {
-      for (Bank& bank : banks_) {
+      for (std::uint32_t i = 0; i < banks_.size(); ++i) {
+        Bank& bank = banks_[i];
         if (bank.row == kClosed) continue;
-        bank.row = kClosed;
+        set_row(i, kClosed);
         bank.activate = std::max(bank.activate, now + timing_.rp);
       }
       use_row_bus(now + 1);
@@ -170,12 +156,18 @@ void DramChannel::refresh(DramCycle now, DramCycle& wake) {
   counts_.refresh_cycles += static_cast<std::uint64_t>(timing_.rfc);
 }
 
-DramChannel::Issued DramChannel::issue_column(std::vector<Entry>& from, std::size_t index, DramCycle now) {
-  const Entry entry = from[index];
-  from.erase(from.begin() + static_cast<std::ptrdiff_t>(index));
-  Bank& bank = banks_[entry.request.bank];
-  Group& group = groups_[entry.request.bank / timing_.banks];
-  Pseudo& pseudo = pseudos_[entry.request.bank / timing_.banks / timing_.groups];
+DramChannel::Issued DramChannel::issue_column(const Plan& column, DramCycle now) {
+  Bank& bank = banks_[column.bank];
+  Entry entry;
+  if (column.active) {
+    entry = active_[column.index];
+    active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(column.index));
+    activated_ &= ~(std::uint64_t{1} << column.bank);
+  } else {
+    entry = queues_[planned_writes_].take(column.index, bank.row);
+  }
+  Group& group = groups_[bank.group];
+  Pseudo& pseudo = pseudos_[bank.pseudo];
   const bool write = entry.request.write;
   const auto not_before = [](DramCycle& time, DramCycle at) { time = std::max(time, at); };
   not_before(group.column[write], now + timing_.ccd_long);
@@ -190,7 +182,6 @@ DramChannel::Issued DramChannel::issue_column(std::vector<Entry>& from, std::siz
     not_before(pseudo.column[1], now + timing_.read_to_write);
   }
   use_column_bus(now + 1);
-  if (&from == &active_) --bank.activated;
   if (!entry.counted) ++counts_.row_hits;
   ++(write ? counts_.writes : counts_.reads);
   if (!write) latencies_.add(static_cast<std::uint64_t>(done - entry.taken));
@@ -199,33 +190,34 @@ DramChannel::Issued DramChannel::issue_column(std::vector<Entry>& from, std::siz
 }
 
 /// The activate or the precharge that a request needs.
-void DramChannel::issue_row(std::vector<Entry>& from, std::size_t index, DramCycle now) {
-  Entry& entry = from[index];
-  Bank& bank = banks_[entry.request.bank];
+void DramChannel::issue_row(const Plan& row, DramCycle now) {
+  DramQueue& queue = queues_[planned_writes_];
+  Bank& bank = banks_[row.bank];
+  Entry& waiting = queue.entry(row.index);
   if (bank.row != kClosed) {
-    if (!entry.counted) ++counts_.row_conflicts;
-    entry.counted = true;
-    bank.row = kClosed;
+    if (!waiting.counted) ++counts_.row_conflicts;
+    waiting.counted = true;
+    set_row(row.bank, kClosed);
     bank.activate = std::max(bank.activate, now + timing_.rp);
     use_row_bus(now + 1);
     return;
   }
-  if (!entry.counted) ++counts_.row_misses;
-  entry.counted = true;
-  Group& group = groups_[entry.request.bank / timing_.banks];
-  Pseudo& pseudo = pseudos_[entry.request.bank / timing_.banks / timing_.groups];
-  bank.row = entry.request.row;
+  if (!waiting.counted) ++counts_.row_misses;
+  waiting.counted = true;
+  active_.push_back(queue.take(row.index, kClosed));
+  const Entry& entry = active_.back();
+  Group& group = groups_[bank.group];
+  Pseudo& pseudo = pseudos_[bank.pseudo];
+  set_row(row.bank, entry.request.row);
   bank.column = {now + timing_.rcd_read, now + timing_.rcd_write};
   bank.precharge = now + timing_.ras;
   bank.activate = now + timing_.rc;
-  ++bank.activated;
+  activated_ |= std::uint64_t{1} << row.bank;
   group.activate = now + timing_.rrd_long;
   pseudo.activate = now + timing_.rrd_short;
   pseudo.last[pseudo.turn] = now + timing_.faw;
   pseudo.turn = (pseudo.turn + 1) % 4;
   use_row_bus(now + timing_.activate_cycles);
-  active_.push_back(entry);
-  from.erase(from.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -7,17 +7,10 @@
 
 #include "core/numeric/latency_histogram.h"
 #include "core/statistics/dram_counts.h"
+#include "ringbus/cycle/memory/dram/dram_queue.h"
 #include "ringbus/cycle/memory/dram/dram_timing.h"
 
 namespace carousel::ringbus::cycle {
-
-/// A read or a write of one transaction.
-struct DramRequest {
-  std::uint32_t bank = 0;
-  std::uint64_t row = 0;
-  bool write = false;
-  std::uint64_t tag = 0;
-};
 
 /// A channel of DRAM and its controller, command by command (S. Rixner et al., Memory access scheduling, ISCA 2000:
 /// first ready, first come first served, with rows that stay open).
@@ -34,6 +27,10 @@ struct DramRequest {
 ///
 /// Reads are served until no read is left or three quarters of the writes' places are taken, and then writes until a
 /// quarter is taken, if reads wait, or none.
+///
+/// Only a command, a refresh or another kind changes what can be issued when, so the next command is chosen behind
+/// those, for the first cycle in which there is one; a request that comes in between is compared with it. Cycles in
+/// which nothing is issued and nothing comes are skipped.
 class DramChannel {
  public:
   DramChannel(const DramTiming& timing, std::size_t places);
@@ -64,10 +61,11 @@ class DramChannel {
     std::uint64_t row = kClosed;
     DramCycle activate = 0, precharge = 0;
     std::array<DramCycle, 2> column{};  // read, write: the earliest cycle of each command
-    std::uint32_t activated = 0;        // requests that have activated the row and are not served
+    std::uint32_t group = 0, pseudo = 0;
   };
   struct Group {
-    DramCycle activate = 0;
+    DramCycle activate = 0, gate = 0;  // gate: activate_gate() when the next commands were chosen
+    std::uint32_t pseudo = 0;
     std::array<DramCycle, 2> column{};
   };
   struct Pseudo {
@@ -76,32 +74,48 @@ class DramChannel {
     std::array<DramCycle, 4> last{};  // the earliest activates by the four-activate window, in turn
     std::uint32_t turn = 0;
   };
-  struct Entry {
-    DramRequest request;
-    DramCycle taken = 0;
-    bool counted = false;
-  };
   struct Arrival {
     DramRequest request;
     DramCycle at = 0;
   };
+  /// The command that is issued next, on one of the buses.
+  struct Plan {
+    DramCycle at = kDramNever;
+    std::uint64_t order = 0;
+    std::uint32_t index = 0, bank = 0;  // of the request, which has a place
+    bool active = false;                // it has none: `index` is that in active_
+  };
+  using Entry = DramQueue::Entry;
   enum class Refresh { kNone, kClose, kRefresh };
 
-  void take_arrivals(DramCycle now);
-  void choose_kind();
-  DramCycle column_time(const Entry& entry) const;
-  DramCycle activate_time(std::uint32_t bank) const;
+  /// What took a place, if anything did.
+  const DramRequest* take_arrivals(DramCycle now);
+  bool next_kind() const;
+  DramCycle column_time(std::uint32_t bank, bool write) const;
+  DramCycle activate_gate(const Group& group) const;
+  void plan(DramCycle from);
+  void plan_columns(DramCycle from);
+  void plan_rows(DramCycle from);
+  void plan_behind(DramCycle from, bool column, bool row);
+  void consider_active(std::uint32_t index, DramCycle from);
+  void consider(std::uint32_t bank, DramCycle now);
+  void consider_column(std::uint32_t bank, DramCycle from);
+  void consider_row(std::uint32_t bank, DramCycle from);
+  void first_row(std::uint64_t banks, DramCycle from, Plan& row) const;
+  void set_row(std::uint32_t bank, std::uint64_t row);
   void refresh(DramCycle now, DramCycle& wake);
-  Issued issue_column(std::vector<Entry>& from, std::size_t index, DramCycle now);
-  void issue_row(std::vector<Entry>& from, std::size_t index, DramCycle now);
+  Issued issue_column(const Plan& column, DramCycle now);
+  void issue_row(const Plan& row, DramCycle now);
   void use_row_bus(DramCycle until);
   void use_column_bus(DramCycle until);
 
   DramTiming timing_;
   std::size_t places_, high_, low_;
   std::array<std::deque<Arrival>, 2> arrivals_;  // reads, writes that have no place
-  std::array<std::vector<Entry>, 2> queues_;     // reads, writes, the oldest first
-  std::vector<Entry> active_;                    // have activated their rows
+  std::array<DramQueue, 2> queues_;              // reads, writes
+  std::vector<Entry> active_;                    // have activated their rows, at most one of each bank
+  std::uint64_t activated_ = 0;                  // their banks, a bit each
+  std::uint64_t open_ = 0;                       // banks with an open row, likewise
   std::vector<Bank> banks_;
   std::vector<Group> groups_;
   std::vector<Pseudo> pseudos_;
@@ -109,7 +123,10 @@ class DramChannel {
   DramCycle refresh_due_;
   Refresh refresh_ = Refresh::kNone;
   bool writing_ = false;
-  std::size_t held_ = 0;  // requests
+  Plan column_, row_;
+  bool planned_writes_ = false;  // the kind of requests of which these are
+  std::size_t held_ = 0;         // requests
+  DramRequest arrived_;          // that took a place last
   DramCycle now_ = 0, next_ = 0, last_taken_ = 0;
   DramCounts counts_;
   LatencyHistogram latencies_;

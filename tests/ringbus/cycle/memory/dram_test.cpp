@@ -1,6 +1,7 @@
 // DRAM with banks by itself, against closed forms and against rows that Ramulator 2.1 gave. DRAM and engine have the
 // same clock here, so that cycles are DRAM cycles.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -134,6 +135,35 @@ TEST(Dram, ARowThatIsReadIsNotPrechargedInTheSameCycle) {
       run("hbm2_2", kNoRefresh, {{0, 0, 32, false}, {30, other_row, 32, false}, {34, 32, 32, false}});
   EXPECT_EQ(out.cycles, 34 + 5 + 14 + 14 + 14 + 2u);  // nRTP, nRP, nRCD, nCL, nBL
   EXPECT_EQ(out.dram->channels[0].counts.row_hits, 1u);
+}
+
+/// To the cycle what a controller gave that looked at every waiting request in every cycle: reads and writes of few
+/// rows, in bursts, so that hits, precharges, turns of the bus and refreshes meet in the same cycles.
+TEST(Dram, ChoosesAsAScanOfAllRequests) {
+  struct Expected {
+    std::uint64_t cycles, latencies, hits, misses, conflicts;
+  };
+  const std::array<Expected, 3> expected = {
+      {{154050, 4260501, 7196, 1381, 11423}, {77406, 965756, 4997, 1714, 13289}, {85353, 2430727, 5356, 2238, 12406}}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    MemoryLog requests;
+    std::uint64_t state = 1, at = 0;
+    const auto draw = [&state](std::uint64_t n) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      return (state >> 33) % n;
+    };
+    for (int k = 0; k < 20'000; ++k) {
+      at += draw(3) == 0 ? draw(24) : 0;
+      requests.push_back({at, draw(4096) * 32, 32, draw(3) == 0});
+    }
+    const MemoryTraceResult out = run(kStandards[i].preset, ", queue: 24", requests);
+    const DramUse::Channel& channel = out.dram->channels[0];
+    EXPECT_EQ(out.cycles, expected[i].cycles) << kStandards[i].name;
+    EXPECT_EQ(channel.latencies.sum(), expected[i].latencies);
+    EXPECT_EQ(channel.counts.row_hits, expected[i].hits);
+    EXPECT_EQ(channel.counts.row_misses, expected[i].misses);
+    EXPECT_EQ(channel.counts.row_conflicts, expected[i].conflicts);
+  }
 }
 
 TEST(Dram, APipeTakesItsLatency) {
