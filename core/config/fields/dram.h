@@ -51,7 +51,8 @@ void describe(V& v, DramConfig& c) {
   v.field_or_auto("period_ps", c.period_ps, IntRange{100, 100'000}, "ps",
                   "The period of the DRAM's clock. With auto it is the preset's.");
   v.field("refresh", c.refresh, "", "The banks are refreshed.");
-  v.field_or_auto("refresh_cycles", c.refresh_cycles, IntRange{1, 100'000}, "DRAM cycles",
+  // Less than the interval between refreshes, 3,125 cycles and more (ringbus/cycle/memory/dram/dram_timing.cpp).
+  v.field_or_auto("refresh_cycles", c.refresh_cycles, IntRange{1, 3'000}, "DRAM cycles",
                   "The time of a refresh. With auto it is the preset's.");
 }
 

@@ -49,7 +49,7 @@ TEST(CycleTimeSeries, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-TEST(CycleTimeSeries, AddsUpToTheTotalsOfTheRun) {
+TEST(CycleSeriesTotals, AddsUpToTheTotalsOfTheRun) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
   std::uint64_t dram = 0, bridges = 0;
   const std::vector<std::string> shapes{"", "hierarchical", "bus", "independent", ""};
@@ -102,7 +102,7 @@ TEST(CycleTimeSeries, AddsUpToTheTotalsOfTheRun) {
 }
 
 // No level exceeds what the machine can hold, no share 1, and nothing is held or busy in a time without rays.
-TEST(CycleTimeSeries, StaysWithinTheMachine) {
+TEST(CycleSeriesTotals, StaysWithinTheMachine) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 600, 0), 400, 2);
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(12)); ++seed) {
     const Cell cell = series_machine(seed + 9000);
@@ -125,7 +125,7 @@ TEST(CycleTimeSeries, StaysWithinTheMachine) {
   }
 }
 
-TEST(CycleTimeSeries, IsAbsentUnlessItIsAskedFor) {
+TEST(CycleSeriesTotals, IsAbsentUnlessItIsAskedFor) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 600, 0), 60, 2);
   Cell cell = series_machine(1);
   cell.samples = 0;
