@@ -47,6 +47,7 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"memory.path_state", "memory", kNative, "simulated memory"},
     {"memory.film", "memory", kNative, "simulated memory"},
     {"bvh.leaves", "strips", kNative, "simulated memory"},
+    {"memory.strip_end", "flag", kNative, "simulated memory"},
     {"shading.idle_resources_shade", "true", kNative, "shading by idle resources"},
     {"shading.distribute", "", kNative, "choice of shader workers"},
     {"sampling.fraction", "", kNative, "sampled runs"},

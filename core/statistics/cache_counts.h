@@ -7,7 +7,8 @@ namespace carousel {
 /// Use of a cache of shape data.
 struct CacheCounts {
   std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0, written = 0, kept = 0, write_fetches = 0,
-                written_back = 0, drained = 0, pushed = 0, port_waits = 0, mshr_waits = 0, port_busy = 0;
+                written_back = 0, drained = 0, past_end = 0, past_end_misses = 0, pushed = 0, port_waits = 0,
+                mshr_waits = 0, port_busy = 0;
 
   static constexpr auto counters() {
     using C = CacheCounts;
@@ -24,6 +25,8 @@ struct CacheCounts {
                 "lines fetched from memory since a part of them was written"},
         Counter{"written_back", &C::written_back, "lines", "written lines that went to memory when they were replaced"},
         Counter{"drained", &C::drained, "lines", "written lines that went to memory when the run was over"},
+        Counter{"past_end", &C::past_end, "lines", "lines looked up behind the end of a strip that ends by its flag"},
+        Counter{"past_end_misses", &C::past_end_misses, "lines", "those of them that were fetched from memory"},
         Counter{"pushed", &C::pushed, "strips", "strips and transforms sent to resources that did not ask for them"},
         Counter{"port_waits", &C::port_waits, "lines", "lines for which the ports of their bank were not free at once"},
         Counter{"mshr_waits", &C::mshr_waits, "lines", "lines that waited until their bank could fetch another line"},

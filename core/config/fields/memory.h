@@ -13,6 +13,8 @@ struct MemoryConfig {
   std::int64_t l2_lines_per_cycle = 4, l2_latency_cycles = 160, dram_latency_cycles = 200, dram_bytes_per_cycle = 64;
   enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kResource;
   std::int64_t fetch_ahead = 2, shape_buffer_kib = 32;
+  enum class StripEnd { kLength, kFlag } strip_end = StripEnd::kLength;
+  std::int64_t strip_ahead = 0;
   std::int64_t l2_banks = 1, l2_mshrs = 0;
   std::optional<std::int64_t> l2_sector_bytes;  ///< absent: a whole line
   enum class Write { kThrough, kBack } l2_write = Write::kThrough;
@@ -27,6 +29,12 @@ template <>
 inline constexpr auto kEnumNames<MemoryConfig::Fetch> = [] {
   using enum MemoryConfig::Fetch;
   return names<MemoryConfig::Fetch>({{kPacket, "packet"}, {kResource, "resource"}, {kMulticast, "multicast"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<MemoryConfig::StripEnd> = [] {
+  using enum MemoryConfig::StripEnd;
+  return names<MemoryConfig::StripEnd>({{kLength, "length"}, {kFlag, "flag"}});
 }();
 
 template <>
@@ -97,6 +105,11 @@ void describe(V& v, MemoryConfig& c) {
   v.choice("film", c.film, "Light is added to the picture for nothing, or a pixel is read from memory and written.");
   v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets",
           "The number of packets whose shapes are fetched in advance.");
+  v.choice("strip_end", c.strip_end,
+           "The request for a strip names its length, or only its address and stride, and its last shape has an end "
+           "flag.");
+  v.field("strip_ahead", c.strip_ahead, IntRange{0, 64}, "lines",
+          "With strip_end: flag, the lines of a strip that are looked up ahead of the next one whose flags are read.");
   v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB",
           "The shape data that a resource holds, in places of 64 bytes.");
   v.section("dram", c.dram, "The memory behind the shared caches.");

@@ -103,7 +103,7 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
   for (std::size_t which = 0; which < 2; ++which) {
     if (need[which].bytes == 0) continue;
     found[which] = find(need[which]);
-    if (found[which] == kNone) wanted += places(need[which]);
+    if (found[which] == kNone) wanted += places_to_ask(need[which]);
   }
   if (wanted > 0) {
     if (test && !room_.empty() && room_.front() != user) return false;
@@ -111,11 +111,11 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
     const auto room = [&] {
       std::uint64_t own = 0;  // what it needs itself cannot make room
       for (const std::uint32_t entry : found)
-        if (entry != kNone && entries_[entry].here && entries_[entry].holders == 0) own += places(entries_[entry].span);
+        if (entry != kNone && entries_[entry].here && entries_[entry].holders == 0) own += entries_[entry].places;
       return free_places_ + idle_places_ - own;
     };
     while (room() < wanted) {
-      if (places(need[0]) + places(need[1]) > places_)
+      if (places_to_ask(need[0]) + places_to_ask(need[1]) > places_)
         throw SimulationError("a strip with its transform is larger than the shape buffer");
       if (!test || granted_ == 0) return false;
       const User last = queue_[--granted_];
@@ -135,8 +135,8 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
     if (need[which].bytes == 0) continue;
     std::uint32_t& entry = state.entries[which];
     if (entry == kNone) {
-      while (free_places_ < places(need[which])) evict_oldest();
-      entry = allocate(need[which]);
+      while (free_places_ < places_to_ask(need[which])) evict_oldest();
+      entry = allocate(need[which], places_to_ask(need[which]));
       hold(entry);
       port_.request(need[which], entry, now, state.ahead ? state.others : 0);
       ++fetches_;
@@ -191,7 +191,7 @@ void ShapeBuffer::stop_waiting(std::uint32_t index, std::uint32_t wait) {
 }
 
 void ShapeBuffer::take_answers(Cycle now) {
-  bool idle = false;
+  bool room = false;  // there is more
   while (port_.next() <= now) {
     const std::uint32_t tag = port_.take();
     if ((tag & kSpillTag) != 0) [[unlikely]] {
@@ -201,6 +201,11 @@ void ShapeBuffer::take_answers(Cycle now) {
     Entry& entry = entries_[tag];
     --fetches_;
     entry.here = true;
+    if (const std::uint64_t spare = entry.places - places(entry.span); spare > 0) [[unlikely]] {
+      entry.places -= spare;
+      free_places_ += spare;
+      room = true;
+    }
     for (std::uint32_t wait = entry.first_wait; wait != kNone; wait = users_[wait / 2].next_wait[wait % 2]) {
       UserState& state = users_[wait / 2];
       if (--state.missing > 0) continue;
@@ -214,11 +219,11 @@ void ShapeBuffer::take_answers(Cycle now) {
     // The users that asked for it have given it up meanwhile.
     ++entry.holders;
     let_go(static_cast<std::uint32_t>(&entry - entries_.data()));
-    idle = true;
+    room = true;
   }
   if (pushed_ != nullptr) [[unlikely]]
     take_pushed(now);
-  if (idle) serve(now);
+  if (room) serve(now);
 }
 
 }  // namespace carousel::ringbus::cycle

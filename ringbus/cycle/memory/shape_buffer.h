@@ -25,6 +25,9 @@ namespace carousel::ringbus::cycle {
 /// does not find room waits, and holds nothing meanwhile; such users are served in the order in which they came, and
 /// whoever needs room waits behind them. So a user that holds something never waits for room, and nothing can block.
 ///
+/// A strip that ends by its flag takes places for the longest strip of its kind, and those that it does not need are
+/// free again when it has come.
+///
 /// Packets of the issue queue take their data in advance, in the order of the queue, and only while no test waits for
 /// room. When a test finds too little room, they give up their data, the last packet first.
 class ShapeBuffer {
@@ -32,6 +35,10 @@ class ShapeBuffer {
   using User = std::uint32_t;
   static constexpr std::uint64_t kPlaceBytes = 64;
   static std::uint64_t places(const ShapeSpan& span) { return ceil_div(span.bytes, kPlaceBytes); }
+  /// Of a span that is to be fetched.
+  static std::uint64_t places_to_ask(const ShapeSpan& span) {
+    return ceil_div(std::max(span.bytes, span.most), kPlaceBytes);
+  }
 
   ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports);
 
@@ -75,6 +82,7 @@ class ShapeBuffer {
   /// A span in the buffer. Its index is the tag of its fetch.
   struct Entry {
     ShapeSpan span;
+    std::uint64_t places = 0;
     std::uint32_t holders = 0;
     bool here = false;
     std::uint32_t chain = kNone;                 // the next entry of its bucket, or of the free ones
@@ -95,7 +103,7 @@ class ShapeBuffer {
   UserState& state_of(User user);
   bool grant(User user, const ShapeNeed& need, bool test, Cycle now);
   std::uint32_t find(const ShapeSpan& span) const;
-  std::uint32_t allocate(const ShapeSpan& span);
+  std::uint32_t allocate(const ShapeSpan& span, std::uint64_t places);
   void evict_oldest();
   void hold(std::uint32_t entry);
   void let_go(std::uint32_t entry);

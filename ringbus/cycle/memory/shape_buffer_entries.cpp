@@ -9,7 +9,7 @@ std::uint32_t ShapeBuffer::find(const ShapeSpan& span) const {
   return at;
 }
 
-std::uint32_t ShapeBuffer::allocate(const ShapeSpan& span) {
+std::uint32_t ShapeBuffer::allocate(const ShapeSpan& span, std::uint64_t places) {
   if (++used_ > buckets_.size()) grow_buckets();
   std::uint32_t index = free_entry_;
   if (index == kNone) {
@@ -21,9 +21,10 @@ std::uint32_t ShapeBuffer::allocate(const ShapeSpan& span) {
   std::uint32_t& first = buckets_[bucket(span)];
   entries_[index] = Entry{};
   entries_[index].span = span;
+  entries_[index].places = places;
   entries_[index].chain = first;
   first = index;
-  free_places_ -= places(span);
+  free_places_ -= places;
   return index;
 }
 
@@ -49,7 +50,7 @@ void ShapeBuffer::evict_oldest() {
   *at = entry.chain;
   entry.chain = free_entry_;
   free_entry_ = index;
-  free_places_ += places(entry.span);
+  free_places_ += entry.places;
   --used_;
   ++counts_.evictions;
 }
@@ -59,7 +60,7 @@ void ShapeBuffer::hold(std::uint32_t index) {
   if (entry.holders++ > 0 || !entry.here) return;
   (entry.older == kNone ? oldest_ : entries_[entry.older].newer) = entry.newer;
   (entry.newer == kNone ? newest_ : entries_[entry.newer].older) = entry.older;
-  idle_places_ -= places(entry.span);
+  idle_places_ -= entry.places;
 }
 
 void ShapeBuffer::let_go(std::uint32_t index) {
@@ -69,7 +70,7 @@ void ShapeBuffer::let_go(std::uint32_t index) {
   entry.newer = kNone;
   (newest_ == kNone ? oldest_ : entries_[newest_].newer) = index;
   newest_ = index;
-  idle_places_ += places(entry.span);
+  idle_places_ += entry.places;
 }
 
 /// Shapes for which another resource has asked: they are kept if they find places that nobody holds or waits for.
@@ -83,7 +84,7 @@ void ShapeBuffer::take_pushed(Cycle now) {
       continue;
     }
     while (free_places_ < places(span)) evict_oldest();
-    const std::uint32_t entry = allocate(span);
+    const std::uint32_t entry = allocate(span, places(span));
     entries_[entry].here = true;
     entries_[entry].holders = 1;
     let_go(entry);

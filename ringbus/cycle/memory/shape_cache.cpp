@@ -49,7 +49,8 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<Client> clients, 
       to_memory_(to_memory),
       from_memory_(from_memory),
       port_lines_(static_cast<std::uint64_t>(config.l2_lines_per_cycle)),
-      in_order_(banks_.size() == 1 && !writes_back_) {
+      in_order_(banks_.size() == 1 && !writes_back_),
+      walks_(static_cast<std::uint64_t>(config.strip_ahead)) {
   if (config.l2_ray_ways > 0) ray_ways_.emplace(line_cache(config, config.l2_ray_ways));
 }
 
@@ -103,6 +104,7 @@ void ShapeCache::drain(Cycle now) {
 Cycle ShapeCache::next() const {
   Cycle first = from_memory_.next();
   if (!answers_.empty()) first = std::min(first, answers_.top().ready);
+  first = std::min(first, walks_.next());
   if (!outgoing_.empty()) first = std::min(first, outgoing_.top().ready);
   for (const Client& client : clients_) first = std::min(first, client.requests->next());
   for (const OwnCache& client : own_caches_) first = std::min(first, client.requests->next());
@@ -125,6 +127,9 @@ void ShapeCache::run(Cycle end) {
       while (requests.next() <= now) take(own_caches + c, requests.take(), now);
       next_ = std::min(next_, requests.next());
     }
+    while (walks_.next() <= now)
+      if (const std::optional<std::uint32_t> walk = walks_.take()) walk_on(*walk, now);
+    next_ = std::min(next_, walks_.next());
     for (; !answers_.empty() && answers_.top().ready <= now; answers_.pop()) answer(answers_.top(), now);
     if (!answers_.empty()) next_ = std::min(next_, answers_.top().ready);
     for (; !outgoing_.empty() && outgoing_.top().ready <= now; outgoing_.pop())
@@ -159,7 +164,21 @@ void ShapeCache::take(std::uint32_t client, const FetchRequest& request, Cycle n
   const std::uint32_t index = begin({client, request.tag, request.lines, 0, 0, request.lines, push});
   ++statistics_.requests;
   statistics_.lines += request.lines;
+  if (request.ends_by_flag) {
+    const std::uint32_t walk = walks_.begin(request.first_line, request.lines, index);
+    pending_[index].walk = walk + 1;
+    return walk_on(walk, now);
+  }
   for (std::uint32_t i = 0; i < request.lines; ++i) look_up({request.first_line + i, index}, now);
+}
+
+/// Looks up the lines of a strip that may be looked up now.
+void ShapeCache::walk_on(std::uint32_t walk, Cycle now) {
+  while (const std::optional<StripWalks::Line> next = walks_.next_line(walk)) {
+    statistics_.past_end += next->past_end;
+    statistics_.lines += next->past_end;
+    look_up({next->line, next->past_end ? kNobody : walks_.request(walk)}, now);
+  }
 }
 
 /// A request of an own cache.
@@ -204,27 +223,41 @@ void ShapeCache::write_back(const FetchRequest& request, Cycle now) {
 /// Looks up a line, unless its bank has stopped at one before it or stops at this one.
 void ShapeCache::look_up(const LookUp& one, Cycle now) {
   Bank& bank = bank_of(one.line);
-  if (bank.waiting.empty() && (one.request >= kWholeWriter ? write(bank, one, now) : read(bank, one, now))) return;
+  if (bank.waiting.empty() && try_look_up(bank, one, now)) return;
   bank.waiting.push_back(one);
   ++statistics_.mshr_waits;
 }
 
 /// Returns whether the line could be looked up.
+bool ShapeCache::try_look_up(Bank& bank, const LookUp& one, Cycle now) {
+  return one.request >= kWholeWriter ? write(bank, one, now) : read(bank, one, now);
+}
+
+/// Looks up a line for a request that waits for it. Returns the end of the cycle in which that is done.
+Cycle ShapeCache::looked_up(const LookUp& one, Bank& bank, Cycle now) {
+  const Cycle end = take_port(bank, now);
+  if (one.request != kNobody) pending_[one.request].ready = std::max(pending_[one.request].ready, end);
+  return end;
+}
+
 bool ShapeCache::read(Bank& bank, const LookUp& one, Cycle now) {
-  Pending& pending = pending_[one.request];
   if (ways_of(one.line).touch(one.line)) {
-    pending.ready = std::max(pending.ready, take_port(bank, now));
+    const Cycle end = looked_up(one, bank, now);
     ++statistics_.hits;
+    if (one.request == kNobody) return true;
+    Pending& pending = pending_[one.request];
+    if (pending.walk > 0) [[unlikely]]
+      walks_.there(pending.walk - 1, one.line, end);
     if (--pending.lines_missing == 0) complete(one.request);
     return true;
   }
   if (!can_fetch(bank) && !missing_.has(one.line)) return false;
-  const Cycle looked_up = take_port(bank, now);
-  pending.ready = std::max(pending.ready, looked_up);
+  const Cycle end = looked_up(one, bank, now);
   if (missing_.wait(one.line, one.request)) {
-    to_memory(looked_up, one.line);
+    to_memory(end, one.line);
     ++bank.on_their_way;
     ++statistics_.misses;
+    statistics_.past_end_misses += one.request == kNobody;
   } else {
     ++statistics_.merged;
   }
@@ -247,32 +280,6 @@ bool ShapeCache::write(Bank& bank, const LookUp& one, Cycle now) {
     ++statistics_.write_fetches;
   }
   return true;
-}
-
-// ---- lines that come
-
-void ShapeCache::insert(std::uint64_t line, Cycle now) {
-  const LineCache::Replaced replaced = ways_of(line).insert(line);
-  for (std::uint64_t written = replaced.written; written != 0; written &= written - 1) {
-    to_memory(now, kWriteLine | (replaced.first_part + static_cast<std::uint64_t>(std::countr_zero(written))));
-    ++statistics_.written_back;
-  }
-}
-
-void ShapeCache::fill(std::uint64_t line, Cycle now) {
-  insert(line, now);
-  missing_.come(line, [&](std::uint32_t index) {
-    if (index == kWriter) return ways_of(line).written(line);
-    Pending& pending = pending_[index];
-    pending.ready = std::max(pending.ready, now);
-    if (--pending.lines_missing == 0) complete(index);
-  });
-  Bank& bank = bank_of(line);
-  --bank.on_their_way;
-  for (; !bank.waiting.empty(); bank.waiting.pop_front()) {
-    const LookUp one = bank.waiting.front();
-    if (!(one.request >= kWholeWriter ? write(bank, one, now) : read(bank, one, now))) return;
-  }
 }
 
 std::string ShapeCache::describe() const {

@@ -11,6 +11,7 @@
 #include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/memory/missing_lines.h"
+#include "ringbus/cycle/memory/strip_walks.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/cycle/time/channel.h"
@@ -81,6 +82,7 @@ class ShapeCache final : public Agent {
     std::uint64_t line = 0;   // of an own cache
     std::uint32_t lines = 1;  // of the answer
     std::uint32_t push = 0;   // 1 + a place in pushes_; 0: the answer is for the client alone
+    std::uint32_t walk = 0;   // 1 + a strip that ends by its flag; 0: the length was named
   };
   /// An answer that leaves at `ready`. Of answers that leave at one time the one that was complete first goes first.
   struct Answer {
@@ -110,6 +112,7 @@ class ShapeCache final : public Agent {
     std::deque<LookUp> waiting;  // the first has to be fetched, and cannot be yet
   };
   static constexpr std::uint32_t kWriter = ~0u, kWholeWriter = kWriter - 1;  // writes a part of a line, or all of it
+  static constexpr std::uint32_t kNobody = kWriter - 2;                      // for a line behind the end of a strip
 
   /// The ways in which a line may stand.
   LineCache& ways_of(std::uint64_t line) { return ray_ways_ && line >= first_ray_line_ ? *ray_ways_ : cache_; }
@@ -122,6 +125,9 @@ class ShapeCache final : public Agent {
   bool writes_whole(const FetchRequest& request, std::uint64_t i) const;
   void write_back(const FetchRequest& request, Cycle now);
   void look_up(const LookUp& one, Cycle now);
+  bool try_look_up(Bank& bank, const LookUp& one, Cycle now);
+  void walk_on(std::uint32_t walk, Cycle now);
+  Cycle looked_up(const LookUp& one, Bank& bank, Cycle now);
   bool read(Bank& bank, const LookUp& one, Cycle now);
   bool write(Bank& bank, const LookUp& one, Cycle now);
   bool can_fetch(const Bank& bank) const { return mshrs_ == 0 || bank.on_their_way < mshrs_; }
@@ -160,6 +166,7 @@ class ShapeCache final : public Agent {
   };
   std::vector<Push> pushes_;
   std::vector<std::uint32_t> free_pushes_;
+  StripWalks walks_;
   MissingLines missing_;  // with pending requests
   Cycle next_ = 0;        // next(), at the end of the last run()
   Statistics statistics_;

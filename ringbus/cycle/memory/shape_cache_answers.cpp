@@ -1,10 +1,39 @@
-// Requests that wait for lines, and their answers.
+// Lines that come, requests that wait for them, and their answers.
 #include <algorithm>
 #include <bit>
 
 #include "ringbus/cycle/memory/shape_cache.h"
 
 namespace carousel::ringbus::cycle {
+
+void ShapeCache::insert(std::uint64_t line, Cycle now) {
+  const LineCache::Replaced replaced = ways_of(line).insert(line);
+  for (std::uint64_t written = replaced.written; written != 0; written &= written - 1) {
+    to_memory(now, kWriteLine | (replaced.first_part + static_cast<std::uint64_t>(std::countr_zero(written))));
+    ++statistics_.written_back;
+  }
+}
+
+void ShapeCache::fill(std::uint64_t line, Cycle now) {
+  insert(line, now);
+  missing_.come(line, [&](std::uint32_t index) {
+    if (index == kWriter) return ways_of(line).written(line);
+    if (index == kNobody) return;
+    Pending& pending = pending_[index];
+    pending.ready = std::max(pending.ready, now);
+    if (pending.walk > 0) [[unlikely]]
+      walks_.there(pending.walk - 1, line, now);
+    if (--pending.lines_missing == 0) complete(index);
+  });
+  Bank& bank = bank_of(line);
+  --bank.on_their_way;
+  for (; !bank.waiting.empty(); bank.waiting.pop_front()) {
+    const LookUp one = bank.waiting.front();
+    if (!try_look_up(bank, one, now)) return;
+  }
+}
+
+// ---- answers
 
 std::uint32_t ShapeCache::begin(const Pending& pending) {
   if (free_pending_.empty()) {

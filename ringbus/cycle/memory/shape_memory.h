@@ -16,7 +16,12 @@ namespace carousel::ringbus::cycle {
 struct ShapeSpan {
   std::uint64_t address = 0;
   std::uint32_t bytes = 0;
-  friend bool operator==(const ShapeSpan&, const ShapeSpan&) = default;
+  /// Of a strip that ends by its flag (`memory.strip_end: flag`): the bytes that the longest of its kind has. Until its
+  /// end has been found, this is all that is known of its length. 0: who asks for it knows the length.
+  std::uint32_t most = 0;
+  friend bool operator==(const ShapeSpan& a, const ShapeSpan& b) {
+    return a.address == b.address && a.bytes == b.bytes;
+  }
 };
 /// The data that a test needs at one time: shapes, and the stored data of their instance's transform. A span without
 /// bytes is not needed.
@@ -27,9 +32,15 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
 /// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
 /// nodes have 64 or 80 bytes, and each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
+///
+/// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
+/// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive
+/// of a leaf. The flag is a bit of a child's flags or of a primitive's number, so it takes no room. Quantised nodes are
+/// decoded as a whole, and are read like a record of known length.
 class ShapeMemory {
  public:
-  ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh = {})
+  ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh = {},
+              const MemoryConfig& memory = {})
       : accel_(accel),
         quantised_(bvh.storage == BvhConfig::Storage::kQuantised),
         node_bytes_(bytes_of_node(accel, bvh)),
@@ -41,23 +52,22 @@ class ShapeMemory {
         instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) +
                         (accel.groups.empty() ? 0 : accel::kMemberBytes + accel::kGroupBytes) + 63) /
                        64 * 64),
-        records_(record_order(accel)) {}
+        records_(record_order(accel)) {
+    if (memory.strip_end == MemoryConfig::StripEnd::kFlag) end_by_flag();
+  }
 
   /// The strip below `key`: a node with its children's boxes and planes, or a leaf's triangles.
   ShapeSpan strip(accel::NodeKey key) const {
-    if (key.ref.is_inner()) {
-      const std::uint32_t node = key.ref.node();
-      const std::uint64_t address = std::uint64_t{node} * node_bytes_;
-      if (behind_before_.empty()) return {address, node_bytes_};
-      const std::uint64_t behind = behind_before_[node + 1] - behind_before_[node];
-      return {address + behind_before_[node], static_cast<std::uint32_t>(node_bytes_ + behind)};
+    ShapeSpan span = room(key);
+    if (most_leaf_ == 0) return span;
+    if (!key.ref.is_inner()) {
+      if (!strips_.holds(key.ref) && !quantised_) span.bytes = key.ref.triangles() * kPrimitiveBytes;
+      span.most = most_leaf_;
+    } else if (most_node_ > 0) {
+      if (span.bytes == node_bytes_) span.bytes = accel_.nodes[key.ref.node()].count * (node_bytes_ / accel::kMaxWidth);
+      span.most = most_node_;
     }
-    if (strips_.holds(key.ref)) return {blocks_at_ + strips_.begin(key.ref), strips_.bytes(key.ref)};
-    if (quantised_)
-      return {blocks_at_ + std::uint64_t{primitives_before_[key.ref.first_block()]} * kQuantisedLeafBytes,
-              key.ref.triangles() * kQuantisedLeafBytes};
-    return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
-            key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
+    return span;
   }
 
   /// The shapes of the strip below `key` that `lanes` selects: all of them, or with `packets.shapes: single` one. A
@@ -65,8 +75,8 @@ class ShapeMemory {
   /// its own cull planes and the primitives that the node holds for it. A primitive of a leaf is its 40 bytes of a
   /// block.
   ShapeSpan shapes(accel::NodeKey key, std::uint32_t lanes) const {
-    const ShapeSpan whole = strip(key);
-    if (std::popcount(lanes) != 1) return whole;
+    if (std::popcount(lanes) != 1) return strip(key);
+    const ShapeSpan whole = room(key);
     const int lane = std::countr_zero(lanes);
     if (!key.ref.is_inner())
       return {whole.address + static_cast<std::uint64_t>(lane) * kPrimitiveBytes, kPrimitiveBytes};
@@ -98,6 +108,42 @@ class ShapeMemory {
   }
 
  private:
+  /// All the bytes of a node or leaf.
+  ShapeSpan room(accel::NodeKey key) const {
+    if (key.ref.is_inner()) {
+      const std::uint32_t node = key.ref.node();
+      const std::uint64_t address = std::uint64_t{node} * node_bytes_;
+      if (behind_before_.empty()) return {address, node_bytes_};
+      const std::uint64_t behind = behind_before_[node + 1] - behind_before_[node];
+      return {address + behind_before_[node], static_cast<std::uint32_t>(node_bytes_ + behind)};
+    }
+    if (strips_.holds(key.ref)) return {blocks_at_ + strips_.begin(key.ref), strips_.bytes(key.ref)};
+    if (quantised_)
+      return {blocks_at_ + std::uint64_t{primitives_before_[key.ref.first_block()]} * kQuantisedLeafBytes,
+              key.ref.triangles() * kQuantisedLeafBytes};
+    return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
+            key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
+  }
+  /// Finds the longest strips of nodes and of leaves.
+  void end_by_flag() {
+    std::uint32_t node = 0, leaf = 1;
+    most_leaf_ = most_node_ = 1;  // so that strip() ends them
+    const auto consider = [&](accel::NodeRef ref) {
+      if (ref.is_instance()) return;
+      std::uint32_t& most = ref.is_inner() ? node : leaf;
+      most = std::max(most, strip({kNoInstance, ref}).bytes);
+    };
+    consider(accel_.root_key().ref);
+    for (const accel::InstanceNode& instance : accel_.instances) consider(instance.root);
+    for (std::uint32_t n = 0; n < accel_.nodes.size(); ++n) {
+      consider(accel::NodeRef::inner(n));
+      for (int lane = 0; lane < accel_.nodes[n].count; ++lane)
+        if ((accel_.nodes[n].direct >> lane & 1) == 0) consider(accel_.nodes[n].child[lane]);
+    }
+    most_leaf_ = leaf;
+    most_node_ = quantised_ ? 0 : node;
+  }
+
   static constexpr std::uint32_t kPrimitiveBytes = sizeof(accel::TriangleBlock) / accel::kBlockTriangles;
   // A node's origin, scales, references and kinds, and 6 bytes a child: H. Ylitie et al., HPG 2017, of 8 children in 80
   // bytes; of 6 children in 64, as Vulkan-Sim (M. Saed et al., MICRO 2022) reads them, with a leaf of 64 bytes a
@@ -166,7 +212,8 @@ class ShapeMemory {
   LeafStrips strips_;
   std::uint64_t blocks_at_, instances_at_;
   std::uint32_t instance_bytes_, promoted_bytes_, instance_room_;
-  std::vector<std::uint32_t> records_;  // by instance: the place of its record; empty: its number
+  std::uint32_t most_node_ = 0, most_leaf_ = 0;  // bytes of the longest strip that ends by its flag; 0: none does
+  std::vector<std::uint32_t> records_;           // by instance: the place of its record; empty: its number
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -25,6 +25,7 @@ class ShapePort {
   void request(const ShapeSpan& span, std::uint32_t tag, Cycle now, std::uint64_t others = 0) {
     FetchRequest message = lines_of(span);
     message.tag = tag;
+    message.ends_by_flag = span.most > 0;
     if (others != 0) [[unlikely]] {
       message.others = others;
       message.wanted = span.bytes;

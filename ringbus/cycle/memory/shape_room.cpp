@@ -9,11 +9,12 @@
 
 namespace carousel::ringbus::cycle {
 
-std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh) {
-  const ShapeMemory memory(accel, accuracy, bvh);
+std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh,
+                                    const MemoryConfig& config) {
+  const ShapeMemory memory(accel, accuracy, bvh, config);
   std::uint64_t strip = 0, transform = 0;
   const auto consider = [&](accel::NodeRef ref) {
-    if (!ref.is_instance()) strip = std::max(strip, ShapeBuffer::places(memory.strip({kNoInstance, ref})));
+    if (!ref.is_instance()) strip = std::max(strip, ShapeBuffer::places_to_ask(memory.strip({kNoInstance, ref})));
   };
   for (std::uint32_t i = 0; i < accel.nodes.size(); ++i) {
     consider(accel::NodeRef::inner(i));
@@ -28,7 +29,7 @@ std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyCon
 
 std::vector<ConfigIssue> check_shape_buffer(const Config& config, const accel::Accel& accel) {
   if (config.engine.kind != EngineKind::kCycle) return {};
-  const std::int64_t least = least_shape_buffer_kib(accel, config.accuracy, config.bvh);
+  const std::int64_t least = least_shape_buffer_kib(accel, config.accuracy, config.bvh, config.memory);
   if (config.memory.shape_buffer_kib >= least) return {};
   ConfigIssue issue;
   issue.key_path = "memory.shape_buffer_kib";

@@ -20,10 +20,12 @@ struct FetchRequest {
   std::uint32_t written = 0;  ///< bytes that it writes; 0 when it asks
   std::uint32_t skipped = 0;  ///< bytes of the first line before those that it writes
   std::uint32_t wanted = 0;   ///< with `others`: the bytes that it asks for, behind the skipped ones
+  bool ends_by_flag = false;  ///< it names no number of lines: the cache finds the end of the strip
   std::uint64_t others = 0;   ///< clients of the cache that get the same bytes without asking, a bit each
 
-  /// Address 8, number of lines 4, tag 4, a mask of 8 where there are others, and what is written.
-  std::uint64_t bytes() const { return 16 + std::uint64_t{written} + (others != 0 ? 8 : 0); }
+  /// Address 8, number of lines 4 or a strip's stride 2, tag 4, a mask of 8 where there are others, and what is
+  /// written.
+  std::uint64_t bytes() const { return (ends_by_flag ? 14 : 16) + std::uint64_t{written} + (others != 0 ? 8 : 0); }
 };
 /// Set in the line number of a request to memory that writes the line, which has no answer.
 inline constexpr std::uint64_t kWriteLine = std::uint64_t{1} << 63;

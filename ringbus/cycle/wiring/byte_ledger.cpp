@@ -42,7 +42,7 @@ ByteRow shape_data(const SimulatedMachine& machine, const MemoryConfig& memory) 
       "shape data", own ? "L1" : "L2", "resources", own ? "L1's port" : "L2's port",
       line * static_cast<std::uint64_t>(own ? memory.l1_lines_per_cycle : memory.l2_lines_per_cycle * memory.l2_banks)};
   for (const auto& cache : own ? machine.memory().own_caches() : machine.memory().caches())
-    row.bytes += cache->statistics().lines * line;
+    row.bytes += (cache->statistics().lines - cache->statistics().past_end) * line;  // nobody gets those past the end
   for (const auto& channels : machine.channels()) {
     const SidePorts side = channels->ports();
     row.messages += side.fetched->messages().sent;

@@ -30,7 +30,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                                    Workload& workload, bool statistics, const Observation& observed)
     : config_(config),
       shared_(config, accel, scene_size, local_packets(config)),
-      shape_memory_(accel, config.accuracy, config.bvh),
+      shape_memory_(accel, config.accuracy, config.bvh, config.memory),
       network_(shared_, config.topology.link, config.faults, config.testers.contexts) {
   if (observed.timeline.most > 0 || observed.ray != nullptr)
     recorder_ = std::make_unique<Recorder>(config, shared_, observed);

@@ -204,6 +204,8 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.fetch", kTerrain, {"memory.fetch=resource"}, {"packet"}, {"packets.carry=data"}},
       {"memory.fetch", kTerrain, {}, {"multicast"}},
       {"memory.fetch_ahead", kTerrain, {}, {"0"}},
+      {"memory.strip_end", kTerrain},
+      {"memory.strip_ahead", kTerrain, {"memory.strip_end=flag"}, {"3"}},
       {"memory.ray_records", kTerrain},
       {"memory.path_state", kTerrain},
       {"memory.film", kTerrain},

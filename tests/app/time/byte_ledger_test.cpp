@@ -66,6 +66,23 @@ TEST_F(ByteLedger, ShapesFetchedAreLines) {
   }
 }
 
+// A request for a strip that ends by its flag has two bytes less than one that names its length, as those for
+// instances' records do; what is looked up behind the end goes to nobody.
+TEST_F(ByteLedger, StripsThatEndByTheirFlagAreAskedForInFewerBytes) {
+  const Json r = report(kMachine, {"memory.strip_end=flag", "memory.strip_ahead=2"});
+  std::uint64_t lines = 0, past = 0, requests = 0;
+  for (const Json& cache : r["memory"]["caches"]) {
+    lines += cache["lines"].get<std::uint64_t>();
+    past += cache["past_end"].get<std::uint64_t>();
+    requests += cache["requests"].get<std::uint64_t>();
+  }
+  ASSERT_GT(past, 0u);
+  EXPECT_EQ(bytes(r, "shape data"), (lines - past) * 64);
+  EXPECT_GT(bytes(r, "shape requests"), 14 * requests);
+  EXPECT_LT(bytes(r, "shape requests"), 16 * requests);
+  EXPECT_EQ(bytes(r, "lines"), r["memory"]["dram_bytes"]);
+}
+
 // A spilled entry goes to memory with its request, and comes back as lines.
 TEST_F(ByteLedger, SpilledEntriesTravelBothWays) {
   const Json r = report(kMachine, {"collections.when_full=spill", "collections.capacity=64"});

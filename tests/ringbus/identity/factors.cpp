@@ -153,6 +153,8 @@ std::vector<Factor> memory_and_shading() {
       {"memory.ray_records", all<MemoryConfig::RayRecords>(), timed},
       {"memory.path_state", all<MemoryConfig::ShadingData>(), timed},
       {"memory.film", all<MemoryConfig::ShadingData>(), timed},
+      {"memory.strip_end", all<MemoryConfig::StripEnd>(), timed},
+      {"memory.strip_ahead", {"0", "2"}, {"memory.strip_end=flag"}},
       {"bvh.leaves", all<BvhConfig::Leaves>(), timed},
       {"memory.fetch_ahead", {"0", "2"}, timed},
       {"memory.shape_buffer_kib", {"1", "4"}, timed},
