@@ -38,8 +38,8 @@ Json number(float value) {
 /// The tree as the model sees it: every node at its place in the world, with its children by number.
 class Tree {
  public:
-  Tree(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh)
-      : accel_(accel), memory_(accel, accuracy, bvh) {
+  Tree(const accel::Accel& accel, const Config& config)
+      : accel_(accel), memory_(accel, config.accuracy, config.bvh, config.memory) {
     add(accel.root_key());
   }
 
@@ -58,6 +58,7 @@ class Tree {
                       {"shapes", accel_.strip_size(key)},
                       {"triangles_below", accel_.triangles_below(key)},
                       {"strip", {strip.address, strip.bytes}},
+                      {"longest", strip.most > 0 ? Json{strip.most} : Json::array()},
                       {"transform", {transform.address, transform.bytes}},
                       {"moves", transform.bytes > 0},
                       {"transposed", transform.bytes > 0 && accel_.instances[key.instance].transform.transposed},
@@ -89,6 +90,9 @@ class RecordedWorkload final : public Workload {
     for (std::size_t i = before; i < out.size(); ++i) {
       path_of_state_[out[i].tag.path] = camera_.size();
       camera_.push_back(name(out[i].tag));
+      const PathMemory memory = inner_.path_memory(out[i].tag);
+      pixels_.push_back(memory.pixel.value());
+      state_bytes_ = memory.state_bytes;
       meet(out[i]);
     }
     return made;
@@ -116,6 +120,9 @@ class RecordedWorkload final : public Workload {
 
   std::map<Name, Json>& rays() { return rays_; }
   const std::vector<Name>& camera() const { return camera_; }
+  /// By path.
+  const std::vector<std::uint32_t>& pixels() const { return pixels_; }
+  std::uint32_t state_bytes() const { return state_bytes_; }  ///< of a path
   /// The calls of shade(), in order.
   const std::vector<std::vector<Name>>& shaded() const { return shaded_; }
 
@@ -193,6 +200,8 @@ class RecordedWorkload final : public Workload {
   std::unordered_map<std::uint32_t, std::uint64_t> path_of_state_;
   std::map<Name, Json> rays_;
   std::vector<Name> camera_;
+  std::vector<std::uint32_t> pixels_;
+  std::uint32_t state_bytes_ = 0;
   std::vector<std::vector<Name>> shaded_;
 };
 
@@ -225,7 +234,7 @@ Json run(const std::string& file) {
   app::Prepared prepared = app::prepare_config(read_config_file(file).text, file);
   const Config& config = prepared.config();
   const app::RenderJob job(prepared);
-  const Tree tree(prepared.accel, config.accuracy, config.bvh);
+  const Tree tree(prepared.accel, config);
   RecordedWorkload workload(job.workload(), tree);
   ringbus::RunOptions options;
   options.trace = {0, ringbus::cycle::kNever};
@@ -250,6 +259,8 @@ Json run(const std::string& file) {
           {"max_depth", prepared.accel.max_depth},
           {"nodes", tree.json()},
           {"camera", workload.camera()},
+          {"pixels", workload.pixels()},
+          {"state_bytes", workload.state_bytes()},
           {"rays", std::move(rays)},
           {"cycles", result.cycle->cycles},
           {"steps", std::move(steps)}};

@@ -3,6 +3,7 @@ from .clock import Clock, Trace
 from .dram import BankedMemory
 from .memory import Memory, ShapePort, caches_of
 from .network import Topology, connect
+from .ray_data import RayData
 from .shading import Shading
 from .tile import Control, Tile
 from .traversal import Spread
@@ -30,7 +31,8 @@ class Machine:
             self.tiles = [IndependentTile(r, self, shapes[r], controls[r]) for r in range(resources)]
         else:
             self.tiles = [Tile(r, self, ends[r], shapes[r], controls[r]) for r in range(resources)]
-        l2, caches = caches_of(config, self.clock, shapes)
+        self.ray_data = RayData(config, facts, self.clock)
+        l2, caches = caches_of(config, self.clock, shapes, self.ray_data.ports)
         self.shading = Shading(self, controls)
         self.parts = [*self.tiles, *ends[resources:], *caches, memory(config, l2), self.shading]
 

@@ -1,4 +1,6 @@
 """Shape data: a resource's buffer, the shared caches, the memory behind them ("Memory")."""
+import heapq
+
 from .clock import Channel, SideWire, ceil_div, way_back, way_there
 REQUEST = 16  # bytes
 
@@ -59,19 +61,31 @@ class ShapePort:
     def __init__(self, config, clock):
         m = config["memory"]
         self.wire = SideWire(clock, config, way_there(m["l1_latency_cycles" if m.get("l1_kib") else "l2_latency_cycles"]))
-        self.requests, self.answers = self.wire.channel, Channel(clock)
+        self.requests, self.answers, self.pushed = self.wire.channel, Channel(clock), Channel(clock)
         self.line = piece_of(config)
 
-    def request(self, span, tag, now):
-        """Reads the lines of `span`; `tag` comes back. Without a tag it writes them."""
-        address, size = span
+    def request(self, span, tag, now, others=()):
+        """Reads the lines of `span`; `tag` comes back, and `others` (clients of the cache) get the span too. Without a
+        tag it writes them."""
+        (address, size), by_flag = span[:2], len(span) > 2
         first, last = address // self.line, (address + size - 1) // self.line
-        self.wire.send(REQUEST + (size if tag is None else 0), now, (first, last - first + 1, tag, span))
+        length = (REQUEST - 2 if by_flag else REQUEST) + (size if tag is None else 0)
+        self.wire.send(length + (8 if others else 0), now, (first, last - first + 1, tag, span, others))
 
 
 class Request:
-    def __init__(self, client, tag, missing):
-        self.client, self.tag, self.ready, self.missing, self.pieces = client, tag, 0, missing, missing
+    def __init__(self, answers, tag, missing):
+        self.answers, self.tag, self.ready, self.missing, self.pieces = answers, tag, 0, missing, missing
+        self.span, self.others = None, ()
+        self.walk = None
+
+
+class Walk:
+    """A strip that ends by its flag."""
+
+    def __init__(self, first, lines, request):
+        self.first, self.lines, self.request = first, lines, request
+        self.looked_up, self.read, self.here = 0, 0, set()
 
 
 class Bank:
@@ -101,42 +115,71 @@ class Cache:
         self.mshrs = m.get("l2_mshrs", 0) or 1 << 60
         self.keeps_writes = m.get("l2_write", "through") == "back"
         self.waiting = {}   # piece: who waits for it (None: a writer), in the order in which they asked
+        self.ahead = m.get("strip_ahead", 0)
+        self.walks, self.turn = [], 0  # events: (cycle, turn, walk, a piece of it that is there)
         self.complete = []  # requests that wait for their answer to leave
         self.leaving = []   # requests to memory, each with the cycle in which it leaves
 
     def step(self, now):
         while self.from_memory.ready(now):
             self.fill(self.from_memory.take(), now)
-        for client, port in enumerate(self.ports):
-            while port.requests.ready(now):
-                self.take(client, port.requests.take(), now)
-        for client, cache in enumerate(self.own):
+        for cache in self.own:
             while cache.to_memory.ready(now):
                 piece, write = cache.to_memory.take()
                 if write:
                     self.look(piece, write if self.keeps_writes else "through", now)
                 else:
-                    self.look(piece, Request(client, piece, 1), now)
+                    self.look(piece, Request(cache.from_memory, piece, 1), now)
+        for port in self.ports:
+            while port.requests.ready(now):
+                self.take(port.answers, port.requests.take(), now)
+        while self.walks and self.walks[0][0] <= now:
+            _, _, walk, piece = heapq.heappop(self.walks)
+            walk.here.add(piece - walk.first)
+            self.walk(walk, now)
         for request in [request for request in self.complete if request.ready <= now]:
             self.complete.remove(request)
-            to = self.own[request.client].from_memory if self.own else self.ports[request.client].answers
             arrival = now + self.back
             if self.answer_bytes:
                 self.answers_free = max(self.answers_free, now) + ceil_div(request.pieces * self.piece, self.answer_bytes)
                 arrival = self.answers_free - 1 + self.back
-            to.send(arrival, request.tag)
+            request.answers.send(arrival, request.tag)
+            for other in request.others:
+                self.ports[other].pushed.send(arrival, request.span)
         for leaves in [leaves for leaves in self.leaving if leaves[0] <= now]:
             self.leaving.remove(leaves)
             self.to_memory.send(now + self.memory_latency, leaves[1])
 
-    def take(self, client, asked, now):
-        first, lines, tag, (address, size) = asked
-        request = Request(client, tag, lines)
+    def take(self, answers, asked, now):
+        first, lines, tag, span, others = asked
+        (address, size), request = span[:2], Request(answers, tag, lines)
+        request.span, request.others = span, others
+        if len(span) > 2:
+            request.walk = Walk(first, lines, request)
+            return self.walk(request.walk, now)
         for piece in range(first, first + lines):
             begin = piece * self.piece
             whole = "whole" if address <= begin and begin + self.piece <= address + size else "part"
             how = request if tag is not None else whole if self.keeps_writes else "through"
             self.look(piece, how, now, whole)
+
+    def walk(self, walk, now):
+        """Reads the flags of the pieces that are there, in order, and looks up more while the end has not come."""
+        read = walk.read
+        while walk.read in walk.here:
+            walk.read += 1
+        if walk.read == walk.lines or (walk.looked_up and walk.read == read):
+            return
+        while walk.looked_up <= walk.read + self.ahead:
+            past = walk.looked_up >= walk.lines
+            self.look(walk.first + walk.looked_up, "past" if past else walk.request, now)
+            walk.looked_up += 1
+
+    def there(self, request, piece, at):
+        if request.walk:
+            self.turn += 1
+            heapq.heappush(self.walks, (at, self.turn, request.walk, piece))
+            self.clock.wake(at)
 
     def look(self, piece, how, now, whole="part"):
         bank = self.bank(piece)
@@ -166,8 +209,9 @@ class Cache:
                 self.insert(piece, end)
             if isinstance(how, Request):
                 how.ready = max(how.ready, end)
+                self.there(how, piece, end)
                 self.one_less(how)
-            else:
+            elif how != "past":
                 self.ways(piece).write(piece)
         else:
             if not under_way:
@@ -176,7 +220,7 @@ class Cache:
                 self.leave(end, (piece, False))
             if isinstance(how, Request):
                 how.ready = max(how.ready, end)
-            self.waiting[piece].append(how if isinstance(how, Request) else None)
+            self.waiting[piece].append(how if isinstance(how, Request) or how == "past" else None)
         return True
 
     def insert(self, piece, now):
@@ -193,7 +237,10 @@ class Cache:
             if request is None:
                 self.ways(piece).write(piece)
                 continue
+            if request == "past":
+                continue
             request.ready = max(request.ready, now)
+            self.there(request, piece, now)
             self.one_less(request)
         bank = self.bank(piece)
         bank.fetched -= 1
@@ -207,8 +254,9 @@ class Cache:
             self.clock.wake(request.ready)
 
 
-def caches_of(config, clock, ports):
-    """The caches, with the L2s behind the resources' own ones if they have any: L2s, all."""
+def caches_of(config, clock, ports, shading):
+    """The caches, with the L2s behind the resources' own ones if they have any: L2s, all. `shading` has a port for each
+    L2, or none."""
     m = config["memory"]
     own = []
     if m.get("l1_kib"):
@@ -219,7 +267,8 @@ def caches_of(config, clock, ports):
     shared, l2 = m["shared_by"], []
     for first in range(0, len(ports), shared):
         last = first + shared
-        l2.append(Cache(config, clock, [], own[first:last]) if own else Cache(config, clock, ports[first:last]))
+        beside = shading[len(l2):len(l2) + 1]
+        l2.append(Cache(config, clock, beside if own else ports[first:last] + beside, own[first:last]))
     return l2, own + l2
 
 

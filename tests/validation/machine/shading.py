@@ -128,6 +128,7 @@ class Shading:
         self.control = RayControl(config, machine.initial_tests)
         self.shade = s["cycles_per_shade"]
         travel = config["rays"]["placement"] in ("first_taker", "addressed")
+        self.data = machine.ray_data
         self.sender = Sender(config, ceil_div(64, link["bytes_per_cycle"]), controls) if travel else None
         self.lookup, self.products_per_cycle = s["cycles_per_lookup"], s["products_per_cycle"]
         self.record = ceil_div(64, link["bytes_per_cycle"])
@@ -150,14 +151,21 @@ class Shading:
                     self.sender.completed(r, rays)
                 else:
                     self.control.free[r].extend(ray.slot for ray in rays)
-                for ray in rays:
+                for ray in self.data.completed(rays, now):
                     self.queues.push(ray)
+        stated, loaded = self.data.take(now)
+        for ray in stated:
+            self.queues.push(ray)
+        for group in loaded:
+            self.send(group.issuer, group.rays, now)
         while self.finish_jobs(now) or self.start_jobs(now):
             pass
         self.place(now)
 
-    def emit(self, names):
-        self.gathered.extend(Ray(self.rays[tuple(name)]) for name in names)
+    def emit(self, names, now):
+        rays = [Ray(self.rays[tuple(name)]) for name in names]
+        self.data.made(rays, now)
+        self.gathered.extend(rays)
         self.outstanding += len(names)
 
     def finish_jobs(self, now):
@@ -171,12 +179,13 @@ class Shading:
                 shaded.append(ray)
                 continue
             self.making -= len(names)
-            self.emit(names)
+            self.emit(names, now)
         if not shaded:
             return any_done
         for ray in shaded:
-            self.emit(ray.fact["children"])
+            self.emit(ray.fact["children"], now)
             self.shaded[ray.name] = now
+        self.data.shaded(shaded, now)
         self.trace.note(now, self.node, "shade", 0, len(shaded))
         self.outstanding -= len(shaded)
         return True
@@ -203,6 +212,8 @@ class Shading:
             if not names:
                 return False
             self.made += len(names)
+            for name in names:
+                self.data.paths.begin(name[0])
             self.making += len(names)
             end = now + self.shade * len(names)
         self.queues.in_work[worker] = max(1, len(names))
@@ -225,9 +236,16 @@ class Shading:
             for issuer, rays in groups:
                 if issuer != r:
                     continue
-                loaded = now
-                for ray in rays:
-                    self.load_free[ray.owner] = max(self.load_free[ray.owner], now) + self.record
-                    loaded = max(loaded, self.load_free[ray.owner])
                 self.trace.note(now, self.node, "place", 0, len(rays))
-                self.controls[r].ids.send(4 * len(rays), loaded, rays)
+                if self.data.records:
+                    self.data.fetch(r, rays, now)
+                else:
+                    self.send(r, rays, now)
+
+    def send(self, issuer, rays, now):
+        """Loads the records, and sends the IDs when all are loaded."""
+        loaded = now
+        for ray in rays:
+            self.load_free[ray.owner] = max(self.load_free[ray.owner], now) + self.record
+            loaded = max(loaded, self.load_free[ray.owner])
+        self.controls[issuer].ids.send(4 * len(rays), loaded, rays)

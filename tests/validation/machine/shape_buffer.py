@@ -10,11 +10,16 @@ def places(span):
     return ceil_div(span[1], PLACE)
 
 
+def places_to_ask(span):
+    """A strip that ends by its flag may be as long as the longest one."""
+    return ceil_div(max(span[1:]), PLACE)
+
+
 class Entry:
     """A span in the buffer."""
 
     def __init__(self, span):
-        self.span, self.places, self.holders, self.here = span, places(span), 0, False
+        self.span, self.places, self.holders, self.here = span, places_to_ask(span), 0, False
         self.waits = []  # users that wait for it
 
 
@@ -24,6 +29,7 @@ class User:
     def __init__(self, owner):
         self.owner, self.entries, self.missing, self.need = owner, [], 0, []
         self.ahead = self.granted = False
+        self.others = []  # that get what it fetches too
 
     def here(self):
         return self.granted and self.missing == 0
@@ -49,7 +55,7 @@ class ShapeBuffer:
     def grant(self, user, test, now):
         found = [self.entries[span] for span in user.need if span in self.entries]
         absent = [span for span in user.need if span not in self.entries]
-        wanted = sum(places(span) for span in absent)
+        wanted = sum(places_to_ask(span) for span in absent)
         if wanted > 0:
             if self.room and not (test and self.room[0] is user):
                 return False
@@ -64,19 +70,22 @@ class ShapeBuffer:
         for span in user.need:
             entry = self.entries.get(span)
             if entry is None:
-                while self.free < places(span):
-                    oldest = self.idle.pop(0)
-                    del self.entries[oldest.span]
-                    self.free += oldest.places
+                self.make_room(places_to_ask(span))
                 entry = self.entries[span] = Entry(span)
                 self.free -= entry.places
                 self.hold(entry)
-                self.port.request(span, entry, now)
+                self.port.request(span, entry, now, user.others)
             if not entry.here:
                 entry.waits.append(user)
                 user.missing += 1
             user.entries.append(entry)
         return True
+
+    def make_room(self, wanted):
+        while self.free < wanted:
+            oldest = self.idle.pop(0)
+            del self.entries[oldest.span]
+            self.free += oldest.places
 
     def hold(self, entry):
         entry.holders += 1
@@ -100,7 +109,8 @@ class ShapeBuffer:
         taker.granted, taker.missing, taker.entries = True, 0, giver.entries
         giver.granted, giver.entries = False, []
 
-    def take_ahead(self, user, need, now):
+    def take_ahead(self, user, need, now, others):
+        user.others = others
         user.ahead, user.need = True, [span for span in need if span[1] > 0]
         self.queue.append(user)
         self.serve(now)
@@ -128,6 +138,10 @@ class ShapeBuffer:
                 entry.spilled -= 1
                 continue
             entry.here = True
+            if entry.places > places(entry.span):
+                self.free += entry.places - places(entry.span)
+                entry.places = places(entry.span)
+                given_up = True
             for user in entry.waits:
                 user.missing -= 1
                 if user.missing == 0 and not user.ahead:
@@ -136,5 +150,17 @@ class ShapeBuffer:
             if entry.holders == 0:
                 self.idle.append(entry)
                 given_up = True
+        while self.port.pushed.ready(now):
+            self.take_pushed(self.port.pushed.take())
         if given_up:
             self.serve(now)
+
+    def take_pushed(self, span):
+        """For which another resource has asked."""
+        if self.room or span in self.entries or self.free + sum(e.places for e in self.idle) < places(span):
+            return
+        self.make_room(places(span))
+        entry = self.entries[span] = Entry(span)
+        entry.places, entry.here = places(span), True
+        self.free -= entry.places
+        self.idle.append(entry)

@@ -75,6 +75,8 @@ def draw(seed, index):
     sets = memory["ways"] * memory["line_bytes"] * memory.get("l2_banks", 1)  # a cache has whole sets in each bank
     step = sets // math.gcd(sets, 1024)
     memory["l2_kib"] = -(-memory["l2_kib"] // step) * step
+    if r.random() < 0.3:
+        memory.update(strip_end="flag", strip_ahead=pick([0, 1, 3, 8]))
     if r.random() < 0.15:  # independent resources read few of these keys
         config["topology"]["shape"] = "independent"
         config["packets"].update(shapes="strip", carry="reference")
@@ -84,4 +86,12 @@ def draw(seed, index):
         config["topology"]["shape"] = "bus"
     if config["topology"]["shape"] != "independent" and r.random() < 0.25:
         config["rays"]["placement"] = pick(["first_taker", "addressed"])
+    memory, topology = config["memory"], config["topology"]
+    if (memory["fetch"] == "resource" and topology["shape"] != "independent" and not memory.get("l1_kib") and
+            config["packets"]["carry"] == "reference" and r.random() < 0.5):
+        memory.update(fetch="multicast", shared_by=pick([2, 3, 4]))
+    if r.random() < 0.35:
+        memory.update(path_state=pick(["free", "memory"]), film=pick(["free", "memory"]))
+        if config["rays"].get("placement") not in ("first_taker", "addressed"):
+            memory["ray_records"] = pick(["resource", "master", "master"])
     return config

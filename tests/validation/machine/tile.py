@@ -42,7 +42,9 @@ class Tile(Issues, Tests, Travel):
         self.size = PacketSize(config, machine.nodes)
         self.ids_per_cycle = config["packets"]["ids_per_cycle"]
         self.issue_places = config["memory"]["fetch_ahead"] + 1
-        self.fetch_by_resource = config["memory"]["fetch"] == "resource"
+        self.fetch_by_resource = config["memory"]["fetch"] != "packet"
+        self.multicast = config["memory"]["fetch"] == "multicast"
+        self.shared_by = config["memory"]["shared_by"]
         self.starts_later = self.fetch_by_resource or config["collections"]["traversal"] == "treelet"
         self.partial = config["collections"]["partial"]
         self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]

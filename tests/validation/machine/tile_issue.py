@@ -74,10 +74,16 @@ class Issues:
             brings = not self.fetch_by_resource and not self.resource.traversal.is_treelet(packet.node)
             if not packet.memberships and (brings or self.number in packet.owners):
                 issue.user = User(issue)
-                self.shapes.take_ahead(issue.user, self.shape_data(packet, True), now)
+                self.shapes.take_ahead(issue.user, self.shape_data(packet, True), now, self.others_of(packet))
             self.read_spilled(issue, now)
             self.issue.append(issue)
         return moved
+
+    def others_of(self, packet):
+        """The other resources behind the same cache that want the packet, by their numbers there."""
+        first = self.number // self.shared_by * self.shared_by
+        return [r - first for r in range(first, first + self.shared_by)
+                if self.multicast and r != self.number and r in packet.owners]
 
     def handle_issue(self, now):
         if not self.issue or not self.issue[0].ready():

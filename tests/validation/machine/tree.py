@@ -8,7 +8,7 @@ class Node:
         self.inner, self.procedural, self.shapes = fact["inner"], fact["procedural"], fact["shapes"]
         self.children = fact["children"]
         self.triangles_below = fact["triangles_below"]
-        self.strip, self.transform = tuple(fact["strip"]), tuple(fact["transform"])
+        self.strip, self.transform = tuple(fact["strip"] + fact["longest"]), tuple(fact["transform"])
         self.moves, self.transposed, self.promoted = fact["moves"], fact["transposed"], fact["promoted"]
         self.instance = self.key >> 32  # the highest number above the instances
 
