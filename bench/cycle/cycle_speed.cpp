@@ -31,7 +31,8 @@ TrafficCase traffic_case(const std::string& name, std::int64_t packets, Topology
   return out;
 }
 
-RayCase ray_case(std::int64_t resources, Traversal traversal, std::size_t threads) {
+RayCase ray_case(std::int64_t resources, Traversal traversal, std::size_t threads,
+                 DramConfig::Preset preset = DramConfig::Preset::kPipe) {
   RayCase out;
   out.threads = threads;
   out.name = fmt::format("{} resources, {}", resources, traversal == Traversal::kTreelet ? "treelet" : "spread");
@@ -40,6 +41,8 @@ RayCase ray_case(std::int64_t resources, Traversal traversal, std::size_t thread
   c.topology.resources = resources;
   c.topology.visit = Visit::kOwners;
   c.collections.traversal = traversal;
+  c.memory.dram.preset = preset;
+  if (preset != DramConfig::Preset::kPipe) out.name += fmt::format(", {}", enum_name(preset));
   return out;
 }
 
@@ -84,9 +87,13 @@ TrafficSpeed measure_traffic(const TrafficCase& one, int repetitions) {
 }
 
 std::vector<RayCase> ray_cases() {
-  return {ray_case(16, Traversal::kSpread, 1), ray_case(16, Traversal::kTreelet, 1),
-          ray_case(64, Traversal::kSpread, 1), ray_case(64, Traversal::kTreelet, 1),
-          ray_case(64, Traversal::kSpread, 2)};
+  return {ray_case(16, Traversal::kSpread, 1),
+          ray_case(16, Traversal::kTreelet, 1),
+          ray_case(64, Traversal::kSpread, 1),
+          ray_case(64, Traversal::kTreelet, 1),
+          ray_case(64, Traversal::kSpread, 2),
+          ray_case(16, Traversal::kSpread, 1, DramConfig::Preset::kGddr6),
+          ray_case(16, Traversal::kTreelet, 1, DramConfig::Preset::kGddr6)};
 }
 
 RaySet primary_and_bounce(const scene::Scene& scene, const accel::Accel& accel, std::uint32_t image_side) {
