@@ -81,6 +81,8 @@ void NativePort::note_retired(PacketId id, const Packet& packet) {
 
 void NativePort::note_member(RayFact::Kind kind, std::optional<PacketId> id, const Packet& packet, std::uint64_t at) {
   if (recording_.ray == nullptr) return;
+  // A packet that comes back when the ray already has the ID of one of its members is not a packet of the ray.
+  if (id && recording_.trips->of(id->value) == 0) return;
   const auto member = recording_.ray->ray->find(packet.members);
   if (!member || (kind == RayFact::Kind::kTested && !resource_.rays().owns(packet.members[*member].ray))) return;
   recording_.ray->facts.push_back({.kind = kind,
