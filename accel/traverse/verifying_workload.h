@@ -21,6 +21,7 @@ class VerifyingWorkload final : public Workload {
     return inner_.generate(worker, max_rays, out);
   }
   ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
+  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
   PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 

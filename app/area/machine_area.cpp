@@ -79,7 +79,8 @@ report::Area machine_area(const Config& c) {
   wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm * wire_lengths(topology);
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
   report::AreaOf& shaders = parts[AreaPart::kShaders];
-  shaders.size = static_cast<double>(shader_workers(c) * std::max<std::int64_t>(1, c.shading.products_per_cycle));
+  shaders.size = static_cast<double>(shader_workers(c) * c.shading.lanes *
+                                     std::max<std::int64_t>(1, c.shading.products_per_cycle));
   shaders.mm2 = shaders.size * cost(c, Cost::kShaderArea);
   out.mm2 = parts.mm2();
   return out;

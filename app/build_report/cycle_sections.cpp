@@ -133,6 +133,12 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   r.bytes = bytes(c);
   r.shading.products = c.shading_products;
   r.shading.lookups = c.shading_lookups;
+  if (config.shading.lanes > 1) {
+    const ringbus::cycle::ShadeVectorCounts& of = c.shading_vectors;
+    r.shading.vectors = {of.vectors, of.rays,
+                         ratio(of.rays, of.vectors * static_cast<std::uint64_t>(config.shading.lanes)),
+                         ratio(of.runs, of.vectors)};
+  }
   r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 

@@ -25,6 +25,7 @@ class PilotWorkload final : public Workload {
       job_.set_sample(&sample_.emplace(job_.draw(paths, ringbus::slots_of(prepared.config()))));
   }
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
+  std::uint32_t shader(const RayResult& result) const override { return job_.workload().shader(result); }
   PathMemory path_memory(const RayTag& tag) const override { return job_.workload().path_memory(tag); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return job_.workload().generate(worker, max_rays, out);

@@ -19,6 +19,7 @@ class CountingWorkload final : public Workload {
     return made;
   }
   ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
+  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
   PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     inner_.shade(worker, completed, out);

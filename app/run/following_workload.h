@@ -33,6 +33,7 @@ class FollowingWorkload final : public Workload {
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
+  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
   PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 

@@ -49,6 +49,8 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"bvh.leaves", "strips", kNative, "simulated memory"},
     {"memory.strip_end", "flag", kNative, "simulated memory"},
     {"shading.idle_resources_shade", "true", kNative, "shading by idle resources"},
+    {"shading.lanes", "", kNative, "vectors of a shader worker"},
+    {"shading.sort", "shader", kNative, "vectors of a shader worker"},
     {"shading.distribute", "", kNative, "choice of shader workers"},
     {"sampling.fraction", "", kNative, "sampled runs"},
 });

@@ -60,6 +60,10 @@ class Workload {
   /// charged besides. Call before the ray is given to shade().
   virtual ShadeWork extra_work(const RayResult& /*result*/) const { return {}; }
 
+  /// The code that shades a completed ray: rays with the same number can be shaded side by side, in one vector of a
+  /// simulated shader worker. Call before the ray is given to shade().
+  virtual std::uint32_t shader(const RayResult& /*result*/) const { return 0; }
+
   /// The places in memory of the path of a ray in flight.
   virtual PathMemory path_memory(const RayTag& /*tag*/) const { return {}; }
 

@@ -123,6 +123,20 @@ void describe(V& v, const EffectsProof& r) {
   v.section("time_ratio", r.time_ratio, "time with all over time with auto, in each pair of repetitions");
 }
 
+/// The vectors of shader workers with several lanes.
+struct ShadeVectors {
+  std::uint64_t vectors = 0, rays = 0;
+  double fill = 0, shaders = 0;
+};
+
+template <class V>
+void describe(V& v, const ShadeVectors& r) {
+  v.field("vectors", r.vectors, "vectors", "vectors of completed rays that the workers shaded");
+  v.field("rays", r.rays, "rays", "rays of these");
+  v.field("fill", r.fill, "fraction", "fraction of their lanes that had a ray");
+  v.field("shaders", r.shaders, "shaders", "mean of the different shaders of a vector, which run one after the other");
+}
+
 struct Shading {
   std::uint64_t workers = 0, shaded = 0, saturated = 0;
   std::optional<double> utilisation{};
@@ -132,6 +146,7 @@ struct Shading {
   std::uint64_t path_state_bytes = 0;
   EffectsSaved saved{};
   std::vector<ShaderClass> classes{};
+  std::optional<ShadeVectors> vectors{};
   std::optional<EffectsProof> proof{};
 };
 
@@ -145,6 +160,7 @@ void describe(V& v, const Shading& r) {
   v.field("products", r.products, "products",
           "products of the surfaces' effects, beyond those of plain surfaces (cycle)");
   v.field("lookups", r.lookups, "lookups", "filtered texture lookups at surfaces (cycle)");
+  v.section("vectors", r.vectors, "vectors of the workers, with shading.lanes (cycle)");
   v.section("effects", r.effects, "every effect of light");
   v.field("effects_choice", r.effects_choice, "",
           "shading.effects: auto, all, or the list; a list changes digest.image");

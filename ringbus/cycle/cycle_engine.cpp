@@ -114,6 +114,7 @@ class CycleRun {
     c.shading_busy = machine_.shading().busy();
     c.shading_products = machine_.shading().products();
     c.shading_lookups = machine_.shading().lookups();
+    c.shading_vectors = machine_.shading().vectors();
     c.residence = machine_.shading().residence();
     out.rays_restarted = machine_.shading().rays_restarted();
     out.paths_restarted = machine_.shading().paths_restarted();

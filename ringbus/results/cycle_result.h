@@ -99,6 +99,13 @@ struct IdsAtOnce {
   friend bool operator==(const IdsAtOnce&, const IdsAtOnce&) = default;
 };
 
+/// The vectors in which shader workers shaded completed rays.
+struct ShadeVectorCounts {
+  std::uint64_t vectors = 0, rays = 0;
+  std::uint64_t runs = 0;  ///< of a shader for its rays of a vector
+  friend bool operator==(const ShadeVectorCounts&, const ShadeVectorCounts&) = default;
+};
+
 struct CycleResult {
   /// From cycle 0 to the last in which a resource, ray control or shading did anything.
   Cycle cycles = 0;
@@ -119,6 +126,7 @@ struct CycleResult {
   std::optional<DramUse> dram;                              ///< of DRAM with banks
   Cycle shading_busy = 0;                                   ///< worker-cycles, without resources that help
   std::uint64_t shading_products = 0, shading_lookups = 0;  ///< of ShadeWork
+  ShadeVectorCounts shading_vectors;
   std::uint64_t hops = 0;
   Log2Histogram residence;        ///< of rays, from their slot until shading has their hit
   std::optional<IdsAtOnce> ids;   ///< where there are collections

@@ -126,6 +126,16 @@ ShadeWork PathTracer::extra_work(const RayResult& result) const {
   return shadow && !surface.pane ? ShadeWork{} : surface.work;
 }
 
+std::uint32_t PathTracer::shader(const RayResult& result) const {
+  constexpr std::uint32_t kMiss = 0, kShadow = 1, kFirstSurface = 2;
+  const Hit& hit = result.hit;
+  if (result.tag.kind == RayKind::kShadow) return kShadow;
+  if (!hit.valid()) return kMiss;
+  const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
+  const Surface& surface = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
+  return kFirstSurface + static_cast<std::uint32_t>(surface.code);
+}
+
 void PathTracer::shade_shadow(const RayResult& result, Worker& worker, RayBatch& out, std::uint32_t& children) {
   if (result.hit.valid()) {
     if (panes_) pass_shadow(result, worker, out, children);
@@ -206,6 +216,7 @@ void PathTracer::choose_surfaces() {
     surface.shade = shade_of(classes[i], lights);
     surface.glass = glass_tables(material);
     surface.work = work[i];
+    surface.code = classes[i];
     any_work_ |= work[i] != ShadeWork{};
     surface.boundary = parts[i] & kBoundary;
     surface.pane = panes_ && is_pane(material);

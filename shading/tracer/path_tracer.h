@@ -61,6 +61,8 @@ class PathTracer : public Workload {
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
   ShadeWork extra_work(const RayResult& result) const override;
+  /// Shading a miss, a shadow ray, or a hit of one class of surfaces.
+  std::uint32_t shader(const RayResult& result) const override;
   PathMemory path_memory(const RayTag& tag) const override {
     return {plan_.path_state_bytes(), pool_.state(tag.path).pixel};
   }
@@ -111,6 +113,7 @@ class PathTracer : public Workload {
     bool boundary = false;  ///< ShaderParts::kBoundary
     bool pane = false;      ///< light passes it straight on, by Effect::kTransparentShadows
     ShadeWork work;         ///< extra_work()
+    SurfaceClass code{};    ///< that shades it
   };
 
   static ShadeSurface shade_of(SurfaceClass surface, Lights lights);

@@ -98,6 +98,7 @@ class RecordedWorkload final : public Workload {
     return made;
   }
   ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
+  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
   PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     std::vector<Name>& batch = shaded_.emplace_back();
@@ -108,6 +109,7 @@ class RecordedWorkload final : public Workload {
       const ShadeWork work = inner_.extra_work(result);
       ray["lookups"] = work.lookups;
       ray["products"] = work.products;
+      ray["shader"] = inner_.shader(result);
       ray["children"] = Json::array();
       const std::size_t before = out.size();
       inner_.shade(worker, {result}, out);

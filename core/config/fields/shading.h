@@ -25,6 +25,8 @@ struct ShadingConfig {
   std::int64_t cycles_per_shade = 20;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
   std::int64_t cycles_per_any_hit = 10, cycles_per_lookup = 5, products_per_cycle = 8;
+  std::int64_t lanes = 1, sort_rays_per_cycle = 4;
+  enum class Sort { kNone, kShader } sort = Sort::kNone;
   RayFlags camera_rays{}, bounce_rays{}, shadow_rays{};
 };
 
@@ -39,6 +41,12 @@ inline constexpr auto kEnumNames<ShadingConfig::Distribute> = [] {
   using enum ShadingConfig::Distribute;
   return names<ShadingConfig::Distribute>(
       {{kFifoFill, "fifo_fill"}, {kLoad, "load"}, {kRoundRobin, "round_robin"}, {kRandom, "random"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<ShadingConfig::Sort> = [] {
+  using enum ShadingConfig::Sort;
+  return names<ShadingConfig::Sort>({{kNone, "none"}, {kShader, "shader"}});
 }();
 
 namespace config {
@@ -67,6 +75,14 @@ void describe(V& v, ShadingConfig& c) {
           "surface. With 0 they take no time.");
   v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
           "The time in which a shader worker decides if a non-opaque primitive is hit, with testers.any_hit: shader.");
+  v.field(
+      "lanes", c.lanes, IntRange{1, 64}, "rays",
+      "The rays that a shader worker shades side by side as a vector. Those of different shaders take their turns.");
+  v.choice("sort", c.sort,
+           "A vector has the completed rays that have waited longest, or completed rays are sorted by shader and a "
+           "vector has rays of one.");
+  v.field("sort_rays_per_cycle", c.sort_rays_per_cycle, IntRange{1, 1024}, "rays/cycle",
+          "With sort: shader, the completed rays that are sorted in a cycle.");
   v.section("camera_rays", c.camera_rays, "The flags of camera rays.");
   v.section("bounce_rays", c.bounce_rays, "The flags of bounce rays.");
   v.section("shadow_rays", c.shadow_rays, "The flags of shadow rays.");

@@ -8,10 +8,12 @@ namespace carousel::ringbus::cycle {
 
 using Distribute = ShadingConfig::Distribute;
 
-ShadeQueues::ShadeQueues(ShadingConfig::Distribute distribute, std::size_t workers, std::uint64_t seed)
-    : distribute_(distribute),
+ShadeQueues::ShadeQueues(const ShadingConfig& shading, std::size_t workers, std::uint64_t seed)
+    : distribute_(shading.distribute),
+      sorted_(shading.sort == ShadingConfig::Sort::kShader),
+      lanes_(static_cast<std::size_t>(shading.lanes)),
       seed_(seed),
-      queues_(distribute_ == Distribute::kFifoFill ? 1 : workers),
+      queues_(distribute_ == Distribute::kFifoFill ? 1 : workers, Queue{std::vector<std::deque<Waiting>>(1)}),
       in_work_(workers) {}
 
 std::size_t ShadeQueues::queue_for(const RayResult& ray) {
@@ -32,30 +34,55 @@ std::size_t ShadeQueues::queue_for(const RayResult& ray) {
   }
   std::size_t best = 0;
   for (std::size_t w = 1; w < queues_.size(); ++w)
-    if (queues_[w].size() + in_work_[w] < queues_[best].size() + in_work_[best]) best = w;
+    if (queues_[w].size + in_work_[w] < queues_[best].size + in_work_[best]) best = w;
   return best;
 }
 
-void ShadeQueues::push(const RayResult& ray) {
-  queues_[queue_for(ray)].push_back(ray);
+void ShadeQueues::push(const RayResult& ray, std::uint32_t shader) {
+  Queue& queue = queues_[queue_for(ray)];
+  const std::size_t list = sorted_ ? shader : 0;
+  if (list >= queue.lists.size()) queue.lists.resize(list + 1);
+  queue.lists[list].push_back({order_++, shader, ray});
+  ++queue.size;
   ++size_;
 }
 
-std::optional<RayResult> ShadeQueues::take_from(std::deque<RayResult>& queue) {
-  if (queue.empty()) return std::nullopt;
-  const RayResult ray = queue.front();
-  queue.pop_front();
-  --size_;
-  return ray;
+/// Of the lists with `least` rays, the one whose first ray has waited longest; null if there is none.
+std::deque<ShadeQueues::Waiting>* ShadeQueues::oldest(Queue& queue, std::size_t least) {
+  std::deque<Waiting>* best = nullptr;
+  for (std::deque<Waiting>& list : queue.lists)
+    if (list.size() >= least && (best == nullptr || list.front().order < best->front().order)) best = &list;
+  return best;
 }
 
-std::optional<RayResult> ShadeQueues::take(std::uint32_t worker) {
-  return take_from(queues_[distribute_ == Distribute::kFifoFill ? 0 : worker]);
+ShadeQueues::Waiting ShadeQueues::take_first(Queue& queue, std::deque<Waiting>& list) {
+  const Waiting first = list.front();
+  list.pop_front();
+  --queue.size;
+  --size_;
+  return first;
+}
+
+bool ShadeQueues::take(std::uint32_t worker, ShadeVector& vector) {
+  vector.rays.clear();
+  vector.shaders.clear();
+  Queue& queue = queues_[distribute_ == Distribute::kFifoFill ? 0 : worker];
+  if (queue.size == 0) return false;
+  std::deque<Waiting>* list = oldest(queue, lanes_);
+  if (list == nullptr) list = oldest(queue, 1);
+  while (!list->empty() && vector.rays.size() < lanes_) {
+    const Waiting first = take_first(queue, *list);
+    vector.rays.push_back(first.ray);
+    vector.shaders.push_back(first.shader);
+  }
+  return true;
 }
 
 std::optional<RayResult> ShadeQueues::take_any() {
-  return take_from(*std::max_element(queues_.begin(), queues_.end(),
-                                     [](const auto& a, const auto& b) { return a.size() < b.size(); }));
+  Queue& longest =
+      *std::max_element(queues_.begin(), queues_.end(), [](const Queue& a, const Queue& b) { return a.size < b.size; });
+  if (longest.size == 0) return std::nullopt;
+  return take_first(longest, *oldest(longest, 1)).ray;
 }
 
 }  // namespace carousel::ringbus::cycle

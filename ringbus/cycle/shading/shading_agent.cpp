@@ -24,7 +24,8 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       gather_(group_),
       bundled_(settings.bundles.size > 0),
       builder_rate_(static_cast<Cycle>(settings.bundles.builder.rays_per_cycle)),
-      queues_(settings.shading.distribute, settings.workers, settings.seed),
+      lanes_(static_cast<std::size_t>(settings.shading.lanes)),
+      queues_(settings.shading, settings.workers, settings.seed),
       helpers_(clients_, settings.link),
       jobs_(settings.workers),
       made_(settings.workers),
@@ -34,6 +35,8 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
       answer_wires_(clients_.size(), SideWire(settings.link, latency_)),
       samples_(observed.samples, kFirstHeldCounter + clients_.size()),
       held_(clients_.size()) {
+  if (settings.shading.sort == ShadingConfig::Sort::kShader)
+    sorter_ = std::make_unique<ShadeSorter>(static_cast<std::size_t>(settings.shading.sort_rays_per_cycle));
   for (const auto& store : machine.stores) placed_at_.emplace_back(store->slots());
   if (rays_travel_)
     free_slots_.assign(settings.addressed ? clients_.size() : 1,
@@ -54,6 +57,7 @@ Cycle ShadingAgent::next() const {
     if (client.questions != nullptr) first = std::min(first, client.questions->next());
   }
   if (data_) first = std::min(first, data_->next());
+  if (sorter_) first = std::min(first, sorter_->next());
   return std::min(first, helpers_.next());
 }
 
@@ -68,6 +72,11 @@ void ShadingAgent::step(Cycle now) {
   take_completed(now);
   if (data_) [[unlikely]]
     take_ray_data(now);
+  if (sorter_) [[unlikely]]
+    while (sorter_->next() <= now) {
+      const RayResult ray = sorter_->take();
+      queues_.push(ray, workload_.shader(ray));
+    }
   if (give_up_at_ <= now) give_up(now);
   take_questions(now);
   // Shading that takes no time ends in the cycle in which it starts.
@@ -99,9 +108,15 @@ void ShadingAgent::take_completed(Cycle now) {
       if (data_) [[unlikely]]
         data_->completed(ResourceId(r), done.slots, now);
       for (const RayResult& ray : done.rays)
-        if (!data_ || !data_->fetch_state(ray, now)) queues_.push(ray);
+        if (!data_ || !data_->fetch_state(ray, now)) to_be_shaded(ray, now);
     }
   }
+}
+
+void ShadingAgent::to_be_shaded(const RayResult& ray, Cycle now) {
+  if (sorter_) [[unlikely]]
+    return sorter_->push(ray, now);
+  queues_.push(ray, lanes_ > 1 ? workload_.shader(ray) : 0);
 }
 
 void ShadingAgent::take_questions(Cycle now) {
@@ -128,7 +143,7 @@ bool ShadingAgent::finish_jobs(Cycle now) {
       continue;
     }
     if (job.made == 0) {
-      shaded_.push_back(job.ray);
+      shaded_.insert(shaded_.end(), job.vector.rays.begin(), job.vector.rays.end());
       continue;
     }
     making_ -= job.made;
@@ -190,6 +205,24 @@ bool ShadingAgent::start_jobs(Cycle now) {
   return any;
 }
 
+/// Each shader takes as long as the longest of its rays.
+Cycle ShadingAgent::cycles_for(const ShadeVector& vector) {
+  Cycle sum = 0;
+  for (std::size_t i = 0; i < vector.rays.size(); ++i) {
+    // The shader has had its turn with an earlier ray.
+    const auto first = vector.shaders.begin(), here = first + static_cast<std::ptrdiff_t>(i);
+    if (std::find(first, here, *here) != here) continue;
+    Cycle longest = 0;
+    for (std::size_t j = i; j < vector.rays.size(); ++j)
+      if (vector.shaders[j] == *here) longest = std::max(longest, cycles_for(vector.rays[j]));
+    sum += longest;
+    ++vectors_.runs;
+  }
+  ++vectors_.vectors;
+  vectors_.rays += vector.rays.size();
+  return sum;
+}
+
 Cycle ShadingAgent::cycles_for(const RayResult& ray) {
   const ShadeWork work = workload_.extra_work(ray);
   products_ += work.products;
@@ -212,28 +245,31 @@ bool ShadingAgent::start_job(std::uint32_t worker, Cycle now) {
   job.began = now;
   job.made = 0;
   Cycle done = now;
+  std::size_t rays = 1;
   if (!questions_.empty()) {
     job.question = std::move(questions_.front());
     questions_.pop_front();
-    done += any_hit_cycles_ * job.question->rays.times;
-  } else if (const std::optional<RayResult> ray = queues_.take(worker)) {
-    job.ray = *ray;
-    if (recording_.ray != nullptr && recording_.ray->ray->is(ray->tag)) [[unlikely]]
-      shade_began_ = now;
-    done += cycles_for(*ray);
+    done += any_hit_cycles_ * ceil_div(job.question->rays.times, lanes_);
+  } else if (queues_.take(worker, job.vector)) {
+    if (recording_.ray != nullptr) [[unlikely]]
+      for (const RayResult& ray : job.vector.rays)
+        if (recording_.ray->ray->is(ray.tag)) shade_began_ = now;
+    rays = job.vector.rays.size();
+    done += cycles_for(job.vector);
   } else if (job.made = take_camera_rays(worker); job.made > 0) {
-    done += shade_cycles_ * job.made;
+    rays = job.made;
+    done += shade_cycles_ * ceil_div(job.made, lanes_);
   } else {
     return false;
   }
-  queues_.set_in_work(worker, std::max<std::size_t>(1, job.made));
+  queues_.set_in_work(worker, rays);
   ends_.push({done, worker});
   return true;
 }
 
 void ShadingAgent::place(Cycle now) {
   if (draining_ > 0) return;
-  const bool full = gathered_.size() >= gather_, last = queues_.empty() && ends_.empty() && helpers_.out() == 0;
+  const bool full = gathered_.size() >= gather_, last = to_shade() == 0 && ends_.empty() && helpers_.out() == 0;
   bool placed = machine_.control.place_waiting();
   if (full || (last && !gathered_.empty())) {
     if (bundled_) builder_free_ = std::max(builder_free_, now) + ceil_div(gathered_.size(), builder_rate_);
@@ -253,8 +289,7 @@ void ShadingAgent::place(Cycle now) {
 std::string ShadingAgent::describe() const {
   if (done()) return "";
   return fmt::format("ray control and shading: {} rays outstanding, {} to be shaded, {} free slots, {}", outstanding_,
-                     queues_.size(), machine_.control.free_slots(),
-                     source_finished_ ? "no more to come" : "more to come");
+                     to_shade(), machine_.control.free_slots(), source_finished_ ? "no more to come" : "more to come");
 }
 
 }  // namespace carousel::ringbus::cycle

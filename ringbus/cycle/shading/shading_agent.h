@@ -16,6 +16,7 @@
 #include "ringbus/cycle/shading/ray_data.h"
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "ringbus/cycle/shading/shade_queues.h"
+#include "ringbus/cycle/shading/shade_sorter.h"
 #include "ringbus/cycle/shading/shading_samples.h"
 #include "ringbus/cycle/shading/shading_settings.h"
 #include "ringbus/cycle/time/agent.h"
@@ -31,11 +32,12 @@ namespace carousel::ringbus::cycle {
 
 /// Ray control and the pool of shader workers.
 ///
-/// A worker takes the ray that has waited longest in its queue. It needs shading.cycles_per_shade for a ray, and
-/// cycles_per_effect for each effect besides. If no ray waits it makes camera rays, at most as many as fill a packet or
-/// the free slots, in cycles_per_shade for each that the workload still has. Any-hit calls of resources come first and
-/// take shading.cycles_per_any_hit each. With `idle_resources_shade`, rays for which no worker is free go to resources
-/// that have nothing to test.
+/// A worker takes the rays that have waited longest in its queue, as many as it has lanes. It needs
+/// shading.cycles_per_shade for a ray, and the time of the effects of its surface besides; lanes with one shader run
+/// side by side, different shaders one after the other. If no ray waits it makes camera rays, at most as many as fill a
+/// packet or the free slots, in cycles_per_shade for each vector of those that the workload still has. Any-hit calls of
+/// resources come first and take shading.cycles_per_any_hit a vector. With `idle_resources_shade`, rays for which no
+/// worker is free go to resources that have nothing to test.
 ///
 /// New rays gather until they fill a packet, or until no worker has anything to do, and are then given slots. With
 /// bundles they gather until they would fill the bundles that the builder holds open, and pass the builder
@@ -75,6 +77,8 @@ class ShadingAgent final : public Agent {
   /// The work of shading beyond that of plain surfaces, of all rays that began to be shaded.
   std::uint64_t products() const { return products_; }
   std::uint64_t lookups() const { return lookups_; }
+  /// The vectors that the workers shaded.
+  const ShadeVectorCounts& vectors() const { return vectors_; }
   /// How long rays were in slots, from being given one until their hit came to shading.
   const Log2Histogram& residence() const { return residence_; }
   const Trace& trace() const { return trace_; }
@@ -97,8 +101,8 @@ class ShadingAgent final : public Agent {
   /// The present work of a shader worker.
   struct Job {
     Cycle began = 0;
-    std::size_t made = 0;  // camera rays, in made_; 0: it shades `ray`, or answers `question`
-    RayResult ray;
+    std::size_t made = 0;  // camera rays, in made_; 0: it shades `vector`, or answers `question`
+    ShadeVector vector;
     std::optional<Question> question{};
   };
   /// Its end. Of jobs that end at one time that of the first worker goes first.
@@ -122,6 +126,8 @@ class ShadingAgent final : public Agent {
   bool finish_jobs(Cycle now);
   bool start_jobs(Cycle now);
   Cycle cycles_for(const RayResult& ray);
+  Cycle cycles_for(const ShadeVector& vector);
+  void to_be_shaded(const RayResult& ray, Cycle now);
   bool start_job(std::uint32_t worker, Cycle now);
   /// Takes the next camera rays from the workload, for a worker to make; returns how many there are.
   std::size_t take_camera_rays(std::uint32_t worker);
@@ -140,6 +146,8 @@ class ShadingAgent final : public Agent {
   void restart(Cycle now);
   void order_all(NewRays::Order order, Cycle now);
   std::size_t room() const;
+  /// Rays that wait for a worker.
+  std::size_t to_shade() const { return queues_.size() + (sorter_ ? sorter_->size() : 0); }
 
   Machine& machine_;
   FaultsConfig::Resource fault_;
@@ -154,7 +162,10 @@ class ShadingAgent final : public Agent {
   bool bundled_;
   Cycle builder_rate_, builder_free_ = 0;
   std::deque<Question> questions_;  // go before any ray: their rays keep slots that could be free
+  std::size_t lanes_;
+  std::unique_ptr<ShadeSorter> sorter_;  // with `shading.sort: shader`
   ShadeQueues queues_;
+  ShadeVectorCounts vectors_;
   ShadeHelpers helpers_;
   std::vector<Job> jobs_;  // by worker
   std::priority_queue<JobEnd, std::vector<JobEnd>, std::greater<>> ends_;

@@ -70,7 +70,7 @@ void ShadingAgent::take_ray_data(Cycle now) {
   stated_.clear();
   loaded_groups_.clear();
   data_->take(now, stated_, loaded_groups_);
-  for (const RayResult& ray : stated_) queues_.push(ray);
+  for (const RayResult& ray : stated_) to_be_shaded(ray, now);
   for (RayData::Group& group : loaded_groups_) send_group(group.issuer, std::move(group.rays), now);
 }
 

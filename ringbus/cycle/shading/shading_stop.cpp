@@ -19,7 +19,7 @@ void ShadingAgent::give_up(Cycle now) {
   stop_->noticed = now;
   const ResourceId stopped(stop_->resource);
   if (!fault_.recover) throw SimulationError(unfinished_rays(stopped, ledger_->open(), completed_));
-  if (const std::optional<RayResult> ray = helpers_.exclude(clients_[stopped.value].jobs)) queues_.push(*ray);
+  if (const std::optional<RayResult> ray = helpers_.exclude(clients_[stopped.value].jobs)) to_be_shaded(*ray, now);
   draining_ = clients_.size();
   order_all(NewRays::Order::kDiscard, now);
 }

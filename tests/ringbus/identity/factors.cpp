@@ -162,6 +162,8 @@ std::vector<Factor> memory_and_shading() {
       {"shading.idle_resources_shade", kSwitch, timed},
       {"shading.distribute", all<ShadingConfig::Distribute>(), timed},
       {"shading.cycles_per_shade", {"0", "20"}, timed},
+      {"shading.lanes", {"1", "4"}, timed},
+      {"shading.sort", all<ShadingConfig::Sort>(), timed},
       {"shading.cycles_per_any_hit", {"0", "10"}, {"testers.any_hit=shader"}},
   };
 }

@@ -91,11 +91,28 @@ class RayControl:
         return placed
 
 
+class Sorter:
+    """Completed rays on their way to the queues, with `sort: shader`."""
+
+    def __init__(self, rate):
+        self.rate, self.cycle, self.taken = rate, 0, 0
+        self.rays = deque()  # (cycle in which it joins the queues, ray)
+
+    def push(self, ray, now):
+        if now > self.cycle:
+            self.cycle, self.taken = now, 0
+        if self.taken == self.rate:
+            self.cycle, self.taken = self.cycle + 1, 0
+        self.taken += 1
+        self.rays.append((self.cycle + 1, ray))
+
+
 class Queues:
     """Completed rays that wait for workers."""
 
     def __init__(self, config):
         s = config["shading"]
+        self.lanes, self.sorted = s["lanes"], s["sort"] == "shader"
         self.how, self.seed = s["distribute"], config["image"]["seed"]
         self.queues = [deque() for _ in range(1 if self.how == "fifo_fill" else s["workers"])]
         self.in_work = [0] * s["workers"]
@@ -110,8 +127,19 @@ class Queues:
         self.queues[queue].append(ray)
 
     def take(self, worker):
+        """The rays of a vector."""
         queue = self.queues[0 if self.how == "fifo_fill" else worker]
-        return queue.popleft() if queue else None
+        if not self.sorted:
+            return [queue.popleft() for _ in range(min(self.lanes, len(queue)))]
+        lists = {}
+        for ray in queue:
+            lists.setdefault(ray.fact["shader"], []).append(ray)
+        lists = list(lists.values())  # in the order of their first rays
+        full = [rays for rays in lists if len(rays) >= self.lanes]
+        rays = ((full or lists or [[]])[0])[:self.lanes]
+        for ray in rays:
+            queue.remove(ray)
+        return rays
 
     def empty(self):
         return not any(self.queues)
@@ -135,8 +163,10 @@ class Shading:
         self.slots = config["rays"]["slots_per_resource"] * self.node
         self.group = config["packets"]["rays"]
         self.queues = Queues(config)
+        self.lanes = s["lanes"]
+        self.sorter = Sorter(s["sort_rays_per_cycle"]) if s["sort"] == "shader" else None
         self.idle = list(range(s["workers"] - 1, -1, -1))  # the next one last
-        self.jobs = []  # (end, worker, ray or nothing, names of the camera rays that it makes)
+        self.jobs = []  # (end, worker, rays that it shades, names of the camera rays that it makes)
         self.gathered = []
         self.load_free = [0] * self.node
         self.made = self.making = self.outstanding = 0
@@ -152,15 +182,24 @@ class Shading:
                 else:
                     self.control.free[r].extend(ray.slot for ray in rays)
                 for ray in self.data.completed(rays, now):
-                    self.queues.push(ray)
+                    self.to_be_shaded(ray, now)
         stated, loaded = self.data.take(now)
         for ray in stated:
-            self.queues.push(ray)
+            self.to_be_shaded(ray, now)
+        while self.sorter and self.sorter.rays and self.sorter.rays[0][0] <= now:
+            self.queues.push(self.sorter.rays.popleft()[1])
         for group in loaded:
             self.send(group.issuer, group.rays, now)
         while self.finish_jobs(now) or self.start_jobs(now):
             pass
         self.place(now)
+
+    def to_be_shaded(self, ray, now):
+        if self.sorter:
+            self.sorter.push(ray, now)
+            self.clock.wake(self.sorter.rays[-1][0])
+        else:
+            self.queues.push(ray)
 
     def emit(self, names, now):
         rays = [Ray(self.rays[tuple(name)]) for name in names]
@@ -171,12 +210,12 @@ class Shading:
     def finish_jobs(self, now):
         shaded, any_done = [], False
         while self.jobs and self.jobs[0][0] <= now:
-            _, worker, ray, names = heapq.heappop(self.jobs)
+            _, worker, rays, names = heapq.heappop(self.jobs)
             any_done = True
             self.idle.append(worker)
             self.queues.in_work[worker] = 0
-            if ray is not None:
-                shaded.append(ray)
+            if rays:
+                shaded += rays
                 continue
             self.making -= len(names)
             self.emit(names, now)
@@ -201,12 +240,20 @@ class Shading:
                 any_started = True
         return any_started
 
-    def start_job(self, worker, now):
-        ray, names = self.queues.take(worker), []
-        if ray is not None:
-            end = now + self.shade + self.lookup * ray.lookups
+    def cycles(self, rays):
+        """The shaders of a vector run one after the other, each as long as the longest of its rays."""
+        longest = {}
+        for ray in rays:
+            cycles = self.shade + self.lookup * ray.lookups
             if self.products_per_cycle > 0:
-                end += ceil_div(ray.products, self.products_per_cycle)
+                cycles += ceil_div(ray.products, self.products_per_cycle)
+            longest[ray.fact["shader"]] = max(longest.get(ray.fact["shader"], 0), cycles)
+        return sum(longest.values())
+
+    def start_job(self, worker, now):
+        rays, names = self.queues.take(worker), []
+        if rays:
+            end = now + self.cycles(rays)
         else:
             names = self.camera[self.made:self.made + self.room()]
             if not names:
@@ -215,14 +262,14 @@ class Shading:
             for name in names:
                 self.data.paths.begin(name[0])
             self.making += len(names)
-            end = now + self.shade * len(names)
-        self.queues.in_work[worker] = max(1, len(names))
-        heapq.heappush(self.jobs, (end, worker, ray, names))
+            end = now + self.shade * ceil_div(len(names), self.lanes)
+        self.queues.in_work[worker] = len(names) or len(rays)
+        heapq.heappush(self.jobs, (end, worker, rays, names))
         self.clock.wake(end)
         return True
 
     def place(self, now):
-        last = self.queues.empty() and not self.jobs
+        last = self.queues.empty() and not self.jobs and not (self.sorter and self.sorter.rays)
         if self.sender:
             if len(self.gathered) >= self.group or (last and self.gathered):
                 self.sender.submit(self.gathered)

@@ -48,7 +48,8 @@ def draw(seed, index):
                    "dram_latency_cycles": pick([1, 3, 200]), "dram_bytes_per_cycle": pick([1, 16, 64, 512]),
                    "fetch": fetch, "fetch_ahead": pick([0, 2, 5]), "shape_buffer_kib": pick([1, 2, 4, 256])},
         "shading": {"workers": pick([1, 2, 5]), "cycles_per_shade": pick([0, 1, 7, 20]),
-                    "cycles_per_lookup": pick([0, 5]), "products_per_cycle": pick([0, 1, 8]),
+                    "cycles_per_lookup": pick([0, 5]), "products_per_cycle": pick([0, 1, 8]), "lanes": pick([1, 1, 3, 8]),
+                    "sort": pick(["none", "shader"]), "sort_rays_per_cycle": pick([1, 2, 4]),
                     "distribute": pick(["fifo_fill", "load", "round_robin"]), "effects": pick(["auto", "all"])},
     }
     if config["packets"]["shapes"] == "strip":
