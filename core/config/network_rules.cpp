@@ -39,6 +39,7 @@ class NetworkRules {
     bubble_needs_two_places();
     direct_wires_go_to_owners();
     overrides_name_resources();
+    own_rays_come_last_where_packets_go_round();
     faults_have_a_place();
   }
 
@@ -111,7 +112,23 @@ class NetworkRules {
         breach_(fmt::format("topology.overrides.{}.testers.any_hit", i),
                 fmt::format("all resources have the same any-hit calls; expected {}, found {}",
                             enum_name(c.testers.any_hit), enum_name(one.testers.any_hit)));
+      if (one.testers.own_rays != c.testers.own_rays)
+        breach_(fmt::format("topology.overrides.{}.testers.own_rays", i),
+                fmt::format("all resources test their own rays at the same time; expected {}, found {}",
+                            enum_name(c.testers.own_rays), enum_name(one.testers.own_rays)));
     }
+  }
+
+  void own_rays_come_last_where_packets_go_round() {
+    if (c.testers.own_rays != TestersConfig::OwnRays::kAfter) return;
+    if (!properties_of(c.topology.shape).has_packets)
+      breach_("testers.own_rays",
+              fmt::format("topology.shape: {} has no packets that come back; expected before, found after",
+                          enum_name(c.topology.shape)));
+    if (cycle() && c.memory.fetch == MemoryConfig::Fetch::kMulticast)
+      breach_("testers.own_rays",
+              "an issuer multicasts the shapes that it fetches before its packet leaves, for its own rays; expected "
+              "before, or memory.fetch: resource; found after");
   }
 
   void faults_have_a_place() {

@@ -35,7 +35,6 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"accuracy.invert", "", kNative, "choice of stored matrices"},
     {"bundles.edges", "parallel", kNative, "clock for parallel edges"},
     {"testers.window", "", kBoth, "a choice among arrived packets"},
-    {"testers.own_rays", "before", kBoth},
     {"packets.made_per", "child", kBoth},
     {"rays.query", "all", kBoth},
     {"energy.profile", "n45", kNative, "count of joules"},

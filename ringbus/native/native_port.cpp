@@ -127,6 +127,11 @@ void NativePort::arrive(PacketId id) {
   switch (fate) {
     case PacketFate::kRetire:
       return retire_at_owner(id, begin);
+    case PacketFate::kTestOwn:
+      test(packet);
+      if (recorder_ != nullptr) [[unlikely]]
+        note_visit(id, true, begin);
+      return retire_at_owner(id, recorder_ != nullptr ? recorder_->now() : 0);
     case PacketFate::kDiscard:
       logic_.discard(id);
       return packet_returned();
@@ -263,9 +268,10 @@ bool NativePort::issue(bool partial) {
     }
     moved = true;
     const std::uint64_t begin = recorder_ != nullptr ? note_issued(id, packet) : 0;
-    if (packet.kind == PacketKind::kTest) test(packet);
+    const bool tests_now = packet.kind == PacketKind::kTest && !logic_.tests_own_last(packet);
+    if (tests_now) test(packet);
     if (recorder_ != nullptr) [[unlikely]]
-      note_first_test(id, packet, begin);
+      note_leaving(id, packet, tests_now, begin);
     if (!id)
       resource_.retire(packet);
     else if (logic_.travels(packet))

@@ -75,7 +75,7 @@ class NativePort {
   void note_visit(PacketId id, bool tested, std::uint64_t begin);
   void note_admitted(std::span<const RayId> rays);
   std::uint64_t note_issued(std::optional<PacketId> id, const Packet& packet);
-  void note_first_test(std::optional<PacketId> id, const Packet& packet, std::uint64_t begin);
+  void note_leaving(std::optional<PacketId> id, const Packet& packet, bool tested, std::uint64_t begin);
   void note_retired(PacketId id, const Packet& packet);
   void note_done(const HitBatch& done);
   void note_member(RayFact::Kind kind, std::optional<PacketId> id, const Packet& packet, std::uint64_t at);

@@ -61,9 +61,9 @@ std::uint64_t NativePort::note_issued(std::optional<PacketId> id, const Packet& 
   return at;
 }
 
-/// It has been tested where it was issued, and is retired there at once unless it travels.
-void NativePort::note_first_test(std::optional<PacketId> id, const Packet& packet, std::uint64_t begin) {
-  if (packet.kind == PacketKind::kTest) note_member(RayFact::Kind::kTested, id, packet, begin);
+/// It may have been tested where it was issued, and is retired there at once unless it travels.
+void NativePort::note_leaving(std::optional<PacketId> id, const Packet& packet, bool tested, std::uint64_t begin) {
+  if (tested) note_member(RayFact::Kind::kTested, id, packet, begin);
   if (id)
     note_slice(SliceKind::kIssue, *id, begin);
   else

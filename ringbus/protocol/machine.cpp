@@ -25,6 +25,7 @@ Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
       flow(config.topology.flow, topology.direct()),
       home_local(config.collections.home == Home::kLocal),
       stays(home_local || topology.resources() == 1),
+      own_rays_last(config.testers.own_rays == TestersConfig::OwnRays::kAfter),
       packets_per_direction(stays && topology.has_packets() ? local_packets.value_or(topology.packets_in_flight())
                                                             : topology.packets_in_flight()),
       packets(make_packets(topology, packets_per_direction, static_cast<std::size_t>(config.packets.rays),

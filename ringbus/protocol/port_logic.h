@@ -15,6 +15,7 @@ namespace carousel::ringbus {
 /// The decision about a packet that has arrived at a resource.
 enum class PacketFate : std::uint8_t {
   kRetire,     ///< it is back at its owner, which takes in what it brings
+  kTestOwn,    ///< it is back at its owner, which now tests its own rays of it, and then takes in what it brings
   kDiscard,    ///< it is back at its owner, which has no use for it any more
   kTest,       ///< it carries rays of this resource; it goes on when they have been tested
   kIdleVisit,  ///< with `topology.visit: all` it is looked through, and goes on since none of its rays is here
@@ -35,7 +36,10 @@ class PortLogic {
         resource_(resource) {}
 
   PacketFate fate(const Packet& packet) const {
-    if (packet.owner == here()) return only_forwards() ? PacketFate::kDiscard : PacketFate::kRetire;
+    if (packet.owner == here()) {
+      if (only_forwards()) return PacketFate::kDiscard;
+      return tests_own_last(packet) ? PacketFate::kTestOwn : PacketFate::kRetire;
+    }
     if (only_forwards()) return PacketFate::kForward;
     switch (packet.kind) {
       case PacketKind::kTest:
@@ -48,12 +52,22 @@ class PortLogic {
     }
     return PacketFate::kForward;
   }
-  /// Tells whether a packet carries rays to be tested here; also before it is sent out.
+  /// Tells whether a packet carries rays to be tested here, at any time.
   bool has_rays_of(const Packet& packet) const {
     return packet.kind == PacketKind::kTest && machine_.topology.wanted(packet, here());
   }
   /// Tells whether a packet of its own has to be sent out at all.
   bool travels(const Packet& packet) const { return !machine_.stays && machine_.topology.hops(packet) > 0; }
+  /// Tells whether a packet of its own goes out first, and its owner's rays are tested when it is back
+  /// (`testers.own_rays: after`; US 9633468: "either before or after the other compute resources perform their
+  /// testing").
+  bool tests_own_last(const Packet& packet) const {
+    return machine_.own_rays_last && has_rays_of(packet) && travels(packet);
+  }
+  /// Tells whether a packet with rays of this resource goes on when they have been tested.
+  bool leaves_after_test(const Packet& packet) const {
+    return packet.owner != here() || (travels(packet) && !machine_.own_rays_last);
+  }
   /// The port by which a packet leaves.
   std::size_t out_port(const Packet& packet) const { return machine_.topology.out_port(packet, here()); }
 

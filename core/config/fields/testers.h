@@ -29,7 +29,7 @@ struct TestersConfig {
   } simd;
   std::int64_t contexts = 16;
   std::int64_t window = 1;
-  enum class OwnRays { kAfter, kBefore } own_rays = OwnRays::kAfter;
+  enum class OwnRays { kBefore, kAfter } own_rays = OwnRays::kBefore;
   enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
   enum class BundleBlocks { kSeparate, kPairs, kShared } bundle_blocks = BundleBlocks::kSeparate;
 };
@@ -43,7 +43,7 @@ inline constexpr auto kEnumNames<TestersConfig::Simd::Map> = [] {
 template <>
 inline constexpr auto kEnumNames<TestersConfig::OwnRays> = [] {
   using enum TestersConfig::OwnRays;
-  return names<TestersConfig::OwnRays>({{kAfter, "after"}, {kBefore, "before"}});
+  return names<TestersConfig::OwnRays>({{kBefore, "before"}, {kAfter, "after"}});
 }();
 
 template <>
@@ -86,7 +86,7 @@ void describe(V& v, TestersConfig& c) {
       "window", c.window, IntRange{1, 64}, "packets",
       "The number of packets at the front of a resource's input queue from which it takes one whose shapes are there.");
   v.choice("own_rays", c.own_rays,
-           "The issuer of a packet tests its own rays after the packet has come back, or before the packet leaves.");
+           "The issuer of a packet tests its own rays before the packet leaves, or after it has come back.");
   v.choice("any_hit", c.any_hit,
            "The unit that meets a non-opaque primitive decides at once if it is hit, or a shader worker decides.");
   v.choice(

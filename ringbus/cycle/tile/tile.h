@@ -178,7 +178,8 @@ class Tile final : public ResourceAgent {
   void end_test(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
-  void take_answer(std::size_t d, Cycle now);
+  bool take_answer(std::size_t d, Cycle now);
+  void test_own_rays(Context& context, PacketId id, Cycle now);
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);

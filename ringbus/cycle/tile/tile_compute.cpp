@@ -106,12 +106,9 @@ void Tile::end_test(Context& context, Cycle now) {
   ask(context, now);
   in_test_.end(context.tested);
   take_completed(context.completed, context.freed_slots);
-  if (packet.owner == id_ && !logic_.travels(packet)) {
-    occupy_dispatch(now, packet.members.size(), SliceKind::kRetire, id);
-    retire_at_owner(id);
-  } else {
-    depart(id, now, true);
-  }
+  if (logic_.leaves_after_test(packet)) return depart(id, now, true);
+  occupy_dispatch(now, packet.members.size(), SliceKind::kRetire, id);
+  retire_at_owner(id);
 }
 
 void Tile::ask(Context& context, Cycle now) {

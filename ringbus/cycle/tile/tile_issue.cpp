@@ -18,7 +18,7 @@ bool Tile::handle_issue(Cycle now) {
   Packet& packet = machine_.packet(id);
   const bool travels = logic_.travels(packet);
   if (travels && !may_inject(packet)) return false;
-  const bool tested = logic_.has_rays_of(packet);
+  const bool own_last = logic_.tests_own_last(packet), tested = !own_last && logic_.has_rays_of(packet);
   Context* context = tested ? free_context() : nullptr;
   if (tested && context == nullptr) return false;
   issue_.pop_front();
@@ -33,7 +33,7 @@ bool Tile::handle_issue(Cycle now) {
     return true;
   }
   if (issue.takes_data) shapes_.release(issue.user, now);  // the packet takes them along
-  if (packet.kind == PacketKind::kTest) {
+  if (packet.kind == PacketKind::kTest && !own_last) {
     ++passed_;
     passed_rays_ += packet.members.size();
   }
@@ -104,10 +104,11 @@ Cycle Tile::partial_may_go(Cycle now) const {
 }
 
 /// Tells whether a packet waits in the issue queue for its shapes: to bring them along, or because it will be tested
-/// here.
+/// here before it leaves.
 bool Tile::fetches_ahead(const Packet& packet) const {
   if (packet.kind != PacketKind::kTest) return false;
-  return (!fetch_by_resource_ && !resource_.is_treelet(packet.key)) || logic_.has_rays_of(packet);
+  return (!fetch_by_resource_ && !resource_.is_treelet(packet.key)) ||
+         (logic_.has_rays_of(packet) && !logic_.tests_own_last(packet));
 }
 
 bool Tile::fill_issue(Cycle now) {

@@ -23,14 +23,32 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   out.push(token, ready, !visit_all_ && token.skip > 0);
 }
 
-/// One of the resources that have heard a packet of this one has answered.
-void Tile::take_answer(std::size_t d, Cycle now) {
+/// One of the resources that have heard a packet of this one has answered. With the last answer the packet is back.
+bool Tile::take_answer(std::size_t d, Cycle now) {
+  const PacketId id = ports_.in[d].front().packet;
+  std::uint32_t& due = answers_due_[id.value - machine_.first_packet(id_).value];
+  const bool own_last = due == 1 && logic_.fate(machine_.packet(id)) == PacketFate::kTestOwn;
+  Context* context = own_last ? free_context() : nullptr;
+  if (own_last && context == nullptr) return false;
   const Token token = ports_.in[d].take(now);
-  occupy_dispatch(now, token.rays, SliceKind::kRetire, token.packet);
-  if (--answers_due_[token.packet.value - machine_.first_packet(id_).value] > 0) return;
-  if (logic_.only_forwards()) return discard_at_owner(token.packet);
-  collect_answers(machine_, token.packet);
-  retire_at_owner(token.packet);
+  occupy_dispatch(now, token.rays, SliceKind::kRetire, id);
+  if (--due > 0) return true;
+  if (logic_.only_forwards()) {
+    discard_at_owner(id);
+    return true;
+  }
+  collect_answers(machine_, id);
+  own_last ? test_own_rays(*context, id, now) : retire_at_owner(id);
+  return true;
+}
+
+/// The owner's rays of a packet that is back from the others: dispatch looks for them among all its IDs, and the packet
+/// waits in a context for shapes as another's does. It retires when they have been tested.
+void Tile::test_own_rays(Context& context, PacketId id, Cycle now) {
+  const std::size_t rays = machine_.packet(id).members.size();
+  trace_.note(now, StepKind::kTake, id.value, rays);
+  occupy_dispatch(now, rays, SliceKind::kVisit, id);
+  begin_test(context, id, dispatch_free_, false);
 }
 
 void Tile::retire_at_owner(PacketId id) {
@@ -97,10 +115,7 @@ bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
 bool Tile::handle_arrival(std::size_t d, Cycle now) {
   InPort& in = ports_.in[d];
   if (in.front().skip > 0) return pass_through_dispatch(d, now);
-  if (in.front().answers) {
-    take_answer(d, now);
-    return true;
-  }
+  if (in.front().answers) return take_answer(d, now);
   if (in.front().passes) {
     // Its owner does not wait for this resource, and may have issued it anew.
     const Token token = in.take(now);
@@ -112,6 +127,14 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   const PacketId id = in.front().packet;
   Packet& packet = machine_.packet(id);
   const PacketFate fate = logic_.fate(packet);
+  if (fate == PacketFate::kTestOwn) {
+    // It needs no place in an egress queue, and a context becomes free sooner or later: tests always end.
+    Context* context = free_context();
+    if (context == nullptr) return false;
+    in.take(now);
+    test_own_rays(*context, id, now);
+    return true;
+  }
   if (fate == PacketFate::kRetire || fate == PacketFate::kDiscard) {
     const bool retires = fate == PacketFate::kRetire;
     if (packet.kind == PacketKind::kRays) {

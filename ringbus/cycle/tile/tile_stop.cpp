@@ -42,7 +42,7 @@ void Tile::discard_work(Cycle now) {
     if (packet.owner != id_) {
       depart(id, now, true);
     } else {
-      if (logic_.travels(packet)) out_for(packet).release();
+      if (logic_.leaves_after_test(packet)) out_for(packet).release();
       discard_at_owner(id);
     }
     context = Context{};

@@ -228,6 +228,18 @@ INSTANTIATE_TEST_SUITE_P(
             "WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
             "test.yaml:2:56: topology.overrides.0.testers.window: a choice among arrived packets is not built yet; "
             "expected 1, found 4"},
+        BadConfig{"OwnRaysOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {own_rays: after}}]}\n",
+                  "test.yaml:2:58: topology.overrides.0.testers.own_rays: all resources test their own rays at the "
+                  "same time; expected before, found after"},
+        BadConfig{
+            "OwnRaysWithoutPackets",
+            SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\ntesters: {own_rays: after}\n",
+            "test.yaml:4:21: testers.own_rays: topology.shape: independent has no packets that come back; expected "
+            "before, found after"},
+        BadConfig{"OwnRaysOfAMulticast",
+                  SCENE "engine: {kind: cycle}\nmemory: {fetch: multicast}\ntesters: {own_rays: after}\n",
+                  "test.yaml:4:21: testers.own_rays: an issuer multicasts the shapes that it fetches before its packet "
+                  "leaves, for its own rays; expected before, or memory.fetch: resource; found after"},
         BadConfig{"MulticastPastOwnCaches", SCENE "engine: {kind: cycle}\nmemory: {fetch: multicast, l1_kib: 4}\n",
                   "test.yaml:3:36: memory.l1_kib: a shared cache multicasts to shape buffers; expected 0, or "
                   "memory.fetch: resource; found 4"},

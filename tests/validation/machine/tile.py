@@ -50,6 +50,7 @@ class Tile(Issues, Tests, Travel):
         self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
         self.bubble = config["topology"]["flow"] == "bubble" and not self.topology.bus
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
+        self.own_last = config["testers"]["own_rays"] == "after"
         self.start_travel(config)
         self.contexts = [Context() for _ in range(config["testers"]["contexts"])]
         each = (config["testers"]["contexts"] + 1 + config["memory"]["fetch_ahead"]
@@ -103,6 +104,10 @@ class Tile(Issues, Tests, Travel):
 
     def travels(self, packet):
         return not self.stays and self.topology.travels(packet)
+
+    def tests_own_last(self, packet):
+        return (self.own_last and not packet.memberships and self.number in packet.owners and
+                packet.owner == self.number and self.travels(packet))
 
     # ---- new rays
 
@@ -165,14 +170,23 @@ class Tile(Issues, Tests, Travel):
             self.dispatch(now, token.rays)
             return True
         if token.answers:
+            own = packet.due == 1 and self.tests_own_last(packet)
+            if own and self.free_context() is None:
+                return False
             port.take(now)
             self.dispatch(now, token.rays)
             packet.due -= 1
             if packet.due == 0:
-                self.retire(packet, now)
+                self.test_own(packet, now) if own else self.retire(packet, now)
             return True
         if packet.records is not None:
             return self.handle_rays(port, out, packet, now)
+        if packet.owner == self.number and self.tests_own_last(packet):
+            if self.free_context() is None:
+                return False
+            port.take(now)
+            self.test_own(packet, now)
+            return True
         if packet.owner == self.number:
             port.take(now)
             self.dispatch(now, len(packet.rays))
@@ -216,6 +230,12 @@ class Tile(Issues, Tests, Travel):
             packet.due = len(packet.owners - {self.number})
         cycles = self.size.cycles(packet, treelet, rays if answers else None)
         self.out_ports[0].push(Token(packet, 0, cycles, rays, answers), ready, False)
+
+    def test_own(self, packet, now):
+        """The packet is back, and the rays that its owner has itself come last."""
+        self.trace.note(now, self.number, "take", packet.number, len(packet.rays))
+        self.dispatch(now, len(packet.rays))
+        self.begin_test(self.free_context(), packet, self.dispatch_free, False)
 
     def retire(self, packet, now):
         self.trace.note(now, self.number, "retire", packet.number, len(packet.rays))

@@ -72,7 +72,8 @@ class Issues:
             moved = True
             issue = Issue(packet)
             brings = not self.fetch_by_resource and not self.resource.traversal.is_treelet(packet.node)
-            if not packet.memberships and (brings or self.number in packet.owners):
+            tested = self.number in packet.owners and not self.tests_own_last(packet)
+            if not packet.memberships and (brings or tested):
                 issue.user = User(issue)
                 self.shapes.take_ahead(issue.user, self.shape_data(packet, True), now, self.others_of(packet))
             self.read_spilled(issue, now)
@@ -94,7 +95,7 @@ class Issues:
             out = self.out_ports[packet.direction]
             if not out.has_place() or (self.bubble and out.spare_places() < 2):
                 return False
-        tested = not packet.memberships and self.number in packet.owners
+        tested = not packet.memberships and self.number in packet.owners and not self.tests_own_last(packet)
         context = self.free_context() if tested else None
         if tested and context is None:
             return False

@@ -70,7 +70,7 @@ class Tests:
                 self.shapes.release(context.user, now)
             context.phase = FREE
             self.hand_over(context.completed)
-            if packet.owner == self.number and not self.travels(packet):
+            if packet.owner == self.number and (self.own_last or not self.travels(packet)):
                 self.dispatch(now, len(packet.rays))
                 self.retire(packet, now)
             else:
