@@ -41,6 +41,12 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
   report::Units out;
   out.features = ringbus::features_of(config, accel);
   for (const auto [kind, use] : tile.units) out.kinds[kind] = unit_cycles(use, tile);
+  const auto has_lanes = [](const ResourceOverride& one) { return one.testers.simd.lanes > 1; };
+  if (config.testers.simd.lanes > 1 || std::ranges::any_of(config.topology.overrides, has_lanes)) {
+    report::LaneFill& fill = out.lane_fill.emplace();
+    for (const auto [kind, use] : tile.units)
+      if (use.lanes > 0) fill.kinds[kind] = ratio(use.passes, use.lanes);
+  }
   if (config.rays.reads_per_cycle > 0) out.ray_reads = unit_cycles(tile.ray_reads, tile);
   out.dispatch_busy = tile.dispatch.busy;
   out.dispatch_idle = cycles - tile.dispatch.busy;

@@ -26,6 +26,7 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"topology.form", "distributor", kBoth},
     {"topology.link.queue", "", kCycle, "real queues"},
     {"collections.partial", "after", kNative, "clock for collections that wait"},
+    {"collections.sort_ids_per_cycle", "", kNative, "clock for the sorting of ray IDs"},
     {"packets.carry", "data", kNative, "packets that carry data"},
     {"packets.results", "per_shape", kBoth},
     {"packets.results", "message", kBoth},

@@ -24,8 +24,19 @@ struct UnitCycles {
   }
 };
 
+/// The fraction of the lanes that had a test, of each kind of unit; absent for kinds that made none.
+struct LaneFill {
+  PerUnit<std::optional<double>> kinds{};
+};
+
+template <class V>
+void describe(V& v, const LaneFill& r) {
+  for (const UnitKindRow& row : kUnitKinds) v.field(row.name, r.kinds[row.kind], "fraction", row.meaning);
+}
+
 struct Units {
   PerUnit<UnitCycles> kinds{};
+  std::optional<LaneFill> lane_fill{};
   RunFeatures features{};
   std::optional<UnitCycles> ray_reads{};
   std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
@@ -46,6 +57,7 @@ void describe(V& v, const Units& r) {
       v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
   }
   kind(unit_row(UnitKind::kTransform));
+  v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
   v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");
 }

@@ -72,9 +72,10 @@ class PortLogic {
   std::size_t out_port(const Packet& packet) const { return machine_.topology.out_port(packet, here()); }
 
   /// Takes in what a packet of its own has brought back; the packet is free again.
-  void retire(PacketId id, Packet& packet) {
-    resource_.retire(packet);
+  std::size_t retire(PacketId id, Packet& packet) {
+    const std::size_t joined = resource_.retire(packet);
     free.put(id, packet.direction);
+    return joined;
   }
   /// The same without taking anything in.
   void discard(PacketId id) { free.put(id, machine_.packet(id).direction); }

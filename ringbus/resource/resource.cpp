@@ -89,7 +89,7 @@ TestOutcome Resource::test(Packet& packet) {
   return outcome;
 }
 
-void Resource::retire(Packet& packet) {
+std::size_t Resource::retire(Packet& packet) {
   const std::size_t before = collections_.memberships();
   if (packet.kind == PacketKind::kTest) traversal_->retire(packet, collections_);
   const std::size_t joined = collections_.memberships() - before;
@@ -99,6 +99,7 @@ void Resource::retire(Packet& packet) {
           .key = packet.key,
           .rays = static_cast<std::uint32_t>(joined),
           .members = packet.members});
+  return joined;
 }
 
 void Resource::join(Packet& packet) {

@@ -45,6 +45,7 @@ struct Utilisation {
 struct BankUse {
   Cycle busy = 0;
   std::array<Cycle, kTileStates> busy_in{};  ///< by TileState; they add up to `busy`
+  std::uint64_t passes = 0, lanes = 0;       ///< tests, and the lanes of the vectors in which they were started
   friend bool operator==(const BankUse&, const BankUse&) = default;
 };
 

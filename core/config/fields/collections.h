@@ -57,7 +57,7 @@ struct CollectionsConfig {
   Partial partial = Partial::kAhead;
   std::int64_t partial_after_cycles = 1000;
   Home home = Home::kIssuer;
-  std::int64_t capacity = 65536;
+  std::int64_t capacity = 65536, sort_ids_per_cycle = 0;
   WhenFull when_full = WhenFull::kReserve;
 };
 
@@ -79,6 +79,9 @@ void describe(V& v, CollectionsConfig& c) {
       "which has no clock, takes ahead as idle.");
   v.field("partial_after_cycles", c.partial_after_cycles, IntRange{1, 1'000'000'000}, "cycles",
           "The time that a collection waits to be filled, with partial: after.");
+  v.field("sort_ids_per_cycle", c.sort_ids_per_cycle, IntRange{0, 1024}, "ray IDs/cycle",
+          "The ray IDs that a resource sorts by what comes next, and appends to collections, in a cycle. 0: as many as "
+          "come.");
   v.choice("home", c.home, "The resource that keeps the collections of a packet's hits.");
   v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource",
           "The storage for collections. A ray takes one of them with traversal: ordered; otherwise collections take "

@@ -26,6 +26,7 @@ class Lanes {
     const std::uint64_t shapes = ceil_div(tests, rays);
     return rays_in_lanes_ ? ceil_div(rays, lanes_) * shapes : rays * ceil_div(shapes, lanes_);
   }
+  std::uint64_t count() const { return lanes_; }
   /// The time to reformat the results of a packet.
   Cycle reformatting() const { return reformat_; }
 

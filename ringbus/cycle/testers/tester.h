@@ -47,7 +47,7 @@ class Tester {
                                 bundled = bundle_tests(read, bundles);
     const Cycle inverse = inverted(bundled.first, counts);
     const UnitBank::Reservation moved = tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)},
-                                               lanes_.starts(passes_of(UnitKind::kTransform, counts), reads));
+                                               starts(UnitKind::kTransform, counts, reads));
     const Cycle end = std::max(boxes(moved, counts, reads), primitives(moved, counts, reads)) + lanes_.reformatting();
     return bundles.regrouped == 0 ? end : builder_.reserve(end, bundles.regrouped).last;
   }
@@ -55,7 +55,7 @@ class Tester {
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const RayTests& ray) {
     const auto beside = [&](UnitKind kind, Cycle from) {
-      return banks_[kind].reserve_beside(from, lanes_.starts(ray.tests[kind], 1)).last;
+      return banks_[kind].reserve_beside(from, starts(kind, ray.tests[kind], 1)).last;
     };
     if (ray.inversion > 0) at = invert(at, ray.inversion);
     const Cycle moved = beside(UnitKind::kTransform, at);
@@ -69,7 +69,10 @@ class Tester {
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
   /// The end of the inversion of a matrix, which takes so many passes.
-  Cycle invert(Cycle at, std::uint64_t passes) { return banks_[UnitKind::kTransform].reserve(at, passes).last; }
+  Cycle invert(Cycle at, std::uint64_t passes) {
+    passes_[UnitKind::kTransform] += passes;
+    return banks_[UnitKind::kTransform].reserve(at, passes).last;
+  }
   /// The time at which `records` records that are wanted at `at` have been read, beside others.
   Cycle read(Cycle at, std::uint64_t records) { return reads_cost_ ? store_.reserve_beside(at, records).last : at; }
 
@@ -84,7 +87,11 @@ class Tester {
   Cycle accounted() const { return accounted_; }
   /// Fills in how long each bank was busy until the last account().
   void fill_in(TileResult& result) const {
-    for (const auto [kind, ledger] : units_) result.units[kind] = ledger.use;
+    for (const auto [kind, ledger] : units_) {
+      result.units[kind] = ledger.use;
+      result.units[kind].passes = passes_[kind];
+      result.units[kind].lanes = banks_[kind].tests() * lanes_.count();
+    }
     result.ray_reads = ray_reads_.use;
   }
 
@@ -129,6 +136,14 @@ class Tester {
     }
   };
 
+  /// The vectors of lanes in which the passes of some rays are started.
+  std::uint64_t starts(UnitKind kind, std::uint64_t passes, std::uint64_t rays) {
+    passes_[kind] += passes;
+    return lanes_.starts(passes, rays);
+  }
+  std::uint64_t starts(UnitKind kind, const IntersectionCounts& counts, std::uint64_t rays) {
+    return starts(kind, passes_of(kind, counts), rays);
+  }
   /// Tests for rays that come one after another from the bank before: the last of them is tested last.
   static UnitBank::Reservation tested(UnitBank& bank, const UnitBank::Reservation& before, std::uint64_t tests) {
     if (tests == 0) return before;
@@ -138,12 +153,15 @@ class Tester {
   /// Tests that wait for the answers to the first begin with the first of these.
   UnitBank::Reservation bundle_tests(const UnitBank::Reservation& read, const BundlePasses& passes) {
     using Blocks = TestersConfig::BundleBlocks;
-    UnitBank& bank = banks_[blocks_ == Blocks::kShared ? UnitKind::kBox : UnitKind::kBundle];
-    return tested(bank, tested(bank, read, blocks_ == Blocks::kPairs ? passes.at_once : passes.first), passes.second);
+    const UnitKind kind = blocks_ == Blocks::kShared ? UnitKind::kBox : UnitKind::kBundle;
+    const std::uint64_t first = blocks_ == Blocks::kPairs ? passes.at_once : passes.first;
+    passes_[kind] += first + passes.second;
+    return tested(banks_[kind], tested(banks_[kind], read, first), passes.second);
   }
   Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts, std::uint64_t rays) {
     UnitBank &box = banks_[UnitKind::kBox], &plane = banks_[UnitKind::kPlane];
-    const std::uint64_t box_starts = lanes_.starts(counts.box, rays), plane_starts = lanes_.starts(counts.plane, rays);
+    const std::uint64_t box_starts = starts(UnitKind::kBox, counts, rays),
+                        plane_starts = starts(UnitKind::kPlane, counts, rays);
     if (order_ == Order::kBoxFirst || counts.plane == 0)
       return tested(plane, tested(box, moved, box_starts), plane_starts).last;
     return tested(box, tested(plane, moved, plane_starts), box_starts).last;
@@ -152,17 +170,17 @@ class Tester {
     UnitBank::Reservation met = moved;
     for (const UnitKindRow& row : kUnitKinds) {
       if (row.stage != Stage::kPrimitive || counts.*row.tests == 0) continue;
-      const UnitBank::Reservation own =
-          tested(banks_[row.kind], moved, lanes_.starts(passes_of(row.kind, counts), rays));
+      const UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, rays));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
-    return tested(banks_[UnitKind::kAnyHit], met, lanes_.starts(lookups(counts), rays)).last;
+    return tested(banks_[UnitKind::kAnyHit], met, starts(UnitKind::kAnyHit, lookups(counts), rays)).last;
   }
   /// Any-hit calls that units of the resource answer.
   std::uint64_t lookups(const IntersectionCounts& counts) const { return inline_ ? counts.any_hit_calls : 0; }
   Cycle inverted(Cycle at, const IntersectionCounts& counts) { return invert(at, inversion_passes(counts)); }
 
   PerUnit<UnitBank> banks_;
+  PerUnit<std::uint64_t> passes_{};
   UnitBank store_, builder_;
   Lanes lanes_;
   TestersConfig::BundleBlocks blocks_;

@@ -27,6 +27,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       packet_size_(settings.resource.collections, settings.resource.packets.carry),
       link_bytes_(static_cast<Cycle>(settings.link.bytes_per_cycle)),
       ids_per_cycle_(static_cast<Cycle>(settings.resource.packets.ids_per_cycle)),
+      sort_rate_(static_cast<Cycle>(settings.resource.collections.sort_ids_per_cycle)),
       question_wire_(settings.link, control_latency(settings.link)),
       issue_places_(static_cast<std::size_t>(settings.memory.fetch_ahead) + 1),
       visit_all_(machine.topology.visits_all()),

@@ -185,6 +185,8 @@ class Tile final : public ResourceAgent {
   void hand_over(Cycle now);
   Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
   void occupy_dispatch(Cycle now, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip = true);
+  void hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
+  void sort_ids(std::size_t joined, std::size_t ids, PacketId packet);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
   bool may_inject(const Packet& packet) const;
   bool dispatch_wanted() const;
@@ -207,7 +209,7 @@ class Tile final : public ResourceAgent {
   std::size_t rays_out_ = 0;  // packets of its own with new rays
   ShadeHelp help_;
   PacketSize packet_size_;
-  Cycle link_bytes_, ids_per_cycle_;
+  Cycle link_bytes_, ids_per_cycle_, sort_rate_;
   SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;

@@ -57,12 +57,24 @@ void Tile::retire_at_owner(PacketId id) {
   if (recording_.ray != nullptr) [[unlikely]]
     note_retired(id);
   trips_.return_home(id.value, now_);
-  logic_.retire(id, packet);
+  const std::size_t ids = packet.members.size();
+  sort_ids(logic_.retire(id, packet), ids, id);
   write_spilled(now_);
 }
 
+/// The `joined` ray IDs that join collections are put in order of what comes next (US 9633468). Dispatch, which has
+/// read the packet's `ids`, goes on until that is done.
+void Tile::sort_ids(std::size_t joined, std::size_t ids, PacketId packet) {
+  if (sort_rate_ == 0) return;
+  const Cycle read = dispatch_cycles(ids), sorted = ceil_div(joined, sort_rate_);
+  if (sorted > read) hold_dispatch(now_, sorted - read, 0, SliceKind::kRetire, packet, true);
+}
+
 void Tile::occupy_dispatch(Cycle now, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip) {
-  const Cycle cycles = dispatch_cycles(ids);
+  hold_dispatch(now, dispatch_cycles(ids), ids, kind, packet, has_trip);
+}
+
+void Tile::hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip) {
   const Cycle start = std::max(dispatch_free_, now);
   if (start != dispatch_ends_) dispatch_since_ = start;
   dispatch_ends_ = dispatch_free_ = start + cycles;
@@ -171,14 +183,17 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
     begin_test(*context, id, dispatch_free_, false);
     return true;
   }
+  const Cycle read = dispatch_free_;
   if (fate == PacketFate::kJoin) {
+    const std::size_t ids = packet.members.size();
     resource_.join(packet);
+    sort_ids(ids, ids, id);
     write_spilled(now);
   } else {
     ++passed_;
     passed_rays_ += packet.members.size();
   }
-  depart(id, dispatch_free_, false);
+  depart(id, read, false);
   return true;
 }
 

@@ -72,6 +72,7 @@ inline std::vector<KeyRow> key_rows() {
       {"packets.made_per", kTerrain},
       {"packets.ids_per_cycle", kTerrain, {}, {"1"}},
       {"collections.ready", kTerrain, {}, {"3"}},
+      {"collections.sort_ids_per_cycle", kTerrain, {"packets.ids_per_cycle=64"}, {"1"}},
       {"collections.traversal", kTerrain},
       {"collections.policy", kTerrain},
       {"collections.select", kTerrain},

@@ -33,7 +33,7 @@ def draw(seed, index):
         "packets": {"rays": rays, "ids_per_cycle": pick([1, 3, 16]),
                     "shapes": pick(["strip", "strip", "single"]) if traversal != "ordered" else "strip",
                     "carry": "reference" if fetch == "resource" else pick(["reference", "data"]) if local else "data"},
-        "collections": {"ready": pick([1, rays, 8, 32]), "traversal": traversal,
+        "collections": {"ready": pick([1, rays, 8, 32]), "sort_ids_per_cycle": pick([0, 0, 1, 4]), "traversal": traversal,
                         "policy": pick(["nearest", "fullest", "oldest", "newest", "deepest"]),
                         "partial": pick(["idle", "ahead", "ahead", "after"]),
                         "partial_after_cycles": pick([1, 20, 300]), "select": pick(["full_first", "strict"]), "home": home, "when_full": full,

@@ -41,6 +41,7 @@ class Tile(Issues, Tests, Travel):
         self.visits = Visits(self.clock, self.nodes, self.shapes, self.testers)
         self.size = PacketSize(config, machine.nodes)
         self.ids_per_cycle = config["packets"]["ids_per_cycle"]
+        self.sort_rate = config["collections"]["sort_ids_per_cycle"]
         self.issue_places = config["memory"]["fetch_ahead"] + 1
         self.fetch_by_resource = config["memory"]["fetch"] != "packet"
         self.multicast = config["memory"]["fetch"] == "multicast"
@@ -97,6 +98,12 @@ class Tile(Issues, Tests, Travel):
 
     def reading(self, ids):
         return max(1, ceil_div(ids, self.ids_per_cycle))
+
+    def sort(self, now, joined, ids):
+        """Dispatch, which has read so many IDs, goes on until those that join collections are sorted."""
+        if self.sort_rate > 0 and ceil_div(joined, self.sort_rate) > self.reading(ids):
+            self.dispatch_free = max(self.dispatch_free, now) + ceil_div(joined, self.sort_rate) - self.reading(ids)
+            self.clock.wake(self.dispatch_free)
 
     def dispatch(self, now, ids):
         self.dispatch_free = max(self.dispatch_free, now) + self.reading(ids)
@@ -205,10 +212,13 @@ class Tile(Issues, Tests, Travel):
             out.reserved += 1
             self.begin_test(context, packet, self.dispatch_free, False)
             return True
+        read = self.dispatch_free
         if packet.memberships and packet.home == self.number:
+            ids = len(packet.rays)
             self.resource.join(packet, now)
+            self.sort(now, ids, ids)
             self.write_spilled(now)
-        self.depart(packet, self.dispatch_free)
+        self.depart(packet, read)
         return True
 
     def depart(self, packet, ready):
@@ -239,6 +249,8 @@ class Tile(Issues, Tests, Travel):
 
     def retire(self, packet, now):
         self.trace.note(now, self.number, "retire", packet.number, len(packet.rays))
+        ids, held = len(packet.rays), self.resource.collections.memberships()
         self.resource.retire(packet, now)
+        self.sort(now, self.resource.collections.memberships() - held, ids)
         self.free[packet.direction].append(packet)
         self.write_spilled(now)

@@ -1,0 +1,58 @@
+// Hits that are sorted by child before they join collections, and the lanes that tests fill.
+#include "tests/app/time/timed_run.h"
+
+namespace carousel::sorted_ids_test {
+namespace {
+
+class SortedIds : public TimedRun {
+ protected:
+  static double dispatch_cycles(const Json& report) {
+    double sum = 0;
+    for (const Json& resource : report["resources"]) sum += resource["units"]["handler_busy"].get<double>();
+    return sum;
+  }
+  /// Of all packets. But for the rays that begin, each has joined a collection when another packet retired.
+  static double memberships(const Json& report) {
+    return report["packets"]["rays_mean"].get<double>() * report["packets"]["issued"].get<double>();
+  }
+};
+
+TEST_F(SortedIds, TakeDispatchAsLongAsItsRateNeeds) {
+  for (const char* scene : {"{builtin: terrain, triangles: 3000}", "{builtin: cornell}"}) {
+    for (const int width : {16, 32}) {
+      const std::string machine = fmt::format(
+          "scene: {}\nimage: {{width: {}, height: 16, samples: 1}}\ntopology: {{resources: 1}}\n"
+          "packets: {{ids_per_cycle: 1024}}\ncollections: {{traversal: spread}}\n",
+          scene, width);
+      const Json free = report(machine), slow = report(machine, {"collections.sort_ids_per_cycle=1"}),
+                 fast = report(machine, {"collections.sort_ids_per_cycle=1024"});
+      const double joined = memberships(slow) - slow["shading"]["shaded"].get<double>();
+      EXPECT_GE(dispatch_cycles(slow), joined);
+      EXPECT_LT(dispatch_cycles(free), 0.8 * joined) << "so that the rate is what the line above sees";
+      EXPECT_GE(slow["engine"]["cycles"].get<double>(), joined);
+      // No packet has more than 1024 memberships to sort.
+      EXPECT_EQ(fast["engine"]["cycles"], free["engine"]["cycles"]);
+      EXPECT_EQ(slow["digest"], free["digest"]);
+    }
+  }
+}
+
+TEST_F(SortedIds, TheReportHasTheFillOfLanes) {
+  const std::string machine =
+      "scene: {builtin: terrain, triangles: 3000}\nimage: {width: 16, height: 16, samples: 1}\n"
+      "topology: {resources: 4}\n";
+  EXPECT_FALSE(report(machine)["resources"][0]["units"].contains("lane_fill"));
+  const Json of = report(machine, {"testers.simd.lanes=32", "testers.simd.map=shapes"});
+  for (const Json& resource : of["resources"]) {
+    const Json& fill = resource["units"]["lane_fill"];
+    EXPECT_GT(fill["box"].get<double>(), 0);
+    EXPECT_LE(fill["box"].get<double>(), 8.0 / 32) << "a node has at most 8 children";
+    EXPECT_LE(fill["triangle"].get<double>(), 1);
+    EXPECT_FALSE(fill.contains("bundle")) << "there are no bundles";
+  }
+  const Json two = report(machine, {"testers.simd.lanes=2", "testers.simd.map=shapes"});
+  EXPECT_GE(two["resources"][0]["units"]["lane_fill"]["box"].get<double>(), 0.5);
+}
+
+}  // namespace
+}  // namespace carousel::sorted_ids_test
