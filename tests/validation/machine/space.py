@@ -95,6 +95,6 @@ def draw(seed, index):
         memory.update(path_state=pick(["free", "memory"]), film=pick(["free", "memory"]))
         if config["rays"].get("placement") not in ("first_taker", "addressed"):
             memory["ray_records"] = pick(["resource", "master", "master"])
-    if config["topology"]["shape"] != "independent":
+    if config["topology"]["shape"] != "independent" and memory["fetch"] != "multicast":
         config["testers"]["own_rays"] = pick(["before", "after"])
     return config
