@@ -229,7 +229,7 @@ int ask_command(const SweepArguments& arguments, const SweepSetup& setup, const 
     usage("--ask", "takes its points from standard input; expected no --vary, --points, --shard and --merge");
   PointMaker maker(setup.source, setup.config.parent_path(), arguments.sets);
   const FolderLock lock(setup.out, "sweep.lock");
-  remove_partial_points(setup.out);
+  remove_abandoned(setup.out / "points");
   Ledger ledger(setup.out);
   ask_and_tell(setup, options, maker, rows, ledger, interrupt);
   if (!rows.rows.empty()) give_results(arguments, setup, rows, true, false);
@@ -262,7 +262,7 @@ int sweep_command(const SweepArguments& arguments) {
   const bool sharded = shard.of > 1;
   const FolderLock lock(setup.out,
                         sharded ? fmt::format("shard-{}-of-{}.lock", shard.part + 1, shard.of) : "sweep.lock");
-  if (!sharded) remove_partial_points(setup.out);
+  remove_abandoned(setup.out / "points");
   read_finished(setup, rows, options.retry_failed);
   std::optional<Ledger> ledger;
   if (!sharded) ledger.emplace(setup.out);

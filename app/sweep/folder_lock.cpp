@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <thread>
 
@@ -41,18 +40,6 @@ FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& n
 
 FolderLock::~FolderLock() {
   if (descriptor_ >= 0) close(descriptor_);
-}
-
-void remove_partial_points(const std::filesystem::path& folder) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder / "points", error)) {
-    const std::string name = entry.path().filename();  // .<digest>.json.<process>.<number>.partial (AtomicFile)
-    if (name[0] != '.' || !name.ends_with(".partial")) continue;
-    const std::size_t begin = name.find(".json.");
-    if (begin == name.npos) continue;
-    const int process = std::atoi(name.c_str() + begin + 6);
-    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(entry.path(), error);
-  }
 }
 
 }  // namespace carousel::app

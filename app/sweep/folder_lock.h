@@ -20,7 +20,4 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-/// Removes what killed processes of this machine left half written among the points.
-void remove_partial_points(const std::filesystem::path& folder);
-
 }  // namespace carousel::app

@@ -2,10 +2,14 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/system/error.h"
@@ -26,6 +30,30 @@ std::filesystem::path name_beside(const std::filesystem::path& target) {
   return out;
 }
 
+/// Opens and locks a new file beside `target`; negative if it cannot be made. Between both it may have been taken for
+/// an abandoned one and removed, and is then made again.
+int open_beside(const std::filesystem::path& target, std::filesystem::path& name) {
+  for (;;) {
+    name = name_beside(target);
+    const int out = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (out < 0) return out;
+    while (flock(out, LOCK_EX) != 0 && errno == EINTR) continue;  // other errors: a file system without locks
+    struct stat status {};
+    if (fstat(out, &status) != 0 || status.st_nlink > 0) return out;
+    close(out);
+  }
+}
+
+/// Removes an unfinished file unless it is locked. True if it is gone.
+bool remove_unlocked(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CLOEXEC);  // NFS locks only what may be written
+  if (descriptor < 0) return errno == ENOENT;
+  const bool ours = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  if (ours) unlink(file.c_str());
+  close(descriptor);
+  return ours;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(target) {
@@ -44,8 +72,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(target) {
       fs::create_directories(target_.parent_path(), error);
       if (error) fail(error.value());
     }
-    temporary_ = name_beside(target_);
-    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = open_beside(target_, temporary_);
   }
   if (descriptor_ < 0) fail(errno);
 }
@@ -78,16 +105,33 @@ void AtomicFile::commit() {
   flush();
   // A disk may accept bytes and refuse them later; only then may the old file go. Pipes have nothing to sync.
   if (!temporary_.empty() && fsync(descriptor_) != 0) fail(errno);
-  if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
-  if (temporary_.empty()) return;
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-  temporary_.clear();
+  if (!temporary_.empty()) {
+    // Before it is closed, which would unlock it. After fsync close has no more errors to tell.
+    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+    temporary_.clear();
+  }
+  if (close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
 }
 
 void write_file(const std::filesystem::path& target, std::string_view bytes) {
   AtomicFile file(target);
   file.write(bytes);
   file.commit();
+}
+
+void remove_abandoned(const std::filesystem::path& folder) {
+  constexpr int kTries = 50;
+  constexpr std::chrono::milliseconds kPause{20};
+  for (int i = 0; i < kTries; ++i) {
+    bool all_gone = true;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+      const std::string name = entry.path().filename();
+      if (name[0] == '.' && name.ends_with(".partial")) all_gone = remove_unlocked(entry.path()) && all_gone;
+    }
+    if (all_gone) return;
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 }  // namespace carousel

@@ -28,14 +28,18 @@ std::string Program::read(const std::string& name) const {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-pid_t Program::start(const std::vector<std::string>& arguments) const {
+pid_t Program::start(const std::vector<std::string>& arguments, bool own_group) const {
   std::vector<std::string> words{CAROUSEL_BINARY};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const pid_t pid = fork();
-  if (pid != 0) return pid;
+  if (pid != 0) {
+    if (own_group) setpgid(pid, pid);  // here too, as it may not have come so far when this function returns
+    return pid;
+  }
+  if (own_group) setpgid(0, 0);  // and here, as the parent may not do so any more after exec
   if (chdir(folder_.c_str()) != 0) _exit(127);
   for (const auto& [name, descriptor] : {std::pair{"stdout.txt", 1}, std::pair{"stderr.txt", 2}}) {
     const int file = open(name, O_WRONLY | O_CREAT | O_TRUNC, 0666);

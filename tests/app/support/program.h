@@ -26,8 +26,8 @@ class Program {
 
   Outcome run(const std::vector<std::string>& arguments) const;
 
-  /// Starts without waiting.
-  pid_t start(const std::vector<std::string>& arguments) const;
+  /// Starts without waiting. `own_group`: in a group of processes of its own, with its number, to be killed as a whole.
+  pid_t start(const std::vector<std::string>& arguments, bool own_group = false) const;
   Outcome wait(pid_t pid) const;
 
  private:

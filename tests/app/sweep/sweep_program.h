@@ -19,10 +19,11 @@ inline constexpr const char* kTinyMachine =
     "engine: {kind: cycle, threads: 1, what_if: false}\n"
     "topology: {resources: 4}\n";
 
-/// The points of a folder by name, without what depends on the host.
+/// The finished points of a folder by name, without what depends on the host. A point that is being written is none.
 inline std::map<std::string, nlohmann::json> points_of(const std::filesystem::path& folder) {
   std::map<std::string, nlohmann::json> out;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "points")) {
+    if (entry.path().extension() != ".json") continue;
     std::ifstream in(entry.path());
     nlohmann::json json = nlohmann::json::parse(in);
     json.erase("host");

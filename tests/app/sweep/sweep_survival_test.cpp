@@ -63,10 +63,12 @@ TEST_F(SweepSurvival, KilledFiveTimesItEndsLikeAnUndisturbedOne) {
   std::size_t before = 0;
   int killed = 0;
   for (int i = 0; i < 5; ++i) {
-    const pid_t pid = program_.start(sweep_words(into("killed")));
-    setpgid(pid, pid);
-    // Loading the program takes about 200 ms, and so do ten points.
-    std::this_thread::sleep_for(std::chrono::milliseconds(150 + random() % 500));
+    const pid_t pid = program_.start(sweep_words(into("killed")), true);
+    // Somewhere between loading the program and the eighth point after that, however busy the host is.
+    const std::size_t until = before + random() % 8;
+    for (int looks = 0; looks < 20'000 && count("killed") < until; ++looks)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 30));
     kill(-pid, SIGKILL);
     killed += program_.wait(pid).status == 128 + SIGKILL;
     EXPECT_GE(count("killed"), before) << "a finished point is gone";

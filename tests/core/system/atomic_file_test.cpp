@@ -1,9 +1,11 @@
 #include "core/system/atomic_file.h"
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/system/error.h"
@@ -89,6 +91,27 @@ TEST_F(AtomicFileTest, LeavesNothingBehindWhenTheDiskIsFull) {
   }
   EXPECT_EQ(content(folder_ / "a.txt"), "old");
   EXPECT_EQ(files(), 1u);
+}
+
+// A process that was killed is a zombie until somebody waits for it, and its number may be another's after that.
+TEST_F(AtomicFileTest, WhatKilledWritersLeaveIsRemovedAndNothingElse) {
+  write_file(folder_ / "kept.txt", "kept");
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile file(folder_ / "killed.txt");
+    raise(SIGKILL);
+  }
+  siginfo_t ended{};
+  ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT), 0);
+  AtomicFile live(folder_ / "live.txt");
+  live.write("live");
+  ASSERT_EQ(files(), 3u);
+  remove_abandoned(folder_);
+  EXPECT_EQ(files(), 2u);
+  waitpid(child, nullptr, 0);
+  live.commit();
+  EXPECT_EQ(content(folder_ / "live.txt"), "live");
+  EXPECT_EQ(content(folder_ / "kept.txt"), "kept");
 }
 
 }  // namespace

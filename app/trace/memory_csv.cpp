@@ -1,4 +1,4 @@
-#include "app/run/memory_csv.h"
+#include "app/trace/memory_csv.h"
 
 #include <array>
 #include <charconv>
