@@ -10,8 +10,8 @@ void Tile::record_parts() {
 }
 
 void Tile::note_dispatch(Cycle begin, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip) {
-  recording_.slices->add({begin, begin + dispatch_cycles(ids), has_trip ? recording_.trips->of(packet.value) : 0, 0,
-                          recording_.track, packet.value, static_cast<std::uint32_t>(ids), kind});
+  recording_.slices->add({begin, dispatch_free_, has_trip ? recording_.trips->of(packet.value) : 0, 0, recording_.track,
+                          packet.value, static_cast<std::uint32_t>(ids), kind});
 }
 
 void Tile::note_issued(PacketId id, Cycle now) {
