@@ -73,6 +73,11 @@ struct Config {
   Primary primary = Primary::kRays;
 };
 
+/// A central machine of test cells, each of which tests the rays of its places in ray memory.
+inline bool has_cells(const Config& c) {
+  return c.topology.shape == TopologyShape::kCentral && c.topology.form == CentralForm::kCells;
+}
+
 /// The number of shader workers that `shading.workers` stands for.
 inline std::int64_t shader_workers(const Config& c) {
   return c.shading.workers.value_or(

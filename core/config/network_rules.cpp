@@ -35,6 +35,8 @@ class NetworkRules {
   void check() {
     parts_are_not_more_than_resources();
     traffic_has_a_network();
+    central_is_one_unit();
+    banks_are_read_together();
     flow_that_can_deadlock();
     bubble_needs_two_places();
     direct_wires_go_to_owners();
@@ -76,6 +78,36 @@ class NetworkRules {
       breach_("workload.traffic.rate",
               fmt::format("bursts of {} packets make at most {:.4g} packets per cycle, found {}", traffic.burst_packets,
                           most, traffic.rate));
+  }
+
+  /// US 9633468: one collection buffer, and for each cell the rays of its own places.
+  void central_is_one_unit() {
+    if (!cycle() || c.topology.shape != TopologyShape::kCentral) return;
+    if (c.topology.resources != 1)
+      breach_("topology.resources",
+              fmt::format("a central machine is one unit, with testers.simd.lanes cells; expected 1, found {}",
+                          c.topology.resources));
+    if (!has_cells(c)) return;
+    if (c.testers.simd.map != TestersConfig::Simd::Map::kRays)
+      breach_("testers.simd.map", "a test cell holds a ray; expected rays, found shapes");
+    if (c.collections.traversal == Traversal::kTreelet)
+      breach_("collections.traversal",
+              "test cells test the rays of a collection side by side; expected spread or ordered, found treelet");
+    if (c.bundles.size > 0)
+      breach_("bundles.size", fmt::format("a test cell holds a ray; expected 0, found {}", c.bundles.size));
+  }
+
+  void banks_are_read_together() {
+    if (!cycle() || c.rays.banks == 0) return;
+    if (c.rays.reads_per_cycle > 0)
+      breach_("rays.reads_per_cycle", fmt::format("each bank has a port of its own; expected 0, or rays.banks: 0; "
+                                                  "found {}",
+                                                  c.rays.reads_per_cycle));
+    if (c.topology.shape == TopologyShape::kIndependent || c.collections.traversal == Traversal::kTreelet ||
+        c.bundles.size > 0)
+      breach_("rays.banks", fmt::format("banks are modelled where the rays of a packet are read for one test: not with "
+                                        "independent, treelet or bundles; expected 0, found {}",
+                                        c.rays.banks));
   }
 
   void flow_that_can_deadlock() {

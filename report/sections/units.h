@@ -39,6 +39,7 @@ struct Units {
   std::optional<LaneFill> lane_fill{};
   RunFeatures features{};
   std::optional<UnitCycles> ray_reads{};
+  std::optional<std::uint64_t> bank_conflicts{};
   std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
 };
 
@@ -54,9 +55,11 @@ void describe(V& v, const Units& r) {
   for (const UnitKindRow& row : kUnitKinds) {
     if (row.kind != UnitKind::kTransform) kind(row);
     if (row.kind == UnitKind::kBundle)
-      v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle");
+      v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle, or its banks");
   }
   kind(unit_row(UnitKind::kTransform));
+  v.field("bank_conflicts", r.bank_conflicts, "cycles",
+          "reading took longer than with the records evenly over the banks, with rays.banks");
   v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
   v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");

@@ -58,7 +58,8 @@ struct SpillBytes {
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
   PerUnit<BankUse> units;
-  BankUse ray_reads;  ///< the port of the ray store
+  BankUse ray_reads;         ///< the port of the ray store
+  Cycle bank_conflicts = 0;  ///< of it, beyond those in which the reads would be over if they were even over its banks
   Utilisation dispatch;
   ShapeBufferCounts shapes;
   StackTraffic stack;

@@ -25,6 +25,7 @@ constexpr std::array kShapes{
     Shape{TopologyShape::kHierarchical, plan_hierarchical},
     Shape{TopologyShape::kPointToPoint, plan_point_to_point},
     Shape{TopologyShape::kBus, plan_bus},
+    Shape{TopologyShape::kCentral, plan_central},
     Shape{TopologyShape::kIndependent, plan_independent},
 };
 

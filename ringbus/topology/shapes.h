@@ -16,6 +16,7 @@ TopologyPlan plan_multi_ring(const TopologyConfig& config);
 TopologyPlan plan_hierarchical(const TopologyConfig& config);
 TopologyPlan plan_point_to_point(const TopologyConfig& config);
 TopologyPlan plan_bus(const TopologyConfig& config);
+TopologyPlan plan_central(const TopologyConfig& config);
 TopologyPlan plan_independent(const TopologyConfig& config);
 
 }  // namespace carousel::ringbus

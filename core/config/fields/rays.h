@@ -24,7 +24,7 @@ inline constexpr auto kEnumNames<Query> = [] {
 struct RaysConfig {
   std::int64_t slots_per_resource = 1024;
   Placement placement = Placement::kBalanced;
-  std::int64_t reads_per_cycle = 0;
+  std::int64_t reads_per_cycle = 0, banks = 0;
   Query query = Query::kClosest;
 };
 
@@ -38,6 +38,10 @@ void describe(V& v, RaysConfig& c) {
   v.field("reads_per_cycle", c.reads_per_cycle, IntRange{0, 1024}, "records/cycle",
           "The number of rays or bundles whose data the testers of a resource read from its store. With 0 there is no "
           "limit.");
+  v.field(
+      "banks", c.banks, IntRange{0, 256}, "banks",
+      "The banks of a resource's ray store, which hold its slots in turn. Each has a port from which the testers read "
+      "one record a cycle, and one to write. With 0 rays.reads_per_cycle is the limit.");
   v.choice("query", c.query, "The hits of a file's rays that are looked for: the closest, any one, or all.");
 }
 

@@ -8,6 +8,7 @@
 #include "core/types/ids.h"
 #include "ringbus/cycle/testers/lanes.h"
 #include "ringbus/cycle/testers/level_cycles.h"
+#include "ringbus/cycle/testers/ray_places.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/cycle/testers/unit_passes.h"
 #include "ringbus/faults/resource_fault.h"
@@ -27,35 +28,41 @@ class Tester {
  public:
   using Order = CullPlanesConfig::Order;
   /// `reads_per_cycle`: as rays.reads_per_cycle; 0: reads take no time. `regrouped_per_cycle`: rays that the builder of
-  /// bundles takes.
+  /// bundles takes. `banks_of_rays`: as rays.banks, of which each reads a record a cycle; 0: there is the one port.
   explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst, std::int64_t reads_per_cycle = 0,
-                  std::int64_t regrouped_per_cycle = 1)
+                  std::int64_t regrouped_per_cycle = 1, std::int64_t banks_of_rays = 0)
       : store_({std::max<std::int64_t>(1, reads_per_cycle), 1, 1}),
         builder_({regrouped_per_cycle, 1, 1}),
         lanes_(config.simd),
         blocks_(config.bundle_blocks),
         order_(order),
         reads_cost_(reads_per_cycle > 0),
+        banks_of_rays_(static_cast<std::uint64_t>(banks_of_rays)),
         inline_(config.any_hit == TestersConfig::AnyHit::kInline) {
     for (const auto [kind, bank] : banks_) bank = UnitBank(config.units[kind]);
   }
 
   /// The time of the last answer to the tests of one strip, started at `at`, for `reads` records, and for the passes
   /// of bundles; rays that leave bundles are then put into new ones.
-  Cycle strip(Cycle at, const IntersectionCounts& counts, std::uint64_t reads = 0, const BundlePasses& bundles = {}) {
-    const UnitBank::Reservation read = store_.reserve(at, reads_cost_ ? reads : 0),
+  Cycle strip(Cycle at, const IntersectionCounts& counts, std::uint64_t reads = 0, const BundlePasses& bundles = {},
+              const RayPlaces& places = {}) {
+    const TestedRays of{reads, places.cell};
+    conflicts_ += places.bank > 0 ? places.bank - ceil_div(reads, banks_of_rays_) : 0;
+    const UnitBank::Reservation read = store_.reserve(at, banks_of_rays_ > 0 ? places.bank
+                                                          : reads_cost_      ? reads
+                                                                             : 0),
                                 bundled = bundle_tests(read, bundles);
     const Cycle inverse = inverted(bundled.first, counts);
     const UnitBank::Reservation moved = tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)},
-                                               starts(UnitKind::kTransform, counts, reads));
-    const Cycle end = std::max(boxes(moved, counts, reads), primitives(moved, counts, reads)) + lanes_.reformatting();
+                                               starts(UnitKind::kTransform, counts, of));
+    const Cycle end = std::max(boxes(moved, counts, of), primitives(moved, counts, of)) + lanes_.reformatting();
     return bundles.regrouped == 0 ? end : builder_.reserve(end, bundles.regrouped).last;
   }
 
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const RayTests& ray) {
     const auto beside = [&](UnitKind kind, Cycle from) {
-      return banks_[kind].reserve_beside(from, starts(kind, ray.tests[kind], 1)).last;
+      return banks_[kind].reserve_beside(from, starts(kind, ray.tests[kind], {1})).last;
     };
     if (ray.inversion > 0) at = invert(at, ray.inversion);
     const Cycle moved = beside(UnitKind::kTransform, at);
@@ -93,6 +100,7 @@ class Tester {
       result.units[kind].lanes = banks_[kind].tests() * lanes_.count();
     }
     result.ray_reads = ray_reads_.use;
+    result.bank_conflicts = conflicts_;
   }
 
   /// Its busy cycles alone.
@@ -137,12 +145,12 @@ class Tester {
   };
 
   /// The vectors of lanes in which the passes of some rays are started.
-  std::uint64_t starts(UnitKind kind, std::uint64_t passes, std::uint64_t rays) {
+  std::uint64_t starts(UnitKind kind, std::uint64_t passes, const TestedRays& of) {
     passes_[kind] += passes;
-    return lanes_.starts(passes, rays);
+    return lanes_.starts(passes, of);
   }
-  std::uint64_t starts(UnitKind kind, const IntersectionCounts& counts, std::uint64_t rays) {
-    return starts(kind, passes_of(kind, counts), rays);
+  std::uint64_t starts(UnitKind kind, const IntersectionCounts& counts, const TestedRays& of) {
+    return starts(kind, passes_of(kind, counts), of);
   }
   /// Tests for rays that come one after another from the bank before: the last of them is tested last.
   static UnitBank::Reservation tested(UnitBank& bank, const UnitBank::Reservation& before, std::uint64_t tests) {
@@ -158,22 +166,22 @@ class Tester {
     passes_[kind] += first + passes.second;
     return tested(banks_[kind], tested(banks_[kind], read, first), passes.second);
   }
-  Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts, std::uint64_t rays) {
+  Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts, const TestedRays& of) {
     UnitBank &box = banks_[UnitKind::kBox], &plane = banks_[UnitKind::kPlane];
-    const std::uint64_t box_starts = starts(UnitKind::kBox, counts, rays),
-                        plane_starts = starts(UnitKind::kPlane, counts, rays);
+    const std::uint64_t box_starts = starts(UnitKind::kBox, counts, of),
+                        plane_starts = starts(UnitKind::kPlane, counts, of);
     if (order_ == Order::kBoxFirst || counts.plane == 0)
       return tested(plane, tested(box, moved, box_starts), plane_starts).last;
     return tested(box, tested(plane, moved, plane_starts), box_starts).last;
   }
-  Cycle primitives(const UnitBank::Reservation& moved, const IntersectionCounts& counts, std::uint64_t rays) {
+  Cycle primitives(const UnitBank::Reservation& moved, const IntersectionCounts& counts, const TestedRays& of) {
     UnitBank::Reservation met = moved;
     for (const UnitKindRow& row : kUnitKinds) {
       if (row.stage != Stage::kPrimitive || counts.*row.tests == 0) continue;
-      const UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, rays));
+      const UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, of));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
-    return tested(banks_[UnitKind::kAnyHit], met, starts(UnitKind::kAnyHit, lookups(counts), rays)).last;
+    return tested(banks_[UnitKind::kAnyHit], met, starts(UnitKind::kAnyHit, lookups(counts), of)).last;
   }
   /// Any-hit calls that units of the resource answer.
   std::uint64_t lookups(const IntersectionCounts& counts) const { return inline_ ? counts.any_hit_calls : 0; }
@@ -188,7 +196,9 @@ class Tester {
   Ledger ray_reads_;
   Cycle accounted_ = 0;
   Order order_;
-  bool reads_cost_, inline_;
+  bool reads_cost_;
+  std::uint64_t banks_of_rays_, conflicts_ = 0;  // of ray memory; cycles in which a bank reads and others have none to
+  bool inline_;
 };
 
 /// The testers of a resource: the machine's or its own, slowed by a fault, at the levels of accuracy.

@@ -84,6 +84,7 @@ class Tile final : public ResourceAgent {
     IntersectionCounts counts;  // of tests that begin when the shapes are there
     std::uint32_t reads = 0;    // records read for them
     BundlePasses bundle_passes;
+    RayPlaces places{};
     AnyHitQuestion question;            // asked when the tests are done
     std::vector<std::uint32_t> tested;  // slots of its rays, for RaysInTest
     HitBatch completed;                 // rays handed over then, with the slots they leave
@@ -209,6 +210,7 @@ class Tile final : public ResourceAgent {
   std::size_t rays_out_ = 0;  // packets of its own with new rays
   ShadeHelp help_;
   PacketSize packet_size_;
+  PlaceCounter places_;
   Cycle link_bytes_, ids_per_cycle_, sort_rate_;
   SideWire question_wire_;
   std::size_t issue_places_;

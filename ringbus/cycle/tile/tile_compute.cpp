@@ -29,6 +29,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   context.counts = outcome.counts;
   context.reads = outcome.reads;
   context.bundle_passes = outcome.bundle_passes;
+  context.places = places_.of(resource_.tested());
   for (const AnyHitCall& call : outcome.any_hit_calls) {
     context.question.slots.push_back(call.slot);
     context.question.times += call.times;
@@ -68,7 +69,8 @@ void Tile::start(Context& context, Cycle now) {
 
 void Tile::compute(Context& context, Cycle at) {
   context.begun = at;
-  enter(context, ContextPhase::kComputing, tester_.strip(at, context.counts, context.reads, context.bundle_passes));
+  enter(context, ContextPhase::kComputing,
+        tester_.strip(at, context.counts, context.reads, context.bundle_passes, context.places));
 }
 
 /// Rays in subtrees go on, and those whose data has come begin their tests, then packets likewise.

@@ -15,6 +15,7 @@ struct TileSettings {
   AccuracyConfig accuracy;
   CullPlanesConfig::Order plane_order = CullPlanesConfig::Order::kBoxFirst;
   std::int64_t reads_per_cycle = 0;
+  std::int64_t cells = 0, banks = 0;  ///< that hold its slots in turn; 0: none
   MemoryConfig memory;
   LinkConfig link;
   FaultsConfig::Resource fault;
@@ -30,6 +31,8 @@ inline TileSettings tile_settings(const Config& config, ResourceId id, float sce
           config.accuracy,
           config.cull_planes.order,
           config.rays.reads_per_cycle,
+          has_cells(config) ? testers_of(config, id).simd.lanes : 0,
+          config.rays.banks,
           config.memory,
           config.topology.link,
           config.faults.resource,

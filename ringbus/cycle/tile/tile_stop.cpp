@@ -48,6 +48,8 @@ void Tile::discard_work(Cycle now) {
     context = Context{};
     enter(context, ContextPhase::kFree);
   }
+  done_slots_
+      .clear();  // of bundles, which wait for a ray to go with; ray control has all slots back when it begins anew
   in_test_.clear();
   shapes_.ready().clear();  // their packets are gone
   visits_.others().clear();

@@ -137,9 +137,28 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"Shape", SCENE "topology: {shape: bus}\n",
                   "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
                   "point_to_point"},
-        BadConfig{"CycleShape", SCENE "engine: {kind: cycle}\ntopology: {shape: central}\n",
-                  "test.yaml:3:19: topology.shape: central is not built yet; expected ring, bidirectional, "
-                  "multi_ring, hierarchical, point_to_point, bus or independent"},
+        BadConfig{"CentralForm",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 1}\n",
+                  "test.yaml:3:34: topology.form: distributor is not built yet; expected cells"},
+        BadConfig{"CentralUnit", SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 4}\n",
+                  "test.yaml:3:39: topology.resources: a central machine is one unit, with testers.simd.lanes cells; "
+                  "expected 1, found 4"},
+        BadConfig{"CellsOfShapes",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 1}\n"
+                        "testers: {simd: {lanes: 8, map: shapes}}\n",
+                  "test.yaml:4:33: testers.simd.map: a test cell holds a ray; expected rays, found shapes"},
+        BadConfig{"CellsOfTreelets",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 1}\n"
+                        "collections: {traversal: treelet}\n",
+                  "test.yaml:4:26: collections.traversal: test cells test the rays of a collection side by side; "
+                  "expected spread or ordered, found treelet"},
+        BadConfig{"BanksAndAPort", SCENE "engine: {kind: cycle}\nrays: {banks: 4, reads_per_cycle: 2}\n",
+                  "test.yaml:3:35: rays.reads_per_cycle: each bank has a port of its own; expected 0, or rays.banks: "
+                  "0; found 2"},
+        BadConfig{"BanksOfTreelets",
+                  SCENE "engine: {kind: cycle}\nrays: {banks: 4}\ncollections: {traversal: treelet}\n",
+                  "test.yaml:3:15: rays.banks: banks are modelled where the rays of a packet are read for one test: "
+                  "not with independent, treelet or bundles; expected 0, found 4"},
         BadConfig{
             "InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\nengine: {kind: cycle}\n",
             "test.yaml:2:27: accuracy.instance_data: transform: two_step subtracts the translation first; expected "

@@ -66,7 +66,7 @@ TEST(ConfigSchema, SaysWhichEngineTakesAValue) {
   const Json schema = config_schema();
   const Json& topology = schema["properties"]["topology"]["properties"];
   EXPECT_EQ(topology["shape"]["engines"]["bus"], Json::array({"cycle"}));
-  EXPECT_EQ(topology["shape"]["engines"]["central"], Json::array());
+  EXPECT_EQ(topology["shape"]["engines"]["central"], Json::array({"cycle"}));
   EXPECT_FALSE(topology["shape"]["engines"].contains("ring"));
   EXPECT_EQ(topology["link"]["properties"]["queue"]["engines"]["mutex"], Json::array({"native"}));
 }

@@ -136,7 +136,7 @@ TEST(Topology, CreditsStayBelowWhatTheRingHolds) {
   }
 }
 
-/// Every shape that is built.
+/// Every shape with several resources.
 std::vector<TopologyShape> all_shapes() {
   std::vector<TopologyShape> shapes;
   for (const auto& one : kEnumNames<TopologyShape>)

@@ -88,7 +88,7 @@ class Topology:
         self.visit_all = t["visit"] == "all"
         forward, backward = 1, self.resources - 1
         self.bus = self.shape == "bus"
-        self.steps = {"ring": [forward], "bidirectional": [forward, backward], "independent": [forward],
+        self.steps = {"ring": [forward], "bidirectional": [forward, backward], "independent": [forward], "central": [forward],
                       "bus": [forward], "multi_ring": [forward] * t["rings"]}[self.shape]
         self.directions = len(self.steps)
         depth = t["link"]["depth"]

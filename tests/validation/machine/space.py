@@ -95,6 +95,12 @@ def draw(seed, index):
         memory.update(path_state=pick(["free", "memory"]), film=pick(["free", "memory"]))
         if config["rays"].get("placement") not in ("first_taker", "addressed"):
             memory["ray_records"] = pick(["resource", "master", "master"])
+    if config["topology"]["shape"] != "independent" and traversal != "treelet" and r.random() < 0.3:
+        config["rays"].update(banks=pick([1, 3, 8]), reads_per_cycle=0)
+    if (resources == 1 and topology["shape"] in ("ring", "bidirectional", "multi_ring") and traversal != "treelet" and
+            r.random() < 0.7):
+        config["topology"]["shape"] = "central"
+        config["testers"]["simd"].update(lanes=pick([2, 5, 8]), map="rays")
     if config["topology"]["shape"] != "independent" and memory["fetch"] != "multicast":
         config["testers"]["own_rays"] = pick(["before", "after"])
     return config

@@ -1,4 +1,6 @@
 """Banks of test units ("Testers")."""
+from collections import Counter
+
 from .clock import ceil_div
 
 BOX, TRIANGLE, PLANE, BUNDLE, TRANSFORM, PROCEDURAL, ANY_HIT = (
@@ -76,8 +78,10 @@ class Testers:
         self.simd = t["simd"]
         self.reads_per_cycle = config["rays"]["reads_per_cycle"]
         self.store = Bank(max(1, self.reads_per_cycle), 1, 1)
+        self.ray_banks = config["rays"]["banks"]
+        self.cells = self.simd["lanes"] if config["topology"]["shape"] == "central" else 0
 
-    def vectors(self, tests, rays):
+    def vectors(self, tests, rays, slots=()):
         """Starts of units with lanes: a vector of rays against a shape, or of shapes against a ray."""
         lanes = self.simd["lanes"]
         if lanes == 1 or tests == 0:
@@ -85,10 +89,17 @@ class Testers:
         rays = max(1, min(rays, tests))
         shapes = ceil_div(tests, rays)
         if self.simd["map"] == "rays":
-            return ceil_div(rays, lanes) * shapes
+            return max(ceil_div(rays, lanes), min(rays, self.most(slots, self.cells))) * shapes
         return rays * ceil_div(shapes, lanes)
 
-    def _reads(self, at, reads):
+    @staticmethod
+    def most(slots, places):
+        """The most of these slots that share one of the places, which hold slots in turn."""
+        return max(Counter(slot % places for slot in slots).values(), default=0) if places else 0
+
+    def _reads(self, at, reads, slots):
+        if self.ray_banks:
+            return self.store.reserve(at, self.most(slots, self.ray_banks))
         return self.store.reserve(at, reads if self.reads_per_cycle > 0 else 0)
 
     @staticmethod
@@ -99,13 +110,15 @@ class Testers:
         first, last = bank.reserve(before[0], tests)
         return first, max(last, before[1] + bank.latency) if before[1] > before[0] else last
 
-    def strip(self, at, counts, reads):
-        first, last = self._reads(at, reads)
+    def strip(self, at, counts, slots):
+        reads = len(slots)
+        first, last = self._reads(at, reads, slots)
         inverse = self.banks[TRANSFORM].reserve(first, counts.inversion_passes())[1]
-        moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)), self.vectors(counts.passes(TRANSFORM), reads))
-        end = self._behind(self.banks[BOX], moved, self.vectors(counts.box, reads))[1]
+        moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)),
+                             self.vectors(counts.passes(TRANSFORM), reads, slots))
+        end = self._behind(self.banks[BOX], moved, self.vectors(counts.box, reads, slots))[1]
         for kind in (TRIANGLE, PROCEDURAL):
-            end = max(end, self._behind(self.banks[kind], moved, self.vectors(counts.passes(kind), reads))[1])
+            end = max(end, self._behind(self.banks[kind], moved, self.vectors(counts.passes(kind), reads, slots))[1])
         return end + (self.simd["reformat_cycles"] if self.simd["lanes"] > 1 else 0)
 
     def read(self, at, records):

@@ -9,7 +9,7 @@ class Context:
     """A packet in test."""
 
     def __init__(self):
-        self.phase, self.packet, self.at, self.tests, self.reads = FREE, None, 0, None, 0
+        self.phase, self.packet, self.at, self.tests, self.slots = FREE, None, 0, None, []
         self.completed, self.visit = [], None
         self.user, self.has_data = User(self), False
 
@@ -22,7 +22,7 @@ class Tests:
 
     def begin_test(self, context, packet, at, has_data):
         members = self.resource.local_members(packet)
-        context.packet, context.reads, context.has_data = packet, len(members), has_data
+        context.packet, context.slots, context.has_data = packet, [packet.rays[i].slot for i in members], has_data
         context.rays = [packet.rays[i] for i in members]
         context.tests = self.resource.test(packet, members)
         context.completed, self.resource.completed[:] = list(self.resource.completed), []
@@ -45,7 +45,7 @@ class Tests:
             context.phase = FETCHING
 
     def compute(self, context, now):
-        context.phase, context.at = COMPUTING, self.testers.strip(now, context.tests, context.reads)
+        context.phase, context.at = COMPUTING, self.testers.strip(now, context.tests, context.slots)
         self.clock.wake(context.at)
 
     def serve(self, now):
