@@ -53,7 +53,9 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "memory.l2_banks": 1, "memory.l2_answer_bytes_per_cycle": 3, "memory.l1_latency_cycles": 2, "memory.l1_mshrs": 1, "memory.l2_mshrs": 1, "memory.l2_lines_per_cycle": 1, "collections.ready": 1, "collections.sort_ids_per_cycle": 1, "shading.cycles_per_shade": 1,
         "shading.lanes": 1, "shading.sort": {"shader": "none"}, "shading.sort_rays_per_cycle": 1,
         "memory.fetch": {"multicast": "resource"}, "memory.ray_records": {"master": "resource"},
-        "memory.path_state": {"memory": "free"}, "memory.film": {"memory": "free"}}
+        "memory.path_state": {"memory": "free"}, "memory.film": {"memory": "free"},
+        "packets.results": {"per_shape": "mask", "message": "mask", "implied_order": "mask"},
+        "testers.own_rays": {"after": "before"}}
 
 
 def notices(lie, runs):

@@ -183,6 +183,13 @@ class Tile final : public ResourceAgent {
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
+  std::size_t read_on_visit(const Packet& packet) const {
+    return packet_size_.read_on_visit(packet, memory_, resource_.is_treelet(packet.key));
+  }
+  std::size_t read_at_owner(const Packet& packet) const {
+    return packet_size_.read_at_owner(packet, memory_, resource_.is_treelet(packet.key), broadcasts_);
+  }
+  void note_answered(Packet& packet, std::size_t before) const;
   Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
   void occupy_dispatch(Cycle now, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip = true);
   void hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
@@ -209,7 +216,7 @@ class Tile final : public ResourceAgent {
   std::size_t rays_out_ = 0;  // packets of its own with new rays
   ShadeHelp help_;
   PacketSize packet_size_;
-  Cycle link_bytes_, ids_per_cycle_, sort_rate_;
+  Cycle ids_per_cycle_, sort_rate_;
   SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;

@@ -5,6 +5,15 @@
 
 namespace carousel::ringbus::cycle {
 
+namespace {
+
+void load(Token& token, const PacketLoad& load) {
+  token.size_bytes = load.bytes;
+  token.link_cycles = load.cycles;
+}
+
+}  // namespace
+
 void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const Packet& packet = machine_.packet(id);
   OutPort& out = out_for(packet);
@@ -12,11 +21,17 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const bool test = packet.kind == PacketKind::kTest, treelet = resource_.is_treelet(packet.key);
   const bool answers = broadcasts_ && test && packet.owner != id_;
   const std::size_t rays = answers ? rays_in_answer(machine_, id_, id) : packet.members.size();
-  Token token{id, 0, 1, static_cast<std::uint16_t>(rays)};
+  Token token{id, 0, static_cast<std::uint16_t>(rays)};
   token.answers = answers;
-  token.size_bytes = answers ? packet_size_.answer_bytes(packet, static_cast<std::uint32_t>(rays), treelet)
-                             : packet_size_.bytes(packet, memory_, treelet);
-  token.link_cycles = static_cast<std::uint16_t>(ceil_div(token.size_bytes, link_bytes_));
+  if (answers) {
+    const auto n = static_cast<std::uint32_t>(rays);
+    const Packet& answer = machine_.answer(id_, id);
+    load(token, packet_size_.answer(packet, answer, n, memory_, treelet));
+    token.entries = packet_size_.read_of_answer(packet, answer, n, memory_, treelet);
+  } else {
+    load(token, packet_size_.load(packet, memory_, treelet));
+    token.entries = packet_size_.read_on_visit(packet, memory_, treelet);
+  }
   if (broadcasts_ && test && !answers)
     answers_due_[id.value - machine_.first_packet(id_).value] = machine_.topology.other_owners(packet);
   token.skip = machine_.topology.skip(packet, id_);
@@ -31,7 +46,7 @@ bool Tile::take_answer(std::size_t d, Cycle now) {
   Context* context = own_last ? free_context() : nullptr;
   if (own_last && context == nullptr) return false;
   const Token token = ports_.in[d].take(now);
-  occupy_dispatch(now, token.rays, SliceKind::kRetire, id);
+  occupy_dispatch(now, token.entries, SliceKind::kRetire, id);
   if (--due > 0) return true;
   if (logic_.only_forwards()) {
     discard_at_owner(id);
@@ -45,9 +60,9 @@ bool Tile::take_answer(std::size_t d, Cycle now) {
 /// The owner's rays of a packet that is back from the others: dispatch looks for them among all its IDs, and the packet
 /// waits in a context for shapes as another's does. It retires when they have been tested.
 void Tile::test_own_rays(Context& context, PacketId id, Cycle now) {
-  const std::size_t rays = machine_.packet(id).members.size();
-  trace_.note(now, StepKind::kTake, id.value, rays);
-  occupy_dispatch(now, rays, SliceKind::kVisit, id);
+  const Packet& packet = machine_.packet(id);
+  trace_.note(now, StepKind::kTake, id.value, packet.members.size());
+  occupy_dispatch(now, read_on_visit(packet), SliceKind::kVisit, id);
   begin_test(context, id, dispatch_free_, false);
 }
 
@@ -119,7 +134,7 @@ bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
   --token.skip;
   ++passed_;
   passed_rays_ += token.rays;
-  occupy_dispatch(now, token.rays, SliceKind::kPass, token.packet);
+  occupy_dispatch(now, token.entries, SliceKind::kPass, token.packet);
   ports_.out[d].push(token, dispatch_free_, false);
   return true;
 }
@@ -133,7 +148,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
     const Token token = in.take(now);
     ++passed_;
     passed_rays_ += token.rays;
-    occupy_dispatch(now, token.rays, SliceKind::kPass, token.packet, false);
+    occupy_dispatch(now, token.entries, SliceKind::kPass, token.packet, false);
     return true;
   }
   const PacketId id = in.front().packet;
@@ -154,7 +169,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
       return true;
     }
     in.take(now);
-    occupy_dispatch(now, retires ? packet.members.size() : 0, SliceKind::kRetire, id);
+    occupy_dispatch(now, retires ? read_at_owner(packet) : 0, SliceKind::kRetire, id);
     retires ? retire_at_owner(id) : discard_at_owner(id);
     return true;
   }
@@ -177,7 +192,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   if (fate == PacketFate::kTest && context == nullptr) return false;
   in.take(now);
   trace_.note(now, StepKind::kTake, id.value, packet.members.size());
-  occupy_dispatch(now, packet.members.size(), fate == PacketFate::kTest ? SliceKind::kVisit : SliceKind::kPass, id);
+  occupy_dispatch(now, read_on_visit(packet), fate == PacketFate::kTest ? SliceKind::kVisit : SliceKind::kPass, id);
   if (fate == PacketFate::kTest) {
     out.reserve();
     begin_test(*context, id, dispatch_free_, false);

@@ -211,7 +211,16 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:18: packets.carry: the native engine has no packets that carry data; expected "
                   "reference, found data"},
         BadConfig{"Results", SCENE "packets: {results: message}\n",
-                  "test.yaml:2:20: packets.results: message is not built yet; expected mask"},
+                  "test.yaml:2:20: packets.results: the native engine has no wire on which results could travel "
+                  "otherwise; expected mask, found message"},
+        BadConfig{"ResultsWithoutPackets",
+                  SCENE "engine: {kind: cycle}\npackets: {results: message}\ntopology: {shape: independent}\n",
+                  "test.yaml:3:20: packets.results: topology.shape: independent has no packets that bring results; "
+                  "expected mask, found message"},
+        BadConfig{"ResultsOfAnOrderedStrip",
+                  SCENE "engine: {kind: cycle}\npackets: {results: per_shape}\ncollections: {traversal: ordered}\n",
+                  "test.yaml:3:20: packets.results: traversal: ordered has one result for a whole strip, the next "
+                  "node; expected mask, message or implied_order, found per_shape"},
         BadConfig{"AnyHit", SCENE "testers: {any_hit: shader}\n",
                   "test.yaml:2:20: testers.any_hit: the native engine has no any-hit calls by shader workers; expected "
                   "inline, found shader"},

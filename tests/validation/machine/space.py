@@ -97,4 +97,7 @@ def draw(seed, index):
             memory["ray_records"] = pick(["resource", "master", "master"])
     if config["topology"]["shape"] != "independent" and memory["fetch"] != "multicast":
         config["testers"]["own_rays"] = pick(["before", "after"])
+    if config["topology"]["shape"] != "independent":
+        config["packets"]["results"] = pick(["mask", "message", "implied_order",
+                                             "mask" if config["collections"]["traversal"] == "ordered" else "per_shape"])
     return config
