@@ -41,6 +41,7 @@ class NetworkRules {
     overrides_name_resources();
     own_rays_come_last_where_packets_go_round();
     results_travel();
+    windows_have_queues();
     faults_have_a_place();
   }
 
@@ -143,6 +144,18 @@ class NetworkRules {
       breach_("packets.results",
               "traversal: ordered has one result for a whole strip, the next node; expected mask, message or "
               "implied_order, found per_shape");
+  }
+
+  void windows_have_queues() {
+    if (properties_of(c.topology.shape).has_packets) return;
+    const auto check = [&](const std::string& key, std::int64_t window) {
+      if (window > 1)
+        breach_(key, fmt::format("topology.shape: {} has no input queues; expected 1, found {}",
+                                 enum_name(c.topology.shape), window));
+    };
+    check("testers.window", c.testers.window);
+    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i)
+      check(fmt::format("topology.overrides.{}.testers.window", i), c.topology.overrides[i].testers.window);
   }
 
   void faults_have_a_place() {

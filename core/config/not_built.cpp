@@ -33,7 +33,7 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"accuracy.instance_data", "", kNative, "choice of stored matrices"},
     {"accuracy.invert", "", kNative, "choice of stored matrices"},
     {"bundles.edges", "parallel", kNative, "clock for parallel edges"},
-    {"testers.window", "", kBoth, "a choice among arrived packets"},
+    {"testers.window", "", kNative, "choice among packets that have arrived"},
     {"packets.made_per", "child", kBoth},
     {"rays.query", "all", kBoth},
     {"energy.profile", "n45", kNative, "count of joules"},

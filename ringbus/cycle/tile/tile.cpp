@@ -40,6 +40,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       partial_(settings.resource.collections.partial),
       memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
+      window_(static_cast<std::size_t>(settings.testers.window)),
+      passed_over_(ports_.in.size()),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       phases_(contexts_.size()),
       visits_(memory, shapes_, tester_, contexts_.size(),
@@ -69,7 +71,7 @@ Cycle Tile::next() const {
 Cycle Tile::next_arrival() const {
   Cycle first = kNever;
   for (const InPort& in : ports_.in)
-    if (const Cycle at = in.next(); at > now_ && at < first) first = at;
+    if (const Cycle at = window_ > 1 ? in.next_after(now_) : in.next(); at > now_ && at < first) first = at;
   return first;
 }
 

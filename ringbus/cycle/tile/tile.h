@@ -131,6 +131,13 @@ class Tile final : public ResourceAgent {
   bool handle(Cycle now);
   bool handle_arrival(std::size_t d, Cycle now);
   bool pass_through_dispatch(std::size_t d, Cycle now);
+
+  // The choice among packets that have arrived (tile_window.cpp).
+  std::size_t seen(std::size_t d, Cycle now) const;
+  bool choose_to_cut(std::size_t d, Cycle now);
+  bool choose_to_handle(std::size_t d, Cycle now);
+  bool can_handle(std::size_t d, const Token& token);
+  bool waits_for_shapes(const Token& token) const;
   bool handle_issue(Cycle now);
   bool fill_issue(Cycle now);
   bool nothing_else_to_do(Cycle now) const;
@@ -235,6 +242,8 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_free_ = 0;                                           // later than dispatch_ends_ when it pauses
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
+  std::size_t window_;                    // packets at the front of an input queue among which it chooses
+  std::vector<std::size_t> passed_over_;  // by port: how often the first one has been
   std::deque<Issue> issue_;
   Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::size_t issued_ = 0;

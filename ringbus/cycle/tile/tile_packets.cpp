@@ -104,7 +104,8 @@ bool Tile::cut_through(Cycle now, bool at_once) {
   for (std::size_t d = 0; d < ports_.in.size(); ++d) {
     InPort& in = ports_.in[d];
     OutPort& out = ports_.out[d];
-    while (in.next() <= now && in.front().skip > 0 && (at_once ? out.open(now, 1) : out.has_place())) {
+    while (in.next() <= now && (at_once ? out.open(now, 1) : out.has_place()) &&
+           (window_ > 1 ? choose_to_cut(d, now) : in.front().skip > 0)) {
       Token token = in.take(now);
       --token.skip;
       if (at_once)
@@ -121,7 +122,7 @@ bool Tile::handle(Cycle now) {
   if (dispatch_free_ > now) return false;
   for (std::size_t i = 0; i < ports_.in.size(); ++i) {
     const std::size_t d = next_in_ + i < ports_.in.size() ? next_in_ + i : next_in_ + i - ports_.in.size();
-    if (ports_.in[d].next() > now || !handle_arrival(d, now)) continue;
+    if (ports_.in[d].next() > now || (window_ > 1 && !choose_to_handle(d, now)) || !handle_arrival(d, now)) continue;
     next_in_ = d + 1 == ports_.in.size() ? 0 : d + 1;
     return true;
   }

@@ -233,10 +233,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"LanesOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {simd: {lanes: 0}}}]}\n",
                   "test.yaml:2:62: topology.overrides.0.testers.simd.lanes: expected an integer from 1 to 64 (lanes), "
                   "found 0"},
-        BadConfig{
-            "WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
-            "test.yaml:2:56: topology.overrides.0.testers.window: a choice among arrived packets is not built yet; "
-            "expected 1, found 4"},
+        BadConfig{"WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
+                  "test.yaml:2:56: topology.overrides.0.testers.window: the native engine has no choice among packets "
+                  "that have "
+                  "arrived; expected 1, found 4"},
+        BadConfig{"WindowWithoutQueues",
+                  SCENE "engine: {kind: cycle}\ntesters: {window: 4}\ntopology: {shape: independent}\n",
+                  "test.yaml:3:20: testers.window: topology.shape: independent has no input queues; expected 1, found "
+                  "4"},
         BadConfig{"OwnRaysOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {own_rays: after}}]}\n",
                   "test.yaml:2:58: topology.overrides.0.testers.own_rays: all resources test their own rays at the "
                   "same time; expected before, found after"},

@@ -43,9 +43,17 @@ class InPort:
     def front(self):
         return self.packets.front()
 
-    def take(self, now):
+    def take(self, now, place=0):
         self.credits.send(now + self.latency, None)
-        return self.packets.take()
+        return self.packets.take(place)
+
+    def window(self, now, length):
+        return self.packets.arrived(now)[:length]
+
+    def bring_forward(self, place):
+        item = self.packets.items[place]
+        del self.packets.items[place]
+        self.packets.items.appendleft(item)
 
 
 class OutPort:

@@ -9,6 +9,7 @@ from .shape_buffer import ShapeBuffer
 from .testers import Testers
 from .tile_issue import Issues
 from .tile_tests import STARTING, Context, Tests
+from .tile_window import Window
 from .travel import Travel
 from .walk import Visits
 
@@ -29,7 +30,7 @@ class Control:
         self.completed.send(self.free_at + self.latency, rays)
 
 
-class Tile(Issues, Tests, Travel):
+class Tile(Issues, Tests, Travel, Window):
     def __init__(self, number, machine, ports, shapes, control):
         config = machine.config
         self.number, self.machine, self.clock, self.trace = number, machine, machine.clock, machine.trace
@@ -65,6 +66,7 @@ class Tile(Issues, Tests, Travel):
         self.issue = deque()
         self.admission = deque()
         self.dispatch_free = self.next_in = 0
+        self.window, self.passed_over = self.testers.window, [0 for _ in self.in_ports]
         self.done, self.late = [], []
 
     # ---- a cycle
@@ -143,8 +145,12 @@ class Tile(Issues, Tests, Travel):
         if self.topology.visit_all or self.topology.bus:
             return moved
         for port, out in zip(self.in_ports, self.out_ports):
-            while port.ready(now) and port.front().skip > 0 and out.has_place():
-                token = port.take(now)
+            while out.has_place():
+                seen = port.window(now, self.window)
+                place = next((i for i, token in enumerate(seen) if token.skip > 0), None)
+                if place is None:
+                    break
+                token = port.take(now, place)
                 token.skip -= 1
                 out.push(token, now, token.skip > 0)
                 moved = True
@@ -156,7 +162,7 @@ class Tile(Issues, Tests, Travel):
         count = len(self.in_ports)
         for i in range(count):
             d = (self.next_in + i) % count
-            if self.in_ports[d].ready(now) and self.handle_arrival(d, now):
+            if self.choose(d, now) and self.handle_arrival(d, now):
                 self.next_in = (d + 1) % count
                 return True
         return self.send_new_rays(now) or self.handle_issue(now)
