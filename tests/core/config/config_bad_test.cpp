@@ -239,7 +239,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "arrived; expected 1, found 4"},
         BadConfig{"WindowWithoutQueues",
                   SCENE "engine: {kind: cycle}\ntesters: {window: 4}\ntopology: {shape: independent}\n",
-                  "test.yaml:3:20: testers.window: topology.shape: independent has no input queues; expected 1, found "
+                  "test.yaml:3:19: testers.window: topology.shape: independent has no input queues; expected 1, found "
                   "4"},
         BadConfig{"OwnRaysOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {own_rays: after}}]}\n",
                   "test.yaml:2:58: topology.overrides.0.testers.own_rays: all resources test their own rays at the "
