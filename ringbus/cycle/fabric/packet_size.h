@@ -12,10 +12,12 @@
 
 namespace carousel::ringbus::cycle {
 
-/// A packet on a link, with all that goes along with it: its bytes, and the cycles for which it occupies the link.
+/// A packet on a link, with all that goes along with it: its bytes, and the cycles for which it occupies the link; how
+/// many packets it is, and how many messages go before it.
 struct PacketLoad {
   std::uint32_t bytes = 0;
   std::uint32_t cycles = 0;
+  std::uint32_t packets = 1, messages = 0;
 
   /// `count` more packets or messages of `each` bytes, each of which begins a cycle of a link of that width.
   void add(std::uint32_t each, std::uint32_t count, std::uint32_t width) {
@@ -63,10 +65,12 @@ class PacketSize {
     const std::uint32_t transform = brings ? memory.transform(packet.key.instance).bytes : 0;
     if (const std::uint32_t parts = this->parts(packet, memory, treelet); parts > 0) {
       load.add(of_shape(n) + (data + parts - 1) / parts + transform, parts, width_);
+      load.packets = parts;
       return load;
     }
     load.add(whole(packet, n, treelet) + data + transform, 1, width_);
-    if (test && results_ == PacketResults::kMessage) load.add(message(), messages(packet, packet, treelet), width_);
+    if (test && results_ == PacketResults::kMessage)
+      load.add(message(), load.messages = messages(packet, packet, treelet), width_);
     return load;
   }
   /// Of an answer to a packet that a resource has heard, with `rays` rays that live there: without the shapes.
@@ -80,13 +84,13 @@ class PacketSize {
         break;
       case PacketResults::kPerShape:
         if (const std::uint32_t parts = this->parts(answered, memory, treelet); parts > 0)
-          load.add(of_shape(rays), parts, width_);
+          load.add(of_shape(rays), load.packets = parts, width_);
         else
           load.add(kHeader + kId * rays, 1, width_);
         break;
       case PacketResults::kMessage:
         load.add(kHeader, 1, width_);
-        load.add(message(), messages(packet, answered, treelet), width_);
+        load.add(message(), load.messages = messages(packet, answered, treelet), width_);
         break;
       case PacketResults::kImpliedOrder:
         load.add(in_order(packet, answered.named, rays, treelet), 1, width_);

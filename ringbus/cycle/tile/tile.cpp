@@ -248,6 +248,7 @@ TileResult Tile::result() const {
   TileResult t;
   ledger_.fill_in(t);
   t.dispatch.busy = dispatch_busy_;
+  t.sent = sent_;
   t.shapes = shapes_.counts();
   t.spilled = spill_memory_.moved();
   t.transformed_rays = transforms_.bytes();

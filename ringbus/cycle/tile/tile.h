@@ -185,6 +185,7 @@ class Tile final : public ResourceAgent {
   void end_test(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
+  void count_sent(const Packet& packet, const PacketLoad& load, bool answers);
   bool take_answer(std::size_t d, Cycle now);
   void test_own_rays(Context& context, PacketId id, Cycle now);
   void retire_at_owner(PacketId id);
@@ -264,6 +265,7 @@ class Tile final : public ResourceAgent {
   std::vector<std::uint32_t> done_slots_;
   std::vector<std::uint32_t> answers_due_;  // with a bus: of each packet of its own
   RoundTrips trips_;
+  PacketKindCounts sent_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
   IdCensus census_;

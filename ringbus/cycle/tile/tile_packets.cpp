@@ -5,15 +5,6 @@
 
 namespace carousel::ringbus::cycle {
 
-namespace {
-
-void load(Token& token, const PacketLoad& load) {
-  token.size_bytes = load.bytes;
-  token.link_cycles = load.cycles;
-}
-
-}  // namespace
-
 void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const Packet& packet = machine_.packet(id);
   OutPort& out = out_for(packet);
@@ -23,19 +14,40 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const std::size_t rays = answers ? rays_in_answer(machine_, id_, id) : packet.members.size();
   Token token{id, 0, static_cast<std::uint16_t>(rays)};
   token.answers = answers;
+  PacketLoad load;
   if (answers) {
     const auto n = static_cast<std::uint32_t>(rays);
     const Packet& answer = machine_.answer(id_, id);
-    load(token, packet_size_.answer(packet, answer, n, memory_, treelet));
+    load = packet_size_.answer(packet, answer, n, memory_, treelet);
     token.entries = packet_size_.read_of_answer(packet, answer, n, memory_, treelet);
   } else {
-    load(token, packet_size_.load(packet, memory_, treelet));
+    load = packet_size_.load(packet, memory_, treelet);
     token.entries = packet_size_.read_on_visit(packet, memory_, treelet);
   }
+  token.size_bytes = load.bytes;
+  token.link_cycles = load.cycles;
+  count_sent(packet, load, answers);
   if (broadcasts_ && test && !answers)
     answers_due_[id.value - machine_.first_packet(id_).value] = machine_.topology.other_owners(packet);
   token.skip = machine_.topology.skip(packet, id_);
   out.push(token, ready, !visit_all_ && token.skip > 0);
+}
+
+/// By the kind that the header names.
+void Tile::count_sent(const Packet& packet, const PacketLoad& load, bool answers) {
+  sent_.result += load.messages;
+  std::uint64_t* kind = &sent_.box;
+  if (answers)
+    kind = &sent_.result;
+  else if (packet.kind == PacketKind::kRays)
+    kind = &sent_.load;
+  else if (packet.kind == PacketKind::kMemberships)
+    kind = &sent_.join;
+  else if (packet.key.ref.is_procedural() && !resource_.is_treelet(packet.key))
+    kind = &sent_.procedural;
+  else if (!packet.key.ref.is_inner() && !resource_.is_treelet(packet.key))
+    kind = &sent_.triangle;
+  *kind += load.packets;
 }
 
 /// One of the resources that have heard a packet of this one has answered. With the last answer the packet is back.

@@ -89,20 +89,50 @@ TEST_F(PacketResultsTest, AnswerOnABus) {
             (Outcome{2 * (24 + 168) - 2 * (26 + 21) + 7, (24 + 168) * 2 - (26 + 21) * 2}));
 }
 
-// Leaves below the root, of which rays along the diagonal meet three. A message a hit of the other's ray, 16 + 4
-// bytes, comes before the packet, and takes a cycle to read. A packet of a leaf has 16 + 2 x 4 bytes in any case.
+// Leaves below the root, of which rays along the diagonal meet three. A message a hit of the other's ray, 16 + 4 bytes,
+// comes before the packet, which has 2 bytes less. A packet of a leaf has 16 + 2 x 4 bytes in any case.
 TEST_F(PacketResultsTest, ComeAsAMessageForEachHit) {
-  const std::vector<std::string> leaves{"scene.triangles=18", "bvh.width=4", "bvh.leaf_triangles=16"};
   std::int64_t hits = 0;
-  const auto run = [&](const char* results) -> Outcome {
-    const Json out = two_rays("camera,-900,0,-900,1,0,1,0,inf", results, leaves);
+  const auto run = [&](const char* results, const char* own_rays) -> Outcome {
+    const Json out = two_rays("camera,-900,0,-900,1,0,1,0,inf", results,
+                              {"scene.triangles=18", "bvh.width=4", "bvh.leaf_triangles=16", own_rays});
     hits = out["nodes"]["by_depth"][0]["children_hit"].get<std::int64_t>() / 2;
     EXPECT_EQ(out["packets"]["issued"].get<std::int64_t>(), 1 + hits);
     return {out["engine"]["cycles"], static_cast<std::int64_t>(bytes(out, "packets"))};
   };
-  const Outcome mask = run("mask"), message = run("message");
+  const auto beyond_mask = [&](const char* own_rays) { return run("message", own_rays) - run("mask", own_rays); };
+  const std::int64_t moved = 2 * (24 - 26) + 20 * 3;
+  // They are read while the leaves are fetched.
+  EXPECT_EQ(beyond_mask("testers.own_rays=before"), (Outcome{moved, moved}));
   ASSERT_EQ(hits, 3);
-  EXPECT_EQ(message - mask, (Outcome{-2 + (20 * hits - 2) + hits, 2 * (24 - 26) + 20 * hits}));
+  // Here the leaves' packets wait for nothing but dispatch, which reads each message for a cycle.
+  EXPECT_EQ(beyond_mask("testers.own_rays=after"), (Outcome{moved + hits, moved}));
+}
+
+// A header names what to do. The root's packet leaves both resources, and those of three leaves; a message is a result,
+// and so is an answer.
+TEST_F(PacketResultsTest, AreToldApartByTheirKind) {
+  const auto sent = [&](const char* results, std::vector<std::string> sets) {
+    return two_rays("camera,-900,0,-900,1,0,1,0,inf", results, std::move(sets))["packets"]["sent"];
+  };
+  const auto leaves = [](const char* set) {
+    return std::vector<std::string>{"scene.triangles=18", "bvh.width=4", "bvh.leaf_triangles=16", set};
+  };
+  const char* ring = "topology.shape=ring";
+  EXPECT_EQ(sent("mask", leaves(ring)),
+            Json::parse(R"({"load": 0, "join": 0, "box": 2, "triangle": 6, "procedural": 0, "result": 0})"));
+  EXPECT_EQ(sent("message", leaves(ring)),
+            Json::parse(R"({"load": 0, "join": 0, "box": 2, "triangle": 6, "procedural": 0, "result": 3})"));
+  EXPECT_EQ(sent("mask", leaves("topology.shape=bus")),
+            Json::parse(R"({"load": 0, "join": 0, "box": 1, "triangle": 3, "procedural": 0, "result": 4})"));
+  EXPECT_GT(sent("mask", leaves("rays.placement=first_taker"))["load"], 0);
+  EXPECT_GT(sent("mask", {"collections.home=hash", "collections.when_full=spill"})["join"], 0);
+  const Json spheres = sent("mask", {"scene.builtin=spheres", "scene.procedural=true"});
+  EXPECT_GT(spheres["procedural"], 0);
+}
+
+TEST_F(PacketResultsTest, OfAShapeAreCountedEach) {
+  EXPECT_EQ(two_rays("camera,0,0,900,0,0,1,0,inf", "per_shape", {})["packets"]["sent"]["box"], 16);
 }
 
 }  // namespace
