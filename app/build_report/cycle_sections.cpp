@@ -124,6 +124,9 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (r.collections && ages.count() > 0) r.collections->age = report::distribution_of(ages);
   LatencyHistogram trips;
   for (const ringbus::cycle::TileResult& tile : c.tiles) trips.add(tile.round_trips);
+  PacketKindCounts sent;
+  for (const ringbus::cycle::TileResult& tile : c.tiles) sent += tile.sent;
+  if (r.packets) r.packets->sent = sent;
   if (r.packets && trips.count() > 0) r.packets->latency = report::latency_of(trips);
   if (r.collections && config.collections.when_full == WhenFull::kSpill) {
     r.collections->spill_bytes_written = r.collections->spill_bytes_read = 0;

@@ -42,6 +42,8 @@ class NetworkRules {
     direct_wires_go_to_owners();
     overrides_name_resources();
     own_rays_come_last_where_packets_go_round();
+    results_travel();
+    windows_have_queues();
     faults_have_a_place();
   }
 
@@ -161,6 +163,31 @@ class NetworkRules {
       breach_("testers.own_rays",
               "an issuer multicasts the shapes that it fetches before its packet leaves, for its own rays; expected "
               "before, or memory.fetch: resource; found after");
+  }
+
+  void results_travel() {
+    if (c.packets.results == PacketResults::kMask) return;
+    const std::string_view found = enum_name(c.packets.results);
+    if (!properties_of(c.topology.shape).has_packets)
+      breach_("packets.results", fmt::format("topology.shape: {} has no packets that bring results; expected mask, "
+                                             "found {}",
+                                             enum_name(c.topology.shape), found));
+    if (c.packets.results == PacketResults::kPerShape && c.collections.traversal == Traversal::kOrdered)
+      breach_("packets.results",
+              "traversal: ordered has one result for a whole strip, the next node; expected mask, message or "
+              "implied_order, found per_shape");
+  }
+
+  void windows_have_queues() {
+    if (properties_of(c.topology.shape).has_packets) return;
+    const auto check = [&](const std::string& key, std::int64_t window) {
+      if (window > 1)
+        breach_(key, fmt::format("topology.shape: {} has no input queues; expected 1, found {}",
+                                 enum_name(c.topology.shape), window));
+    };
+    check("testers.window", c.testers.window);
+    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i)
+      check(fmt::format("topology.overrides.{}.testers.window", i), c.topology.overrides[i].testers.window);
   }
 
   void faults_have_a_place() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/statistics/collection_counts.h"
+#include "core/statistics/packet_kind_counts.h"
 #include "core/statistics/resource_counts.h"
 #include "report/sections/distribution.h"
 #include "report/sections/latency.h"
@@ -9,6 +10,7 @@ namespace carousel::report {
 
 struct Packets {
   ResourceCounts counts;  ///< of all resources
+  std::optional<PacketKindCounts> sent{};
   std::optional<Latency> latency{};
 
   double rays_mean() const { return ratio(counts.packet_rays, counts.packets_issued); }
@@ -26,6 +28,9 @@ void describe(V& v, const Packets& r) {
   v.field("local_fraction", r.local_fraction(), "",
           "fraction of the members of a visiting packet whose records are at the resource visited");
   v.field("bubble_fraction", r.bubble_fraction(), "", "fraction of idle visits: visits of packets without a local ray");
+  v.section("sent", r.sent,
+            "packets and messages that left a resource in which dispatch has read them, by the kind that their header "
+            "names (cycle)");
   v.section("latency", r.latency, "time of a packet from the issue queue until it retires at its owner");
 }
 

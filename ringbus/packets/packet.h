@@ -45,6 +45,8 @@ struct Packet {
   std::uint16_t direction = 0;        ///< that it travels round the ring
   std::uint32_t hops_left = 0;        ///< links to cross until it is back at its owner (rings)
   std::uint32_t reserved_blocks = 0;  ///< collection blocks that its retirement may take
+  std::uint32_t answered = 0;         ///< members that have been tested (with `packets.results` other than mask)
+  std::uint32_t named = 0;            ///< ... of them, those that tests have added: rays of bundles taken apart
   bool takes_reserve = false;         ///< they are of the reserve: its retirement must not lengthen its own collection
   std::vector<PacketMember> members;
   float nearest[accel::kMaxWidth] = {};  ///< by lane: the nearest entry of any member

@@ -59,8 +59,8 @@ class PortLogic {
   /// Tells whether a packet of its own has to be sent out at all.
   bool travels(const Packet& packet) const { return !machine_.stays && machine_.topology.hops(packet) > 0; }
   /// Tells whether a packet of its own goes out first, and its owner's rays are tested when it is back
-  /// (`testers.own_rays: after`; US 9633468: "either before or after the other compute resources perform their
-  /// testing").
+  /// (`testers.own_rays: after`; US 9633468 lets an issuer test its own rays before the others have tested theirs, or
+  /// afterwards).
   bool tests_own_last(const Packet& packet) const {
     return machine_.own_rays_last && has_rays_of(packet) && travels(packet);
   }

@@ -59,6 +59,7 @@ void Offering::fill(Packet& packet) {
                                : 0;
   std::fill(std::begin(packet.nearest), std::end(packet.nearest), kInfinity);
   if (packet.kind == PacketKind::kMemberships) packet.nearest[0] = block_.entry;
+  packet.answered = packet.named = 0;
   packet.takes_reserve = !storage_.fits(packet.reserved_blocks, 0);
   packet.members.resize(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0};

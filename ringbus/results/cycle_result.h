@@ -8,6 +8,7 @@
 #include "core/numeric/latency_histogram.h"
 #include "core/numeric/log2_histogram.h"
 #include "core/statistics/cache_counts.h"
+#include "core/statistics/packet_kind_counts.h"
 #include "core/statistics/ray_bytes.h"
 #include "core/statistics/shape_buffer_counts.h"
 #include "core/types/unit_kind.h"
@@ -61,6 +62,7 @@ struct TileResult {
   BankUse ray_reads;         ///< the port of the ray store
   Cycle bank_conflicts = 0;  ///< of it, beyond those in which the reads would be over if they were even over its banks
   Utilisation dispatch;
+  PacketKindCounts sent;
   ShapeBufferCounts shapes;
   StackTraffic stack;
   SpillBytes spilled;

@@ -35,6 +35,12 @@ struct InPortOf {
 
   Cycle next() const { return wire->packets.next(); }
   const T& front() const { return wire->packets.front(); }
+  /// With a choice among the packets that have arrived (`testers.window`).
+  Cycle next_after(Cycle now) const { return wire->packets.next_after(now); }
+  std::size_t arrived(Cycle now) const { return wire->packets.arrived(now); }
+  const T& peek(std::size_t place) const { return wire->packets.peek(place); }
+  void bring_forward(std::size_t place) { wire->packets.bring_forward(place); }
+
   T take(Cycle now) {
     if (const Cycle arrival = wire->packets.next(); arrival < now) note_wait(arrival, now);
     wire->credits.send(now + latency, {});

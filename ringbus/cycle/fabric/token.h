@@ -11,8 +11,9 @@ namespace carousel::ringbus::cycle {
 struct Token {
   PacketId packet;
   std::uint16_t skip = 0;         ///< resources to pass before the next one that has work with it
-  std::uint16_t link_cycles = 1;  ///< cycles for which it occupies a link
   std::uint16_t rays = 0;         ///< members
+  std::uint32_t link_cycles = 1;  ///< cycles for which it occupies a link
+  std::uint32_t entries = 0;      ///< IDs and results that dispatch reads if it looks into it
   bool answers = false;           ///< it is an answer, on its way to the packet's owner
   bool passes = false;            ///< the resource that hears it has none of its rays
   std::uint32_t size_bytes = 0;

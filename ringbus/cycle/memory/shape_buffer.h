@@ -55,6 +55,11 @@ class ShapeBuffer {
   void take_ahead(User user, const ShapeNeed& need, Cycle now, std::uint64_t others = 0);
   /// Tells whether all that `user` took is there.
   bool is_here(User user) const { return users_[user].state == State::kHolds && users_[user].missing == 0; }
+  /// Tells whether a span is there, for whoever would take it.
+  bool has(const ShapeSpan& span) const {
+    const std::uint32_t entry = find(span);
+    return entry != kNone && entries_[entry].here;
+  }
   /// The first packet leaves the issue queue. Its user must have all; afterwards it holds it like a test.
   void leave_queue(User user);
   /// All packets leave the issue queue; they give back what they hold.

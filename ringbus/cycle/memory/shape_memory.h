@@ -86,6 +86,12 @@ class ShapeMemory {
     return {whole.address + std::min(before, whole.bytes - bytes), bytes};
   }
 
+  /// How many boxes of the node `key` the lanes select; at least one.
+  std::uint32_t boxes(accel::NodeKey key, std::uint32_t lanes) const {
+    const auto count = static_cast<std::uint32_t>(accel_.nodes[key.ref.node()].count);
+    return std::popcount(lanes) == 1 ? 1 : std::max(1u, count);
+  }
+
   /// With `bvh.leaves: strips`.
   const LeafStrips& strips() const { return strips_; }
 

@@ -24,9 +24,9 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       completed_port_(settings.link, ports_),
       travelling_(machine, id, settings.link),
       help_(settings.link, ports_),
-      packet_size_(settings.resource.collections, settings.resource.packets.carry),
+      packet_size_(settings.resource.collections, settings.resource.packets, settings.link,
+                   machine.stores.front()->layout()),
       places_(settings.cells, settings.banks),
-      link_bytes_(static_cast<Cycle>(settings.link.bytes_per_cycle)),
       ids_per_cycle_(static_cast<Cycle>(settings.resource.packets.ids_per_cycle)),
       sort_rate_(static_cast<Cycle>(settings.resource.collections.sort_ids_per_cycle)),
       question_wire_(settings.link, control_latency(settings.link)),
@@ -41,6 +41,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       partial_(settings.resource.collections.partial),
       memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
+      window_(static_cast<std::size_t>(settings.testers.window)),
+      passed_over_(ports_.in.size()),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       phases_(contexts_.size()),
       visits_(memory, shapes_, tester_, contexts_.size(),
@@ -70,7 +72,7 @@ Cycle Tile::next() const {
 Cycle Tile::next_arrival() const {
   Cycle first = kNever;
   for (const InPort& in : ports_.in)
-    if (const Cycle at = in.next(); at > now_ && at < first) first = at;
+    if (const Cycle at = window_ > 1 ? in.next_after(now_) : in.next(); at > now_ && at < first) first = at;
   return first;
 }
 
@@ -247,6 +249,7 @@ TileResult Tile::result() const {
   TileResult t;
   ledger_.fill_in(t);
   t.dispatch.busy = dispatch_busy_;
+  t.sent = sent_;
   t.shapes = shapes_.counts();
   t.spilled = spill_memory_.moved();
   t.transformed_rays = transforms_.bytes();

@@ -132,6 +132,13 @@ class Tile final : public ResourceAgent {
   bool handle(Cycle now);
   bool handle_arrival(std::size_t d, Cycle now);
   bool pass_through_dispatch(std::size_t d, Cycle now);
+
+  // The choice among packets that have arrived (tile_window.cpp).
+  std::size_t seen(std::size_t d, Cycle now) const;
+  bool choose_to_cut(std::size_t d, Cycle now);
+  bool choose_to_handle(std::size_t d, Cycle now);
+  bool can_handle(std::size_t d, const Token& token);
+  bool waits_for_shapes(const Token& token) const;
   bool handle_issue(Cycle now);
   bool fill_issue(Cycle now);
   bool nothing_else_to_do(Cycle now) const;
@@ -179,11 +186,19 @@ class Tile final : public ResourceAgent {
   void end_test(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
+  void count_sent(const Packet& packet, const PacketLoad& load, bool answers);
   bool take_answer(std::size_t d, Cycle now);
   void test_own_rays(Context& context, PacketId id, Cycle now);
   void retire_at_owner(PacketId id);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
+  std::size_t read_on_visit(const Packet& packet) const {
+    return packet_size_.read_on_visit(packet, memory_, resource_.is_treelet(packet.key));
+  }
+  std::size_t read_at_owner(const Packet& packet) const {
+    return packet_size_.read_at_owner(packet, memory_, resource_.is_treelet(packet.key), broadcasts_);
+  }
+  void note_answered(Packet& packet, std::size_t before) const;
   Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
   void occupy_dispatch(Cycle now, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip = true);
   void hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
@@ -211,7 +226,7 @@ class Tile final : public ResourceAgent {
   ShadeHelp help_;
   PacketSize packet_size_;
   PlaceCounter places_;
-  Cycle link_bytes_, ids_per_cycle_, sort_rate_;
+  Cycle ids_per_cycle_, sort_rate_;
   SideWire question_wire_;
   std::size_t issue_places_;
   bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;
@@ -230,6 +245,8 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_free_ = 0;                                           // later than dispatch_ends_ when it pauses
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
+  std::size_t window_;                    // packets at the front of an input queue among which it chooses
+  std::vector<std::size_t> passed_over_;  // by port: how often the first one has been
   std::deque<Issue> issue_;
   Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::size_t issued_ = 0;
@@ -250,6 +267,7 @@ class Tile final : public ResourceAgent {
   std::vector<std::uint32_t> done_slots_;
   std::vector<std::uint32_t> answers_due_;  // with a bus: of each packet of its own
   RoundTrips trips_;
+  PacketKindCounts sent_;
   std::uint64_t passed_ = 0, passed_rays_ = 0;  // packets without rays here, and their members
   TileLedger ledger_;
   IdCensus census_;

@@ -21,9 +21,12 @@ ShapeNeed Tile::shape_data(const Packet& packet, bool transform) const {
 void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   Packet& packet = machine_.packet(id);
   const bool answers = broadcasts_ && packet.owner != id_;
-  const TestOutcome outcome = resource_.test(answers ? begin_answer(machine_, id_, id) : packet);
+  Packet& tested = answers ? begin_answer(machine_, id_, id) : packet;
+  const std::size_t members = tested.members.size();
+  const TestOutcome outcome = resource_.test(tested);
+  if (packet_size_.results_grow()) note_answered(tested, members);
   if (recording_.ray != nullptr) [[unlikely]]
-    note_tested(answers ? machine_.answer(id_, id) : packet, id, at);
+    note_tested(tested, id, at);
   context.since = now_;
   context.packet = id;
   context.counts = outcome.counts;
@@ -42,6 +45,19 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   if (context.subtree) visits_.prepare(user_of(context), walk_.ways());
   if (!starts_later_) return compute(context, at);
   enter(context, ContextPhase::kStarting, at);
+}
+
+/// A visit has tested the rays that live here. `before`: the packet's members then; behind them stand rays of bundles
+/// that were taken apart.
+void Tile::note_answered(Packet& packet, std::size_t before) const {
+  const RayIdLayout& layout = resource_.rays().layout();
+  const auto added = static_cast<std::uint32_t>(packet.members.size() - before);
+  const auto end = packet.members.begin() + static_cast<std::ptrdiff_t>(before);
+  packet.answered +=
+      added + static_cast<std::uint32_t>(std::count_if(packet.members.begin(), end, [&](const PacketMember& member) {
+        return layout.owner(member.ray) == id_;
+      }));
+  packet.named += added;
 }
 
 void Tile::start_tests(Cycle now) {
@@ -109,7 +125,7 @@ void Tile::end_test(Context& context, Cycle now) {
   in_test_.end(context.tested);
   take_completed(context.completed, context.freed_slots);
   if (logic_.leaves_after_test(packet)) return depart(id, now, true);
-  occupy_dispatch(now, packet.members.size(), SliceKind::kRetire, id);
+  occupy_dispatch(now, read_at_owner(packet), SliceKind::kRetire, id);
   retire_at_owner(id);
 }
 

@@ -12,15 +12,42 @@ void Tile::depart(PacketId id, Cycle ready, bool reserved) {
   const bool test = packet.kind == PacketKind::kTest, treelet = resource_.is_treelet(packet.key);
   const bool answers = broadcasts_ && test && packet.owner != id_;
   const std::size_t rays = answers ? rays_in_answer(machine_, id_, id) : packet.members.size();
-  Token token{id, 0, 1, static_cast<std::uint16_t>(rays)};
+  Token token{id, 0, static_cast<std::uint16_t>(rays)};
   token.answers = answers;
-  token.size_bytes = answers ? packet_size_.answer_bytes(packet, static_cast<std::uint32_t>(rays), treelet)
-                             : packet_size_.bytes(packet, memory_, treelet);
-  token.link_cycles = static_cast<std::uint16_t>(ceil_div(token.size_bytes, link_bytes_));
+  PacketLoad load;
+  if (answers) {
+    const auto n = static_cast<std::uint32_t>(rays);
+    const Packet& answer = machine_.answer(id_, id);
+    load = packet_size_.answer(packet, answer, n, memory_, treelet);
+    token.entries = packet_size_.read_of_answer(packet, answer, n, memory_, treelet);
+  } else {
+    load = packet_size_.load(packet, memory_, treelet);
+    token.entries = packet_size_.read_on_visit(packet, memory_, treelet);
+  }
+  token.size_bytes = load.bytes;
+  token.link_cycles = load.cycles;
+  count_sent(packet, load, answers);
   if (broadcasts_ && test && !answers)
     answers_due_[id.value - machine_.first_packet(id_).value] = machine_.topology.other_owners(packet);
   token.skip = machine_.topology.skip(packet, id_);
   out.push(token, ready, !visit_all_ && token.skip > 0);
+}
+
+/// By the kind that the header names.
+void Tile::count_sent(const Packet& packet, const PacketLoad& load, bool answers) {
+  sent_.result += load.messages;
+  std::uint64_t* kind = &sent_.box;
+  if (answers)
+    kind = &sent_.result;
+  else if (packet.kind == PacketKind::kRays)
+    kind = &sent_.load;
+  else if (packet.kind == PacketKind::kMemberships)
+    kind = &sent_.join;
+  else if (packet.key.ref.is_procedural() && !resource_.is_treelet(packet.key))
+    kind = &sent_.procedural;
+  else if (!packet.key.ref.is_inner() && !resource_.is_treelet(packet.key))
+    kind = &sent_.triangle;
+  *kind += load.packets;
 }
 
 /// One of the resources that have heard a packet of this one has answered. With the last answer the packet is back.
@@ -31,7 +58,7 @@ bool Tile::take_answer(std::size_t d, Cycle now) {
   Context* context = own_last ? free_context() : nullptr;
   if (own_last && context == nullptr) return false;
   const Token token = ports_.in[d].take(now);
-  occupy_dispatch(now, token.rays, SliceKind::kRetire, id);
+  occupy_dispatch(now, token.entries, SliceKind::kRetire, id);
   if (--due > 0) return true;
   if (logic_.only_forwards()) {
     discard_at_owner(id);
@@ -45,9 +72,9 @@ bool Tile::take_answer(std::size_t d, Cycle now) {
 /// The owner's rays of a packet that is back from the others: dispatch looks for them among all its IDs, and the packet
 /// waits in a context for shapes as another's does. It retires when they have been tested.
 void Tile::test_own_rays(Context& context, PacketId id, Cycle now) {
-  const std::size_t rays = machine_.packet(id).members.size();
-  trace_.note(now, StepKind::kTake, id.value, rays);
-  occupy_dispatch(now, rays, SliceKind::kVisit, id);
+  const Packet& packet = machine_.packet(id);
+  trace_.note(now, StepKind::kTake, id.value, packet.members.size());
+  occupy_dispatch(now, read_on_visit(packet), SliceKind::kVisit, id);
   begin_test(context, id, dispatch_free_, false);
 }
 
@@ -89,7 +116,8 @@ bool Tile::cut_through(Cycle now, bool at_once) {
   for (std::size_t d = 0; d < ports_.in.size(); ++d) {
     InPort& in = ports_.in[d];
     OutPort& out = ports_.out[d];
-    while (in.next() <= now && in.front().skip > 0 && (at_once ? out.open(now, 1) : out.has_place())) {
+    while (in.next() <= now && (at_once ? out.open(now, 1) : out.has_place()) &&
+           (window_ > 1 ? choose_to_cut(d, now) : in.front().skip > 0)) {
       Token token = in.take(now);
       --token.skip;
       if (at_once)
@@ -106,7 +134,7 @@ bool Tile::handle(Cycle now) {
   if (dispatch_free_ > now) return false;
   for (std::size_t i = 0; i < ports_.in.size(); ++i) {
     const std::size_t d = next_in_ + i < ports_.in.size() ? next_in_ + i : next_in_ + i - ports_.in.size();
-    if (ports_.in[d].next() > now || !handle_arrival(d, now)) continue;
+    if (ports_.in[d].next() > now || (window_ > 1 && !choose_to_handle(d, now)) || !handle_arrival(d, now)) continue;
     next_in_ = d + 1 == ports_.in.size() ? 0 : d + 1;
     return true;
   }
@@ -119,7 +147,7 @@ bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
   --token.skip;
   ++passed_;
   passed_rays_ += token.rays;
-  occupy_dispatch(now, token.rays, SliceKind::kPass, token.packet);
+  occupy_dispatch(now, token.entries, SliceKind::kPass, token.packet);
   ports_.out[d].push(token, dispatch_free_, false);
   return true;
 }
@@ -133,7 +161,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
     const Token token = in.take(now);
     ++passed_;
     passed_rays_ += token.rays;
-    occupy_dispatch(now, token.rays, SliceKind::kPass, token.packet, false);
+    occupy_dispatch(now, token.entries, SliceKind::kPass, token.packet, false);
     return true;
   }
   const PacketId id = in.front().packet;
@@ -154,7 +182,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
       return true;
     }
     in.take(now);
-    occupy_dispatch(now, retires ? packet.members.size() : 0, SliceKind::kRetire, id);
+    occupy_dispatch(now, retires ? read_at_owner(packet) : 0, SliceKind::kRetire, id);
     retires ? retire_at_owner(id) : discard_at_owner(id);
     return true;
   }
@@ -177,7 +205,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
   if (fate == PacketFate::kTest && context == nullptr) return false;
   in.take(now);
   trace_.note(now, StepKind::kTake, id.value, packet.members.size());
-  occupy_dispatch(now, packet.members.size(), fate == PacketFate::kTest ? SliceKind::kVisit : SliceKind::kPass, id);
+  occupy_dispatch(now, read_on_visit(packet), fate == PacketFate::kTest ? SliceKind::kVisit : SliceKind::kPass, id);
   if (fate == PacketFate::kTest) {
     out.reserve();
     begin_test(*context, id, dispatch_free_, false);

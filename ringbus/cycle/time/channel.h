@@ -80,6 +80,20 @@ class Channel {
     }
     return at - head_;
   }
+  /// The arrival of the first thing that comes after `now`; kNever while none is known.
+  Cycle next_after(Cycle now) const {
+    const std::size_t known = size();
+    for (std::size_t place = 0; place < known; ++place)
+      if (item(place).arrival > now) return item(place).arrival;
+    return kNever;
+  }
+  /// The thing that stands `place` behind the first; only if there is one.
+  const T& peek(std::size_t place) const { return item(place).thing; }
+  /// It has arrived, and comes to stand before the others.
+  void bring_forward(std::size_t place) {
+    for (; place > 0; --place) std::swap(item(place), item(place - 1));
+    arrival_ = kNever;
+  }
   /// In all, as the sender and the receiver have counted; while no agent runs. `waiting` are those that have been sent
   /// and not taken.
   struct Count {
@@ -121,6 +135,14 @@ class Channel {
       emptied_ = false;
     }
     return head_block_->items[head_ % kBlock];
+  }
+
+  /// The sender does not touch what it has published.
+  Item& item(std::size_t place) const {
+    first();  // the head block is the one that holds it
+    Block* block = head_block_;
+    for (std::size_t at = head_ / kBlock; at != (head_ + place) / kBlock; ++at) block = block->next;
+    return block->items[(head_ + place) % kBlock];
   }
 
   // Used by the receiver.

@@ -230,7 +230,16 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:18: packets.carry: the native engine has no packets that carry data; expected "
                   "reference, found data"},
         BadConfig{"Results", SCENE "packets: {results: message}\n",
-                  "test.yaml:2:20: packets.results: message is not built yet; expected mask"},
+                  "test.yaml:2:20: packets.results: the native engine has no wire on which results could travel "
+                  "otherwise; expected mask, found message"},
+        BadConfig{"ResultsWithoutPackets",
+                  SCENE "engine: {kind: cycle}\npackets: {results: message}\ntopology: {shape: independent}\n",
+                  "test.yaml:3:20: packets.results: topology.shape: independent has no packets that bring results; "
+                  "expected mask, found message"},
+        BadConfig{"ResultsOfAnOrderedStrip",
+                  SCENE "engine: {kind: cycle}\npackets: {results: per_shape}\ncollections: {traversal: ordered}\n",
+                  "test.yaml:3:20: packets.results: traversal: ordered has one result for a whole strip, the next "
+                  "node; expected mask, message or implied_order, found per_shape"},
         BadConfig{"AnyHit", SCENE "testers: {any_hit: shader}\n",
                   "test.yaml:2:20: testers.any_hit: the native engine has no any-hit calls by shader workers; expected "
                   "inline, found shader"},
@@ -243,10 +252,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"LanesOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {simd: {lanes: 0}}}]}\n",
                   "test.yaml:2:62: topology.overrides.0.testers.simd.lanes: expected an integer from 1 to 64 (lanes), "
                   "found 0"},
-        BadConfig{
-            "WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
-            "test.yaml:2:56: topology.overrides.0.testers.window: a choice among arrived packets is not built yet; "
-            "expected 1, found 4"},
+        BadConfig{"WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
+                  "test.yaml:2:56: topology.overrides.0.testers.window: the native engine has no choice among packets "
+                  "that have "
+                  "arrived; expected 1, found 4"},
+        BadConfig{"WindowWithoutQueues",
+                  SCENE "engine: {kind: cycle}\ntesters: {window: 4}\ntopology: {shape: independent}\n",
+                  "test.yaml:3:19: testers.window: topology.shape: independent has no input queues; expected 1, found "
+                  "4"},
         BadConfig{"OwnRaysOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {own_rays: after}}]}\n",
                   "test.yaml:2:58: topology.overrides.0.testers.own_rays: all resources test their own rays at the "
                   "same time; expected before, found after"},

@@ -95,6 +95,7 @@ std::vector<Factor> traversal_and_units() {
       {"testers.simd.map", all<TestersConfig::Simd::Map>(), {"engine.kind=cycle"}},
       {"testers.contexts", {"1", "3"}, {"engine.kind=cycle"}},
       {"testers.own_rays", all<TestersConfig::OwnRays>()},
+      {"testers.window", {"1", "3"}, {"engine.kind=cycle"}},
       {"testers.any_hit", all<TestersConfig::AnyHit>(), {"engine.kind=cycle", "test.non_opaque=true"}},
       {"cull_planes.count", {"0", "1", "4", "8"}},
       {"cull_planes.nodes", all<Config::Nodes>(), {"cull_planes.count!=0"}},

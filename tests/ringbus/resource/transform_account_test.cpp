@@ -92,12 +92,12 @@ TEST(InstanceData, TravelsWithThePacketsThatCarryShapes) {
   c.packets.carry = PacketCarry::kData;
   const accel::Accel accel = build_at(placed_quads(), c.accuracy);
   const cycle::ShapeMemory memory(accel, c.accuracy);
-  const cycle::PacketSize size(c.collections, c.packets.carry);
+  const cycle::PacketSize size(c.collections, c.packets, c.topology.link, RayIdLayout(1));
   Packet packet;
   packet.key = {0, accel.instances[0].root};
-  const std::uint32_t unmoved = size.bytes(packet, memory, false);
+  const std::uint32_t unmoved = size.load(packet, memory, false).bytes;
   packet.key = {2, accel.instances[2].root};
-  EXPECT_EQ(size.bytes(packet, memory, false), unmoved + 48);
+  EXPECT_EQ(size.load(packet, memory, false).bytes, unmoved + 48);
   EXPECT_EQ(memory.transform(kNoInstance).bytes, 0u);
   EXPECT_GE(memory.transform(1).address,
             accel.nodes.size() * sizeof(accel::Node) + accel.blocks.size() * sizeof(accel::TriangleBlock));

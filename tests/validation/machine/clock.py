@@ -41,8 +41,14 @@ class Channel:
     def front(self):
         return self.items[0][1]
 
-    def take(self):
-        return self.items.popleft()[1]
+    def take(self, place=0):
+        thing = self.items[place][1]
+        del self.items[place]
+        return thing
+
+    def arrived(self, now):
+        """The things that have arrived and have not been taken."""
+        return [thing for at, thing in self.items if at <= now]
 
 
 def ceil_div(n, by):

@@ -1,7 +1,7 @@
 """Links, and who is linked to whom ("Links")."""
 from collections import deque
 
-from .clock import Channel, ceil_div, way_back, way_there
+from .clock import Channel, way_back, way_there
 
 
 class Packet:
@@ -17,6 +17,7 @@ class Packet:
         self.next = []            # ordered traversal: one a ray
         self.owners = set()
         self.blocks = 0           # of collection storage that its retirement may take
+        self.answered = 0         # rays that have been tested; on a bus, by its owner
         self.due = 0              # on a bus: answers that have not come
         self.records = None       # of new rays that look for slots: (ray, address)
         self.left = 0             # then: resources after the next one
@@ -25,9 +26,9 @@ class Packet:
 class Token:
     """A packet on a link, with the number of resources to pass before one that has work with it."""
 
-    def __init__(self, packet, skip, cycles, rays=0, answers=False, passes=False):
+    def __init__(self, packet, skip, cycles, entries=0, answers=False, passes=False):
         self.packet, self.skip, self.cycles = packet, skip, cycles
-        self.rays = rays        # on a bus: that it has for those who hear it
+        self.entries = entries  # that dispatch reads where it is an answer, or not meant for the resource
         self.answers = answers  # on a bus, an answer on its way to the packet's owner
         self.passes = passes    # on a bus, heard by a resource that has none of its rays
 
@@ -42,9 +43,17 @@ class InPort:
     def front(self):
         return self.packets.front()
 
-    def take(self, now):
+    def take(self, now, place=0):
         self.credits.send(now + self.latency, None)
-        return self.packets.take()
+        return self.packets.take(place)
+
+    def window(self, now, length):
+        return self.packets.arrived(now)[:length]
+
+    def bring_forward(self, place):
+        item = self.packets.items[place]
+        del self.packets.items[place]
+        self.packets.items.appendleft(item)
 
 
 class OutPort:
@@ -118,31 +127,6 @@ class Topology:
         return skip
 
 
-class PacketSize:
-    def __init__(self, config, nodes):
-        self.nodes = nodes
-        self.ordered = config["collections"]["traversal"] == "ordered"
-        self.entries = config["collections"]["policy"] == "nearest"
-        self.data = config["packets"]["carry"] == "data"
-        self.width = config["topology"]["link"]["bytes_per_cycle"]
-
-    def cycles(self, packet, treelet, answered=None):
-        """`answered`: rays of an answer on a bus, which brings no shapes."""
-        n = len(packet.rays) if answered is None else answered
-        size = 16 + 4 * n
-        if packet.records is not None:
-            return ceil_div(size + sum(64 if address is None else 66 for _, address in packet.records), self.width)
-        if not packet.memberships:
-            node = self.nodes[packet.node]
-            if self.ordered:
-                size += 12 * n
-            elif node.inner and not treelet:
-                size += n + (32 if self.entries else 0)
-            if self.data and not treelet and answered is None:
-                size += node.shapes_of(packet.lane)[1] + node.transform[1]
-        return ceil_div(size, self.width)
-
-
 def connect(clock, topology, link, places):
     """The ports of each resource, by direction: [(in ports, out ports)]."""
     ends = [([None] * topology.directions, [None] * topology.directions) for _ in range(topology.resources)]
@@ -196,7 +180,7 @@ class Bus:
             packet = token.packet
             for r in listeners:
                 passes = not token.answers and not packet.memberships and packet.records is None and r not in packet.owners
-                self.out_ports[r].push(Token(packet, 0, token.cycles, token.rays, token.answers, passes), now, False)
+                self.out_ports[r].push(Token(packet, 0, token.cycles, token.entries, token.answers, passes), now, False)
                 assert self.out_ports[r].send(now)
             self.free_at, self.turn = now + token.cycles, here + 1
             self.clock.wake(self.free_at)

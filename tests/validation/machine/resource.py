@@ -64,7 +64,7 @@ class Resource:
         packet.blocks = 0 if packet.memberships else self.traversal.blocks_needed(node, len(rays))
         packet.rays, packet.masks, packet.next = list(rays), [[] for _ in rays], [None for _ in rays]
         packet.nearest = [float("inf")] * 8
-        packet.entry = entry
+        packet.entry, packet.answered = entry, 0
         packet.owners = {packet.owner} if self.local else {ray.owner for ray in rays}
         self.storage.promised += packet.blocks
         self.in_flight += 1

@@ -103,4 +103,8 @@ def draw(seed, index):
         config["testers"]["simd"].update(lanes=pick([2, 5, 8]), map="rays")
     if config["topology"]["shape"] != "independent" and memory["fetch"] != "multicast":
         config["testers"]["own_rays"] = pick(["before", "after"])
+    if config["topology"]["shape"] != "independent":
+        config["testers"]["window"] = pick([1, 2, 3, 16])
+        config["packets"]["results"] = pick(["mask", "message", "implied_order",
+                                             "mask" if config["collections"]["traversal"] == "ordered" else "per_shape"])
     return config

@@ -75,7 +75,7 @@ class Testers:
                   TRANSFORM: accuracy["transform"] == "two_step_double"}
         self.banks = {k: Bank(t[k]["units"], t[k]["interval_cycles"] * (DOUBLE_PASSES if longer.get(k) else 1),
                               t[k]["latency_cycles"]) for k in KINDS}
-        self.simd = t["simd"]
+        self.simd, self.window = t["simd"], t["window"]
         self.reads_per_cycle = config["rays"]["reads_per_cycle"]
         self.store = Bank(max(1, self.reads_per_cycle), 1, 1)
         self.ray_banks = config["rays"]["banks"]

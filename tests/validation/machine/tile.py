@@ -2,12 +2,14 @@
 from collections import deque
 
 from .clock import Channel, SideWire, ceil_div
-from .network import Packet, PacketSize, Token
+from .network import Packet, Token
+from .packet_size import PacketSize
 from .resource import Resource
 from .shape_buffer import ShapeBuffer
 from .testers import Testers
 from .tile_issue import Issues
 from .tile_tests import STARTING, Context, Tests
+from .tile_window import Window
 from .travel import Travel
 from .walk import Visits
 
@@ -28,7 +30,7 @@ class Control:
         self.completed.send(self.free_at + self.latency, rays)
 
 
-class Tile(Issues, Tests, Travel):
+class Tile(Issues, Tests, Travel, Window):
     def __init__(self, number, machine, ports, shapes, control):
         config = machine.config
         self.number, self.machine, self.clock, self.trace = number, machine, machine.clock, machine.trace
@@ -64,6 +66,7 @@ class Tile(Issues, Tests, Travel):
         self.issue = deque()
         self.admission = deque()
         self.dispatch_free = self.next_in = 0
+        self.window, self.passed_over = self.testers.window, [0 for _ in self.in_ports]
         self.done, self.late = [], []
 
     # ---- a cycle
@@ -142,8 +145,12 @@ class Tile(Issues, Tests, Travel):
         if self.topology.visit_all or self.topology.bus:
             return moved
         for port, out in zip(self.in_ports, self.out_ports):
-            while port.ready(now) and port.front().skip > 0 and out.has_place():
-                token = port.take(now)
+            while out.has_place():
+                seen = port.window(now, self.window)
+                place = next((i for i, token in enumerate(seen) if token.skip > 0), None)
+                if place is None:
+                    break
+                token = port.take(now, place)
                 token.skip -= 1
                 out.push(token, now, token.skip > 0)
                 moved = True
@@ -155,7 +162,7 @@ class Tile(Issues, Tests, Travel):
         count = len(self.in_ports)
         for i in range(count):
             d = (self.next_in + i) % count
-            if self.in_ports[d].ready(now) and self.handle_arrival(d, now):
+            if self.choose(d, now) and self.handle_arrival(d, now):
                 self.next_in = (d + 1) % count
                 return True
         return self.send_new_rays(now) or self.handle_issue(now)
@@ -169,19 +176,19 @@ class Tile(Issues, Tests, Travel):
                 return False
             port.take(now)
             token.skip -= 1
-            self.dispatch(now, len(packet.rays))
+            self.dispatch(now, token.entries)
             out.push(token, self.dispatch_free, False)
             return True
         if token.passes:
             port.take(now)
-            self.dispatch(now, token.rays)
+            self.dispatch(now, token.entries)
             return True
         if token.answers:
             own = packet.due == 1 and self.tests_own_last(packet)
             if own and self.free_context() is None:
                 return False
             port.take(now)
-            self.dispatch(now, token.rays)
+            self.dispatch(now, token.entries)
             packet.due -= 1
             if packet.due == 0:
                 self.test_own(packet, now) if own else self.retire(packet, now)
@@ -196,7 +203,7 @@ class Tile(Issues, Tests, Travel):
             return True
         if packet.owner == self.number:
             port.take(now)
-            self.dispatch(now, len(packet.rays))
+            self.dispatch(now, self.read_at_owner(packet))
             self.retire(packet, now)
             return True
         if not out.has_place():
@@ -207,7 +214,7 @@ class Tile(Issues, Tests, Travel):
             return False
         port.take(now)
         self.trace.note(now, self.number, "take", packet.number, len(packet.rays))
-        self.dispatch(now, len(packet.rays))
+        self.dispatch(now, self.read_on_visit(packet))
         if tested:
             out.reserved += 1
             self.begin_test(context, packet, self.dispatch_free, False)
@@ -225,26 +232,37 @@ class Tile(Issues, Tests, Travel):
         if self.topology.bus:
             return self.say(packet, ready)
         skip = self.topology.skip(packet, self.number)
-        treelet = packet.records is None and self.resource.traversal.is_treelet(packet.node)
-        cycles = self.size.cycles(packet, treelet)
-        self.out_ports[packet.direction].push(Token(packet, skip, cycles), ready,
+        cycles = self.size.cycles(packet, self.is_treelet(packet))
+        self.out_ports[packet.direction].push(Token(packet, skip, cycles, self.read_on_visit(packet)), ready,
                                               not self.topology.visit_all and skip > 0)
 
     def say(self, packet, ready):
         """To all who hear it, or to the packet's owner the answer for the rays that live here."""
         tests = not packet.memberships and packet.records is None
-        treelet = packet.records is None and self.resource.traversal.is_treelet(packet.node)
-        answers = tests and packet.owner != self.number
-        rays = len(self.resource.local_members(packet)) if answers else len(packet.rays)
-        if tests and not answers:
-            packet.due = len(packet.owners - {self.number})
-        cycles = self.size.cycles(packet, treelet, rays if answers else None)
-        self.out_ports[0].push(Token(packet, 0, cycles, rays, answers), ready, False)
+        treelet = self.is_treelet(packet)
+        if tests and packet.owner != self.number:
+            members = self.resource.local_members(packet)
+            cycles = self.size.answer_cycles(packet, members, treelet)
+            token = Token(packet, 0, cycles, self.size.of_answer(packet, members, treelet), True)
+        else:
+            if tests:
+                packet.due = len(packet.owners - {self.number})
+            token = Token(packet, 0, self.size.cycles(packet, treelet), self.read_on_visit(packet))
+        self.out_ports[0].push(token, ready, False)
+
+    def is_treelet(self, packet):
+        return packet.records is None and self.resource.traversal.is_treelet(packet.node)
+
+    def read_on_visit(self, packet):
+        return self.size.on_visit(packet, self.is_treelet(packet))
+
+    def read_at_owner(self, packet):
+        return self.size.at_owner(packet, self.is_treelet(packet), self.topology.bus)
 
     def test_own(self, packet, now):
         """The packet is back, and the rays that its owner has itself come last."""
         self.trace.note(now, self.number, "take", packet.number, len(packet.rays))
-        self.dispatch(now, len(packet.rays))
+        self.dispatch(now, self.read_on_visit(packet))
         self.begin_test(self.free_context(), packet, self.dispatch_free, False)
 
     def retire(self, packet, now):

@@ -25,6 +25,8 @@ class Tests:
         context.packet, context.slots, context.has_data = packet, [packet.rays[i].slot for i in members], has_data
         context.rays = [packet.rays[i] for i in members]
         context.tests = self.resource.test(packet, members)
+        if not self.topology.bus or packet.owner == self.number:
+            packet.answered += len(members)
         context.completed, self.resource.completed[:] = list(self.resource.completed), []
         if not self.starts_later:
             return self.compute(context, at)
@@ -71,7 +73,7 @@ class Tests:
             context.phase = FREE
             self.hand_over(context.completed)
             if packet.owner == self.number and (self.own_last or not self.travels(packet)):
-                self.dispatch(now, len(packet.rays))
+                self.dispatch(now, self.read_at_owner(packet))
                 self.retire(packet, now)
             else:
                 self.out_ports[packet.direction].reserved -= 1

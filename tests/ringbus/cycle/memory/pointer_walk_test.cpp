@@ -201,12 +201,12 @@ TEST(SingleShape, IsChargedForItself) {
     EXPECT_EQ(memory.shapes(leaf, 1u << lane), (ShapeSpan{memory.strip(leaf).address + 40u * lane, 40}));
   Config c;
   c.packets.carry = PacketCarry::kData;
-  const PacketSize size(c.collections, c.packets.carry);
+  const PacketSize size(c.collections, c.packets, c.topology.link, RayIdLayout(1));
   Packet packet;
   packet.key = leaf;
-  const std::uint32_t whole = size.bytes(packet, memory, false);
+  const std::uint32_t whole = size.load(packet, memory, false).bytes;
   packet.lanes = 1;
-  EXPECT_EQ(size.bytes(packet, memory, false), whole - 320 + 40);
+  EXPECT_EQ(size.load(packet, memory, false).bytes, whole - 320 + 40);
 }
 
 TEST(SingleShape, BringsItsPlanesAndTheLeavesItsNodeHolds) {
