@@ -17,7 +17,7 @@ namespace {
 /// Standard errors to either side that hold 95 %, of Student's distribution with as many degrees of freedom as there
 /// are neighbours to compare.
 constexpr double kErrors = 2.13;
-/// The part of the time that warm caches spare that is in doubt: waits for different lines overlap.
+/// The part of the time that warm caches spare that is in doubt: waits overlap, more or less.
 constexpr double kUnsure = 0.5;
 
 Estimate around(double value, double error) {
@@ -94,15 +94,26 @@ class Sample {
   }
 
  private:
+  /// The part of the run's tests that had been done; without tests, of its rays that had been completed.
+  double tested(const cycle::ProgressSample& sample) const {
+    double part = 0;
+    int classes = 0;
+    for (const std::string_view name : {"box_tests", "triangle_tests"}) {
+      const auto i = class_of(name);
+      if (!i || c_.uses[*i].busy == 0) continue;
+      part += static_cast<double>(sample.busy[*i]) / static_cast<double>(c_.uses[*i].busy);
+      ++classes;
+    }
+    return classes > 0 ? part / classes : static_cast<double>(sample.completed) / rays_;
+  }
+
   /// The time of a ray between fill and drain.
   double cycles_a_ray() const {
-    const double time = at_count(c_, end_, cycle_of) - at_count(c_, begin_, cycle_of);
     if (too_small_) return static_cast<double>(c_.cycles) / rays_;
-    const std::size_t i = busiest();
-    const auto busy = [i](const cycle::ProgressSample& s) { return static_cast<double>(s.busy[i]); };
-    const double work = at_count(c_, end_, busy) - at_count(c_, begin_, busy);
-    return work > 0 ? time * static_cast<double>(c_.uses[i].busy) / work / rays_
-                    : time / static_cast<double>(end_ - begin_);
+    const auto part = [this](const cycle::ProgressSample& s) { return tested(s); };
+    const double time = at_count(c_, end_, cycle_of) - at_count(c_, begin_, cycle_of);
+    const double work = at_count(c_, end_, part) - at_count(c_, begin_, part);
+    return time / rays_ / work;
   }
 
   /// The time of a ray that the rest of the frame spares, as the testers wait less often for lines that no ray has
@@ -113,7 +124,13 @@ class Sample {
     for (const cycle::TileResult& tile : c_.tiles)
       wait += static_cast<double>(tile.states[static_cast<std::size_t>(cycle::TileState::kMemory)]);
     wait /= static_cast<double>(c_.tiles.size());
-    const double cold = wait * first_ / (first_ + again_) / rays_;
+    const double memory = static_cast<double>(config_.memory.dram_latency_cycles);
+    double latencies = (first_ + again_) * memory;
+    for (const CacheCounts& cache : c_.caches)
+      latencies += static_cast<double>(cache.requests) * static_cast<double>(config_.memory.l2_latency_cycles);
+    if (c_.own_caches)
+      latencies += static_cast<double>(c_.own_caches->requests) * static_cast<double>(config_.memory.l1_latency_cycles);
+    const double cold = latencies > 0 ? wait * first_ * memory / latencies / rays_ : 0;
     const double fewer = 1 - std::min(1.0, (grown(power_) / first_ - 1) / std::max(1e-9, times_ - 1));
     return std::min(cold * fewer, cycles_a_ray() / 2);
   }
@@ -137,10 +154,14 @@ class Sample {
     return static_cast<double>(use.busy) / use.parts / rays_;
   }
 
-  /// Relative error of the time a ray.
+  /// Relative error of the time a ray, whose tests are nearly those of the frame: that of the time a test.
   double error_of_time() const {
-    const std::vector<double> means = block_means(c_, begin_, end_, cycle_of);
-    return unseen_ * kErrors * over(standard_error(steps(means)), means.back() - means.front());
+    const auto part = [this](const cycle::ProgressSample& s) { return tested(s); };
+    std::vector<double> time = block_means(c_, begin_, end_, cycle_of);
+    const std::vector<double> work = block_means(c_, begin_, end_, part);
+    const double all = time.back() - time.front(), each = over(all, work.back() - work.front());
+    for (std::size_t i = 0; i < time.size(); ++i) time[i] -= each * work[i];
+    return unseen_ * kErrors * over(standard_error(steps(time)), all);
   }
 
   /// Relative error of the rays a path: a ratio of sums over places.
