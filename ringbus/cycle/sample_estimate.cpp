@@ -17,7 +17,7 @@ namespace {
 /// Standard errors to either side that hold 95 %, of Student's distribution with as many degrees of freedom as there
 /// are neighbours to compare.
 constexpr double kErrors = 2.13;
-/// The part of the time that warm caches spare that is in doubt: waits overlap, more or less.
+/// The part of the time that warm caches spare that is in doubt.
 constexpr double kUnsure = 0.5;
 
 Estimate around(double value, double error) {
@@ -28,7 +28,7 @@ double over(double a, double b) {
   return b > 0 ? a / b : 0;
 }
 
-/// Estimates of a / b, with the relative errors of both, as if they were independent.
+/// a / b, with the relative errors of both, as if they were independent.
 Estimate quotient(double value, double relative_a, double relative_b) {
   return around(value, value * std::hypot(relative_a, relative_b));
 }
@@ -77,6 +77,7 @@ class Sample {
     if (too_small_) out.cycles_per_ray.low = std::min(out.cycles_per_ray.low, least_cycles_a_ray() * (1 - time_error));
     out.cycles = quotient(cycles, time_error + unsure / each, rays_error);
     if (too_small_) out.cycles.low = out.cycles_per_ray.low * out.rays.low;
+    for (Estimate* e : {&out.cycles_per_ray, &out.cycles}) e->low = std::max(0.0, e->low - e->value * imbalance());
     const Estimate& e = out.cycles_per_ray;
     out.rays_per_kilocycle = {over(1000, e.value), over(1000, e.high), over(1000, e.low)};
     const IntersectionCounts tests = tests_of(run_.result);
@@ -120,14 +121,13 @@ class Sample {
   /// asked for before.
   double spared_cycles_a_ray() const {
     if (first_ <= 0) return 0;
-    double wait = 0;
-    for (const cycle::TileResult& tile : c_.tiles)
-      wait += static_cast<double>(tile.states[static_cast<std::size_t>(cycle::TileState::kMemory)]);
-    wait /= static_cast<double>(c_.tiles.size());
-    const double memory = static_cast<double>(config_.memory.dram_latency_cycles);
+    cycle::Cycle waits = 0;
+    for (const cycle::TileResult& tile : c_.tiles) waits += tile.states[std::size_t(cycle::TileState::kMemory)];
+    const double wait = double(waits) / double(c_.tiles.size());
+    const auto memory = static_cast<double>(config_.memory.dram_latency_cycles);
     double latencies = (first_ + again_) * memory;
     for (const CacheCounts& cache : c_.caches)
-      latencies += static_cast<double>(cache.requests) * static_cast<double>(config_.memory.l2_latency_cycles);
+      latencies += double(cache.requests) * double(config_.memory.l2_latency_cycles);
     if (c_.own_caches)
       latencies += static_cast<double>(c_.own_caches->requests) * static_cast<double>(config_.memory.l1_latency_cycles);
     const double cold = latencies > 0 ? wait * first_ * memory / latencies / rays_ : 0;
@@ -146,6 +146,18 @@ class Sample {
       if (busy > most) most = busy, best = i;
     }
     return best;
+  }
+
+  /// By how much the resource with most tests has more than the mean. A sample is short enough for one resource to work
+  /// on while others have run out of rays; in the frame they catch up.
+  double imbalance() const {
+    std::uint64_t most = 0, all = 0;
+    for (const ResourceStatistics& resource : run_.result.resources) {
+      most = std::max(most, resource.tests.box + resource.tests.triangle);
+      all += resource.tests.box + resource.tests.triangle;
+    }
+    const auto parts = static_cast<double>(run_.result.resources.size());
+    return all > 0 ? parts * static_cast<double>(most) / static_cast<double>(all) - 1 : 0;
   }
 
   /// The time of a ray if the busiest class had no pause.
@@ -168,15 +180,14 @@ class Sample {
   double error_of_rays() const {
     const double each = rays_ / static_cast<double>(run_.paths);
     const std::size_t places = run_.paths_of.size();
+    if (places < 2) return 1;
     double squares = 0, before = 0;
     for (std::size_t i = 0; i < places; ++i) {
       const double rest = static_cast<double>(run_.rays_of[i]) - each * static_cast<double>(run_.paths_of[i]);
       if (i > 0) squares += (rest - before) * (rest - before);
       before = rest;
     }
-    if (places < 2) return 1;
-    const double k = static_cast<double>(places);
-    return unseen_ * kErrors * std::sqrt(k / (k - 1) * squares / 2) / rays_;
+    return unseen_ * kErrors * std::sqrt(double(places) / double(places - 1) * squares / 2) / rays_;
   }
 
   std::optional<std::size_t> class_of(std::string_view name) const {

@@ -54,7 +54,8 @@ FrameValues exact_values(const Config& config, const RunResult& result);
 /// - Errors are those of the differences between neighbouring places and between neighbouring blocks of completed rays
 ///   (foretell.h), less the part of the frame that was simulated (K. Wolter, Introduction to Variance Estimation, 2nd
 ///   edition 2007, sections 1.4 and 8.2). As samples are drawn so that their tests are the frame's (app, RenderJob),
-///   the error of the time is that of what the tests leave unexplained.
+///   the error of the time is that of what the tests leave unexplained. The lower end is lower by the fraction by which
+///   the resource with most tests has more than the mean: others may have waited for it, and in the frame do so less.
 FrameValues estimate_frame(const Config& config, const SampleRun& run);
 
 }  // namespace carousel::ringbus
