@@ -33,6 +33,31 @@ void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, Hit
   trace_batch(trace_interleaved, accel, rays, out, counts);
 }
 
+std::vector<ReferenceRun> run_reference_by_piece(const Accel& accel, Workload& workload, std::size_t pieces,
+                                                 const std::function<std::size_t(const RayTag&)>& piece_of,
+                                                 std::size_t batch) {
+  std::vector<ReferenceRun> runs(pieces);
+  RayBatch rays, together, next;
+  HitBatch hits;
+  bool finished = false;
+  while (!finished || !rays.empty()) {
+    if (rays.empty()) finished = workload.generate(WorkerId{0}, batch, rays).finished;
+    hits.clear();
+    // Rays of a piece mostly follow one another, and so do those that they cause.
+    for (std::size_t begin = 0; begin < rays.size(); begin += together.size()) {
+      const std::size_t piece = piece_of(rays[begin].tag);
+      together.clear();
+      for (std::size_t i = begin; i < rays.size() && piece_of(rays[i].tag) == piece; ++i) together.push_back(rays[i]);
+      trace_depth_first_interleaved(accel, together, hits, runs[piece].tests);
+      runs[piece].rays += together.size();
+    }
+    next.clear();
+    if (!hits.empty()) workload.shade(WorkerId{0}, hits, next);
+    rays.swap(next);
+  }
+  return runs;
+}
+
 ReferenceRun run_reference(const Accel& accel, Workload& workload, std::size_t batch) {
   ReferenceRun run;
   RayBatch rays, next;

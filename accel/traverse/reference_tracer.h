@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <vector>
 
 #include "accel/structure/accel.h"
 #include "core/statistics/intersection_counts.h"
@@ -24,5 +26,11 @@ struct ReferenceRun {
 /// Runs a whole workload on the depth-first tracer, as worker 0, `batch` rays at a time: the answer every
 /// engine must reproduce to the bit.
 ReferenceRun run_reference(const Accel& accel, Workload& workload, std::size_t batch = 4096);
+
+/// The same, divided among `pieces` of the workload and with several rays under way at a time. `piece_of` tells the
+/// piece of a ray that has not been shaded yet.
+std::vector<ReferenceRun> run_reference_by_piece(const Accel& accel, Workload& workload, std::size_t pieces,
+                                                 const std::function<std::size_t(const RayTag&)>& piece_of,
+                                                 std::size_t batch = 4096);
 
 }  // namespace carousel::accel

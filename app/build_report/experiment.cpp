@@ -145,6 +145,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   add_census(report, census, p.accel);
+  report.host.draw_seconds = job.draw_seconds();
   if (places && result.complete) report.sampled = estimates(p, job, *places, result, *memory);
   if (result.cycle) find_limits(p, job, result, interrupt, quiet, report);
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "app/run/memory_need.h"
 #include "core/system/executor.h"
@@ -42,26 +44,78 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
     }
     frame_rays_ = order_.count();
   }
-  if (config.sampling.fraction < 1) draw_sample(config);
+  if (config.sampling.fraction < 1)
+    draw_sample(prepared, config, first_hits != nullptr ? first_hits : this->first_hits());
 }
 
 /// Places of several times as many paths as the machine has slots, so that most of the time it holds rays of one place,
 /// as it holds those of one part of the frame; but enough of them to be a mix of the frame.
 std::uint64_t RenderJob::strata_of(const Config& config, std::uint64_t rays) {
-  constexpr std::uint64_t kLeast = 16;
+  constexpr std::uint64_t kLeast = 10;
   if (config.sampling.strata) return static_cast<std::uint64_t>(*config.sampling.strata);
   return std::max(kLeast, rays / (2 * ringbus::slots_of(config)));
 }
 
-void RenderJob::draw_sample(const Config& config) {
+shading::PathSample RenderJob::spread(std::uint64_t one_in, std::uint64_t seed) const {
+  std::mt19937_64 random(seed);
+  std::vector<shading::PathSample::Run> runs;
+  for (std::uint64_t begin = 0; begin < frame_rays_; begin += one_in)
+    runs.push_back({begin + random() % std::min(one_in, frame_rays_ - begin), 1, 0});
+  return shading::PathSample(runs);
+}
+
+std::vector<accel::ReferenceRun> RenderJob::survey(const accel::Accel& accel) {
+  return accel::run_reference_by_piece(accel, workload(), pieces(),
+                                       [this](const RayTag& tag) { return piece_of(tag.path); });
+}
+
+/// Of many samples that are drawn by position, the one is kept whose rays and tests a path, traced depth-first, are
+/// most nearly those of the frame: rejective sampling (W. A. Fuller, Some design properties of a rejective sampling
+/// procedure, Biometrika 96, 2009). That costs little beside a simulation, and what the cycles of a path owe to its
+/// rays and tests is then no error of the sample. Rays and tests of the pieces are themselves estimated, from some of
+/// the paths.
+void RenderJob::draw_sample(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
+  constexpr std::uint64_t kDraws = 500, kOneIn = 8, kLeastPaths = 1 << 14, kMostPaths = 1 << 16;
+  const auto start = std::chrono::steady_clock::now();
   const auto seed = static_cast<std::uint64_t>(config.sampling.seed);
   const auto rays = std::max<std::uint64_t>(
       1, static_cast<std::uint64_t>(std::llround(config.sampling.fraction * static_cast<double>(frame_rays_))));
-  if (list_)
-    drawn_ = shading::draw_list(frame_rays_, rays, seed);
-  else
-    drawn_ = shading::draw_places(order_, rays, strata_of(config, rays), order_.samples(), seed);
+
+  Config all = config;
+  all.sampling = {};
+  RenderJob frame(prepared, all, first_hits);
+  const std::uint64_t traced = std::clamp(frame_rays_ / kOneIn, kLeastPaths, kMostPaths);
+  const shading::PathSample some = spread(std::max<std::uint64_t>(1, frame_rays_ / traced), seed);
+  frame.set_sample(&some);
+  const std::vector<accel::ReferenceRun> work = frame.survey(prepared.accel);
+
+  using Work = std::array<double, 4>;  // paths, and what they should come to each
+  const auto add = [&work](Work& to, std::uint64_t piece, double paths) {
+    const Work more{paths, static_cast<double>(work[piece].rays), static_cast<double>(work[piece].tests.box),
+                    static_cast<double>(work[piece].tests.triangle + work[piece].tests.procedural)};
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += more[i];
+  };
+  std::vector<double> paths(work.size());
+  for (const shading::PathSample::Run& run : some.runs()) ++paths[piece_at(run.first)];
+  Work whole{};
+  for (std::uint64_t piece = 0; piece < work.size(); ++piece) add(whole, piece, paths[piece]);
+
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    shading::PathSample sample =
+        list_ ? shading::draw_list(frame_rays_, rays, seed, draw)
+              : shading::draw_places(order_, rays, strata_of(config, rays), order_.samples(), seed, draw);
+    Work own{};
+    for (const shading::PathSample::Run& run : sample.runs()) add(own, piece_at(run.first), paths[piece_at(run.first)]);
+    double off = 0;
+    for (std::size_t i = 1; i < own.size(); ++i)
+      if (own[0] > 0 && whole[i] > 0) off += std::pow(own[i] / own[0] * whole[0] / whole[i] - 1, 2);
+    if (off >= least) continue;
+    least = off;
+    drawn_ = std::move(sample);
+  }
   set_sample(&*drawn_);
+  draw_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together) const {

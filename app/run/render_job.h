@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/traverse/reference_tracer.h"
 #include "app/run/prepare.h"
 #include "app/run/ray_list_workload.h"
 #include "report/run/report.h"
@@ -49,6 +50,9 @@ class RenderJob {
   /// The piece of a path whose rays are in flight.
   std::uint64_t piece_of(std::uint32_t path) const;
 
+  /// The time that it took to draw the sample, most of it to trace a part of the frame; absent without a sample.
+  std::optional<double> draw_seconds() const { return draw_seconds_; }
+
   /// The result of the raster pass; null if rays find the first hits.
   const shading::FirstHits* first_hits() const { return raster_seconds_ ? &first_hits_ : nullptr; }
 
@@ -66,10 +70,14 @@ class RenderJob {
   void write_images(const std::filesystem::path& folder) const;
 
  private:
-  void draw_sample(const Config& config);
+  void draw_sample(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits);
   static std::uint64_t strata_of(const Config& config, std::uint64_t rays);
+  /// One path in `one_in`, evenly over the frame.
+  shading::PathSample spread(std::uint64_t one_in, std::uint64_t seed) const;
+  /// What the paths of each piece come to when they are traced depth-first.
+  std::vector<accel::ReferenceRun> survey(const accel::Accel& accel);
 
-  std::optional<double> raster_seconds_;
+  std::optional<double> raster_seconds_, draw_seconds_;
   shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads
   std::unique_ptr<shading::PathTracer> tracer_;  // either tracer_ or list_ is set
   std::unique_ptr<RayListWorkload> list_;

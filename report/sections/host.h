@@ -50,7 +50,7 @@ struct Host {
   std::uint64_t accel_bytes = 0, peak_memory_bytes = 0;
   std::string simd;
   Machine machine;
-  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{}, audit_seconds{};
+  std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{}, audit_seconds{}, draw_seconds{};
   std::optional<std::vector<HostLink>> links{};
   std::optional<TimeSeries> time_series{};
 };
@@ -67,6 +67,8 @@ void describe(V& v, const Host& r) {
   v.field("raster_seconds", r.raster_seconds, "s", "time to rasterise the first hits of camera rays");
   v.field("recovery_seconds", r.recovery_seconds, "s",
           "time from the last sign of life of a resource that stopped until its rays were restarted");
+  v.field("draw_seconds", r.draw_seconds, "s",
+          "time to draw the sample of the frame, most of it to trace a part of the frame depth-first");
   v.field("audit_seconds", r.audit_seconds, "s", "time to simulate the whole frame, with --audit");
   v.field("accel_bytes", r.accel_bytes, "bytes", "size of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "most resident memory of the process");

@@ -17,7 +17,7 @@ namespace {
 /// Standard errors to either side that hold 95 %, of Student's distribution with as many degrees of freedom as there
 /// are neighbours to compare.
 constexpr double kErrors = 2.13;
-/// The part of the time that warm caches spare that is in doubt: waits for different lines overlap.
+/// The part of the time that warm caches spare that is in doubt.
 constexpr double kUnsure = 0.5;
 
 Estimate around(double value, double error) {
@@ -28,7 +28,7 @@ double over(double a, double b) {
   return b > 0 ? a / b : 0;
 }
 
-/// Estimates of a / b, with the relative errors of both, as if they were independent.
+/// a / b, with the relative errors of both, as if they were independent.
 Estimate quotient(double value, double relative_a, double relative_b) {
   return around(value, value * std::hypot(relative_a, relative_b));
 }
@@ -77,6 +77,7 @@ class Sample {
     if (too_small_) out.cycles_per_ray.low = std::min(out.cycles_per_ray.low, least_cycles_a_ray() * (1 - time_error));
     out.cycles = quotient(cycles, time_error + unsure / each, rays_error);
     if (too_small_) out.cycles.low = out.cycles_per_ray.low * out.rays.low;
+    for (Estimate* e : {&out.cycles_per_ray, &out.cycles}) e->low = std::max(0.0, e->low - e->value * imbalance());
     const Estimate& e = out.cycles_per_ray;
     out.rays_per_kilocycle = {over(1000, e.value), over(1000, e.high), over(1000, e.low)};
     const IntersectionCounts tests = tests_of(run_.result);
@@ -94,26 +95,42 @@ class Sample {
   }
 
  private:
+  /// The part of the run's tests that had been done; without tests, of its rays that had been completed.
+  double tested(const cycle::ProgressSample& sample) const {
+    double part = 0;
+    int classes = 0;
+    for (const std::string_view name : {"box_tests", "triangle_tests"}) {
+      const auto i = class_of(name);
+      if (!i || c_.uses[*i].busy == 0) continue;
+      part += static_cast<double>(sample.busy[*i]) / static_cast<double>(c_.uses[*i].busy);
+      ++classes;
+    }
+    return classes > 0 ? part / classes : static_cast<double>(sample.completed) / rays_;
+  }
+
   /// The time of a ray between fill and drain.
   double cycles_a_ray() const {
-    const double time = at_count(c_, end_, cycle_of) - at_count(c_, begin_, cycle_of);
     if (too_small_) return static_cast<double>(c_.cycles) / rays_;
-    const std::size_t i = busiest();
-    const auto busy = [i](const cycle::ProgressSample& s) { return static_cast<double>(s.busy[i]); };
-    const double work = at_count(c_, end_, busy) - at_count(c_, begin_, busy);
-    return work > 0 ? time * static_cast<double>(c_.uses[i].busy) / work / rays_
-                    : time / static_cast<double>(end_ - begin_);
+    const auto part = [this](const cycle::ProgressSample& s) { return tested(s); };
+    const double time = at_count(c_, end_, cycle_of) - at_count(c_, begin_, cycle_of);
+    const double work = at_count(c_, end_, part) - at_count(c_, begin_, part);
+    return time / rays_ / work;
   }
 
   /// The time of a ray that the rest of the frame spares, as the testers wait less often for lines that no ray has
   /// asked for before.
   double spared_cycles_a_ray() const {
     if (first_ <= 0) return 0;
-    double wait = 0;
-    for (const cycle::TileResult& tile : c_.tiles)
-      wait += static_cast<double>(tile.states[static_cast<std::size_t>(cycle::TileState::kMemory)]);
-    wait /= static_cast<double>(c_.tiles.size());
-    const double cold = wait * first_ / (first_ + again_) / rays_;
+    cycle::Cycle waits = 0;
+    for (const cycle::TileResult& tile : c_.tiles) waits += tile.states[std::size_t(cycle::TileState::kMemory)];
+    const double wait = double(waits) / double(c_.tiles.size());
+    const auto memory = static_cast<double>(config_.memory.dram_latency_cycles);
+    double latencies = (first_ + again_) * memory;
+    for (const CacheCounts& cache : c_.caches)
+      latencies += double(cache.requests) * double(config_.memory.l2_latency_cycles);
+    if (c_.own_caches)
+      latencies += static_cast<double>(c_.own_caches->requests) * static_cast<double>(config_.memory.l1_latency_cycles);
+    const double cold = latencies > 0 ? wait * first_ * memory / latencies / rays_ : 0;
     const double fewer = 1 - std::min(1.0, (grown(power_) / first_ - 1) / std::max(1e-9, times_ - 1));
     return std::min(cold * fewer, cycles_a_ray() / 2);
   }
@@ -131,31 +148,46 @@ class Sample {
     return best;
   }
 
+  /// By how much the resource with most tests has more than the mean. A sample is short enough for one resource to work
+  /// on while others have run out of rays; in the frame they catch up.
+  double imbalance() const {
+    std::uint64_t most = 0, all = 0;
+    for (const ResourceStatistics& resource : run_.result.resources) {
+      most = std::max(most, resource.tests.box + resource.tests.triangle);
+      all += resource.tests.box + resource.tests.triangle;
+    }
+    const auto parts = static_cast<double>(run_.result.resources.size());
+    return all > 0 ? parts * static_cast<double>(most) / static_cast<double>(all) - 1 : 0;
+  }
+
   /// The time of a ray if the busiest class had no pause.
   double least_cycles_a_ray() const {
     const cycle::ClassUse& use = c_.uses[busiest()];
     return static_cast<double>(use.busy) / use.parts / rays_;
   }
 
-  /// Relative error of the time a ray.
+  /// Relative error of the time a ray, whose tests are nearly those of the frame: that of the time a test.
   double error_of_time() const {
-    const std::vector<double> means = block_means(c_, begin_, end_, cycle_of);
-    return unseen_ * kErrors * over(standard_error(steps(means)), means.back() - means.front());
+    const auto part = [this](const cycle::ProgressSample& s) { return tested(s); };
+    std::vector<double> time = block_means(c_, begin_, end_, cycle_of);
+    const std::vector<double> work = block_means(c_, begin_, end_, part);
+    const double all = time.back() - time.front(), each = over(all, work.back() - work.front());
+    for (std::size_t i = 0; i < time.size(); ++i) time[i] -= each * work[i];
+    return unseen_ * kErrors * over(standard_error(steps(time)), all);
   }
 
   /// Relative error of the rays a path: a ratio of sums over places.
   double error_of_rays() const {
     const double each = rays_ / static_cast<double>(run_.paths);
     const std::size_t places = run_.paths_of.size();
+    if (places < 2) return 1;
     double squares = 0, before = 0;
     for (std::size_t i = 0; i < places; ++i) {
       const double rest = static_cast<double>(run_.rays_of[i]) - each * static_cast<double>(run_.paths_of[i]);
       if (i > 0) squares += (rest - before) * (rest - before);
       before = rest;
     }
-    if (places < 2) return 1;
-    const double k = static_cast<double>(places);
-    return unseen_ * kErrors * std::sqrt(k / (k - 1) * squares / 2) / rays_;
+    return unseen_ * kErrors * std::sqrt(double(places) / double(places - 1) * squares / 2) / rays_;
   }
 
   std::optional<std::size_t> class_of(std::string_view name) const {

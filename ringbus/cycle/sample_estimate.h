@@ -43,15 +43,19 @@ FrameValues exact_values(const Config& config, const RunResult& result);
 /// The sample's fill and drain happen once in the frame, too. So its cycles T are extrapolated by the rate between
 /// them, m cycles a ray: frame = T + (frame's rays - sample's rays) m.
 /// - The rays that are completed between fill and drain are cheaper than others, or dearer: m is the time there over
-///   the work there of the busiest class of parts, times that class's work a ray of the whole sample.
+///   the part of the sample's box and triangle tests that was done there, over the sample's rays. Packets and waits
+///   depend on which rays meet in the machine; tests hardly do.
 /// - Caches are cold. The first request of a cache for a line is one of the frame's, too; the number of such lines
 ///   grows more slowly than that of the rays, by the power that it grew with in the sample's second half. All other
 ///   requests are taken to be as many a ray as in the sample.
-///   The testers waited for first lines as long as for others, and the rest of the frame waits less by as many as it
-///   has fewer of them a ray. Half of the time that it so spares is added to the interval.
+///   Of the time that testers waited, first lines have the part that the latency of the memory for them has of all
+///   latencies: those of the caches' hits, too. The rest of the frame waits less by as many as it has fewer of them a
+///   ray. Half of the time that it so spares is added to the interval.
 /// - Errors are those of the differences between neighbouring places and between neighbouring blocks of completed rays
 ///   (foretell.h), less the part of the frame that was simulated (K. Wolter, Introduction to Variance Estimation, 2nd
-///   edition 2007, sections 1.4 and 8.2).
+///   edition 2007, sections 1.4 and 8.2). As samples are drawn so that their tests are the frame's (app, RenderJob),
+///   the error of the time is that of what the tests leave unexplained. The lower end is lower by the fraction by which
+///   the resource with most tests has more than the mean: others may have waited for it, and in the frame do so less.
 FrameValues estimate_frame(const Config& config, const SampleRun& run);
 
 }  // namespace carousel::ringbus

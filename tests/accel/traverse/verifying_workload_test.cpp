@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/traverse/kernels.h"
+#include "accel/traverse/reference_tracer.h"
 #include "core/system/error.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/simd_guard.h"
@@ -85,6 +86,29 @@ TEST_F(VerifyingWorkloadTest, FindsEveryKindOfPlantedFault) {
   }
   EXPECT_GT(closest, 100u);
   EXPECT_GT(shadow, 30u);
+}
+
+TEST(ReferenceRun, IsDividedAmongPieces) {
+  const scene::Scene scene = icosphere_scene(2);
+  const Accel accel = build_sequential(scene);
+  RayBatch rays = mixed_rays(scene, 500, 71);
+  constexpr std::uint32_t kPieces = 3;
+  for (std::uint32_t i = 0; i < rays.size(); ++i) rays[i].tag.path = i;
+  const auto piece_of = [](const RayTag& tag) { return tag.path / 10 % kPieces; };
+  ListWorkload all(rays);
+  const std::vector<ReferenceRun> runs = run_reference_by_piece(accel, all, kPieces, piece_of, 64);
+  ASSERT_EQ(runs.size(), kPieces);
+  EXPECT_EQ(all.shaded(), rays.size());
+  for (std::uint32_t piece = 0; piece < kPieces; ++piece) {
+    RayBatch own;
+    for (const RayRequest& ray : rays)
+      if (piece_of(ray.tag) == piece) own.push_back(ray);
+    ListWorkload list(own);
+    const ReferenceRun run = run_reference(accel, list);
+    EXPECT_EQ(runs[piece].rays, own.size());
+    EXPECT_EQ(runs[piece].tests.box, run.tests.box) << piece;
+    EXPECT_EQ(runs[piece].tests.triangle, run.tests.triangle) << piece;
+  }
 }
 
 TEST(SimdTargets, UnknownOnesAreNamedInTheError) {
