@@ -49,6 +49,20 @@ const TestersConfig& testers_of(const Config& c, std::int64_t resource) {
   return c.testers;
 }
 
+/// A place of a link's queue: a packet, and what travels in its place.
+double place_bytes(const Config& c) {
+  const auto rays = static_cast<double>(c.packets.rays), boxes = static_cast<double>(c.bvh.width);
+  const double packet = kHeaderBytes + kIdBytes * rays;
+  switch (c.packets.results) {
+    case PacketResults::kPerShape:
+      return boxes * packet;
+    case PacketResults::kMessage:
+      return packet + boxes * rays * (kHeaderBytes + kIdBytes);
+    default:
+      return packet;
+  }
+}
+
 }  // namespace
 
 report::Area machine_area(const Config& c) {
@@ -72,9 +86,8 @@ report::Area machine_area(const Config& c) {
   out.link_mm = c.area.link_mm ? static_cast<double>(*c.area.link_mm) : std::sqrt(parts.mm2() / n);
   const std::int64_t caches = (c.topology.resources + c.memory.shared_by - 1) / c.memory.shared_by;
   store(AreaPart::kL2, static_cast<double>(caches * c.memory.l2_kib));
-  const double packet = kHeaderBytes + kIdBytes * static_cast<double>(c.packets.rays);
-  store(AreaPart::kLinkQueues,
-        static_cast<double>(topology.wires().size()) * static_cast<double>(c.topology.link.depth) * packet / kKiB);
+  store(AreaPart::kLinkQueues, static_cast<double>(topology.wires().size()) *
+                                   static_cast<double>(c.topology.link.depth) * place_bytes(c) / kKiB);
   report::AreaOf& wires = parts[AreaPart::kWires];
   wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm * wire_lengths(topology);
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;

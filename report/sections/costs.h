@@ -119,7 +119,10 @@ inline constexpr auto kAreaParts = std::to_array<AreaPartRow>({
     {"shape_buffers", "shape buffers", "shape buffers (KiB)"},
     {"l1", "L1", "caches of the resources (KiB)"},
     {"l2", "L2", "shared caches (KiB)"},
-    {"link_queues", "link queues", "queues of links, of packets.rays IDs a packet (KiB)"},
+    {"link_queues", "link queues",
+     "queues of links, of packets.rays IDs a packet, for a box each with packets.results: per_shape, and with message "
+     "a "
+     "message for each ray and box (KiB)"},
     {"wires", "wires", "wires of links, a bit wide, side by side (mm)"},
     {"shaders", "shaders", "shader workers (products/cycle)"},
 });

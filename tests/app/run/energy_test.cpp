@@ -139,6 +139,20 @@ TEST_F(EnergyRun, AreaIsOfTheConfiguredParts) {
   EXPECT_NEAR(both["area"]["parts"]["wires"]["mm2"].get<double>(), 2 * wires, 1e-9) << "twice a ring's wires";
 }
 
+// A packet of 32 IDs has 144 bytes; with a packet for each of eight boxes there are eight, and with messages one of 20
+// bytes for each ray and box.
+TEST_F(EnergyRun, PlacesOfQueuesHoldWhatGoesAlongWithAPacket) {
+  const auto bytes = [&](const std::string& results) {
+    const Json r =
+        run("ring", {"packets.rays=32", "topology.link.depth=16", "bvh.width=8", "packets.results=" + results});
+    return r["area"]["parts"]["link_queues"]["size"].get<double>() * 1024 / (8 * 16);
+  };
+  EXPECT_NEAR(bytes("mask"), 144, 1e-6);
+  EXPECT_NEAR(bytes("implied_order"), 144, 1e-6);
+  EXPECT_NEAR(bytes("per_shape"), 8 * 144, 1e-6);
+  EXPECT_NEAR(bytes("message"), 144 + 32 * 8 * 20, 1e-6);
+}
+
 TEST_F(EnergyRun, TheCostsStandInTheReportWithTheirSources) {
   for (const std::string profile : {"n45", "n7"}) {
     const Json r = run("ring", {"energy.box=7"}, profile);
