@@ -93,6 +93,8 @@ inline std::vector<KeyRow> key_rows() {
       {"bvh.leaves", kTerrain},
       {"bvh.top_triangles", kInstances, {}, {"2"}},
       {"bvh.levels", kInstances, {"scene.levels=5"}, {"3", "8"}},
+      {"bvh.builder", kCornell},
+      {"bvh.duplicates", kTerrain, {"bvh.builder=kd"}, {"2"}},
       {"accuracy.triangle", kInstances},
       {"accuracy.box", kCornell},
       {"accuracy.transform", kLayers},
