@@ -65,6 +65,7 @@ inline std::vector<KeyRow> key_rows() {
       {"rays.placement", kTerrain},
       {"rays.reads_per_cycle", kTerrain, {}, {"1"}},
       {"rays.query", kCornell},
+      {"rays.hits_per_ray", kCornell, {"rays.query=all"}, {"1"}},
       {"packets.rays", kTerrain, {}, {"4"}},
       {"packets.shapes", kTerrain},
       {"packets.carry", kTerrain, {"packets.carry=reference"}, {"data"}, {"memory.fetch=packet"}},
