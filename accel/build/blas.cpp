@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "accel/build/reference_build.h"
 #include "accel/build/sah_build.h"
 #include "accel/structure/sphere.h"
 
@@ -48,30 +49,31 @@ void fill_block(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bu
   }
 }
 
-/// A tree over ranges of `primitives` from `first` on.
-std::vector<BinaryNode> build_range(std::vector<BuildPrimitive>& primitives, std::size_t first, std::size_t last,
-                                    const SahSettings& settings, Executor& executor) {
-  std::vector<BuildPrimitive> range(primitives.begin() + static_cast<std::ptrdiff_t>(first),
-                                    primitives.begin() + static_cast<std::ptrdiff_t>(last));
-  std::vector<BinaryNode> tree = build_sah(range, settings, executor);
-  std::copy(range.begin(), range.end(), primitives.begin() + static_cast<std::ptrdiff_t>(first));
-  for (BinaryNode& node : tree)
-    if (node.count > 0) node.first += static_cast<std::uint32_t>(first);
-  return tree;
+std::vector<BinaryNode> build_tree(std::vector<BuildPrimitive>& primitives, const BvhConfig& config,
+                                   const SahSettings& settings, Executor& executor) {
+  return config.builder == BvhConfig::Builder::kSah
+             ? build_sah(primitives, settings, executor)
+             : build_references(primitives, settings, config.builder, config.duplicates);
 }
 
 /// One tree over triangles and spheres, whose leaves hold either the ones or the others.
 std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std::size_t triangles,
-                                   const SahSettings& settings, Executor& executor) {
-  if (triangles == 0 || triangles == primitives.size()) return build_sah(primitives, settings, executor);
+                                   const BvhConfig& config, const SahSettings& settings, Executor& executor) {
+  if (triangles == 0 || triangles == primitives.size()) return build_tree(primitives, config, settings, executor);
   std::vector<BinaryNode> joint(1);
-  for (const auto& [first, last] : {std::pair{std::size_t{0}, triangles}, std::pair{triangles, primitives.size()}}) {
+  const auto middle = primitives.begin() + static_cast<std::ptrdiff_t>(triangles);
+  std::vector<BuildPrimitive> parts[2] = {{primitives.begin(), middle}, {middle, primitives.end()}};
+  primitives.clear();
+  for (std::vector<BuildPrimitive>& part : parts) {
     const std::uint32_t at = static_cast<std::uint32_t>(joint.size());
-    (first == 0 ? joint[0].first : joint[0].right) = at;
-    for (BinaryNode node : build_range(primitives, first, last, settings, executor)) {
-      if (node.count == 0) node.first += at, node.right += at;
+    const std::uint32_t first = static_cast<std::uint32_t>(primitives.size());
+    (primitives.empty() ? joint[0].first : joint[0].right) = at;
+    for (BinaryNode node : build_tree(part, config, settings, executor)) {
+      node.first += node.count == 0 ? at : first;
+      node.right += at;
       joint.push_back(node);
     }
+    primitives.insert(primitives.end(), part.begin(), part.end());
     joint[0].box.extend(joint[at].box);
   }
   return joint;
@@ -86,7 +88,7 @@ Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bv
   SahSettings settings;
   settings.leaf_primitives = static_cast<std::uint32_t>(config.leaf_triangles);
   settings.block_primitives = std::min<std::uint32_t>(kBlockTriangles, settings.leaf_primitives);
-  const std::vector<BinaryNode> binary = build_both(primitives, mesh.triangle_count(), settings, executor);
+  const std::vector<BinaryNode> binary = build_both(primitives, mesh.triangle_count(), config, settings, executor);
   blas.box = binary[0].box;
 
   struct Fill {

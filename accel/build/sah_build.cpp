@@ -13,8 +13,6 @@ namespace {
 constexpr int kBins = 16;
 constexpr std::size_t kParallelNode = 1 << 15;  // below this a node is one task
 constexpr std::size_t kBinningChunk = 1 << 15;
-// A stack entry is spent per level and the traversal stack is fixed; below this depth splits are by halves.
-constexpr int kSahDepth = 40;
 
 // x, y, z in one register. The fourth lane carries bits of an index and is never read as a number.
 using Float4 = float __attribute__((vector_size(16)));

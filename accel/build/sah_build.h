@@ -25,6 +25,9 @@ struct BinaryNode {
   std::uint32_t count = 0;
 };
 
+/// A stack entry is spent per level and the traversal stack is fixed; below this depth splits are by halves.
+inline constexpr int kSahDepth = 40;
+
 struct SahSettings {
   std::uint32_t leaf_primitives = 4;   ///< at most so many in a leaf
   std::uint32_t block_primitives = 4;  ///< tested at the price of one (SIMD width of a leaf)

@@ -22,8 +22,18 @@ template <class Slab>
   return accel.any_hit->accepts(ray.record->ray, found.instance, found.primitive, found.u, found.v);
 }
 
-/// The same for a triangle, given in the local space, that may be non-opaque or may show a culled side. glTF flips the
-/// winding of instances that mirror, so the front is the same side as in model space.
+/// Reports a hit of a ray that looks for all of them: true, and it does not stop there. `counted` if an any-hit call
+/// has been counted for it, which may report it as well.
+template <class Slab>
+[[gnu::noinline]] bool reported(const Accel& accel, const LocalRay<Slab>& ray, const Hit& found, bool counted) {
+  if ((ray.record->tag.flags & kRayAll) == 0 || accel.all_hits == nullptr) return false;
+  ray.counts->any_hit_calls += !counted;
+  accel.all_hits->add(ray.record->tag.path, found);
+  return true;
+}
+
+/// any_hit_accepts() and reported() for a triangle, given in the local space, that may be non-opaque or may show a
+/// culled side. glTF flips the winding of instances that mirror, so the front is the same side as in model space.
 template <class Slab>
 [[gnu::noinline]] bool triangle_accepts(const Accel& accel, bool calls_any_hit, const std::array<Vec3, 3>& triangle,
                                         const LocalRay<Slab>& ray, const Hit& found) {
@@ -31,7 +41,9 @@ template <class Slab>
     const int facing = exact_facing(ray.direction, triangle);
     if (((culls & kRayCullBack) != 0 && facing < 0) || ((culls & kRayCullFront) != 0 && facing > 0)) return false;
   }
-  return !calls_any_hit || any_hit_accepts(accel, ray, found);
+  const std::uint64_t calls = ray.counts->any_hit_calls;
+  if (calls_any_hit && !any_hit_accepts(accel, ray, found)) return false;
+  return !reported(accel, ray, found, ray.counts->any_hit_calls > calls);
 }
 
 }  // namespace carousel::accel

@@ -33,7 +33,9 @@ template <class Slab>
     if (!closer(distance, ray.instance, primitive, hit)) return false;
     const Vec2 where = octahedral(crossing.normal[k]);
     const Hit found{distance, where.x, where.y, ray.instance, primitive};
+    const std::uint64_t calls = ray.counts->any_hit_calls;
     if (calls_any_hit && !any_hit_accepts(accel, ray, found)) continue;
+    if (reported(accel, ray, found, ray.counts->any_hit_calls > calls)) continue;
     hit = found;
     return true;
   }

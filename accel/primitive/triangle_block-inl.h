@@ -57,7 +57,7 @@ HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, int l, con
   found.primitive = block.primitive[l] & kPrimitiveMask;
   if (!closer(found.t, found.instance, found.primitive, hit)) return false;
   const std::uint32_t calls_any_hit = block.primitive[l] & kNonOpaqueBit;
-  if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront))) != 0) &&
+  if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront | kRayAll))) != 0) &&
       !triangle_accepts(accel, calls_any_hit != 0, p, ray, found))
     return false;
   hit = found;

@@ -11,6 +11,7 @@
 #include "core/config/config.h"
 #include "core/types/aabb.h"
 #include "core/types/any_hit.h"
+#include "core/types/hit_sink.h"
 
 namespace carousel::accel {
 
@@ -44,15 +45,17 @@ struct Accel {
   std::vector<std::uint32_t> members;   ///< of these placements: indices of instances
   NodeKey root;                         ///< as root_key()
   const AnyHit* any_hit = nullptr;      ///< answers any-hit calls, set before tracing; null: every surface is opaque
-  AccuracyConfig accuracy;              ///< arithmetic of the tests on it
-  bool procedural_primitives = false;   ///< there are some
-  bool has_non_opaque = false;          ///< some primitives have kNonOpaqueBit
-  int width = kMaxWidth;                ///< children a node at most
-  int max_depth = 0;                    ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
-  std::size_t baked_instances = 0;      ///< singular transforms, stored as world-space triangles
-  std::size_t promoted_instances = 0;   ///< nearly singular ones, whose rays are transformed in double
+  HitSink* all_hits = nullptr;         ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
+  AccuracyConfig accuracy;             ///< arithmetic of the tests on it
+  bool procedural_primitives = false;  ///< there are some
+  bool has_non_opaque = false;         ///< some primitives have kNonOpaqueBit
+  int width = kMaxWidth;               ///< children a node at most
+  int max_depth = 0;                   ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
+  std::size_t baked_instances = 0;     ///< singular transforms, stored as world-space triangles
+  std::size_t promoted_instances = 0;  ///< nearly singular ones, whose rays are transformed in double
 
-  bool calls_any_hit() const { return has_non_opaque && any_hit != nullptr; }
+  /// A hit that is reported costs a call.
+  bool calls_any_hit() const { return (has_non_opaque && any_hit != nullptr) || all_hits != nullptr; }
   std::size_t size_bytes() const {
     return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
            plane_bytes + instances.size() * sizeof(InstanceNode) + groups.size() * sizeof(GroupPlacement) +

@@ -141,7 +141,7 @@ Aabb box_of(const Corners& p) {
 // Slab is SlabRay or DoubleSlabRay.
 template <class Slab>
 Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
-                    const AnyHit* any_hit) {
+                    const AnyHit* any_hit, std::vector<Hit>* all = nullptr) {
   Hit best;
   if (!valid(request.ray)) return best;
   best.t = request.ray.tmax;
@@ -163,6 +163,10 @@ Hit every_primitive(const scene::Scene& scene, const RayRequest& request, const 
              any_hit->accepts(request.ray, i, primitive, u, v);
     };
     const auto lower = [&](float t, float u, float v, std::uint32_t primitive) {
+      if (all != nullptr) {
+        if (t <= request.ray.tmax) all->push_back({t, u, v, i, primitive});
+        return;
+      }
       // Instances and primitives are visited in rising order, so an equal t never replaces an earlier hit.
       if (t < best.t || (t == best.t && !best.valid())) best = {t, u, v, i, primitive};
     };
@@ -218,6 +222,16 @@ Hit brute_force(const scene::Scene& scene, const RayRequest& request, const Accu
                 const AnyHit* any_hit) {
   return accuracy.box == BoxLevel::kDouble ? every_primitive<DoubleSlabRay>(scene, request, accuracy, any_hit)
                                            : every_primitive<SlabRay>(scene, request, accuracy, any_hit);
+}
+
+std::vector<Hit> brute_force_all(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
+                                 const AnyHit* any_hit) {
+  std::vector<Hit> all;
+  if (accuracy.box == BoxLevel::kDouble)
+    every_primitive<DoubleSlabRay>(scene, request, accuracy, any_hit, &all);
+  else
+    every_primitive<SlabRay>(scene, request, accuracy, any_hit, &all);
+  return all;
 }
 
 }  // namespace carousel::accel

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/config/config.h"
 #include "core/types/any_hit.h"
 #include "core/types/ray.h"
@@ -14,5 +16,9 @@ namespace carousel::accel {
 /// tests on small scenes.
 Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy = {},
                 const AnyHit* any_hit = nullptr);
+
+/// All hits likewise, in no order.
+std::vector<Hit> brute_force_all(const scene::Scene& scene, const RayRequest& request,
+                                 const AccuracyConfig& accuracy = {}, const AnyHit* any_hit = nullptr);
 
 }  // namespace carousel::accel

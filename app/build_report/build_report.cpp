@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "accel/structure/structure_size.h"
 #include "accel/traverse/kernels.h"
 #include "app/build_report/cycle_sections.h"
 #include "app/build_report/effects.h"
@@ -47,6 +48,12 @@ report::SceneSummary summary(const Prepared& p) {
   }
   out.warnings = p.warnings;
   return out;
+}
+
+report::Structure structure(const Prepared& p) {
+  const accel::StructureSize size = accel::structure_size(p.accel);
+  return {size.primitives,  size.references, size.references - size.primitives,
+          size.inner_nodes, size.leaves,     size.surface_cost};
 }
 
 report::Host host(const Prepared& p, const ringbus::RunResult& result) {
@@ -111,6 +118,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   r.carousel = program_info();
   r.config = config_json(config);
   r.scene = summary(prepared);
+  r.structure = structure(prepared);
   if (!prepared.accel.groups.empty()) r.levels = levels_section(prepared.accel);
   r.host = host(prepared, result);
   r.host.raster_seconds = job.raster_seconds();

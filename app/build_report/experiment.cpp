@@ -107,8 +107,8 @@ report::Report play_requests(const Prepared& p, const InterruptScope& interrupt)
   return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
 }
 
-/// The structure without planes, spheres and levels of groups.
-accel::Accel two_levels(const Prepared& p) {
+/// The structure without planes, spheres and levels of groups, that holds each triangle once.
+accel::Accel built_plainly(const Prepared& p) {
   BvhConfig bvh;
   bvh.width = p.config().bvh.width;
   accel::Accel accel = accel::build(p.scene, bvh, *make_tbb_executor(p.threads), p.config().accuracy);
@@ -121,10 +121,10 @@ accel::Accel two_levels(const Prepared& p) {
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
                         const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory) {
   std::optional<accel::VerifyingWorkload> verifying;
-  std::optional<accel::Accel> plain;  // planes, spheres and levels are verified as well
+  std::optional<accel::Accel> plain;  // planes, spheres, levels and pieces of boxes are verified as well
   if (p.config().verify == Verify::kReference) {
-    if (!p.accel.groups.empty())
-      plain = two_levels(p);
+    if (!p.accel.groups.empty() || p.config().bvh.builder != BvhConfig::Builder::kSah)
+      plain = built_plainly(p);
     else if (!accel::is_plain(p.accel))
       plain = accel::plain_copy(p.accel);
     verifying.emplace(job.workload(), plain ? *plain : p.accel);

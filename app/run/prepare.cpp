@@ -91,6 +91,13 @@ void load_scene(Prepared& p) {
   p.scene_seconds = seconds + phase->seconds();
 }
 
+void set_query(Prepared& p) {
+  p.all_hits.reset();
+  if (p.config().rays.query == Query::kAll)
+    p.all_hits = std::make_unique<AllHits>(static_cast<std::size_t>(p.config().rays.hits_per_ray));
+  p.accel.all_hits = p.all_hits.get();
+}
+
 void build_accel(Prepared& p) {
   accel::select_simd_target(p.config().engine.simd);
   const auto executor = make_tbb_executor(p.threads);
@@ -118,6 +125,7 @@ void build_accel(Prepared& p) {
     p.plane_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (phase) phase->result(fmt::format("{} planes fitted", p.accel.planes.size()));
   }
+  set_query(p);
 }
 
 /// Refuses a machine that does not fit the prepared structure, and one that the host's memory does not hold.
@@ -184,7 +192,9 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 void set_machine(Prepared& p, LocatedConfig located) {
   p.located = std::move(located);
   fit_area(p.located);
-  if (p.has_rays()) require_room(p, false);
+  if (!p.has_rays()) return;
+  set_query(p);
+  require_room(p, false);
 }
 
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets) {

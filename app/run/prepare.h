@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
+#include "app/run/all_hits.h"
 #include "core/config/load.h"
 #include "scene/load_scene.h"
 #include "scene/model/scene.h"
@@ -31,6 +32,7 @@ struct Prepared {
   std::vector<std::string> warnings;     ///< of the import
   accel::Accel accel;
   std::unique_ptr<shading::AlphaTest> alpha_test;  ///< any-hit calls of `accel`; null if every material is opaque
+  std::unique_ptr<AllHits> all_hits;               ///< with rays.query: all those of `accel`; else null
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }

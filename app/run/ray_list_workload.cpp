@@ -21,8 +21,23 @@ Workload::Generated RayListWorkload::generate(WorkerId worker, std::size_t max_r
 
 void RayListWorkload::shade(WorkerId worker, const HitBatch& completed, RayBatch&) {
   for (const RayResult& result : completed) {
+    if (all_ != nullptr && (result.tag.flags & kRayAll) != 0) {
+      take_all(worker, result);
+      continue;
+    }
     workers_[worker.value].digest.add(hit_term(result.tag.path, 0, result.tag, result.hit));
     if (recorder_) recorder_->record(worker, result.tag.path, 0, result);
+  }
+}
+
+void RayListWorkload::take_all(WorkerId worker, const RayResult& result) {
+  std::vector<Hit> hits = all_->of(result.tag.path);
+  if (hits.empty()) hits.push_back(result.hit);  // a miss
+  RayResult row = result;
+  for (std::uint32_t k = 0; k < hits.size(); ++k) {
+    row.hit = hits[k];
+    workers_[worker.value].digest.add(hit_term(result.tag.path, k, result.tag, row.hit));
+    if (recorder_) recorder_->record(worker, result.tag.path, k, row);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "app/run/all_hits.h"
 #include "core/numeric/digest.h"
 #include "core/types/workload.h"
 #include "shading/camera/path_sample.h"
@@ -13,11 +14,13 @@
 namespace carousel::app {
 
 /// Rays of a list (`workload: {rays_from: FILE}`): each is traced once and causes no other. Ray i counts as
-/// pixel i, sample 0.
+/// pixel i, sample 0; hit k of all its hits as sample k.
 class RayListWorkload final : public Workload {
  public:
   /// rays[i].tag.path must be i.
-  RayListWorkload(RayBatch rays, std::size_t workers) : rays_(std::move(rays)), workers_(workers) {}
+  /// A ray with kRayAll has the hits that `all` holds of it.
+  RayListWorkload(RayBatch rays, std::size_t workers, const AllHits* all = nullptr)
+      : rays_(std::move(rays)), workers_(workers), all_(all) {}
 
   /// The same as PathTracer::set_recorder().
   void set_recorder(shading::RayRecorder* recorder) { recorder_ = recorder; }
@@ -40,8 +43,11 @@ class RayListWorkload final : public Workload {
     HitsDigest digest;
   };
 
+  void take_all(WorkerId worker, const RayResult& result);
+
   const RayBatch rays_;
   std::vector<Worker> workers_;
+  const AllHits* all_;
   std::atomic<std::size_t> next_{0};
   shading::RayRecorder* recorder_ = nullptr;
   const shading::PathSample* sample_ = nullptr;  // null: all rays

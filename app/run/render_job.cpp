@@ -29,7 +29,13 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
         ray.tag.flags &= static_cast<std::uint8_t>(~kRayClosest);
       }
     }
-    list_ = std::make_unique<RayListWorkload>(std::move(rays), workers);
+    if (config.rays.query == Query::kAll) {
+      for (RayRequest& ray : rays) {
+        if (ray.tag.kind == RayKind::kShadow) ray.tag.kind = RayKind::kCamera;  // no hit ends its way
+        ray.tag.flags |= kRayAll;
+      }
+    }
+    list_ = std::make_unique<RayListWorkload>(std::move(rays), workers, prepared.all_hits.get());
     frame_rays_ = list_->size();
   } else {
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);

@@ -18,6 +18,7 @@ class MemoryRules {
       breach_("engine.kind", "workload: memory_trace runs in virtual time; expected cycle, found native");
     quantised_nodes_fit();
     leaves_fit();
+    builder_fits();
     shared_caches_fit();
     travelling_rays_fit();
     caches_have_whole_sets();
@@ -61,6 +62,19 @@ class MemoryRules {
     if (c.packets.shapes == PacketShapes::kSingle)
       breach_("packets.shapes",
               "a strip of triangles is decoded as a whole; expected strip, or bvh.leaves: triangles; found single");
+  }
+
+  // Spheres and cull planes are fitted to whole primitives, and their margins to hits in the primitives' own boxes.
+  void builder_fits() {
+    if (c.bvh.builder == BvhConfig::Builder::kSah) return;
+    const std::string_view name = enum_name(c.bvh.builder);
+    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
+      breach_("bvh.elements",
+              fmt::format("bvh.builder: {} cuts boxes; expected boxes, or bvh.builder: sah; found spheres", name));
+    if (c.cull_planes.count > 0)
+      breach_("cull_planes.count", fmt::format("cull planes are fitted to whole triangles, and bvh.builder: {} cuts "
+                                               "their boxes; expected 0, or bvh.builder: sah; found {}",
+                                               name, c.cull_planes.count));
   }
 
   void master_copies_fit() {

@@ -36,7 +36,6 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"bundles.edges", "parallel", kNative, "clock for parallel edges"},
     {"testers.window", "", kNative, "choice among packets that have arrived"},
     {"packets.made_per", "child", kBoth},
-    {"rays.query", "all", kBoth},
     {"energy.profile", "n45", kNative, "count of joules"},
     {"energy.profile", "n7", kNative, "count of joules"},
     {"testers.any_hit", "shader", kNative, "any-hit calls by shader workers"},

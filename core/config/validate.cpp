@@ -56,6 +56,10 @@ class Rules {
     if (c.rays.query != Query::kClosest && c.workload.kind != WorkloadConfig::Kind::kRaysFrom)
       issue("rays.query",
             "a picture's shaders say which hits they look for; expected closest, or workload: {rays_from: FILE}");
+    if (c.rays.query == Query::kAll && c.verify == Verify::kReference)
+      issue("verify",
+            "the reference compares one hit a ray; expected none, or another rays.query than all; found "
+            "reference");
   }
 
   void one_scene() {

@@ -33,9 +33,11 @@ enum RayFlag : std::uint8_t {
   kRayCullFront = 4,    ///< triangles that show their front are not there
   kRayForceOpaque = 8,  ///< nothing is asked, whatever lets rays through (core/types/any_hit.h)
   kRayAlone = 16,       ///< unlike its neighbours, and not worth a place in a bundle: no more than a hint
+  kRayAll = 64,         ///< no hit ends its way: each is reported (core/types/hit_sink.h), and the ray misses
   kRayClosest = 32,     ///< a shadow ray that wants to know the first thing in its way, since light may pass that
 };
-inline constexpr std::uint8_t kRayWishes = kRayCullBack | kRayCullFront | kRayForceOpaque | kRayAlone | kRayClosest;
+inline constexpr std::uint8_t kRayWishes =
+    kRayCullBack | kRayCullFront | kRayForceOpaque | kRayAlone | kRayClosest | kRayAll;
 
 /// Which ray of the frame this is. `path` indexes the path state of the workload that emitted the ray; with
 /// (kind, bounce, index) it is unique among rays in flight.

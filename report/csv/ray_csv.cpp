@@ -43,8 +43,10 @@ void write_csv(const std::filesystem::path& path, const std::vector<HitRow>& row
   for (std::size_t i = 0; i < columns; ++i) line += (i == 0 ? "" : ",") + std::string(kColumns[i]);
   file.write(line + "\n");
   for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool of_all = (rows[i].result.tag.flags & kRayAll) != 0;
+    if (of_all && !hits && rows[i].sample > 0) continue;  // one row a hit: the ray itself has been written
     line.clear();
-    append_ray(line, i, rows[i].result);
+    append_ray(line, of_all ? rows[i].pixel : i, rows[i].result);
     if (hits) append_hit(line, rows[i].result);
     line += '\n';
     file.write(line);

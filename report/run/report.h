@@ -22,6 +22,7 @@
 #include "report/sections/sampled.h"
 #include "report/sections/scene_summary.h"
 #include "report/sections/shading.h"
+#include "report/sections/structure.h"
 #include "report/sections/tests.h"
 #include "report/sections/throughput.h"
 #include "report/sections/time_series.h"
@@ -46,6 +47,7 @@ struct Report {
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
   std::optional<Nodes> nodes;
+  std::optional<Structure> structure;
   std::optional<Levels> levels;
   std::optional<CullPlanes> cull_planes;
   std::optional<Packets> packets;
@@ -88,6 +90,7 @@ void describe(V& v, const Report& r) {
   v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
   v.section("tests", r.tests, "tests and other work of testing rays");
   v.section("nodes", r.nodes, "nodes of the structure by depth; absent where single rays go down without packets");
+  v.section("structure", r.structure, "structures over meshes, when there are rays");
   v.section("levels", r.levels, "instances of instances, when the structure has more than two levels");
   v.section("cull_planes", r.cull_planes, "size of the cull planes and work that they spare, when there are any");
   v.section("packets", r.packets, "packets of all resources");

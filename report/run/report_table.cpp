@@ -260,6 +260,10 @@ std::string report_table(const Report& report) {
     table.line("levels", "{}: {} groups in {} placements; {} of nodes, {} if groups were not shared",
                report.levels->levels, grouped(report.levels->groups), grouped(report.levels->placements),
                bytes_text(report.levels->node_bytes), bytes_text(report.levels->node_bytes_unshared));
+  if (report.structure && report.structure->duplicates > 0)
+    table.line("structure", "{} references to {} triangles in {} leaves and {} inner nodes",
+               grouped(report.structure->references), grouped(report.structure->primitives),
+               grouped(report.structure->leaves), grouped(report.structure->inner_nodes));
   const bool simulated = report.engine.cycles.has_value();
   table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
              simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);

@@ -16,6 +16,8 @@ struct BvhConfig {
   enum class Leaves { kTriangles, kStrips } leaves = Leaves::kTriangles;
   std::int64_t top_triangles = 0;
   std::int64_t levels = 2;
+  enum class Builder { kSah, kSpatial, kOctree, kKd } builder = Builder::kSah;
+  double duplicates = 0.3;
 };
 
 template <>
@@ -34,6 +36,12 @@ template <>
 inline constexpr auto kEnumNames<BvhConfig::Leaves> = [] {
   using enum BvhConfig::Leaves;
   return names<BvhConfig::Leaves>({{kTriangles, "triangles"}, {kStrips, "strips"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<BvhConfig::Builder> = [] {
+  using enum BvhConfig::Builder;
+  return names<BvhConfig::Builder>({{kSah, "sah"}, {kSpatial, "spatial"}, {kOctree, "octree"}, {kKd, "kd"}});
 }();
 
 namespace config {
@@ -64,6 +72,13 @@ void describe(V& v, BvhConfig& c) {
   v.field("levels", c.levels, IntRange{2, 8}, "levels",
           "The largest number of structures that a ray is in one below another: the top level, groups of instances "
           "within groups, and a mesh. With 2 every instance is in the top level.");
+  v.choice("builder", c.builder,
+           "Meshes are divided by their triangles alone, or also by planes in space, which the boxes of triangles on "
+           "both sides are cut at: where that is better, at the middles of an octree's cells, or at the best planes of "
+           "a kd-tree.");
+  v.field("duplicates", c.duplicates, RealRange{0, 16}, "references/triangle",
+          "How often planes in space cut at most, for each triangle of a mesh; what then is left is divided by its "
+          "triangles alone.");
 }
 
 }  // namespace config

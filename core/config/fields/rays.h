@@ -26,6 +26,7 @@ struct RaysConfig {
   Placement placement = Placement::kBalanced;
   std::int64_t reads_per_cycle = 0, banks = 0;
   Query query = Query::kClosest;
+  std::int64_t hits_per_ray = 1024;
 };
 
 namespace config {
@@ -43,6 +44,8 @@ void describe(V& v, RaysConfig& c) {
       "The banks of a resource's ray store, which hold its slots in turn. Each has a port from which the testers read "
       "one record a cycle, and one to write. With 0 rays.reads_per_cycle is the limit.");
   v.choice("query", c.query, "The hits of a file's rays that are looked for: the closest, any one, or all.");
+  v.field("hits_per_ray", c.hits_per_ray, IntRange{1, 1 << 24}, "hits",
+          "The largest number of hits of a ray with query: all. A ray with more ends the run with an error.");
 }
 
 }  // namespace config

@@ -52,6 +52,8 @@ std::vector<Factor> scene_and_engine() {
       {"bvh.mixed_triangles", {"0", "2"}},
       {"bvh.top_triangles", {"0", "4"}},
       {"bvh.levels", {"2", "3", "8"}},
+      {"bvh.builder", all<BvhConfig::Builder>()},
+      {"bvh.duplicates", {"0.2", "3"}},
   };
 }
 
