@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "ringbus/transport/transport.h"
+
+namespace carousel::ringbus {
+
+/// Ranks that are processes of MPI (Open MPI), on one host or on many. There is one in a process, once.
+class MpiTransport : public Transport {
+ public:
+  /// Joins the ranks that mpirun has started; without mpirun the process is the only rank. Null where the program was
+  /// built without MPI (CAROUSEL_MPI). Throws a FileError where MPI lacks a thread level that it needs.
+  static std::unique_ptr<MpiTransport> start();
+  /// Whether start() makes one.
+  static bool built();
+  /// The library and its version; empty where built() is false.
+  static std::string library();
+
+  /// Leaves the ranks: waits for all of them to leave. Without it the destructor leaves them alone.
+  virtual void leave() = 0;
+  /// Ends all ranks, with this exit status. Does not return.
+  [[noreturn]] virtual void abort(int status) = 0;
+};
+
+}  // namespace carousel::ringbus
