@@ -79,6 +79,12 @@ class RayControl {
     const auto [begin, end] = own_slots(resource);
     return end - begin;
   }
+  /// The rank that has put the ray of a slot there, and shades it.
+  std::uint32_t lessee(ResourceId resource, std::uint32_t slot) const {
+    return local_ ? share_.rank_of(resource) : share_.lessee(slot, stores_[resource.value]->slots());
+  }
+  /// How many tests a new ray waits for.
+  std::int32_t initial_tests() const { return initial_tests_; }
   /// How often rays had to wait because there were too few free slots.
   std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
   /// Rays that travel wait where they are sent from.
