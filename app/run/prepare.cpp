@@ -134,6 +134,14 @@ void require_room(const Prepared& p, bool keep_hits) {
   require_fit(need, usable_memory_bytes(), p.located.positions);
 }
 
+/// Refuses a machine of several ranks where a command does not join them.
+void require_one_rank(const Prepared& p) {
+  if (p.config().engine.transport != EngineTransport::kLocal)
+    throw ConfigError({{p.located.positions.find("engine.transport"), "engine.transport",
+                        fmt::format("ranks play carousel run only; expected local, found {}",
+                                    enum_name(p.config().engine.transport))}});
+}
+
 /// Does all preparation after reading the configuration.
 void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
@@ -175,6 +183,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
   fit_area(p.located);
+  if (!options.ranks) require_one_rank(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   if (before_scene) before_scene(p.config());
   prepare_located(p, keep_hits);
@@ -184,6 +193,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 void set_machine(Prepared& p, LocatedConfig located) {
   p.located = std::move(located);
   fit_area(p.located);
+  require_one_rank(p);
   if (p.has_rays()) require_room(p, false);
 }
 
@@ -191,6 +201,7 @@ Prepared prepare_config(const std::string& text, const std::string& name, const 
   Prepared p;
   p.located = load_config({text, name}, sets, {.force = true});
   fit_area(p.located);
+  require_one_rank(p);
   prepare_located(p, false);
   return p;
 }

@@ -3,9 +3,9 @@
 #ifdef CAROUSEL_MPI
 
 #include <algorithm>
-#include <cstdlib>
 #include <deque>
 #include <limits>
+#include <thread>
 
 #define OMPI_SKIP_MPICXX 1  // the C++ bindings, which MPI 3 has dropped
 #include <mpi.h>
@@ -31,6 +31,7 @@ class OpenMpi final : public MpiTransport {
   OpenMpi() {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks_);
+    MPI_Comm_dup(MPI_COMM_WORLD, &leaving_all_);
     leaving_.resize(static_cast<std::size_t>(ranks_));
   }
 
@@ -105,9 +106,15 @@ class OpenMpi final : public MpiTransport {
   }
 
   void leave() override { MPI_Finalize(); }
-  void abort(int status) override {
-    MPI_Abort(MPI_COMM_WORLD, status);
-    std::abort();
+  void leave_within(std::chrono::milliseconds time) override {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point until = Clock::now() + time;
+    MPI_Request request;
+    MPI_Ibarrier(leaving_all_, &request);
+    for (int done = 0; Clock::now() < until; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+      if (done != 0) return leave();
+    }
   }
 
  private:
@@ -117,6 +124,7 @@ class OpenMpi final : public MpiTransport {
   };
 
   int rank_ = 0, ranks_ = 1;
+  MPI_Comm leaving_all_ = MPI_COMM_NULL;      // for leave_within(), whatever others wait for
   std::vector<std::deque<Message>> leaving_;  // by rank
   std::vector<std::vector<std::uint64_t>> spare_;
 };

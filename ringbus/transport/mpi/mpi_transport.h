@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -18,10 +19,10 @@ class MpiTransport : public Transport {
   /// The library and its version; empty where built() is false.
   static std::string library();
 
-  /// Leaves the ranks: waits for all of them to leave. Without it the destructor leaves them alone.
+  /// Leaves the ranks: waits for all of them to leave.
   virtual void leave() = 0;
-  /// Ends all ranks, with this exit status. Does not return.
-  [[noreturn]] virtual void abort(int status) = 0;
+  /// The same, but gives up where others do not leave in time. When this process ends then, mpirun ends the others.
+  virtual void leave_within(std::chrono::milliseconds time) = 0;
 };
 
 }  // namespace carousel::ringbus
