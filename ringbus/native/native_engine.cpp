@@ -181,6 +181,9 @@ class NativeRun {
 
   void work(std::size_t thread) {
     try {
+      // With other ranks on the same cores, as in tests, a yield is over only when all of these have had their turn; a
+      // thread that has slept comes first.
+      const int patience = machine_->gate ? 16 : 256;
       int idle = 0;
       // Acquire: pairs with the release that asks everyone to end.
       while (!end_.load(std::memory_order_acquire)) {
@@ -197,7 +200,7 @@ class NativeRun {
           progress_[thread].steps.fetch_add(1, std::memory_order_relaxed);
         } else if (machine_->gate ? machine_->gate->ended() : at_rest()) {
           break;
-        } else if (++idle < 256) {
+        } else if (++idle < patience) {
           // Two threads on one core must not wait out each other's time slices.
           std::this_thread::yield();
         } else {

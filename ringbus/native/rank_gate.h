@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/statistics/rank_counts.h"
 #include "ringbus/native/completed_queue.h"
 #include "ringbus/native/rank_link.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/ranks/end_count.h"
 #include "ringbus/ranks/rank_message.h"
 #include "ringbus/rays/remote_placing.h"
-#include "ringbus/results/rank_counts.h"
 #include "ringbus/transport/transport.h"
 
 namespace carousel::ringbus {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/statistics/link_fault_counts.h"
+#include "core/statistics/rank_counts.h"
 #include "core/types/ids.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
@@ -15,7 +16,6 @@
 #include "ringbus/results/link_statistics.h"
 #include "ringbus/results/memory_request.h"
 #include "ringbus/results/occupancy_series.h"
-#include "ringbus/results/rank_counts.h"
 #include "ringbus/results/ray_log.h"
 #include "ringbus/results/slice_log.h"
 #include "ringbus/results/time_series.h"

@@ -5,7 +5,7 @@
 
 #include "core/statistics/counters.h"
 
-namespace carousel::ringbus {
+namespace carousel {
 
 /// What a rank has sent to one other rank, and how it waited for it.
 struct RankCounts {
@@ -26,4 +26,4 @@ struct RankCounts {
   friend bool operator==(const RankCounts&, const RankCounts&) = default;
 };
 
-}  // namespace carousel::ringbus
+}  // namespace carousel
