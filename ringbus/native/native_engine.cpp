@@ -52,7 +52,7 @@ class NativeRun {
     if (machine_->gate) machine_->gate->start();
     for (;;) {
       run_threads();
-      if (machine_->gate) part();
+      if (machine_->gate) machine_->gate->part(error_, stuck_ ? describe_stuck() : "");
       if (error_) std::rethrow_exception(error_);
       if (stuck_) throw SimulationError(describe_stuck());
       if (!excluded_ || given_up_) break;
@@ -112,24 +112,6 @@ class NativeRun {
       throw;
     }
     watch();
-  }
-
-  /// Ends the run with the other ranks, whatever its end.
-  void part() {
-    using enum Farewell::Reason;
-    if (error_)
-      machine_->gate->part(kFault, text_of(error_));
-    else if (stuck_)
-      machine_->gate->part(kFault, describe_stuck());
-    else
-      machine_->gate->part(machine_->gate->ended() && !machine_->gate->stopped() ? kEnd : kStop, {});
-  }
-  static std::string text_of(const std::exception_ptr& error) {
-    try {
-      std::rethrow_exception(error);
-    } catch (const std::exception& e) {
-      return e.what();
-    }
   }
 
   /// Begins again without the resource that has stopped. All work that was under way is gone; every ray that had not

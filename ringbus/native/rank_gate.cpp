@@ -226,6 +226,17 @@ bool RankGate::deliver_held() {
   return any;
 }
 
+void RankGate::part(const std::exception_ptr& error, const std::string& stuck) {
+  using enum Farewell::Reason;
+  if (!stuck.empty()) return part(kFault, stuck);
+  if (!error) return part(ended() && !stopped_ ? kEnd : kStop, {});
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& e) {
+    part(kFault, e.what());
+  }
+}
+
 void RankGate::part(Farewell::Reason reason, const std::string& text) {
   sending_.clear();
   const std::string cause = cause_.empty() ? fmt::format("rank {}: {}", rank_, text) : cause_;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -51,9 +52,9 @@ class RankGate final : public RemotePlacing {
   bool ended() const { return ended_.load(std::memory_order_acquire); }
   /// A rank has ended the run before all was done because somebody asked it to.
   bool stopped() const { return stopped_; }
-  /// Tells the others that the run is over, and waits until they know and have told it, too; not for ever where one has
-  /// failed.
-  void part(Farewell::Reason reason, const std::string& text);
+  /// Tells the others how the run has ended here, by an `error`, because it was `stuck`, or well; and waits until they
+  /// have told it, too: not for ever where one has failed.
+  void part(const std::exception_ptr& error, const std::string& stuck);
 
   /// By rank.
   std::vector<RankCounts> counts() const;
@@ -92,6 +93,7 @@ class RankGate final : public RemotePlacing {
   void take_results(const RankMessage& message);
   bool deliver_held();
   void pass_token(bool at_rest);
+  void part(Farewell::Reason reason, const std::string& text);
   void send_now(std::uint32_t rank, RankMessage& message);
 
   Transport& transport_;

@@ -1,4 +1,4 @@
-#include "app/run/rank_scope.h"
+#include "app/host/rank_scope.h"
 
 #include <algorithm>
 #include <chrono>
