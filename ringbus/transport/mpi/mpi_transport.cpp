@@ -143,14 +143,6 @@ bool MpiTransport::built() {
   return true;
 }
 
-std::string MpiTransport::library() {
-  char text[MPI_MAX_LIBRARY_VERSION_STRING];
-  int size = 0;
-  MPI_Get_library_version(text, &size);
-  const std::string all(text, static_cast<std::size_t>(size));
-  return all.substr(0, all.find_first_of(",\n"));
-}
-
 }  // namespace carousel::ringbus
 
 #else
@@ -163,10 +155,6 @@ std::unique_ptr<MpiTransport> MpiTransport::start() {
 
 bool MpiTransport::built() {
   return false;
-}
-
-std::string MpiTransport::library() {
-  return {};
 }
 
 }  // namespace carousel::ringbus

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <memory>
-#include <string>
 
 #include "ringbus/transport/transport.h"
 
@@ -16,8 +15,6 @@ class MpiTransport : public Transport {
   static std::unique_ptr<MpiTransport> start();
   /// Whether start() makes one.
   static bool built();
-  /// The library and its version; empty where built() is false.
-  static std::string library();
 
   /// Leaves the ranks: waits for all of them to leave.
   virtual void leave() = 0;
