@@ -28,7 +28,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Runs `body`; adds to its ConfigErrors the positions in the user's files.
+/// Runs `body`; adds to its ConfigErrors the positions in the user's files; options have none.
 template <class Body>
 auto with_positions(const KeyPositions& positions, const Body& body) {
   try {
@@ -36,7 +36,8 @@ auto with_positions(const KeyPositions& positions, const Body& body) {
   } catch (const ConfigError& error) {
     std::vector<ConfigIssue> issues = error.issues();
     for (ConfigIssue& issue : issues)
-      if (issue.position.file.empty()) issue.position = positions.find(issue.key_path);
+      if (issue.position.file.empty() && !issue.key_path.starts_with("--"))
+        issue.position = positions.find(issue.key_path);
     throw ConfigError(std::move(issues));
   }
 }
@@ -185,7 +186,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   fit_area(p.located);
   if (!options.ranks) require_one_rank(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
-  if (before_scene) before_scene(p.config());
+  if (before_scene) with_positions(p.located.positions, [&] { before_scene(p.config()); });
   prepare_located(p, keep_hits);
   return p;
 }
