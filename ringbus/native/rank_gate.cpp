@@ -113,11 +113,12 @@ bool RankGate::send(std::uint32_t rank) {
   }
   const Clock::time_point now = Clock::now();
   const bool sign = now - peer.said > kSign;
-  bool anything = news || sign;
-  if (!anything) {
+  std::size_t items = 0;
+  {
     const std::lock_guard lock(peer.mutex);
-    anything = peer.next.items() > 0;
+    items = peer.next.items();
   }
+  bool anything = items >= kFull || ((news || sign || items > 0) && now - peer.said >= kWindow);
   if (anything && transport_.leaving(rank) >= kLeaving) {
     ++peer.counts.holds;
     anything = false;

@@ -65,6 +65,9 @@ class RankGate final : public RemotePlacing {
   using Clock = std::chrono::steady_clock;
   // A rank with nothing to say says so, and one from which nothing comes for long has died or hangs.
   static constexpr std::chrono::milliseconds kSign{200}, kSilence{5000}, kParting{3000};
+  // Things for a rank gather for so long, or until there are so many: a message costs more than all but its size.
+  static constexpr std::chrono::microseconds kWindow{50};
+  static constexpr std::size_t kFull = 256;
   static constexpr std::size_t kLeaving = 2;  // messages to a rank that may be on their way out
 
   /// What concerns one other rank.
