@@ -132,6 +132,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
     add_ring(r, result, config, prepared.accel);
     add_links(r, result, config);
   }
+  add_ranks(r, result);
   r.shading.workers = static_cast<std::uint64_t>(shader_workers(config));
   r.shading.shaded = result.rays_completed;
   r.shading.saturated = job.saturated();

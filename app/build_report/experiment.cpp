@@ -65,6 +65,8 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.samples = static_cast<std::size_t>(p.config().report.samples);
   if (trace != nullptr) options.timeline = trace->wanted();
   options.memory = memory;
+  options.transport = job.ranks();
+  if (job.ranks() != nullptr) options.samples = 0;  // their clocks differ
   const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
@@ -142,6 +144,15 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   }
   const ringbus::RunResult result =
       simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory);
+  if (job.ranks() != nullptr) {
+    job.join();
+    census.join(*job.ranks());
+    if (job.ranks()->rank() != 0) {
+      report::Report nothing;
+      nothing.incomplete = !result.complete;
+      return nothing;
+    }
+  }
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   add_census(report, census, p.accel);

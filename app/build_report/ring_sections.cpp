@@ -61,6 +61,18 @@ void add_census(report::Report& r, const RayCensus& census, const accel::Accel& 
   if (r.tests) r.tests->depth_first = census.depth_first(accel);
 }
 
+void add_ranks(report::Report& r, const ringbus::RunResult& result) {
+  if (result.ranks.empty()) return;
+  r.ranks.emplace();
+  r.rank_links.emplace();
+  for (std::size_t from = 0; from < result.ranks.size(); ++from) {
+    const ringbus::RankResult& rank = result.ranks[from];
+    r.ranks->push_back({from, rank.first_resource, rank.resources, rank.threads, rank.rays_completed});
+    for (std::size_t to = 0; to < rank.to.size(); ++to)
+      if (to != from) r.rank_links->push_back({from, to, rank.to[to]});
+  }
+}
+
 void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
   for (const ringbus::LinkResult& link : result.links) {

@@ -13,6 +13,9 @@ namespace carousel::app {
 void add_ring(report::Report& report, const ringbus::RunResult& result, const Config& config,
               const accel::Accel& accel);
 
+/// Fills in the ranks and their messages, if there are several.
+void add_ranks(report::Report& report, const ringbus::RunResult& result);
+
 /// Fills in the way of the rays and the depth-first baseline, for which it traces rays.
 void add_census(report::Report& report, const RayCensus& census, const accel::Accel& accel);
 

@@ -36,7 +36,7 @@ std::string ray_list_text(const Prepared& p) {
 
 int check_command(const CheckArguments& arguments) {
   // A topology that can deadlock gets its verdict here instead of a plain refusal.
-  const Prepared p = prepare(arguments, {.force = true}, false);
+  const Prepared p = prepare(arguments, {.force = true, .ranks = true}, false);
   const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config().topology);
   std::string text;
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "app/build_report/experiment.h"
@@ -14,12 +15,14 @@
 #include "app/host/log.h"
 #include "app/host/output.h"
 #include "app/host/output_folder.h"
+#include "app/host/rank_scope.h"
 #include "app/run/hit_recorder.h"
 #include "app/run/render_job.h"
 #include "app/sampled/sampled_run.h"
 #include "app/trace/memory_csv.h"
 #include "app/trace/trace_file.h"
 #include "core/config/write.h"
+#include "core/numeric/bytes_digest.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "report/run/memory_table.h"
@@ -90,6 +93,18 @@ int run_without_rays_command(const RunArguments& arguments, const Prepared& p, c
   return verdict(report, interrupt.status());
 }
 
+/// Refuses what would need the rays of all ranks in one place.
+void require_one_rank(const RunArguments& arguments) {
+  const auto refuse = [&](bool wanted, const char* option) {
+    if (wanted)
+      throw ConfigError(
+          {{{}, option, "not built yet over ranks; expected engine.transport: local, or a run without this option"}});
+  };
+  refuse(arguments.hits, "--hits");
+  refuse(!arguments.dump_rays.empty(), "--dump-rays");
+  refuse(!arguments.trace.file.empty(), "--trace");
+}
+
 /// Only a simulated machine has a memory.
 void require_memory(const RunArguments& arguments, const Config& config) {
   if (!arguments.dump_memory.empty() && config.engine.kind != EngineKind::kCycle)
@@ -106,6 +121,15 @@ void require_estimates(const RunArguments& arguments, const Config& config) {
                         "--audit",
                         "this run has no estimates; expected sampling.fraction below 1, as in --set "
                         "sampling.fraction=0.1, or a run without this option"}});
+}
+
+/// Tells two scenes apart, and the structures built of them.
+std::string scene_digest(const Prepared& p) {
+  const scene::Scene& s = p.scene;
+  const auto& nodes = p.accel.nodes;
+  const std::string boxes = bytes_digest({reinterpret_cast<const char*>(nodes.data()), nodes.size() * sizeof nodes[0]});
+  return fmt::format("{} triangles, {} instances, {} materials, structure {}", s.unique_triangle_count(),
+                     s.instances.size(), s.materials.size(), boxes);
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -126,10 +150,17 @@ int run_command(const RunArguments& arguments) {
   const InterruptScope interrupt;
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
   std::optional<OutputFolder> output;
-  const Prepared p = prepare(arguments, {.force = arguments.force}, keep_hits, [&](const Config& config) {
-    output.emplace(out_folder(arguments), &config, arguments.force,
-                   Results::kRun);  // before any work that could be lost
-  });
+  std::optional<RankScope> ranks;
+  const Prepared p =
+      prepare(arguments, {.force = arguments.force, .ranks = true}, keep_hits, [&](const Config& config) {
+        if (config.engine.transport != EngineTransport::kLocal) {
+          require_one_rank(arguments);
+          ranks.emplace(config);
+          if (ranks->rank() != 0) return;  // one writes the files
+        }
+        output.emplace(out_folder(arguments), &config, arguments.force,
+                       Results::kRun);  // before any work that could be lost
+      });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
   if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *output);
@@ -137,17 +168,27 @@ int run_command(const RunArguments& arguments) {
   require_estimates(arguments, p.config());
 
   RenderJob job(p);
+  if (ranks) {
+    ranks->require_same("scene", scene_digest(p));
+    job.share(ranks->transport());
+  }
   std::optional<HitRecorder> recorder;
   if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(shader_workers(p.config()))));
   std::optional<TraceFile> trace;
   if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
   ringbus::MemoryLog memory;
-  report::Report report = run_rays(arguments, p, job, interrupt, arguments.quiet, trace ? &*trace : nullptr,
+  const bool quiet = arguments.quiet || (ranks && ranks->rank() != 0);
+  report::Report report = run_rays(arguments, p, job, interrupt, quiet, trace ? &*trace : nullptr,
                                    arguments.dump_memory.empty() ? nullptr : &memory);
+  if (ranks && ranks->rank() != 0) {
+    ranks->leave();
+    return report.incomplete ? interrupt.status() : kDone;
+  }
   if (arguments.audit) audit(p, job, interrupt.token(), arguments.quiet, report);
   if (!arguments.dump_memory.empty()) write_memory_csv(arguments.dump_memory, memory);
   finish(arguments, report, report::report_table(report), *output,
          [&] { write_files(output->staging(), arguments, p, job, report, recorder ? &*recorder : nullptr); });
+  if (ranks) ranks->leave();
   return verdict(report, interrupt.status());
 }
 

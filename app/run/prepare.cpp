@@ -28,7 +28,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Runs `body`; adds to its ConfigErrors the positions in the user's files.
+/// Runs `body`; adds to its ConfigErrors the positions in the user's files; options have none.
 template <class Body>
 auto with_positions(const KeyPositions& positions, const Body& body) {
   try {
@@ -36,7 +36,8 @@ auto with_positions(const KeyPositions& positions, const Body& body) {
   } catch (const ConfigError& error) {
     std::vector<ConfigIssue> issues = error.issues();
     for (ConfigIssue& issue : issues)
-      if (issue.position.file.empty()) issue.position = positions.find(issue.key_path);
+      if (issue.position.file.empty() && !issue.key_path.starts_with("--"))
+        issue.position = positions.find(issue.key_path);
     throw ConfigError(std::move(issues));
   }
 }
@@ -142,6 +143,14 @@ void require_room(const Prepared& p, bool keep_hits) {
   require_fit(need, usable_memory_bytes(), p.located.positions);
 }
 
+/// Refuses a machine of several ranks where a command does not join them.
+void require_one_rank(const Prepared& p) {
+  if (p.config().engine.transport != EngineTransport::kLocal)
+    throw ConfigError({{p.located.positions.find("engine.transport"), "engine.transport",
+                        fmt::format("ranks play carousel run only; expected local, found {}",
+                                    enum_name(p.config().engine.transport))}});
+}
+
 /// Does all preparation after reading the configuration.
 void prepare_located(Prepared& p, bool keep_hits) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
@@ -183,8 +192,9 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
   fit_area(p.located);
+  if (!options.ranks) require_one_rank(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
-  if (before_scene) before_scene(p.config());
+  if (before_scene) with_positions(p.located.positions, [&] { before_scene(p.config()); });
   prepare_located(p, keep_hits);
   return p;
 }
@@ -192,6 +202,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 void set_machine(Prepared& p, LocatedConfig located) {
   p.located = std::move(located);
   fit_area(p.located);
+  require_one_rank(p);
   if (!p.has_rays()) return;
   set_query(p);
   require_room(p, false);
@@ -201,6 +212,7 @@ Prepared prepare_config(const std::string& text, const std::string& name, const 
   Prepared p;
   p.located = load_config({text, name}, sets, {.force = true});
   fit_area(p.located);
+  require_one_rank(p);
   prepare_located(p, false);
   return p;
 }

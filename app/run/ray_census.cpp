@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
+#include <string>
+#include <type_traits>
 
 #include "accel/traverse/reference_tracer.h"
 
@@ -53,6 +56,32 @@ void RayCensus::shade(WorkerId worker, const HitBatch& completed, RayBatch& out)
       own.at(tag.bounce).passed += tag.index > 0;
     else if (tag.bounce > 0)
       ++own.at(tag.bounce - std::size_t{1}).went_on;
+  }
+}
+
+void RayCensus::join(ringbus::Transport& ranks) {
+  std::string bounces, kept;
+  const auto append = [](std::string& to, const auto& values) {
+    static_assert(std::is_trivially_copyable_v<std::decay_t<decltype(values[0])>>);
+    to.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+  };
+  Worker sum;
+  for (Worker& worker : workers_) {
+    for (std::size_t b = 0; b < worker.bounces.size(); ++b) sum.at(b) += worker.bounces[b];
+    append(kept, worker.kept);
+    worker = {};
+  }
+  append(bounces, sum.bounces);
+  Worker& all = workers_.front();
+  for (const std::string& bytes : ranks.gather(bounces)) {
+    std::vector<BounceCounts> counts(bytes.size() / sizeof(BounceCounts));
+    std::memcpy(counts.data(), bytes.data(), bytes.size());
+    for (std::size_t b = 0; b < counts.size(); ++b) all.at(b) += counts[b];
+  }
+  for (const std::string& bytes : ranks.gather(kept)) {
+    const std::size_t before = all.kept.size();
+    all.kept.resize(before + bytes.size() / sizeof(RayRequest));
+    std::memcpy(all.kept.data() + before, bytes.data(), bytes.size());
   }
 }
 

@@ -8,6 +8,7 @@
 #include "core/types/workload.h"
 #include "report/sections/rays.h"
 #include "report/sections/tests.h"
+#include "ringbus/transport/transport.h"
 
 namespace carousel::app {
 
@@ -29,6 +30,9 @@ class RayCensus final : public Workload {
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
   // When nothing runs any more.
+
+  /// Joins the rays that the ranks of a run have counted and kept. Every rank calls, and every one gets all.
+  void join(ringbus::Transport& ranks);
 
   std::vector<report::RayBounce> by_bounce() const;
   /// Traces the kept rays on the calling thread.

@@ -133,6 +133,18 @@ void RenderJob::set_sample(const shading::PathSample* sample) {
   if (list_) list_->set_sample(sample);
 }
 
+void RenderJob::share(ringbus::Transport& ranks) {
+  ranks_ = &ranks;
+  share_ = shading::share_of_paths(frame_rays_, ranks.rank(), ranks.ranks());
+  set_sample(&*share_);
+}
+
+void RenderJob::join() {
+  std::vector<std::uint64_t> sums = tracer_->sums();
+  ranks_->sum(sums);
+  if (ranks_->rank() == 0) tracer_->set_sums(sums);
+}
+
 Workload& RenderJob::workload() const {
   return tracer_ ? static_cast<Workload&>(*tracer_) : *list_;
 }

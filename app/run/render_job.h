@@ -12,6 +12,7 @@
 #include "app/run/prepare.h"
 #include "app/run/ray_list_workload.h"
 #include "report/run/report.h"
+#include "ringbus/transport/transport.h"
 #include "shading/raster/first_hits.h"
 #include "shading/tracer/path_tracer.h"
 
@@ -34,12 +35,19 @@ class RenderJob {
   /// The paths that `sampling` draws; null if the whole frame is traced.
   const shading::PathSample* sample() const { return drawn_ ? &*drawn_ : nullptr; }
 
+  /// Only this rank's share of the paths is traced. Keeps a reference. Before the first ray.
+  void share(ringbus::Transport& ranks);
+  /// The ranks of the run; null if there is one.
+  ringbus::Transport* ranks() const { return ranks_; }
+  /// Brings the results of all ranks to rank 0. Every rank calls.
+  void join();
+
   Workload& workload() const;
   void set_recorder(shading::RayRecorder* recorder);
   /// Pixel and sample of a path whose rays are in flight; of a ray of a list its number and 0.
   std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t path) const;
   /// The number of rays that no other ray causes, by which progress is measured.
-  std::uint64_t first_rays() const { return drawn_ ? drawn_->count() : frame_rays_; }
+  std::uint64_t first_rays() const { return drawn_ ? drawn_->count() : share_ ? share_->count() : frame_rays_; }
   /// That number for the whole frame, of which `sampling` may draw a part.
   std::uint64_t frame_rays() const { return frame_rays_; }
 
@@ -81,7 +89,8 @@ class RenderJob {
   shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads
   std::unique_ptr<shading::PathTracer> tracer_;  // either tracer_ or list_ is set
   std::unique_ptr<RayListWorkload> list_;
-  std::optional<shading::PathSample> drawn_;
+  std::optional<shading::PathSample> drawn_, share_;
+  ringbus::Transport* ranks_ = nullptr;
   std::uint64_t frame_rays_, seed_;
   float exposure_;
   shading::PixelOrder order_;

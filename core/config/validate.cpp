@@ -12,6 +12,7 @@
 #include "core/config/memory_rules.h"
 #include "core/config/network_rules.h"
 #include "core/config/not_built.h"
+#include "core/config/rank_rules.h"
 #include "core/config/schema.h"
 #include "core/types/effect.h"
 
@@ -42,6 +43,7 @@ class Rules {
     query_needs_a_file();
     hashed_homes_spill();
     config::check_network(c, options_.force, breach);
+    config::check_ranks(c, breach);
     sampling_fits();
     vary_names_keys();
     return std::move(issues_);

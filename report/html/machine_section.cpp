@@ -51,6 +51,9 @@ std::string machine_section(const Json& report, const Json& schema) {
                        busiest.empty() ? "none" : busiest, share(most).text);
     tables += table.html();
   }
+  for (const auto& [key, title] : {std::pair{"ranks", "Ranks"}, std::pair{"rank_links", "Messages between ranks"}})
+    if (const Json* rows = find(report, key); rows && !rows->empty())
+      tables += table_of(key, title, *rows, *find(schema, fmt::format("properties.{}.items", key))).html();
   if (links && !links->empty()) {
     Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"), {"utilisation"});
     double carried = 0;

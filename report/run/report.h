@@ -17,6 +17,7 @@
 #include "report/sections/nodes.h"
 #include "report/sections/packets.h"
 #include "report/sections/program.h"
+#include "report/sections/ranks.h"
 #include "report/sections/rays.h"
 #include "report/sections/resource.h"
 #include "report/sections/sampled.h"
@@ -54,6 +55,8 @@ struct Report {
   std::optional<Collections> collections;
   std::optional<std::vector<Resource>> resources;
   std::optional<std::vector<Link>> links;
+  std::optional<std::vector<Rank>> ranks;
+  std::optional<std::vector<RankLink>> rank_links;
   std::optional<Memory> memory;
   std::optional<std::vector<Bytes>> bytes;
   std::optional<TimeSeries> time_series;
@@ -97,6 +100,8 @@ void describe(V& v, const Report& r) {
   v.section("collections", r.collections, "collections: rays waiting for a node");
   v.section("resources", r.resources, "each resource");
   v.section("links", r.links, "each link");
+  v.section("ranks", r.ranks, "each process of a run with engine.transport: mpi");
+  v.section("rank_links", r.rank_links, "messages from each of them to each other");
   v.section("memory", r.memory, "caches and memory of the simulated machine");
   v.section("bytes", r.bytes,
             "every byte that a part of the simulated machine hands to another, by kind of message (cycle)");

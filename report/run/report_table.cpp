@@ -287,6 +287,12 @@ std::string report_table(const Report& report) {
                grouped(raster.triangles), grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
                seconds_text(report.host.raster_seconds.value_or(0)));
   }
+  if (report.ranks) {
+    RankCounts all;
+    for (const RankLink& link : *report.rank_links) all += link.sent;
+    table.line("ranks", "{} ranks   {} messages   {} between them", report.ranks->size(), grouped(all.messages),
+               bytes_text(all.bytes));
+  }
   if (report.faults && report.faults->cycles_without)
     table.line(
         "faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost,

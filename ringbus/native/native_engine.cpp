@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "ringbus/native/native_port.h"
 #include "ringbus/native/native_series.h"
 #include "ringbus/native/shader_worker.h"
+#include "ringbus/ranks/gather_result.h"
 
 namespace carousel::ringbus {
 
@@ -47,8 +49,10 @@ class NativeRun {
   RunResult run() {
     start_ = Clock::now();
     if (recorder_) recorder_->start(start_);
+    if (machine_->gate) machine_->gate->start();
     for (;;) {
       run_threads();
+      if (machine_->gate) machine_->gate->part(error_, stuck_ ? describe_stuck() : "");
       if (error_) std::rethrow_exception(error_);
       if (stuck_) throw SimulationError(describe_stuck());
       if (!excluded_ || given_up_) break;
@@ -58,9 +62,11 @@ class NativeRun {
     }
     const std::chrono::duration<double> wall = Clock::now() - start_;
     look();
-    const bool complete = count_.done();
+    const bool complete = count_.done() && !(machine_->gate && machine_->gate->stopped());
     if (complete) check_drained();
-    return result(complete, wall.count());
+    RunResult out = result(complete, wall.count());
+    if (machine_->gate) gather_result(*options_.transport, machine_->shared.share, out);
+    return out;
   }
 
  private:
@@ -76,17 +82,19 @@ class NativeRun {
   void build() {
     ports_.clear();
     workers_.clear();
-    machine_ = std::make_unique<NativeMachine>(config_, accel_, scene_size_, own_links_);
+    machine_ = std::make_unique<NativeMachine>(config_, accel_, scene_size_, own_links_, options_.transport);
     const NativePortSettings settings{resource_settings(config_, scene_size_), config_.faults,
                                       config_.engine.clock_mhz};
+    const RankShare& share = machine_->shared.share;
     for (std::uint32_t r = 0; r < sinks_.size(); ++r)
-      ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, settings, sinks_[r].get()));
+      if (share.here(ResourceId(r)))
+        ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, settings, sinks_[r].get()));
     if (!recorder_ && (options_.timeline.most > 0 || options_.ray != nullptr))
       recorder_ =
           std::make_unique<NativeRecorder>(config_, machine_->shared.packets.size(), options_.timeline, options_.ray);
     for (std::size_t r = 0; recorder_ && r < ports_.size(); ++r) ports_[r]->record(*recorder_);
     for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
-    const std::int64_t slots = config_.topology.resources * config_.rays.slots_per_resource;
+    const auto slots = static_cast<std::int64_t>(machine_->shared.control.free_slots());  // that this rank fills
     for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(shader_workers(config_)); ++w)
       workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), machine_->shared.control, machine_->completed,
                                                         workload_, count_, slots, shader_workers(config_),
@@ -155,6 +163,9 @@ class NativeRun {
 
   void work(std::size_t thread) {
     try {
+      // With other ranks on the same cores, as in tests, a yield is over only when all of these have had their turn; a
+      // thread that has slept comes first.
+      const int patience = machine_->gate ? 16 : 256;
       int idle = 0;
       // Acquire: pairs with the release that asks everyone to end.
       while (!end_.load(std::memory_order_acquire)) {
@@ -164,13 +175,14 @@ class NativeRun {
           turns_.store(turns_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
         for (std::size_t r = thread; r < ports_.size(); r += threads_) moved |= ports_[r]->step();
         for (std::size_t w = thread; w < workers_.size(); w += threads_) moved |= workers_[w]->step();
+        if (machine_->gate && thread == 0) moved |= machine_->gate->step(at_rest());
         if (moved) {
           idle = 0;
           // Relaxed: the watcher only wants to see it change.
           progress_[thread].steps.fetch_add(1, std::memory_order_relaxed);
-        } else if (count_.done() && packets_out() == 0) {
+        } else if (machine_->gate ? machine_->gate->ended() : at_rest()) {
           break;
-        } else if (++idle < 256) {
+        } else if (++idle < patience) {
           // Two threads on one core must not wait out each other's time slices.
           std::this_thread::yield();
         } else {
@@ -187,6 +199,7 @@ class NativeRun {
     ended_changed_.notify_all();
   }
 
+  bool at_rest() const { return count_.done() && packets_out() == 0; }
   // When the last ray has been shaded, packets may still be on their way to their owners, through resources of any
   // thread. From then on none is sent out any more, so a sum of zero stays zero.
   std::uint64_t packets_out() const {
@@ -210,7 +223,7 @@ class NativeRun {
       if (options_.progress) options_.progress(count_.completed.load(std::memory_order_relaxed));
       std::uint64_t steps = 0;
       for (std::size_t t = 0; t < threads_; ++t) steps += progress_[t].steps.load(std::memory_order_relaxed);
-      if (steps != last) {
+      if (steps != last || (machine_->gate && at_rest())) {  // with nothing to do it waits for other ranks
         last = steps;
         last_change = Clock::now();
       } else if (Clock::now() - last_change > options_.stuck_after) {
@@ -227,6 +240,7 @@ class NativeRun {
         fmt::format("no progress for {} ms with {} rays outstanding; who waits for whom:", options_.stuck_after.count(),
                     count_.outstanding.load());
     for (const auto& port : ports_) text += "\n  " + port->describe();
+    if (machine_->gate) text += "\n  " + machine_->gate->describe();
     return text;
   }
 
@@ -252,15 +266,20 @@ class NativeRun {
     out.threads = threads_;
     out.slots_used = slots_used_ + machine_->shared.control.slots_used();
     out.slot_waits = slot_waits_ + machine_->shared.control.slot_waits();
-    for (std::size_t r = 0; r < ports_.size(); ++r) {
-      if (sinks_[r]) out.resources.push_back(sinks_[r]->statistics());
-      out.collections.push_back(ports_[r]->resource().collections().statistics());
-    }
+    for (const auto& sink : sinks_)
+      if (sink) out.resources.push_back(sink->statistics());
+    out.collections.resize(sinks_.size());
+    for (const auto& port : ports_)
+      out.collections[port->resource().id().value] = port->resource().collections().statistics();
     for (const auto& link : machine_->links)
       out.links.push_back(
           {link->from(), link->to(), link->capacity(), link->statistics(), link->series(), link->faults()});
     for (std::size_t i = 0; i < faults_before_.size(); ++i) out.links[i].faults += faults_before_[i];
     out.start = start_;
+    if (machine_->gate) {
+      out.ranks.resize(machine_->shared.share.ranks());
+      out.ranks[machine_->shared.share.rank()].to = machine_->gate->counts();
+    }
     if (series_.on()) out.series = series_.finish();
     if (!recorder_) return out;
     out.timeline = recorder_->timeline();

@@ -8,18 +8,22 @@
 #include "ringbus/native/completed_queue.h"
 #include "ringbus/native/link.h"
 #include "ringbus/native/queue_link.h"
+#include "ringbus/native/rank_gate.h"
 #include "ringbus/protocol/machine.h"
 
 namespace carousel::ringbus {
 
 /// A machine with what the native engine adds to it: real queues between resources, and the queue to shading.
 struct NativeMachine {
-  /// The links come from `own_links` if that is not empty, and otherwise from the configuration.
-  NativeMachine(const Config& config, const accel::Accel& accel, float scene_size, const LinkMaker& own_links);
+  /// The links come from `own_links` if that is not empty, and otherwise from the configuration. With
+  /// a `transport` it is one rank's share of a machine.
+  NativeMachine(const Config& config, const accel::Accel& accel, float scene_size, const LinkMaker& own_links,
+                Transport* transport);
 
   Machine shared;
   std::vector<std::unique_ptr<Link>> links;  ///< as shared.topology.wires()
   CompletedQueue completed;
+  std::unique_ptr<RankGate> gate;  ///< null: the whole machine is here
 };
 
 }  // namespace carousel::ringbus

@@ -24,6 +24,7 @@ std::optional<std::uint64_t> stops_after(const FaultsConfig::Resource& fault, Re
 NativePort::NativePort(ResourceId id, NativeMachine& machine, const NativePortSettings& settings, EventSink* sink)
     : machine_(machine.shared),
       completed_(machine.completed),
+      gate_(machine.gate.get()),
       sink_(sink),
       resource_(settings.resource, machine_.accel, *machine_.stores[id.value], {.events = sink}),
       logic_(machine_, resource_),
@@ -292,6 +293,7 @@ void NativePort::flush_completed(bool all) {
   rays_completed_ += done.size();
   if (recorder_ != nullptr) [[unlikely]]
     note_done(done);
+  if (gate_ != nullptr) gate_->send_results(resource_.id(), done, resource_.freed_slots());
   machine_.control.free(resource_.id(), resource_.freed_slots());
   resource_.freed_slots().clear();
   HitBatch fresh = completed_.fresh();

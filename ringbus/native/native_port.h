@@ -111,6 +111,7 @@ class NativePort {
 
   Machine& machine_;
   CompletedQueue& completed_;
+  RankGate* gate_;
   EventSink* sink_;
   Resource resource_;
   PortLogic logic_;

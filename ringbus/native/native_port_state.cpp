@@ -11,7 +11,7 @@ bool NativePort::drained() const {
   const bool egress_empty =
       std::all_of(out_ports_.begin(), out_ports_.end(), [](const OutPort& out) { return out.egress.empty(); });
   return packets_out() == 0 && egress_empty && logic_.at_rest() && rounds_.empty() &&
-         machine_.control.free_slots(resource_.id()) == resource_.rays().slots();
+         machine_.control.free_slots(resource_.id()) == machine_.control.slots(resource_.id());
 }
 
 std::string NativePort::describe() const {

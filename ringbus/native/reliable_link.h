@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "ringbus/faults/faulty_wire.h"
-#include "ringbus/faults/packet_image.h"
 #include "ringbus/faults/retransmit_timer.h"
 #include "ringbus/native/link.h"
+#include "ringbus/packets/packet_image.h"
 #include "ringbus/queues/spsc_ring.h"
 
 namespace carousel::ringbus {

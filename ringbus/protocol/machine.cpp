@@ -9,18 +9,20 @@ namespace carousel::ringbus {
 namespace {
 
 RayControlSettings control_settings(const Config& config, const accel::Accel& accel, float scene_size,
-                                    const Topology& topology) {
+                                    const Topology& topology, const RankShare& share) {
   const std::int32_t tests = Resource::initial_tests(resource_settings(config, scene_size), accel);
   RayControlSettings settings = ray_control_settings(config, tests, scene_size);
   settings.local |= !topology.has_packets();
+  settings.share = share;
   return settings;
 }
 
 }  // namespace
 
 Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
-                 std::optional<std::uint32_t> local_packets)
+                 std::optional<std::uint32_t> local_packets, const RankShare& rank_share)
     : accel(a),
+      share(rank_share),
       topology(config.topology),
       flow(config.topology.flow, topology.direct()),
       home_local(config.collections.home == Home::kLocal),
@@ -31,7 +33,7 @@ Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
       packets(make_packets(topology, packets_per_direction, static_cast<std::size_t>(config.packets.rays),
                            one_collection_a_ray(config.collections.traversal))),
       answers(topology.broadcasts() && !stays ? topology.resources() : 0, std::vector<Packet>(packets.size())),
-      stores(make_ray_stores(config.topology.resources, config.rays.slots_per_resource, config.bundles)),
-      control(control_settings(config, accel, scene_size, topology), stores) {}
+      stores(make_ray_stores(config.topology.resources, config.rays.slots_per_resource, config.bundles, share)),
+      control(control_settings(config, accel, scene_size, topology, share), stores) {}
 
 }  // namespace carousel::ringbus

@@ -19,9 +19,10 @@ namespace carousel::ringbus {
 /// one engine needs (links, channels, simulated memory) stand beside it in that engine.
 struct Machine {
   /// Keeps a reference to `accel`. `local_packets`: how many packets a resource needs in each direction where packets
-  /// never travel; absent: as many as it may have under way elsewhere.
+  /// never travel; absent: as many as it may have under way elsewhere. `share`: the part that this process plays; it
+  /// has the records of its own resources only, and a place for every packet, which is filled while the packet is here.
   Machine(const Config& config, const accel::Accel& accel, float scene_size,
-          std::optional<std::uint32_t> local_packets = std::nullopt);
+          std::optional<std::uint32_t> local_packets = std::nullopt, const RankShare& share = {});
 
   Packet& packet(PacketId id) { return packets[id.value]; }
   const Packet& packet(PacketId id) const { return packets[id.value]; }
@@ -34,6 +35,7 @@ struct Machine {
   }
 
   const accel::Accel& accel;
+  RankShare share;
   Topology topology;
   FlowRules flow;
   bool home_local;                                ///< `collections.home: local`

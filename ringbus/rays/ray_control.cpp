@@ -7,14 +7,20 @@ namespace carousel::ringbus {
 
 RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size) {
   const bool local = config.collections.home == Home::kLocal;
-  return {config.rays.placement, local,          static_cast<std::size_t>(config.packets.rays),
-          initial_tests,         config.bundles, scene_size};
+  return {config.rays.placement,
+          local,
+          static_cast<std::size_t>(config.packets.rays),
+          initial_tests,
+          config.bundles,
+          scene_size,
+          {}};
 }
 
 RayControl::RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores)
     : placement_(settings.placement),
       rays_travel_(placement_ == Placement::kFirstTaker || placement_ == Placement::kAddressed),
       local_(settings.local),
+      share_(settings.share),
       resources_(static_cast<std::uint32_t>(stores.size())),
       group_rays_(settings.group_rays),
       initial_tests_(settings.initial_tests),
@@ -25,7 +31,7 @@ RayControl::RayControl(const RayControlSettings& settings, std::span<const std::
   const std::size_t total = free_slots();
   // Groups are placed whole where possible, but waiting for more than a quarter of the slots would idle the ring.
   if (settings.bundles.size > 0) builder_.emplace(settings.bundles, settings.scene_size);
-  enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_ : total) / 4);
+  enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_issuing() : total) / 4);
 }
 
 void RayControl::free_all() {
@@ -33,11 +39,19 @@ void RayControl::free_all() {
     SlotList& list = slots_[r];
     list.free.clear();
     list.free_bundles.clear();
-    for (std::uint32_t slot = stores_[r]->slots(); slot-- > 0;) list.free.push_back(slot);
+    const auto [begin, end] = own_slots(ResourceId(r));
+    for (std::uint32_t slot = end; slot-- > begin;) list.free.push_back(slot);
     for (std::uint32_t bundle = stores_[r]->room().loaded; bundle-- > 0;)
       list.free_bundles.push_back(stores_[r]->slots() + bundle);
-    list.count = stores_[r]->slots();
+    list.count = list.free.size();
   }
+}
+
+/// The slots of a resource that this rank hands out, up to the second one.
+std::pair<std::uint32_t, std::uint32_t> RayControl::own_slots(ResourceId resource) const {
+  const std::uint32_t slots = stores_[resource.value]->slots();
+  if (local_) return {0, share_.here(resource) ? slots : 0};  // rays of others never come here
+  return {share_.lease_begin(slots), share_.lease_end(slots)};
 }
 
 void RayControl::discard() {
@@ -78,6 +92,10 @@ std::size_t RayControl::load_some(ResourceId resource, std::span<const RayReques
   SlotList& list = slots_[resource.value];
   const std::lock_guard lock(list.mutex);
   const std::size_t count = std::min(rays.size(), list.free.size());
+  if (!share_.here(resource)) {
+    lease_some(resource, rays.first(count), ids);
+    return count;
+  }
   constexpr std::size_t kAhead = 8;  // records that are fetched while others are written
   for (std::size_t i = 0; i < count; ++i) {
     if (i + kAhead < count) stores_[resource.value]->prefetch(list.free[list.free.size() - 1 - kAhead]);
@@ -87,6 +105,18 @@ std::size_t RayControl::load_some(ResourceId resource, std::span<const RayReques
   list.count.store(list.free.size(), std::memory_order_relaxed);
   slots_used_.fetch_add(count, std::memory_order_relaxed);
   return count;
+}
+
+/// Puts rays into slots of a resource that another rank plays. The resource's list is locked.
+void RayControl::lease_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids) {
+  SlotList& list = slots_[resource.value];
+  for (const RayRequest& ray : rays) {
+    ids.push_back(stores_[resource.value]->lease(list.free.back()));
+    list.free.pop_back();
+    remote_->load(resource, ids.back(), ray);
+  }
+  list.count.store(list.free.size(), std::memory_order_relaxed);
+  slots_used_.fetch_add(rays.size(), std::memory_order_relaxed);
 }
 
 std::optional<RayId> RayControl::load(ResourceId resource, const RayRequest& request) {
@@ -145,7 +175,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
     const std::span<const RayRequest> next = rays.subspan(done, std::min(group_rays_, rays.size() - done));
     RayGroup group;
     std::size_t placed = next.size();
-    ResourceId issuer = next_resource();
+    ResourceId issuer = next_issuer();
     if (rays_travel_) {
       group.rays.assign(next.begin(), next.end());
       for (std::size_t i = 0; placement_ == Placement::kAddressed && i < next.size(); ++i) {
@@ -168,7 +198,10 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
     if (placed == 0) break;
     done += placed;
     turn = turn_;
-    send(issuer, std::move(group));
+    if (remote_ != nullptr)
+      remote_->hold(issuer, std::move(group));
+    else
+      send(issuer, std::move(group));
   }
   // A group that has to wait costs no resource its turn, so it does not matter how often it is tried.
   turn_ = turn;

@@ -6,13 +6,17 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/config/config.h"
 #include "core/types/ids.h"
 #include "core/types/workload.h"
 #include "ringbus/rays/bundle_builder.h"
+#include "ringbus/rays/rank_share.h"
+#include "ringbus/rays/ray_group.h"
 #include "ringbus/rays/ray_store.h"
+#include "ringbus/rays/remote_placing.h"
 
 namespace carousel::ringbus {
 
@@ -24,17 +28,10 @@ struct RayControlSettings {
   std::int32_t initial_tests = 1;  ///< that a ray waits for at the root
   BundlesConfig bundles;
   float scene_size = 1;  ///< scale of the distances between the origins of a bundle
+  RankShare share{};     ///< of the machine, that this process plays
 };
 
 RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size);
-
-/// New rays for a resource's root collection: IDs if they have slots, or the rays themselves if they look for slots on
-/// their way round the ring.
-struct RayGroup {
-  std::vector<RayId> ids;
-  RayBatch rays;
-  std::vector<ResourceId> addresses;  ///< addressed placement: one a ray; otherwise empty
-};
 
 /// Gives new rays slots and IDs, in slots that completed rays freed.
 ///
@@ -42,11 +39,17 @@ struct RayGroup {
 /// everywhere, and its IDs go to one resource, which issues them from its root collection. With `home: local` and with
 /// independent resources a whole group lives where it is issued. With bundles a group is as many bundles and single
 /// rays as a packet carries IDs, and each bundle has one owner. With first_taker and addressed placement the rays
-/// travel instead, and resources ask for slots as packets pass. Any thread may call.
+/// travel instead, and resources ask for slots as packets pass. With several ranks a rank's rays are issued by
+/// resources of its own arc, and go to slots that it leases from all resources. Any thread may call.
 class RayControl {
  public:
   /// `stores` by resource.
   RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores);
+
+  /// Rays for resources of other ranks go to `remote`. Before the first submit(); needed with several ranks.
+  void place_by(RemotePlacing& remote) { remote_ = &remote; }
+  /// Hands a group to its issuer, for RemotePlacing.
+  void deliver(ResourceId issuer, RayGroup&& group) { send(issuer, std::move(group)); }
 
   /// From now on `resource` gets no rays. To be called before the first submit(), or after discard().
   void exclude(ResourceId resource);
@@ -71,6 +74,17 @@ class RayControl {
     return slots_[resource.value].count.load(std::memory_order_relaxed);
   }
   std::size_t free_slots() const;
+  /// The slots of `resource` that this rank hands out: all of them, or those that it leases.
+  std::size_t slots(ResourceId resource) const {
+    const auto [begin, end] = own_slots(resource);
+    return end - begin;
+  }
+  /// The rank that has put the ray of a slot there, and shades it.
+  std::uint32_t lessee(ResourceId resource, std::uint32_t slot) const {
+    return local_ ? share_.rank_of(resource) : share_.lessee(slot, stores_[resource.value]->slots());
+  }
+  /// How many tests a new ray waits for.
+  std::int32_t initial_tests() const { return initial_tests_; }
   /// How often rays had to wait because there were too few free slots.
   std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
   /// Rays that travel wait where they are sent from.
@@ -92,6 +106,9 @@ class RayControl {
   };
 
   void free_all();
+  std::pair<std::uint32_t, std::uint32_t> own_slots(ResourceId resource) const;
+  std::uint32_t resources_issuing() const { return share_.alone() ? resources_ : share_.arc_size(); }
+  void lease_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t place(std::span<const RayRequest> rays);
   bool place_all_waiting();
   void submit_bundles(const RayBatch& rays);
@@ -104,10 +121,16 @@ class RayControl {
     if (excluded_ == ResourceId(turn_ % resources_)) ++turn_;
     return ResourceId(turn_++ % resources_);
   }
+  /// The same among the resources that this rank plays.
+  ResourceId next_issuer() {
+    return share_.alone() ? next_resource() : ResourceId(share_.arc_begin() + turn_++ % share_.arc_size());
+  }
   ResourceId emptiest() const;
 
   Placement placement_;
   bool rays_travel_, local_;
+  RankShare share_;
+  RemotePlacing* remote_ = nullptr;
   std::uint32_t resources_;
   std::size_t group_rays_, enough_slots_;
   std::int32_t initial_tests_;

@@ -13,6 +13,7 @@
 #include "core/system/error.h"
 #include "core/system/huge_pages.h"
 #include "core/types/workload.h"
+#include "ringbus/rays/rank_share.h"
 #include "ringbus/rays/ray_id.h"
 
 namespace carousel::ringbus {
@@ -29,10 +30,12 @@ struct BundleRoom {
 /// the rays' slots, and IDs of the same kind.
 class RayStore {
  public:
-  RayStore(ResourceId owner, std::uint32_t slots, BundleRoom room = {})
+  /// `here`: false where another rank plays the resource, which then keeps the records.
+  RayStore(ResourceId owner, std::uint32_t slots, BundleRoom room = {}, bool here = true)
       : owner_(owner),
+        slots_(slots),
         layout_(slots + room.loaded + room.own),
-        records_(slots),
+        records_(here ? slots : 0),
         room_(room),
         bundles_(room.loaded + room.own),
         bundle_rays_(bundles_.size() * room.rays) {
@@ -46,6 +49,19 @@ class RayStore {
     RayId id = layout_.make(owner_, slot);
     if constexpr (kChecked) id.generation.set(++generations_[slot]);
     return id;
+  }
+  /// Hands out a free slot of a resource that another rank plays. The ID is valid until retire().
+  RayId lease(std::uint32_t slot) {
+    RayId id = layout_.make(owner_, slot);
+    if constexpr (kChecked) id.generation.set(++generations_[slot]);
+    return id;
+  }
+  /// Puts a ray into the slot of an ID that another rank has made by lease(), waiting for `tests` tests.
+  void load_leased(RayId id, const RayRequest& request, std::int32_t tests) {
+    const std::uint32_t slot = layout_.slot(id);
+    accel::start_record(request, records_[slot]);
+    records_[slot].pending = tests;
+    if constexpr (kChecked) generations_[slot] = id.generation.get();
   }
   /// Makes a bundle, waiting for `tests` tests, of the rays in `ray_slots`; `slot` is a free one for bundles. Changes
   /// no ray's count.
@@ -118,11 +134,12 @@ class RayStore {
   ResourceId owner() const { return owner_; }
   RayRecord* records() { return records_.data(); }
   RayRecord& record(std::uint32_t slot) { return records_[slot]; }
-  std::uint32_t slots() const { return static_cast<std::uint32_t>(records_.size()); }
+  std::uint32_t slots() const { return slots_; }
   const RayIdLayout& layout() const { return layout_; }
 
  private:
   ResourceId owner_;
+  std::uint32_t slots_;
   RayIdLayout layout_;
   std::vector<RayRecord, HugePageAllocator<RayRecord>> records_;
   BundleRoom room_;
@@ -144,11 +161,13 @@ inline BundleRoom bundle_room(const BundlesConfig& bundles, std::int64_t slots) 
 
 /// One for each resource, with `slots` slots each and room for bundles.
 inline std::vector<std::unique_ptr<RayStore>> make_ray_stores(std::int64_t resources, std::int64_t slots,
-                                                              const BundlesConfig& bundles) {
+                                                              const BundlesConfig& bundles,
+                                                              const RankShare& share = {}) {
   const BundleRoom room = bundle_room(bundles, slots);
   std::vector<std::unique_ptr<RayStore>> stores;
   for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(resources); ++r)
-    stores.push_back(std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(slots), room));
+    stores.push_back(
+        std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(slots), room, share.here(ResourceId(r))));
   return stores;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/statistics/link_fault_counts.h"
+#include "core/statistics/rank_counts.h"
 #include "core/types/ids.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
@@ -18,8 +19,17 @@
 #include "ringbus/results/ray_log.h"
 #include "ringbus/results/slice_log.h"
 #include "ringbus/results/time_series.h"
+#include "ringbus/transport/transport.h"
 
 namespace carousel::ringbus {
+
+/// What a rank has sent to each other rank.
+struct RankResult {
+  std::uint32_t first_resource = 0, resources = 0;  ///< its arc
+  std::uint64_t rays_completed = 0;                 ///< and shaded by it
+  std::size_t threads = 1;
+  std::vector<RankCounts> to;  ///< by rank; its own is empty
+};
 
 struct RunOptions {
   std::size_t threads = 1;
@@ -30,6 +40,7 @@ struct RunOptions {
   std::size_t samples = 0;                       ///< most samples of the time series; 0: there is none
   TimelineOptions timeline{};                    ///< slices of time that are recorded
   FollowedRay* ray = nullptr;                    ///< its life is recorded, in place of the timeline
+  Transport* transport = nullptr;                ///< native: to the other ranks of the run
   MemoryLog* memory = nullptr;                   ///< cycle: requests to the memory are appended
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start
@@ -60,6 +71,7 @@ struct RunResult {
   std::vector<ResourceStatistics> resources;      ///< empty without statistics
   std::vector<CollectionStore::Statistics> collections;
   std::vector<LinkResult> links;
+  std::vector<RankResult> ranks;            ///< empty if there is one
   std::optional<TimeSeries> series;         ///< with RunOptions::samples
   std::optional<Timeline> timeline;         ///< with RunOptions::timeline; with RunOptions::ray of its packets
   std::vector<RayFact> facts;               ///< with RunOptions::ray, by time

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/types/vec.h"
@@ -28,6 +29,11 @@ class Film {
   /// Mean over the samples, row-major from the top left, 3 floats a pixel. While a frame is being rendered, the sum of
   /// the paths committed so far.
   std::vector<float> linear_rgb() const;
+
+  /// The sums as numbers modulo 2^64, for films of one picture to be added up: those of this film behind `numbers`.
+  void append_sums(std::vector<std::uint64_t>& numbers) const;
+  /// The sums of all these films, as append_sums() has put them.
+  void set_sums(std::span<const std::uint64_t> numbers);
 
   std::uint32_t width() const { return width_; }
   std::uint32_t height() const { return height_; }

@@ -95,4 +95,13 @@ PathSample draw_list(std::uint64_t all, std::uint64_t paths, std::uint64_t seed,
   return PathSample(runs);
 }
 
+PathSample share_of_paths(std::uint64_t all, std::uint64_t part, std::uint64_t parts) {
+  constexpr std::uint64_t kMost = 1024, kTurns = 8;
+  const std::uint64_t each = std::clamp<std::uint64_t>(all / (parts * kTurns), 1, kMost);
+  std::vector<PathSample::Run> runs;
+  for (std::uint64_t first = part * each; first < all; first += parts * each)
+    runs.push_back({first, std::min(each, all - first), static_cast<std::uint32_t>(runs.size())});
+  return PathSample(runs);
+}
+
 }  // namespace carousel::shading

@@ -86,6 +86,11 @@ class PathTracer : public Workload {
   HitsDigest hits_digest() const;
   /// Digest of linear_rgb().
   std::string image_digest() const;
+  /// All results as numbers of which those of several tracers, each with other paths of one frame, are added up modulo
+  /// 2^64.
+  std::vector<std::uint64_t> sums() const;
+  /// Takes the sums for this tracer's own results.
+  void set_sums(const std::vector<std::uint64_t>& sums);
   std::vector<float> linear_rgb() const { return film_.linear_rgb(); }
   std::uint32_t width() const { return film_.width(); }
   std::uint32_t height() const { return film_.height(); }

@@ -14,6 +14,13 @@ inline constexpr auto kEnumNames<EngineKind> = [] {
   return names<EngineKind>({{kNative, "native"}, {kCycle, "cycle"}});
 }();
 
+enum class EngineTransport { kLocal, kMpi };
+template <>
+inline constexpr auto kEnumNames<EngineTransport> = [] {
+  using enum EngineTransport;
+  return names<EngineTransport>({{kLocal, "local"}, {kMpi, "mpi"}});
+}();
+
 enum class SimdTarget { kAuto, kScalar, kSsse3, kSse4, kAvx2, kAvx3 };
 template <>
 inline constexpr auto kEnumNames<SimdTarget> = [] {
@@ -27,6 +34,7 @@ struct EngineConfig {
   std::optional<std::int64_t> threads;  ///< absent: `auto`
   std::int64_t clock_mhz = 1000;
   SimdTarget simd = SimdTarget::kAuto;
+  EngineTransport transport = EngineTransport::kLocal;
   bool what_if = true;
 };
 
@@ -40,6 +48,10 @@ void describe(V& v, EngineConfig& c) {
                   "The number of worker threads. With auto there are as many as the machine has cores.");
   v.field("clock_mhz", c.clock_mhz, IntRange{1, 100'000}, "MHz", "The clock of the simulated machine.");
   v.choice("simd", c.simd, "The instruction set of the test kernels. With auto it is the best that this machine has.");
+  v.choice(
+      "transport", c.transport,
+      "With mpi the processes that mpirun has started play the native engine's machine together, each an arc of its "
+      "resources; with local one process plays all of it.");
   v.field(
       "what_if", c.what_if, "",
       "The cycle engine finds the bottleneck: it simulates a part of the rays again, each time with one class of parts "

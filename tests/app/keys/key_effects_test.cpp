@@ -105,11 +105,12 @@ class KeyEffects : public testing::Test {
     return names.empty() ? std::vector<std::string>{"true", "false"} : names;
   }
 
-  /// By the table of what the engine does not have; and an instruction set that this machine does not have.
+  /// By the table of what the engine does not have; an instruction set that this machine does not have;
+  /// and ranks, which mpirun starts.
   static bool may_be_refused(const KeyRow& row, const std::string& value, const Json& config,
                              const std::string& refusal) {
     if (refusal.find("--set " + row.key + "=" + value + ": " + row.key + ": ") == refusal.npos) return false;
-    if (row.key == "engine.simd") return true;
+    if (row.key == "engine.simd" || row.key == "engine.transport") return true;
     const auto having = config::engines_with(row.key, value);
     const auto engine = enum_value<EngineKind>(config["engine"]["kind"].get<std::string>());
     return having.empty() && engine && refusal.find("is not built yet") != refusal.npos;

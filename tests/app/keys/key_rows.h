@@ -47,6 +47,7 @@ inline std::vector<KeyRow> key_rows() {
       {"engine.threads", kNative, {}, {"2"}},
       {"engine.clock_mhz", kTerrain, {}, {"500"}},
       {"engine.simd", kTerrain, {"engine.simd=scalar"}},
+      {"engine.transport", kNative},
       {"engine.what_if", kTerrain},
       {"topology.resources", kTerrain, {}, {"3"}},
       {"topology.shape",

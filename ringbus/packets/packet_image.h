@@ -12,6 +12,8 @@ namespace carousel::ringbus {
 using PacketImage = std::vector<std::uint64_t>;
 
 PacketImage image_of(const Packet& packet);
+/// Appends an image.
+void append_image(const Packet& packet, PacketImage& image);
 /// Writes an image back into a packet. The image must be undamaged, as a checksum has told.
 void restore(std::span<const std::uint64_t> image, Packet& packet);
 

@@ -1,0 +1,36 @@
+#include "core/config/rank_rules.h"
+
+#include <string>
+
+#include <fmt/format.h>
+
+namespace carousel::config {
+
+void check_ranks(const Config& config, const RuleBreach& breach) {
+  if (config.engine.transport == EngineTransport::kLocal) return;
+  const std::string ranks = fmt::format("engine.transport: {}", enum_name(config.engine.transport));
+  const auto refuse = [&](bool wrong, const char* key, const std::string& message) {
+    if (wrong) breach(key, message + ", or engine.transport: local");
+  };
+  refuse(config.engine.kind != EngineKind::kNative, "engine.transport",
+         ranks + " is for the native engine, which has messages; expected engine.kind: native");
+  refuse(config.workload.kind != WorkloadConfig::Kind::kRays, "workload",
+         fmt::format("with {} the ranks share the paths of a picture; expected rays", ranks));
+  // A ray that takes a slot on its way would be away from the rank that shades its path.
+  refuse(config.rays.placement == Placement::kFirstTaker || config.rays.placement == Placement::kAddressed,
+         "rays.placement",
+         fmt::format("rays that travel to find slots are not carried over ranks yet; expected balanced or round_robin, "
+                     "found {}",
+                     enum_name(config.rays.placement)));
+  refuse(config.bundles.size > 0, "bundles.size",
+         fmt::format("bundles are not carried over ranks yet; expected 0, found {}", config.bundles.size));
+  refuse(config.faults.links.any(), "faults.links",
+         "faulty links are not carried over ranks yet; expected no faults of links");
+  refuse(config.faults.resource.kind != FaultsConfig::Resource::Kind::kNone, "faults.resource.kind",
+         fmt::format("faults of resources are not carried over ranks yet; expected none, found {}",
+                     enum_name(config.faults.resource.kind)));
+  refuse(config.verify != Verify::kNone, "verify",
+         fmt::format("rays are not verified over ranks yet; expected none, found {}", enum_name(config.verify)));
+}
+
+}  // namespace carousel::config

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/config/config.h"
+#include "core/config/network_rules.h"
+
+namespace carousel::config {
+
+/// The rules of `engine.transport`: what a machine that several processes play cannot do yet.
+void check_ranks(const Config& config, const RuleBreach& breach);
+
+}  // namespace carousel::config

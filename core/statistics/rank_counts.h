@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/statistics/counters.h"
+
+namespace carousel {
+
+/// What a rank has sent to one other rank, and how it waited for it.
+struct RankCounts {
+  std::uint64_t messages = 0, bytes = 0, packets = 0, rays = 0, results = 0, holds = 0, heartbeats = 0;
+
+  static constexpr auto counters() {
+    using C = RankCounts;
+    return std::array{
+        Counter{"messages", &C::messages, "messages", "messages sent, those that are only a sign of life included"},
+        Counter{"bytes", &C::bytes, "bytes", "their contents"},
+        Counter{"packets", &C::packets, "packets", "packets in them"},
+        Counter{"rays", &C::rays, "rays", "new rays in them, on the way to their slots"},
+        Counter{"results", &C::results, "rays", "completed rays in them, on the way to the rank that shades them"},
+        Counter{"holds", &C::holds, "times", "times that something to send waited for earlier messages to leave"},
+        Counter{"heartbeats", &C::heartbeats, "messages", "messages with nothing in them but a sign of life"},
+    };
+  }
+  friend bool operator==(const RankCounts&, const RankCounts&) = default;
+};
+
+}  // namespace carousel

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/statistics/rank_counts.h"
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+/// A process of a run with `engine.transport: mpi`.
+struct Rank {
+  std::uint64_t rank = 0, first_resource = 0, resources = 0, threads = 0, rays_shaded = 0;
+};
+
+template <class V>
+void describe(V& v, const Rank& r) {
+  v.field("rank", r.rank, "", "number of the rank");
+  v.field("first_resource", r.first_resource, "", "first resource of its arc");
+  v.field("resources", r.resources, "resources", "resources that it plays");
+  v.field("threads", r.threads, "threads", "threads that play them");
+  v.field("rays_shaded", r.rays_shaded, "rays", "rays of the paths that it owns");
+}
+
+/// What went from one rank to another.
+struct RankLink {
+  std::uint64_t from = 0, to = 0;
+  RankCounts sent;
+};
+
+template <class V>
+void describe(V& v, const RankLink& r) {
+  v.field("from", r.from, "", "rank that sends");
+  v.field("to", r.to, "", "rank that receives");
+  describe(v, r.sent);
+}
+
+}  // namespace carousel::report

@@ -1,0 +1,278 @@
+#include "ringbus/native/rank_gate.h"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/system/error.h"
+
+namespace carousel::ringbus {
+
+RankGate::RankGate(Transport& transport, Machine& machine, CompletedQueue& completed)
+    : transport_(transport),
+      machine_(machine),
+      completed_(completed),
+      rank_(machine.share.rank()),
+      links_(machine.topology.wires().size(), nullptr),
+      end_(machine.share.rank(), machine.share.ranks()) {
+  for (std::uint32_t r = 0; r < machine.share.ranks(); ++r) peers_.push_back(std::make_unique<Peer>());
+  machine_.control.place_by(*this);
+}
+
+std::unique_ptr<Link> RankGate::make_link(std::uint32_t wire, std::size_t depth) {
+  const Topology::Wire& ends = machine_.topology.wires()[wire];
+  const std::uint32_t from = machine_.share.rank_of(ends.from), to = machine_.share.rank_of(ends.to);
+  RankLink::Send send;
+  if (from == rank_) {
+    send = [this, wire, &peer = *peers_[to]](std::span<const PacketId> packets) {
+      const std::lock_guard lock(peer.mutex);
+      for (const PacketId id : packets) peer.next.add(wire, id, machine_.packet(id));
+    };
+  }
+  auto link = std::make_unique<RankLink>(ends.from, ends.to, depth, std::move(send));
+  if (to == rank_) {
+    peers_[from]->in_wires.push_back(wire);
+    peers_[from]->credits_told.push_back(0);
+  }
+  links_[wire] = link.get();
+  return link;
+}
+
+void RankGate::load(ResourceId resource, RayId id, const RayRequest& request) {
+  Peer& peer = *peers_[machine_.share.rank_of(resource)];
+  const std::lock_guard lock(peer.mutex);
+  peer.next.rays.push_back({id, request});
+  ++peer.rays_sent;
+  peer.held = true;
+}
+
+void RankGate::hold(ResourceId issuer, RayGroup&& group) {
+  Held held{issuer, std::move(group), {}};
+  for (std::uint32_t r = 0; r < peers_.size(); ++r) {
+    const std::lock_guard lock(peers_[r]->mutex);
+    if (std::exchange(peers_[r]->held, false)) held.needs.emplace_back(r, peers_[r]->rays_sent);
+  }
+  if (held.needs.empty()) return machine_.control.deliver(issuer, std::move(held.group));
+  const std::lock_guard lock(held_mutex_);
+  held_.push_back(std::move(held));
+}
+
+void RankGate::send_results(ResourceId resource, HitBatch& done, std::vector<std::uint32_t>& slots) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    const std::uint32_t lessee = machine_.control.lessee(resource, slots[i]);
+    if (lessee == rank_) {
+      done[kept] = done[i];
+      slots[kept++] = slots[i];
+      continue;
+    }
+    const std::lock_guard lock(peers_[lessee]->mutex);
+    peers_[lessee]->next.results.push_back({resource, slots[i], done[i]});
+  }
+  done.resize(kept);
+  slots.resize(kept);
+}
+
+void RankGate::start() {
+  for (const auto& peer : peers_) peer->heard = peer->said = Clock::now();
+}
+
+bool RankGate::step(bool at_rest) {
+  bool moved = receive();
+  if (ended()) return moved;
+  moved |= deliver_held();
+  pass_token(at_rest);
+  for (std::uint32_t r = 0; r < peers_.size(); ++r)
+    if (r != rank_) moved |= send(r);
+  return moved;
+}
+
+/// The token goes on when what this rank sent before has been counted: all that waits in `next` must leave first.
+void RankGate::pass_token(bool at_rest) {
+  if (token_ || !at_rest) return;
+  for (const auto& peer : peers_) {
+    const std::lock_guard lock(peer->mutex);
+    if (peer->next.items() > 0) return;
+  }
+  token_ = end_.pass(true);
+  if (end_.ended()) ended_.store(true, std::memory_order_release);
+}
+
+/// Sends a rank what there is for it, unless earlier messages have not left yet.
+bool RankGate::send(std::uint32_t rank) {
+  Peer& peer = *peers_[rank];
+  const bool has_token = token_ && rank == (rank_ + 1) % peers_.size();
+  bool news = has_token || peer.rays_received != peer.rays_told;
+  for (std::size_t i = 0; i < peer.in_wires.size(); ++i) {
+    const std::uint64_t taken = links_[peer.in_wires[i]]->taken();
+    if (taken == peer.credits_told[i]) continue;
+    sending_.credits.push_back({peer.in_wires[i], taken});
+    news = true;
+  }
+  const Clock::time_point now = Clock::now();
+  const bool sign = now - peer.said > kSign;
+  std::size_t items = 0;
+  {
+    const std::lock_guard lock(peer.mutex);
+    items = peer.next.items();
+  }
+  bool anything = items >= kFull || ((news || sign || items > 0) && now - peer.said >= kWindow);
+  if (anything && transport_.leaving(rank) >= kLeaving) {
+    ++peer.counts.holds;
+    anything = false;
+  }
+  if (!anything) {
+    sending_.clear();
+    return false;
+  }
+  for (const LinkCredit& credit : sending_.credits) {
+    const auto at = std::find(peer.in_wires.begin(), peer.in_wires.end(), credit.wire);
+    peer.credits_told[static_cast<std::size_t>(at - peer.in_wires.begin())] = credit.taken;
+  }
+  {
+    const std::lock_guard lock(peer.mutex);
+    sending_.rays.swap(peer.next.rays);
+    sending_.results.swap(peer.next.results);
+    sending_.packets.swap(peer.next.packets);
+    sending_.images.swap(peer.next.images);
+  }
+  if (has_token) sending_.token = std::exchange(token_, std::nullopt);
+  const bool moved = sending_.items() > 0;
+  if (!moved && !news) ++peer.counts.heartbeats;
+  send_now(rank, sending_);
+  return moved;
+}
+
+void RankGate::send_now(std::uint32_t rank, RankMessage& message) {
+  Peer& peer = *peers_[rank];
+  message.rays_taken = peer.rays_told = peer.rays_received;
+  end_.sent(message.items());
+  message.write(words_);
+  ++peer.counts.messages;
+  peer.counts.bytes += words_.size() * sizeof words_[0];
+  peer.counts.packets += message.packets.size();
+  peer.counts.rays += message.rays.size();
+  peer.counts.results += message.results.size();
+  transport_.send(rank, words_);
+  peer.said = Clock::now();
+  message.clear();
+}
+
+bool RankGate::receive() {
+  bool moved = false;
+  std::uint32_t from = 0;
+  while (!ended() && transport_.receive(from, words_)) {
+    received_.read(words_);
+    peers_[from]->heard = Clock::now();
+    moved |= received_.items() > 0;
+    take(from, received_);
+  }
+  const Clock::time_point now = Clock::now();
+  for (std::uint32_t r = 0; r < peers_.size(); ++r)
+    if (r != rank_ && !ended() && now - peers_[r]->heard > kSilence)
+      throw SimulationError(fmt::format("rank {} has said nothing for {} seconds; it hangs or has died", r,
+                                        std::chrono::duration_cast<std::chrono::seconds>(kSilence).count()));
+  return moved;
+}
+
+void RankGate::take(std::uint32_t from, const RankMessage& message) {
+  Peer& peer = *peers_[from];
+  end_.received(message.items());
+  for (const LinkCredit& credit : message.credits) links_.at(credit.wire)->credit(credit.taken);
+  for (const RayOnWire& ray : message.rays) {
+    const RayIdLayout& layout = machine_.stores[0]->layout();
+    machine_.stores.at(layout.owner(ray.id).value)->load_leased(ray.id, ray.request, machine_.control.initial_tests());
+  }
+  peer.rays_received += message.rays.size();
+  peer.rays_taken = message.rays_taken;
+  take_results(message);
+  for (std::size_t i = 0; i < message.packets.size(); ++i) {
+    const PacketOnWire& at = message.packets[i];
+    message.restore_packet(i, machine_.packet(at.packet));
+    links_.at(at.wire)->arrive(at.packet);
+  }
+  if (message.token) end_.take(*message.token);
+  if (!message.farewell) return;
+  peer.parted = true;
+  if (message.farewell->reason == Farewell::Reason::kFault) {
+    cause_ = message.farewell->text;
+    throw SimulationError("the run was ended by " + cause_);
+  }
+  stopped_ |= message.farewell->reason == Farewell::Reason::kStop;
+  ended_.store(true, std::memory_order_release);
+}
+
+void RankGate::take_results(const RankMessage& message) {
+  if (message.results.empty()) return;
+  HitBatch batch = completed_.fresh();
+  for (const ResultOnWire& result : message.results) {
+    machine_.stores.at(result.resource.value)->retire(result.slot);
+    machine_.control.free(result.resource, {&result.slot, 1});
+    batch.push_back(result.result);
+  }
+  completed_.push(std::move(batch));
+}
+
+bool RankGate::deliver_held() {
+  bool any = false;
+  const std::lock_guard lock(held_mutex_);
+  const auto ready = [this](const Held& held) {
+    return std::all_of(held.needs.begin(), held.needs.end(),
+                       [this](const auto& need) { return peers_[need.first]->rays_taken >= need.second; });
+  };
+  for (; !held_.empty() && ready(held_.front()); held_.pop_front(), any = true)
+    machine_.control.deliver(held_.front().issuer, std::move(held_.front().group));
+  return any;
+}
+
+void RankGate::part(const std::exception_ptr& error, const std::string& stuck) {
+  using enum Farewell::Reason;
+  if (!stuck.empty()) return part(kFault, stuck);
+  if (!error) return part(ended() && !stopped_ ? kEnd : kStop, {});
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& e) {
+    part(kFault, e.what());
+  }
+}
+
+void RankGate::part(Farewell::Reason reason, const std::string& text) {
+  sending_.clear();
+  const std::string cause = cause_.empty() ? fmt::format("rank {}: {}", rank_, text) : cause_;
+  for (std::uint32_t r = 0; r < peers_.size(); ++r) {
+    if (r == rank_) continue;
+    sending_.farewell = Farewell{reason, cause};
+    send_now(r, sending_);
+  }
+  const Clock::time_point until = Clock::now() + kParting;
+  const auto others_open = [this] {
+    for (std::uint32_t r = 0; r < peers_.size(); ++r)
+      if (r != rank_ && (!peers_[r]->parted || transport_.leaving(r) > 0)) return true;
+    return false;
+  };
+  while (others_open() && Clock::now() < until) {
+    std::uint32_t from = 0;
+    if (!transport_.receive(from, words_)) {
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+      continue;
+    }
+    received_.read(words_);
+    if (!received_.farewell) continue;
+    peers_[from]->parted = true;
+    stopped_ |= received_.farewell->reason != Farewell::Reason::kEnd;
+  }
+}
+
+std::vector<RankCounts> RankGate::counts() const {
+  std::vector<RankCounts> out;
+  for (const auto& peer : peers_) out.push_back(peer->counts);
+  return out;
+}
+
+std::string RankGate::describe() const {
+  return fmt::format("rank {}: {} groups wait until other ranks have their rays", rank_, held_.size());
+}
+
+}  // namespace carousel::ringbus

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/statistics/rank_counts.h"
+#include "ringbus/native/completed_queue.h"
+#include "ringbus/native/rank_link.h"
+#include "ringbus/protocol/machine.h"
+#include "ringbus/ranks/end_count.h"
+#include "ringbus/ranks/rank_message.h"
+#include "ringbus/rays/remote_placing.h"
+#include "ringbus/transport/transport.h"
+
+namespace carousel::ringbus {
+
+/// This rank's way to the others: gathers packets, new rays and completed rays by the rank they go to, sends them in
+/// one message each while earlier ones have left, and takes apart what the others send. One thread at a time steps it;
+/// the rest any thread may call.
+class RankGate final : public RemotePlacing {
+ public:
+  /// Keeps references.
+  RankGate(Transport& transport, Machine& machine, CompletedQueue& completed);
+
+  /// The link of a wire of which not both ends are here.
+  std::unique_ptr<Link> make_link(std::uint32_t wire, std::size_t depth);
+  /// Whether both ends of a wire are here.
+  bool here(const Topology::Wire& wire) const { return machine_.share.here(wire.from) && machine_.share.here(wire.to); }
+
+  void load(ResourceId resource, RayId id, const RayRequest& request) override;
+  void hold(ResourceId issuer, RayGroup&& group) override;
+  /// Sends those of the completed rays of `resource` away that other ranks shade, and returns the others in place.
+  /// `slots` are the slots that they leave.
+  void send_results(ResourceId resource, HitBatch& done, std::vector<std::uint32_t>& slots);
+
+  /// Before the first step: the others live from now on.
+  void start();
+  /// Sends and receives. `at_rest`: this rank has no rays of its own and none of its packets is under way. Returns
+  /// whether anything moved. Throws a SimulationError that names a rank which has ended the run or fallen silent.
+  bool step(bool at_rest);
+  /// The run is over: rank 0 has counted that all is done, or a rank has been stopped.
+  bool ended() const { return ended_.load(std::memory_order_acquire); }
+  /// A rank has ended the run before all was done because somebody asked it to.
+  bool stopped() const { return stopped_; }
+  /// Tells the others how the run has ended here, by an `error`, because it was `stuck`, or well; and waits until they
+  /// have told it, too: not for ever where one has failed.
+  void part(const std::exception_ptr& error, const std::string& stuck);
+
+  /// By rank.
+  std::vector<RankCounts> counts() const;
+  /// For a run that is stuck.
+  std::string describe() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  // A rank with nothing to say says so, and one from which nothing comes for long has died or hangs.
+  static constexpr std::chrono::milliseconds kSign{200}, kSilence{5000}, kParting{3000};
+  // Things for a rank gather for so long, or until there are so many: a message costs more than all but its size.
+  static constexpr std::chrono::microseconds kWindow{50};
+  static constexpr std::size_t kFull = 256;
+  static constexpr std::size_t kLeaving = 2;  // messages to a rank that may be on their way out
+
+  /// What concerns one other rank.
+  struct Peer {
+    std::mutex mutex;  // guards `next` and `rays_sent`
+    RankMessage next;
+    std::uint64_t rays_sent = 0;
+    std::uint64_t rays_taken = 0, rays_received = 0, rays_told = 0;
+    bool held = false;  // the group being placed has rays there
+    bool parted = false;
+    std::vector<std::uint32_t> in_wires;
+    std::vector<std::uint64_t> credits_told;  // by in_wires
+    Clock::time_point heard, said;
+    RankCounts counts;
+  };
+  /// A group whose rays' data are under way: it may be issued when each rank has taken so many rays.
+  struct Held {
+    ResourceId issuer;
+    RayGroup group;
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> needs;
+  };
+
+  bool send(std::uint32_t rank);
+  bool receive();
+  void take(std::uint32_t from, const RankMessage& message);
+  void take_results(const RankMessage& message);
+  bool deliver_held();
+  void pass_token(bool at_rest);
+  void part(Farewell::Reason reason, const std::string& text);
+  void send_now(std::uint32_t rank, RankMessage& message);
+
+  Transport& transport_;
+  Machine& machine_;
+  CompletedQueue& completed_;
+  std::uint32_t rank_;
+  std::vector<std::unique_ptr<Peer>> peers_;  // by rank; this one's own is not used
+  std::vector<RankLink*> links_;              // by wire; null where both ends are here
+  std::mutex held_mutex_;
+  std::deque<Held> held_;
+  EndCount end_;
+  std::optional<EndToken> token_;  // to be sent to the next rank
+  std::atomic<bool> ended_{false};
+  bool stopped_ = false;
+  std::string cause_;               // another rank's, why the run has ended
+  RankMessage sending_, received_;  // scratch
+  std::vector<std::uint64_t> words_;
+};
+
+}  // namespace carousel::ringbus

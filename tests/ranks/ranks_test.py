@@ -1,0 +1,202 @@
+"""The native engine over ranks of MPI: hits and picture are those of one process, whatever the ranks and threads; what
+ranks cannot do is refused by name; a rank that dies or hangs ends the run, without files.
+
+CAROUSEL names the program. Where it was built without MPI, the suite checks that it says so, and skips the rest."""
+
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+CAROUSEL = os.environ["CAROUSEL"]
+MACHINE = """
+scene: {builtin: terrain, triangles: 2000}
+image: {width: 40, height: 32, samples: 2, max_depth: 4}
+engine: {kind: native, threads: 2}
+topology: {resources: 5, shape: ring}
+rays: {slots_per_resource: 256}
+"""
+LONG = ["image.width=1600", "image.height=1200", "image.samples=64"]
+# As root in a container, on fewer cores than ranks, and over shared memory or TCP.
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1",
+                   OMPI_MCA_hwloc_base_binding_policy="none", ASAN_OPTIONS="detect_leaks=0")
+
+
+def sets(assignments):
+    return [word for assignment in assignments for word in ("--set", assignment)]
+
+
+class Ranks(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.config = self.folder / "machine.yaml"
+        self.config.write_text(MACHINE)
+        refusal = self.alone(["engine.transport=mpi"])
+        self.assertEqual(refusal.returncode, 2)
+        self.assertIn("engine.transport", refusal.stderr)
+        if "built without MPI" in refusal.stderr:
+            self.skipTest("the program was built without MPI")
+
+    def command(self, out, assignments):
+        return [CAROUSEL, "run", str(self.config), "--quiet", "--out", str(self.folder / out), *sets(assignments)]
+
+    def alone(self, assignments, out="alone"):
+        return subprocess.run(self.command(out, assignments) + ["--force"], capture_output=True, text=True, timeout=120)
+
+    def over(self, ranks, assignments=(), out="ranks", options=()):
+        command = ["mpirun", *options, "-n", str(ranks), *self.command(out, ["engine.transport=mpi", *assignments]),
+                   "--force"]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, env=ENVIRONMENT)
+
+    def report(self, out):
+        return json.loads((self.folder / out / "report.json").read_text())
+
+    def digests(self, out):
+        return self.report(out)["digest"]
+
+    def same(self, assignments, ranks, **more):
+        with self.subTest(assignments=assignments, ranks=ranks):
+            self.assertEqual(self.alone(assignments).returncode, 0)
+            run = self.over(ranks, assignments, **more)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertEqual(self.digests("ranks"), self.digests("alone"))
+            self.assertEqual(self.report("ranks")["rays"], self.report("alone")["rays"])
+            self.counted(ranks)
+            shutil.rmtree(self.folder / "ranks")
+
+    def counted(self, ranks):
+        """What one rank sends as its part of the machine's work, the report counts."""
+        report = self.report("ranks")
+        if ranks == 1:
+            return self.assertNotIn("ranks", report)
+        self.assertEqual(sum(rank["resources"] for rank in report["ranks"]), len(report["resources"]))
+        self.assertEqual(sum(rank["rays_shaded"] for rank in report["ranks"]), report["rays"]["completed"])
+        owner = [rank["rank"] for rank in report["ranks"] for _ in range(rank["resources"])]
+        between = sum(link["packets"] for link in report["links"] if owner[link["from"]] != owner[link["to"]])
+        self.assertEqual(sum(link["packets"] for link in report["rank_links"]), between)
+        sent, returned = (sum(link[key] for link in report["rank_links"]) for key in ("rays", "results"))
+        self.assertEqual(sent, returned)
+
+
+class SameHits(Ranks):
+    def test_any_number_of_ranks_and_threads(self):
+        for ranks, threads in (1, 2), (2, 1), (2, 2), (3, 3), (4, 1), (5, 2):
+            self.same([f"engine.threads={threads}"], ranks)
+
+    def test_any_shape_and_flow(self):
+        self.same(["topology.shape=bidirectional", "topology.resources=6"], 3)
+        self.same(["topology.shape=point_to_point", "topology.visit=owners"], 3)
+        self.same(["topology.visit=owners"], 2)
+        self.same(["topology.flow=bubble", "topology.link.depth=2"], 4)
+        self.same(["topology.link.depth=1"], 3)
+
+    def test_any_traversal_home_and_placement(self):
+        self.same(["collections.traversal=ordered"], 2)
+        self.same(["collections.traversal=treelet"], 3)
+        self.same(["collections.home=local"], 2)
+        self.same(["collections.home=hash", "collections.when_full=spill"], 3)
+        self.same(["rays.placement=round_robin"], 2)
+        self.same(["rays.slots_per_resource=4", "packets.rays=4"], 4)
+        self.same(["packets.shapes=single"], 2)
+
+    def test_any_scene(self):
+        self.same(["scene.builtin=instances"], 3)
+        self.same(["primary=raster"], 2)
+        self.same(["image.width=1", "image.height=1", "image.samples=1"], 3)  # fewer paths than ranks
+
+    def test_over_tcp(self):
+        self.same([], 3, options=("--mca", "btl", "self,tcp"))
+
+
+class Refusals(Ranks):
+    def refused(self, run, *texts):
+        self.assertEqual(run.returncode, 2, run.stderr)
+        for text in texts:
+            self.assertIn(text, run.stderr)
+        self.assertFalse((self.folder / "ranks").exists())
+
+    def test_more_ranks_than_resources(self):
+        self.refused(self.over(3, ["topology.resources=2"]), "topology.resources", "rank 2 would have none")
+        self.refused(self.over(3, ["rays.slots_per_resource=2"]), "rays.slots_per_resource", "rank 2 would have none")
+
+    def test_ranks_of_other_configurations(self):
+        one = self.command("ranks", ["engine.transport=mpi"])
+        other = self.command("ranks", ["engine.transport=mpi", "image.seed=7"])
+        run = subprocess.run(["mpirun", "-n", "1", *one, ":", "-n", "1", *other], capture_output=True, text=True,
+                             timeout=60, env=ENVIRONMENT)
+        self.refused(run, "rank 1 has another configuration", "seed: 7")
+
+    def test_what_ranks_do_not_carry(self):
+        for assignment in ("faults.links.drop=0.1", "bundles.size=4", "rays.placement=first_taker", "verify=reference",
+                           "engine.kind=cycle"):
+            refusal = self.alone(["engine.transport=mpi", assignment])
+            self.assertEqual(refusal.returncode, 2)
+            self.assertIn("engine.transport: local", refusal.stderr)
+
+    def test_commands_for_one_process(self):
+        run = subprocess.run([CAROUSEL, "follow", str(self.config), "--ray", "0", *sets(["engine.transport=mpi"])],
+                             capture_output=True, text=True, timeout=60)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("engine.transport", run.stderr)
+        refusal = subprocess.run(self.command("ranks", ["engine.transport=mpi"]) + ["--hits"], capture_output=True,
+                                 text=True, timeout=60)
+        self.assertEqual(refusal.returncode, 2)
+        self.assertIn("--hits", refusal.stderr)
+
+
+class Failures(Ranks):
+    def begin(self):
+        """A run of three ranks that would last for minutes; returns it and the processes of its ranks, by rank."""
+        command = ["mpirun", "-n", "3", *self.command("ranks", ["engine.transport=mpi", *LONG])]
+        run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        self.addCleanup(run.kill)
+        ranks = {}
+        until = time.time() + 60
+        while len(ranks) < 3 and time.time() < until:
+            for process in pathlib.Path("/proc").glob("[0-9]*"):
+                try:
+                    command = (process / "cmdline").read_bytes().split(b"\0")
+                    words = (process / "environ").read_bytes().split(b"\0")
+                except OSError:
+                    continue
+                if str(self.folder / "ranks").encode() not in command or not command[0].endswith(b"carousel"):
+                    continue
+                for word in words:
+                    if word.startswith(b"OMPI_COMM_WORLD_RANK="):
+                        ranks[int(word.split(b"=")[1])] = int(process.name)
+            time.sleep(0.1)
+        self.assertEqual(len(ranks), 3)
+        time.sleep(3)  # the run has begun
+        self.assertIsNone(run.poll())
+        return run, ranks
+
+    def ended(self, run, seconds):
+        begin = time.time()
+        _, text = run.communicate(timeout=60)
+        self.assertLess(time.time() - begin, seconds, text)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertFalse((self.folder / "ranks").exists())
+        return text
+
+    def test_a_rank_that_is_killed(self):
+        run, ranks = self.begin()
+        os.kill(ranks[1], signal.SIGKILL)
+        self.assertIn("rank 1", self.ended(run, 30))
+
+    def test_a_rank_that_hangs(self):
+        run, ranks = self.begin()
+        os.kill(ranks[2], signal.SIGSTOP)
+        text = self.ended(run, 45)
+        self.assertEqual(run.returncode, 1, text)
+        self.assertIn("rank 2 has said nothing", text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,173 @@
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "accel/build/build.h"
+#include "core/config/load.h"
+#include "core/system/error.h"
+#include "core/system/executor.h"
+#include "ringbus/native/native_engine.h"
+#include "scene/builtin/builtin.h"
+#include "scene/load_scene.h"
+#include "shading/effects/effects_plan.h"
+#include "shading/tracer/path_tracer.h"
+#include "tests/ringbus/ranks/thread_transport.h"
+
+namespace carousel::ringbus {
+namespace {
+
+constexpr const char* kRankMachine =
+    "scene: {builtin: cornell}\n"
+    "image: {width: 24, height: 16, samples: 2, max_depth: 3}\n"
+    "engine: {kind: native, threads: 1}\n"
+    "topology: {resources: 5, link: {depth: 4}}\n"
+    "packets: {rays: 8}\n"
+    "collections: {ready: 8}\n"
+    "rays: {slots_per_resource: 24}\n";
+
+/// Passes a workload's calls on, and fails or asks for an end when a rank has shaded so much.
+class RankWorkload final : public Workload {
+ public:
+  RankWorkload(Workload& inner, std::function<void(std::size_t)> shaded) : inner_(inner), shaded_(std::move(shaded)) {}
+  Generated generate(WorkerId worker, std::size_t most, RayBatch& out) override {
+    return inner_.generate(worker, most, out);
+  }
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
+    inner_.shade(worker, completed, out);
+    if (shaded_) shaded_(completed.size());
+  }
+
+ private:
+  Workload& inner_;
+  std::function<void(std::size_t)> shaded_;
+};
+
+class RankRuns : public testing::Test {
+ protected:
+  struct Ended {
+    std::string hits, image, fault;
+    RunResult result;
+  };
+
+  void load(const std::vector<std::string>& sets) {
+    config_ = load_config({kRankMachine, "ranks.yaml"}, sets).config;
+    scene_ = scene::load_scene(
+        config_.scene, {}, [](const std::string&) {}, {}, scene::View{config_.camera, 1.5f});
+    shading::strip_effects(scene_, config_.shading.effects);
+    accel_ = accel::build(scene_, config_.bvh, *make_tbb_executor(1), config_.accuracy);
+  }
+  /// What rank `transport` makes of the picture; all of it without one.
+  Ended trace(Transport* transport, const std::function<void(std::size_t)>& shaded = {}, std::stop_token stop = {}) {
+    shading::PathTracer tracer(scene_, config_, 4096, static_cast<std::size_t>(shader_workers(config_)));
+    std::optional<shading::PathSample> share;
+    RunOptions options;
+    options.threads = static_cast<std::size_t>(*config_.engine.threads);
+    options.transport = transport;
+    options.stop = stop;
+    if (transport != nullptr) {
+      share = shading::share_of_paths(24 * 16 * 2, transport->rank(), transport->ranks());
+      tracer.set_sample(&*share);
+    }
+    RankWorkload workload(tracer, shaded);
+    Ended out;
+    try {
+      out.result = run_native(config_, accel_, 3.0f, workload, options);
+      if (transport != nullptr) {
+        std::vector<std::uint64_t> sums = tracer.sums();
+        transport->sum(sums);
+        tracer.set_sums(sums);
+      }
+      out.hits = tracer.hits_digest().hex();
+      out.image = tracer.image_digest();
+    } catch (const std::exception& error) {
+      out.fault = error.what();
+    }
+    return out;
+  }
+  std::vector<Ended> over(std::uint32_t ranks, const std::function<void(std::uint32_t, std::size_t)>& shaded = {},
+                          std::vector<std::stop_token> stops = {}) {
+    RankThreads all(ranks);
+    std::vector<Ended> out(ranks);
+    stops.resize(ranks);
+    {
+      std::vector<std::jthread> threads;
+      for (std::uint32_t r = 0; r < ranks; ++r)
+        threads.emplace_back([&, r] {
+          ThreadTransport transport(all, r);
+          std::function<void(std::size_t)> mine;
+          if (shaded) mine = [&, r](std::size_t rays) { shaded(r, rays); };
+          out[r] = trace(&transport, mine, stops[r]);
+        });
+    }
+    return out;
+  }
+
+  Config config_;
+  scene::Scene scene_;
+  accel::Accel accel_;
+};
+
+TEST_F(RankRuns, GiveTheHitsAndThePictureOfOneProcess) {
+  const std::vector<std::vector<std::string>> machines{
+      {},
+      {"topology.shape=bidirectional", "engine.threads=2"},
+      {"topology.shape=point_to_point", "topology.visit=owners"},
+      {"topology.flow=bubble", "topology.link.depth=2", "collections.traversal=ordered"},
+      {"collections.home=local", "topology.link.depth=1"},
+      {"rays.placement=round_robin", "rays.slots_per_resource=5", "collections.traversal=treelet"},
+  };
+  for (const auto& sets : machines) {
+    SCOPED_TRACE(testing::PrintToString(sets));
+    load(sets);
+    const Ended alone = trace(nullptr);
+    ASSERT_EQ(alone.fault, "");
+    for (const std::uint32_t ranks : {2u, 5u}) {
+      const std::vector<Ended> ended = over(ranks);
+      for (const Ended& rank : ended) {
+        ASSERT_EQ(rank.fault, "");
+        EXPECT_TRUE(rank.result.complete);
+        EXPECT_EQ(rank.result.rays_completed, alone.result.rays_completed);  // joined at every rank
+        EXPECT_EQ(rank.result.ranks.size(), ranks);
+      }
+      EXPECT_EQ(ended[0].hits, alone.hits);
+      EXPECT_EQ(ended[0].image, alone.image);
+      ResourceStatistics sum;
+      for (const ResourceStatistics& r : ended[0].result.resources) sum += r;
+      EXPECT_EQ(sum.rays_completed, alone.result.rays_completed);
+      EXPECT_EQ(sum.packets_retired, sum.packets_issued);
+    }
+  }
+}
+
+TEST_F(RankRuns, EndWithTheRankThatFails) {
+  load({});
+  const std::vector<Ended> ended = over(3, [](std::uint32_t rank, std::size_t) {
+    if (rank == 1) throw SimulationError("the lamp is broken");
+  });
+  EXPECT_EQ(ended[1].fault, "the lamp is broken");
+  EXPECT_EQ(ended[0].fault, "the run was ended by rank 1: the lamp is broken");
+  EXPECT_EQ(ended[2].fault, "the run was ended by rank 1: the lamp is broken");
+}
+
+TEST_F(RankRuns, StopTogether) {
+  load({"image.samples=2"});
+  std::stop_source stop;
+  const std::vector<Ended> ended =
+      over(3,
+           [&](std::uint32_t rank, std::size_t) {
+             if (rank == 2) stop.request_stop();
+             std::this_thread::sleep_for(std::chrono::milliseconds(50));  // there is time to notice
+           },
+           {{}, {}, stop.get_token()});
+  for (const Ended& rank : ended) {
+    EXPECT_EQ(rank.fault, "");
+    EXPECT_FALSE(rank.result.complete);
+  }
+}
+
+}  // namespace
+}  // namespace carousel::ringbus
