@@ -3,6 +3,7 @@ ranks cannot do is refused by name; a rank that dies or hangs ends the run, with
 
 CAROUSEL names the program. Where it was built without MPI, the suite checks that it says so, and skips the rest."""
 
+import functools
 import json
 import os
 import pathlib
@@ -28,6 +29,15 @@ ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROO
                    OMPI_MCA_hwloc_base_binding_policy="none", ASAN_OPTIONS="detect_leaks=0")
 
 
+@functools.cache
+def starts_processes():
+    """Whether MPI can run on this host at all, which is not the program's doing."""
+    try:
+        return subprocess.run(["mpirun", "-n", "2", "true"], capture_output=True, timeout=60, env=ENVIRONMENT).returncode == 0
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+
+
 def sets(assignments):
     return [word for assignment in assignments for word in ("--set", assignment)]
 
@@ -43,6 +53,8 @@ class Ranks(unittest.TestCase):
         self.assertIn("engine.transport", refusal.stderr)
         if "built without MPI" in refusal.stderr:
             self.skipTest("the program was built without MPI")
+        if not starts_processes():
+            self.skipTest("mpirun cannot start two processes of any program here")
 
     def command(self, out, assignments):
         return [CAROUSEL, "run", str(self.config), "--quiet", "--out", str(self.folder / out), *sets(assignments)]
