@@ -1,7 +1,7 @@
 #pragma once
 
 #include "accel/structure/accel.h"
-#include "report/sections/levels.h"
+#include "report/sections/structure/levels.h"
 
 namespace carousel::app {
 

@@ -4,7 +4,7 @@
 
 #include "accel/structure/accel.h"
 #include "core/statistics/node_counts.h"
-#include "report/sections/nodes.h"
+#include "report/sections/structure/nodes.h"
 
 namespace carousel::app {
 
