@@ -63,8 +63,8 @@ void ray_words(Words& w) {
       .item("N", "host.raster_seconds");
   w.line("ranks")
       .item("N ranks", "ranks")
-      .item("N messages", "rank_links.messages")
-      .item("N between them", "rank_links.bytes");
+      .item("N messages", "rank_links[].messages")
+      .item("N between them", "rank_links[].bytes");
   w.line("faults").item("cost N cycles: N without them, *", "faults.cycles_lost");
   w.line("throughput")
       .item("N rays/s", "host.rays_per_second",

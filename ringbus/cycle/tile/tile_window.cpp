@@ -44,8 +44,7 @@ bool Tile::choose_to_handle(std::size_t d, Cycle now) {
   }
   ++passed_over_[d];
   in.bring_forward(chosen);
-  dispatch_free_ = now + 1;
-  ++dispatch_busy_;
+  hold_dispatch(now, 1, 0, SliceKind::kPass, in.front().packet, true);
   return true;
 }
 

@@ -66,7 +66,7 @@ void expect_units(const Json& schema, const std::string& path) {
       EXPECT_TRUE(value.contains("description")) << child;
       const bool number = value["type"] == "integer" || value["type"] == "number";
       const bool plain = key.ends_with("fraction") || key == "fullness_mean" || key == "resource" || key == "from" ||
-                         key == "to" || key == "schema_version";
+                         key == "to" || key == "schema_version" || key == "rank" || key == "first_resource";
       EXPECT_TRUE(!number || plain || value.contains("unit")) << child;
       expect_units(value, child);
     }

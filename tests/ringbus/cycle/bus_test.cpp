@@ -37,7 +37,7 @@ class FourOnABus {
     packets_[number].owners = {rays_of};
   }
   void send(std::uint32_t from, std::uint32_t number, std::uint16_t cycles, Cycle now, bool answers = false) {
-    Token token{PacketId(number), 0, cycles, 7};
+    Token token{.packet = PacketId(number), .rays = 7, .link_cycles = cycles};
     token.answers = answers;
     out[from].push(token, now, false);
     ASSERT_TRUE(out[from].send(now));

@@ -187,7 +187,7 @@ TEST(ShapeCache, AMissWaitsForItsLastLineAndIsAskedForOnce) {
 // ---- links
 
 Token packet(std::uint32_t id, std::uint16_t cycles) {
-  return {PacketId(id), 0, cycles, 1};
+  return {.packet = PacketId(id), .rays = 1, .link_cycles = cycles};
 }
 
 TEST(Ports, TailArrivesAfterLatencyAndWidths) {

@@ -78,7 +78,7 @@ void run_link(double load, const Arrived& arrived, std::vector<Cycle>& created) 
   PoissonArrivals arrivals(load);
   for (std::uint32_t i = 0; i < kCustomers; ++i) {
     created.push_back(arrivals.next());
-    out.push({PacketId(i), 0, static_cast<std::uint16_t>(kService), 1}, created.back(), false);
+    out.push({.packet = PacketId(i), .rays = 1, .link_cycles = kService}, created.back(), false);
   }
   while (!out.empty()) {
     const Cycle now = out.next(false);
