@@ -16,10 +16,6 @@ constexpr int kLeastCell = 3 * 20;  // divisions of an octree's cube in a row th
 // Boxes of siblings that overlap by no more than this part of the root's area are not worth a plane (Stich 2009, 4.5).
 constexpr float kLeastOverlap = 1e-5f;
 
-float centroid(const BuildPrimitive& p, int axis) {
-  return p.lo[axis] * 0.5f + p.hi[axis] * 0.5f;
-}
-
 Aabb bounds_of(const References& references) {
   Aabb box;
   for (const BuildPrimitive& p : references) box.extend(box_of(p));
@@ -30,12 +26,6 @@ Aabb joined(Aabb box, const BuildPrimitive& p) {
   box.extend(box_of(p));
   return box;
 }
-
-/// A division by primitives: those whose centroids lie below the plane, and the others.
-struct ObjectSplit {
-  SpacePlane plane;
-  Sides sides;
-};
 
 class ReferenceBuilder {
  public:
@@ -77,51 +67,6 @@ class ReferenceBuilder {
 
   float blocks(std::size_t n) const {
     return static_cast<float>((n + settings_.block_primitives - 1) / settings_.block_primitives);
-  }
-
-  /// As build_sah(): the best plane among 16 bins of centroids.
-  ObjectSplit object_split(const References& references) const {
-    constexpr std::size_t kBins = 16;
-    ObjectSplit best;
-    for (int axis = 0; axis < 3; ++axis) {
-      float least = centroid(references[0], axis), most = least;
-      for (const BuildPrimitive& p : references) {
-        least = std::min(least, centroid(p, axis));
-        most = std::max(most, centroid(p, axis));
-      }
-      const float extent = most - least;
-      if (!(extent > 0 && extent < std::numeric_limits<float>::infinity())) continue;
-      std::array<float, kBins> plane;
-      for (std::size_t k = 1; k < kBins; ++k)
-        plane[k] = least + extent * (static_cast<float>(k) / static_cast<float>(kBins));
-      std::array<Aabb, kBins> bounds;
-      std::array<std::size_t, kBins> count{};
-      for (const BuildPrimitive& p : references) {
-        const float c = centroid(p, axis);
-        const auto guess = static_cast<std::size_t>((c - least) / extent * static_cast<float>(kBins));
-        std::size_t bin = std::min(guess, kBins - 1);
-        while (bin > 0 && c < plane[bin]) --bin;
-        while (bin + 1 < kBins && c >= plane[bin + 1]) ++bin;
-        bounds[bin].extend(box_of(p));
-        ++count[bin];
-      }
-      std::array<Aabb, kBins> above;
-      Aabb sum;
-      for (std::size_t k = kBins - 1; k > 0; --k) sum.extend(bounds[k]), above[k] = sum;
-      Sides sides;
-      sides.count_above = references.size();
-      for (std::size_t k = 1; k < kBins; ++k) {
-        sides.below.extend(bounds[k - 1]);
-        sides.above = above[k];
-        sides.count_below += count[k - 1];
-        sides.count_above -= count[k - 1];
-        if (!sides.helps(references.size())) continue;
-        sides.cost =
-            sides.below.half_area() * blocks(sides.count_below) + sides.above.half_area() * blocks(sides.count_above);
-        if (sides.cost < best.sides.cost) best = {{axis, plane[k]}, sides};
-      }
-    }
-    return best;
   }
 
   static Parts by_centroid(References references, SpacePlane s) {
@@ -182,7 +127,7 @@ class ReferenceBuilder {
     return 0;
   }
 
-  bool overlaps(const ObjectSplit& split) const {
+  bool overlaps(const Division& split) const {
     const auto& [below, above] = std::pair(split.sides.below, split.sides.above);
     Aabb both;
     for (int axis = 0; axis < 3; ++axis) {
@@ -233,18 +178,16 @@ class ReferenceBuilder {
     if (count == 1 || (count <= settings_.leaf_primitives && count <= settings_.block_primitives))
       return leaf(std::move(references), at);
 
-    ObjectSplit object;
-    std::optional<SpaceSplit> space;
+    Division object, space;
     if (depth < kSahDepth) {
-      object = object_split(references);
       const auto blocks_of = [this](std::size_t n) { return blocks(n); };
-      if (cuts > 0 && builder_ == Kind::kSpatial && (object.sides.cost == kInfinite || overlaps(object)))
-        space = best_space_split(references, box, cuts, blocks_of);
-      if (builder_ == Kind::kKd) space = best_space_split(references, box, cuts, blocks_of);
+      object = best_object_division(references, blocks_of);
+      if (builder_ == Kind::kKd || (builder_ == Kind::kSpatial && cuts > 0 && (!object.found() || overlaps(object))))
+        space = best_space_division(references, box, cuts, blocks_of);
     }
-    if (builder_ == Kind::kSpatial && space && !(space->sides.cost < object.sides.cost)) space.reset();
+    const bool by_plane = builder_ == Kind::kSpatial ? space.sides.cost < object.sides.cost : space.found();
 
-    const float cost = space ? space->sides.cost : object.sides.cost, area = box.half_area();
+    const float cost = by_plane ? space.sides.cost : object.sides.cost, area = box.half_area();
     if (count <= settings_.leaf_primitives && !(cost + settings_.traversal_cost * area < area * blocks(count)))
       return leaf(std::move(references), at);
 
@@ -253,9 +196,9 @@ class ReferenceBuilder {
     if (builder_ == Kind::kOctree && depth < kSahDepth && octree_parts(references, cell, cuts, parts)) {
       cells[0] = cell.half(false);
       cells[1] = cell.half(true);
-    } else if (space) {
-      parts = by_space(references, space->plane, builder_ == Kind::kSpatial ? &space->sides : nullptr);
-    } else if (object.sides.cost < kInfinite) {
+    } else if (by_plane) {
+      parts = by_space(references, space.plane, builder_ == Kind::kSpatial ? &space.sides : nullptr);
+    } else if (object.found()) {
       parts = by_centroid(references, object.plane);
     } else {
       parts = by_halves(references);
@@ -272,8 +215,6 @@ class ReferenceBuilder {
     nodes_[at].right = right;
     return at;
   }
-
-  static constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
   const SahSettings& settings_;
   const Kind builder_;
