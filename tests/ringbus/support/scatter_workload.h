@@ -75,6 +75,12 @@ class ScatterWorkload final : public Workload {
     rays_ += completed.size();
   }
 
+  /// Four shaders: of shadow rays, of rays that hit nothing, and two of those that hit.
+  std::uint32_t shader(const RayResult& r) const override {
+    if (r.tag.kind == RayKind::kShadow) return 0;
+    return r.hit.valid() ? 2 + r.tag.path % 2 : 1;
+  }
+
   HitsDigest digest() const { return digest_; }
   std::uint64_t rays() const { return rays_; }
   /// Rays that were given to shade() more than once.
