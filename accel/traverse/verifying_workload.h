@@ -6,23 +6,17 @@
 #include <optional>
 
 #include "accel/structure/accel.h"
-#include "core/types/workload.h"
+#include "core/types/wrapped_workload.h"
 
 namespace carousel::accel {
 
 /// A workload that traces every completed ray of another one again, depth-first, and compares the bits of the
 /// hits (`verify: reference`). Shadow rays are compared by occluded or visible. Same threads as the workload.
-class VerifyingWorkload final : public Workload {
+class VerifyingWorkload final : public WrappedWorkload {
  public:
   /// Keeps references to both.
-  VerifyingWorkload(Workload& inner, const Accel& accel) : inner_(inner), accel_(accel) {}
+  VerifyingWorkload(Workload& inner, const Accel& accel) : WrappedWorkload(inner), accel_(accel) {}
 
-  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
-    return inner_.generate(worker, max_rays, out);
-  }
-  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
-  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
-  PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
   struct Mismatch {
@@ -34,7 +28,6 @@ class VerifyingWorkload final : public Workload {
   const std::optional<Mismatch>& example() const { return example_; }
 
  private:
-  Workload& inner_;
   const Accel& accel_;
   std::atomic<std::uint64_t> compared_{0}, mismatches_{0};
   std::mutex example_mutex_;

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/config/edit_distance.h"
+#include "core/text/edit_distance.h"
 
 namespace carousel::app {
 

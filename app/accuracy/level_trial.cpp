@@ -8,7 +8,7 @@
 #include "app/accuracy/unit_cost.h"
 #include "app/host/cpu_time.h"
 #include "app/run/ray_list_workload.h"
-#include "core/config/validate.h"
+#include "core/config/load/validate.h"
 #include "core/system/executor.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/config/costs.h"
-#include "core/config/validate.h"
+#include "core/config/load/validate.h"
 #include "core/system/error.h"
 #include "ringbus/topology/wire_length.h"
 

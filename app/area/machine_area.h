@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "report/sections/costs.h"
 
 namespace carousel::app {

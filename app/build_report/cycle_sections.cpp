@@ -47,7 +47,10 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
     for (const auto [kind, use] : tile.units)
       if (use.lanes > 0) fill.kinds[kind] = ratio(use.passes, use.lanes);
   }
-  if (config.rays.banks > 0) out.bank_conflicts = tile.bank_conflicts;
+  if (config.rays.banks > 0) {
+    out.bank_conflicts = tile.bank_conflicts;
+    out.primitive_ray_reads = unit_cycles(tile.primitive_ray_reads, tile);
+  }
   if (config.rays.reads_per_cycle > 0 || config.rays.banks > 0) out.ray_reads = unit_cycles(tile.ray_reads, tile);
   out.dispatch_busy = tile.dispatch.busy;
   out.dispatch_idle = cycles - tile.dispatch.busy;

@@ -31,8 +31,8 @@
 #include "app/host/output.h"
 #include "app/host/version_text.h"
 #include "app/usage/examples.h"
-#include "core/config/edit_distance.h"
 #include "core/system/error.h"
+#include "core/text/edit_distance.h"
 
 namespace carousel::app {
 

@@ -15,7 +15,7 @@
 #include "app/host/exit_status.h"
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "report/text/progress_line.h"
 
 namespace carousel::app {

@@ -10,7 +10,7 @@
 #include "app/host/exit_status.h"
 #include "app/host/output.h"
 #include "app/run/prepare.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/config/schema.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"

@@ -126,10 +126,11 @@ void require_estimates(const RunArguments& arguments, const Config& config) {
 /// Tells two scenes apart, and the structures built of them.
 std::string scene_digest(const Prepared& p) {
   const scene::Scene& s = p.scene;
-  const auto& nodes = p.accel.nodes;
-  const std::string boxes = bytes_digest({reinterpret_cast<const char*>(nodes.data()), nodes.size() * sizeof nodes[0]});
-  return fmt::format("{} triangles, {} instances, {} materials, structure {}", s.unique_triangle_count(),
-                     s.instances.size(), s.materials.size(), boxes);
+  const auto digest = [](const auto& array) {
+    return bytes_digest({reinterpret_cast<const char*>(array.data()), array.size() * sizeof array[0]});
+  };
+  return fmt::format("{} triangles, {} instances, {} materials, structure {}, primitives {}", s.unique_triangle_count(),
+                     s.instances.size(), s.materials.size(), digest(p.accel.nodes), digest(p.accel.blocks));
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,

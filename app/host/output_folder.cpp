@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "core/config/differences.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/system/error.h"
 
 namespace carousel::app {

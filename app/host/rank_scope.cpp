@@ -22,7 +22,7 @@ namespace {
   throw ConfigError({{{}, key, message}});
 }
 
-/// Whether a starter of parallel programs has made this process: Open MPI's mpirun and srun with PMIx or PMI 2.
+/// True in a process made by a starter of parallel programs: Open MPI's mpirun, or srun with PMIx or PMI 2.
 bool started_as_rank() {
   const char* const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
   return std::any_of(std::begin(names), std::end(names), [](const char* name) { return std::getenv(name) != nullptr; });

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "ringbus/transport/mpi/mpi_transport.h"
 
 namespace carousel::app {

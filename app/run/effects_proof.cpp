@@ -10,6 +10,7 @@
 #include "app/run/memory_need.h"
 #include "app/run/ray_progress.h"
 #include "app/run/render_job.h"
+#include "core/types/wrapped_workload.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/native/native_engine.h"
@@ -23,12 +24,9 @@ constexpr std::uint64_t kTimedPaths = 16384;
 constexpr int kPairs = 7;
 
 /// Adds up the work of the effects at the hits that it passes on.
-class WorkCount final : public Workload {
+class WorkCount final : public WrappedWorkload {
  public:
-  explicit WorkCount(Workload& inner) : inner_(inner) {}
-  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
-    return inner_.generate(worker, max_rays, out);
-  }
+  explicit WorkCount(Workload& inner) : WrappedWorkload(inner) {}
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     for (const RayResult& result : completed) products_ += inner_.extra_work(result).products;
     inner_.shade(worker, completed, out);
@@ -36,7 +34,6 @@ class WorkCount final : public Workload {
   std::uint64_t products() const { return products_; }
 
  private:
-  Workload& inner_;
   std::uint64_t products_ = 0;
 };
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/types/workload.h"
+#include "core/types/wrapped_workload.h"
 #include "ringbus/results/ray_log.h"
 
 namespace carousel::app {
@@ -22,19 +22,16 @@ struct RayPlace {
 
 /// Finds one ray among those of another workload, names it for the engine, and notes what came of it. It changes
 /// neither rays nor their order.
-class FollowingWorkload final : public Workload {
+class FollowingWorkload final : public WrappedWorkload {
  public:
   using Clock = std::chrono::steady_clock;
   /// Pixel and sample of a path whose rays are in flight.
   using Locate = std::function<std::pair<std::uint32_t, std::uint32_t>(std::uint32_t path)>;
 
   FollowingWorkload(Workload& inner, const RayPlace& place, Locate locate, ringbus::FollowedRay& ray)
-      : inner_(inner), place_(place), locate_(std::move(locate)), ray_(ray) {}
+      : WrappedWorkload(inner), place_(place), locate_(std::move(locate)), ray_(ray) {}
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
-  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
-  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
-  PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
   // After the run.
@@ -51,7 +48,6 @@ class FollowingWorkload final : public Workload {
  private:
   void look_at(const RayRequest& request);
 
-  Workload& inner_;
   RayPlace place_;
   Locate locate_;
   ringbus::FollowedRay& ray_;

@@ -9,7 +9,7 @@
 
 #include "accel/structure/accel.h"
 #include "app/run/all_hits.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "scene/load_scene.h"
 #include "scene/model/scene.h"
 #include "shading/surface/alpha_test.h"

@@ -5,7 +5,7 @@
 
 #include "accel/structure/accel.h"
 #include "core/statistics/bounce_counts.h"
-#include "core/types/workload.h"
+#include "core/types/wrapped_workload.h"
 #include "report/sections/rays.h"
 #include "report/sections/tests.h"
 #include "ringbus/transport/transport.h"
@@ -14,19 +14,16 @@ namespace carousel::app {
 
 /// Counts the rays of another workload by kind and bounce and keeps some of them, to be traced depth-first when the
 /// run is over. Counts and choice depend on the rays and their hits alone.
-class RayCensus final : public Workload {
+class RayCensus final : public WrappedWorkload {
  public:
   /// Keeps a reference to `inner`. One ray in `one_in`, a power of two, is kept.
   RayCensus(Workload& inner, std::size_t workers, std::uint64_t one_in)
-      : inner_(inner), one_in_(one_in), workers_(workers) {}
+      : WrappedWorkload(inner), one_in_(one_in), workers_(workers) {}
 
   /// The part of the rays of a run of about `rays` that is worth tracing again: some 32,768 of them.
   static std::uint64_t one_in(std::uint64_t rays);
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;
-  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
-  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
-  PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
   // When nothing runs any more.
@@ -51,7 +48,6 @@ class RayCensus final : public Workload {
 
   bool keeps(const Ray& ray) const;
 
-  Workload& inner_;
   std::uint64_t one_in_;
   std::vector<Worker> workers_;
 };

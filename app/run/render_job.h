@@ -82,7 +82,7 @@ class RenderJob {
   static std::uint64_t strata_of(const Config& config, std::uint64_t rays);
   /// One path in `one_in`, evenly over the frame.
   shading::PathSample spread(std::uint64_t one_in, std::uint64_t seed) const;
-  /// What the paths of each piece come to when they are traced depth-first.
+  /// The tests and nodes of the paths of each piece, traced depth-first.
   std::vector<accel::ReferenceRun> survey(const accel::Accel& accel);
 
   std::optional<double> raster_seconds_, draw_seconds_;

@@ -2,7 +2,8 @@
 
 namespace carousel::app {
 
-PlaceCensus::PlaceCensus(Workload& inner, const RenderJob& job) : inner_(inner), job_(job), place_of_(job.pieces()) {
+PlaceCensus::PlaceCensus(Workload& inner, const RenderJob& job)
+    : WrappedWorkload(inner), job_(job), place_of_(job.pieces()) {
   for (const shading::PathSample::Run& run : job.sample()->runs()) {
     place_of_[job.piece_at(run.first)] = run.place;
     if (paths_.size() <= run.place) paths_.resize(run.place + std::size_t{1});

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "core/config/edit_distance.h"
 #include "core/system/error.h"
+#include "core/text/edit_distance.h"
 
 namespace carousel::app {
 

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "core/config/edit_distance.h"
 #include "core/config/schema.h"
+#include "core/text/edit_distance.h"
 
 namespace carousel::config {
 

@@ -11,8 +11,8 @@
 namespace carousel {
 
 /// JSON Schema (draft 2020-12) of a configuration: types, ranges, names, defaults, units, meanings. Where an engine
-/// does not have a value, the keyword `engines` names those that do. Cross-field rules (core/config/validate.h) are not
-/// in it.
+/// does not have a value, the keyword `engines` names those that do. Cross-field rules (core/config/load/validate.h)
+/// are not in it.
 nlohmann::ordered_json config_schema();
 
 namespace config {

@@ -38,7 +38,7 @@ struct Units {
   PerUnit<UnitCycles> kinds{};
   std::optional<LaneFill> lane_fill{};
   RunFeatures features{};
-  std::optional<UnitCycles> ray_reads{};
+  std::optional<UnitCycles> ray_reads{}, primitive_ray_reads{};
   std::optional<std::uint64_t> bank_conflicts{};
   std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
 };
@@ -54,12 +54,16 @@ void describe(V& v, const Units& r) {
   // The order of these keys is older than the table of the kinds.
   for (const UnitKindRow& row : kUnitKinds) {
     if (row.kind != UnitKind::kTransform) kind(row);
-    if (row.kind == UnitKind::kBundle)
-      v.section("ray_reads", r.ray_reads, "the port of the ray store, with rays.reads_per_cycle, or its banks");
+    if (row.kind != UnitKind::kBundle) continue;
+    v.section(
+        "ray_reads", r.ray_reads,
+        "the port of the ray store, with rays.reads_per_cycle; with rays.banks that of its banks to the box units");
+    v.section("primitive_ray_reads", r.primitive_ray_reads,
+              "with rays.banks, the port of the banks to the units for primitives");
   }
   kind(unit_row(UnitKind::kTransform));
   v.field("bank_conflicts", r.bank_conflicts, "cycles",
-          "reading took longer than with the records evenly over the banks, with rays.banks");
+          "reading took longer than with the records evenly over the banks, with rays.banks; of both ports");
   v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
   v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");

@@ -85,6 +85,7 @@ class CycleRun {
     };
     for (const auto [kind, use] : tile.units) check(use);
     check(tile.ray_reads);
+    check(tile.primitive_ray_reads);
     if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
@@ -196,7 +197,7 @@ class CycleRun {
     const double tiles = static_cast<double>(machine_.resources().size());
     std::vector<ClassUse> out;
     for (const auto [kind, busy] : units) out.push_back({unit_row(kind).work, tiles, busy});
-    out.push_back({"ray_reads", tiles, reads});
+    out.push_back({"ray_reads", config_.rays.banks > 0 ? 2 * tiles : tiles, reads});
     out.push_back({"handling", tiles, dispatch});
     out.push_back(link_use());
     Cycle port = 0;

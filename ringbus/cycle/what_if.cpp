@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/config/differences.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "core/system/error.h"
 #include "ringbus/results/run_features.h"

@@ -71,7 +71,8 @@ class PortLogic {
   /// The port by which a packet leaves.
   std::size_t out_port(const Packet& packet) const { return machine_.topology.out_port(packet, here()); }
 
-  /// Takes in what a packet of its own has brought back; the packet is free again.
+  /// Takes in what a packet of its own has brought back; the packet is free again. Returns how many ray IDs have joined
+  /// collections.
   std::size_t retire(PacketId id, Packet& packet) {
     const std::size_t joined = resource_.retire(packet);
     free.put(id, packet.direction);

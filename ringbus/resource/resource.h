@@ -64,7 +64,8 @@ class Resource {
   std::span<const std::uint32_t> tested() const { return local_.slots; }
   /// An any-hit call of the ray in `slot` has been answered: the ray may complete.
   void release(std::uint32_t slot) { completion_.add_pending(slot, -1); }
-  /// Takes back a packet of its own: members that hit join the children's collections.
+  /// Takes back a packet of its own: members that hit join the children's collections. Returns how many memberships
+  /// that makes.
   std::size_t retire(Packet& packet);
   /// Takes the members of a membership packet that has reached its home.
   void join(Packet& packet);

@@ -23,7 +23,7 @@
 
 namespace carousel::ringbus {
 
-/// What a rank has sent to each other rank.
+/// The part of a rank in a run, and its messages to each other rank.
 struct RankResult {
   std::uint32_t first_resource = 0, resources = 0;  ///< its arc
   std::uint64_t rays_completed = 0;                 ///< and shaded by it

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;

@@ -22,6 +22,7 @@
 #include "app/run/render_job.h"
 #include "core/config/write.h"
 #include "core/system/error.h"
+#include "core/types/wrapped_workload.h"
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 
@@ -78,11 +79,11 @@ class Tree {
 };
 
 /// Passes a workload on to the engine, ray by ray, and keeps what became of each.
-class RecordedWorkload final : public Workload {
+class RecordedWorkload final : public WrappedWorkload {
  public:
   using Name = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t, std::uint32_t>;  // path, bounce, kind, index
 
-  RecordedWorkload(Workload& inner, const Tree& tree) : inner_(inner), tree_(tree) {}
+  RecordedWorkload(Workload& inner, const Tree& tree) : WrappedWorkload(inner), tree_(tree) {}
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     const std::size_t before = out.size();
@@ -97,9 +98,6 @@ class RecordedWorkload final : public Workload {
     }
     return made;
   }
-  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
-  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
-  PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
     std::vector<Name>& batch = shaded_.emplace_back();
     for (const RayResult& result : completed) {
@@ -197,7 +195,6 @@ class RecordedWorkload final : public Workload {
     return entry;
   }
 
-  Workload& inner_;
   const Tree& tree_;
   std::unordered_map<std::uint32_t, std::uint64_t> path_of_state_;
   std::map<Name, Json> rays_;

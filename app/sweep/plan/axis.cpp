@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/config/edit_distance.h"
 #include "core/config/schema.h"
 #include "core/system/error.h"
+#include "core/text/edit_distance.h"
 
 namespace carousel::app {
 

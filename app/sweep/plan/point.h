@@ -6,7 +6,7 @@
 
 #include "app/sweep/plan/content.h"
 #include "app/sweep/plan/design.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 
 namespace carousel::app {
 

@@ -41,8 +41,8 @@ void describe(V& v, RaysConfig& c) {
           "limit.");
   v.field(
       "banks", c.banks, IntRange{0, 256}, "banks",
-      "The banks of a resource's ray store, which hold its slots in turn. Each has a port from which the testers read "
-      "one record a cycle, and one to write. With 0 rays.reads_per_cycle is the limit.");
+      "The banks of a resource's ray store, which hold its slots in turn. Each has a port to the box units and one to "
+      "the units for primitives, which read one record a cycle. With 0 rays.reads_per_cycle is the limit.");
   v.choice("query", c.query, "The hits of a file's rays that are looked for: the closest, any one, or all.");
   v.field("hits_per_ray", c.hits_per_ray, IntRange{1, 1 << 24}, "hits",
           "The largest number of hits of a ray with query: all. A ray with more ends the run with an error.");

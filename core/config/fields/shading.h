@@ -77,7 +77,7 @@ void describe(V& v, ShadingConfig& c) {
           "The time in which a shader worker decides if a non-opaque primitive is hit, with testers.any_hit: shader.");
   v.field(
       "lanes", c.lanes, IntRange{1, 64}, "rays",
-      "The rays that a shader worker shades side by side as a vector. Those of different shaders take their turns.");
+      "The rays that a shader worker shades side by side as a vector. A vector takes its shaders one after another.");
   v.choice("sort", c.sort,
            "A vector has the completed rays that have waited longest, or completed rays are sorted by shader and a "
            "vector has rays of one.");

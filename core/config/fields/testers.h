@@ -84,8 +84,7 @@ void describe(V& v, TestersConfig& c) {
   v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.");
   v.field("window", c.window, IntRange{1, 64}, "packets",
           "The number of packets at the front of a resource's input queue among which it takes the first that can go "
-          "on and "
-          "whose shapes are there.");
+          "on and whose shapes are there.");
   v.choice("own_rays", c.own_rays,
            "The issuer of a packet tests its own rays before the packet leaves, or after it has come back.");
   v.choice("any_hit", c.any_hit,

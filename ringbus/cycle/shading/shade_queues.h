@@ -10,7 +10,8 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Completed rays that a worker shades side by side, each with its shader; those of different shaders take their turns.
+/// Completed rays that a worker shades side by side, each with its shader. A vector takes its shaders one after
+/// another.
 struct ShadeVector {
   HitBatch rays;
   std::vector<std::uint32_t> shaders;

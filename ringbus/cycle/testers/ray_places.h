@@ -11,11 +11,12 @@ namespace carousel::ringbus::cycle {
 /// How many of the rays of a test share a place at most. 0: there are no such places.
 struct RayPlaces {
   std::uint64_t cell = 0;  ///< test cells, each of which tests one ray at a time
-  std::uint64_t bank = 0;  ///< banks of ray memory, each of which reads one record a cycle
+  std::uint64_t bank = 0;  ///< banks of ray memory, each port of which reads one record a cycle
 };
 
-/// The test cells and the banks of ray memory that hold the slots in turn (US 9633468: ray i is always tested in cell
-/// i, and ray memory has banks of two ports, one of which reads).
+/// The test cells and the banks of ray memory that hold the slots in turn. US 9633468: a test cell is given rays of its
+/// own bank; where it is given others, conflicts of a bank are handled one after another; a bank has one port to the
+/// tests of boxes and one to those of primitives.
 class PlaceCounter {
  public:
   PlaceCounter(std::int64_t cells, std::int64_t banks)

@@ -28,7 +28,7 @@ class Tester {
  public:
   using Order = CullPlanesConfig::Order;
   /// `reads_per_cycle`: as rays.reads_per_cycle; 0: reads take no time. `regrouped_per_cycle`: rays that the builder of
-  /// bundles takes. `banks_of_rays`: as rays.banks, of which each reads a record a cycle; 0: there is the one port.
+  /// bundles takes. `banks_of_rays`: as rays.banks; 0: the store has one port.
   explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst, std::int64_t reads_per_cycle = 0,
                   std::int64_t regrouped_per_cycle = 1, std::int64_t banks_of_rays = 0)
       : store_({std::max<std::int64_t>(1, reads_per_cycle), 1, 1}),
@@ -47,10 +47,8 @@ class Tester {
   Cycle strip(Cycle at, const IntersectionCounts& counts, std::uint64_t reads = 0, const BundlePasses& bundles = {},
               const RayPlaces& places = {}) {
     const TestedRays of{reads, places.cell};
-    conflicts_ += places.bank > 0 ? places.bank - ceil_div(reads, banks_of_rays_) : 0;
-    const UnitBank::Reservation read = store_.reserve(at, banks_of_rays_ > 0 ? places.bank
-                                                          : reads_cost_      ? reads
-                                                                             : 0),
+    const UnitBank::Reservation read = banks_of_rays_ > 0 ? banked_reads(at, counts, reads, places.bank)
+                                                          : store_.reserve(at, reads_cost_ ? reads : 0),
                                 bundled = bundle_tests(read, bundles);
     const Cycle inverse = inverted(bundled.first, counts);
     const UnitBank::Reservation moved = tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)},
@@ -88,6 +86,7 @@ class Tester {
   void account(TileState state, Cycle now) {
     for (const auto [kind, bank] : banks_) units_[kind].account(bank, state, now);
     ray_reads_.account(store_, state, now);
+    primitive_reads_.account(primitive_store_, state, now);
     accounted_ = now;
   }
   /// Time of the last account().
@@ -100,6 +99,7 @@ class Tester {
       result.units[kind].lanes = banks_[kind].tests() * lanes_.count();
     }
     result.ray_reads = ray_reads_.use;
+    result.primitive_ray_reads = primitive_reads_.use;
     result.bank_conflicts = conflicts_;
   }
 
@@ -109,7 +109,8 @@ class Tester {
     for (const auto [kind, ledger] : units_) busy[kind] = ledger.use.busy;
     return busy;
   }
-  Cycle busy_reads() const { return ray_reads_.use.busy; }
+  /// Of both ports where there are banks.
+  Cycle busy_reads() const { return ray_reads_.use.busy + primitive_reads_.use.busy; }
 
   /// The cycles before `at` in which each bank was busy. Times of calls, also of account(), must not decrease.
   PerUnit<Cycle> busy_before(Cycle at) {
@@ -118,19 +119,22 @@ class Tester {
     return busy;
   }
   Cycle reads_before(Cycle at) { return store_.busy_before(at); }
+  Cycle primitive_reads_before(Cycle at) { return primitive_store_.busy_before(at); }
 
-  /// Tracks from `track` on: one a kind of unit, and one of the ray store's port.
+  /// Tracks from `track` on: one a kind of unit, and one each of the ray store's ports.
   void record(SliceLog& slices, std::uint32_t track) {
     for (const auto [kind, bank] : banks_) bank.record(slices, track + static_cast<std::uint32_t>(unit_index(kind)));
     store_.record(slices, track + static_cast<std::uint32_t>(kUnitKinds.size()));
+    primitive_store_.record(slices, track + static_cast<std::uint32_t>(kUnitKinds.size()) + 1);
   }
   void close(Cycle end) {
     for (const auto [kind, bank] : banks_) bank.close(end);
     store_.close(end);
+    primitive_store_.close(end);
   }
 
   const UnitBank& bank(UnitKind kind) const { return banks_[kind]; }
-  const UnitBank& store() const { return store_; }  ///< the port of the ray store
+  const UnitBank& store() const { return store_; }  ///< the port of the ray store, or of its banks to the box units
 
  private:
   struct Ledger {
@@ -151,6 +155,24 @@ class Tester {
   }
   std::uint64_t starts(UnitKind kind, const IntersectionCounts& counts, const TestedRays& of) {
     return starts(kind, passes_of(kind, counts), of);
+  }
+  /// The records of a packet through the ports of the banks, `most` of them from one bank: through the one port for
+  /// boxes, through the other for primitives, and through both where a node holds both.
+  UnitBank::Reservation banked_reads(Cycle at, const IntersectionCounts& counts, std::uint64_t reads,
+                                     std::uint64_t most) {
+    const bool primitives = std::any_of(kUnitKinds.begin(), kUnitKinds.end(), [&](const UnitKindRow& row) {
+      return row.stage == Stage::kPrimitive && counts.*row.tests > 0;
+    });
+    const bool boxes = counts.box > 0 || !primitives;
+    UnitBank::Reservation read{at, at};
+    const auto through = [&](UnitBank& port) {
+      const UnitBank::Reservation own = port.reserve(at, most);
+      read = {std::max(read.first, own.first), std::max(read.last, own.last)};
+      conflicts_ += most - ceil_div(reads, banks_of_rays_);
+    };
+    if (boxes) through(store_);
+    if (primitives) through(primitive_store_);
+    return read;
   }
   /// Tests for rays that come one after another from the bank before: the last of them is tested last.
   static UnitBank::Reservation tested(UnitBank& bank, const UnitBank::Reservation& before, std::uint64_t tests) {
@@ -189,15 +211,15 @@ class Tester {
 
   PerUnit<UnitBank> banks_;
   PerUnit<std::uint64_t> passes_{};
-  UnitBank store_, builder_;
+  UnitBank store_, primitive_store_{{1, 1, 1}}, builder_;
   Lanes lanes_;
   TestersConfig::BundleBlocks blocks_;
   PerUnit<Ledger> units_;
-  Ledger ray_reads_;
+  Ledger ray_reads_, primitive_reads_;
   Cycle accounted_ = 0;
   Order order_;
   bool reads_cost_;
-  std::uint64_t banks_of_rays_, conflicts_ = 0;  // of ray memory; cycles in which a bank reads and others have none to
+  std::uint64_t banks_of_rays_, conflicts_ = 0;  // see TileResult::bank_conflicts
   bool inline_;
 };
 

@@ -189,7 +189,7 @@ class Tile final : public ResourceAgent {
   void count_sent(const Packet& packet, const PacketLoad& load, bool answers);
   bool take_answer(std::size_t d, Cycle now);
   void test_own_rays(Context& context, PacketId id, Cycle now);
-  void retire_at_owner(PacketId id);
+  void retire_at_owner(PacketId id, std::size_t entries);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
   std::size_t read_on_visit(const Packet& packet) const {
@@ -202,7 +202,7 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_cycles(std::size_t ids) const { return std::max<Cycle>(1, ceil_div(ids, ids_per_cycle_)); }
   void occupy_dispatch(Cycle now, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip = true);
   void hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
-  void sort_ids(std::size_t joined, std::size_t ids, PacketId packet);
+  void sort_ids(std::size_t joined, std::size_t entries, PacketId packet);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
   bool may_inject(const Packet& packet) const;
   bool dispatch_wanted() const;

@@ -125,8 +125,9 @@ void Tile::end_test(Context& context, Cycle now) {
   in_test_.end(context.tested);
   take_completed(context.completed, context.freed_slots);
   if (logic_.leaves_after_test(packet)) return depart(id, now, true);
-  occupy_dispatch(now, read_at_owner(packet), SliceKind::kRetire, id);
-  retire_at_owner(id);
+  const std::size_t entries = read_at_owner(packet);
+  occupy_dispatch(now, entries, SliceKind::kRetire, id);
+  retire_at_owner(id, entries);
 }
 
 void Tile::ask(Context& context, Cycle now) {

@@ -65,7 +65,7 @@ bool Tile::take_answer(std::size_t d, Cycle now) {
     return true;
   }
   collect_answers(machine_, id);
-  own_last ? test_own_rays(*context, id, now) : retire_at_owner(id);
+  own_last ? test_own_rays(*context, id, now) : retire_at_owner(id, token.entries);
   return true;
 }
 
@@ -78,22 +78,22 @@ void Tile::test_own_rays(Context& context, PacketId id, Cycle now) {
   begin_test(context, id, dispatch_free_, false);
 }
 
-void Tile::retire_at_owner(PacketId id) {
+/// Dispatch has read `entries` of it.
+void Tile::retire_at_owner(PacketId id, std::size_t entries) {
   Packet& packet = machine_.packet(id);
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
   if (recording_.ray != nullptr) [[unlikely]]
     note_retired(id);
   trips_.return_home(id.value, now_);
-  const std::size_t ids = packet.members.size();
-  sort_ids(logic_.retire(id, packet), ids, id);
+  sort_ids(logic_.retire(id, packet), entries, id);
   write_spilled(now_);
 }
 
 /// The `joined` ray IDs that join collections are put in order of what comes next (US 9633468). Dispatch, which has
-/// read the packet's `ids`, goes on until that is done.
-void Tile::sort_ids(std::size_t joined, std::size_t ids, PacketId packet) {
+/// just read `entries` of the packet, goes on until that is done.
+void Tile::sort_ids(std::size_t joined, std::size_t entries, PacketId packet) {
   if (sort_rate_ == 0) return;
-  const Cycle read = dispatch_cycles(ids), sorted = ceil_div(joined, sort_rate_);
+  const Cycle read = dispatch_cycles(entries), sorted = ceil_div(joined, sort_rate_);
   if (sorted > read) hold_dispatch(now_, sorted - read, 0, SliceKind::kRetire, packet, true);
 }
 
@@ -182,8 +182,9 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
       return true;
     }
     in.take(now);
-    occupy_dispatch(now, retires ? read_at_owner(packet) : 0, SliceKind::kRetire, id);
-    retires ? retire_at_owner(id) : discard_at_owner(id);
+    const std::size_t entries = retires ? read_at_owner(packet) : 0;
+    occupy_dispatch(now, entries, SliceKind::kRetire, id);
+    retires ? retire_at_owner(id, entries) : discard_at_owner(id);
     return true;
   }
   OutPort& out = out_for(packet);

@@ -44,7 +44,7 @@ bool Tile::choose_to_handle(std::size_t d, Cycle now) {
   }
   ++passed_over_[d];
   in.bring_forward(chosen);
-  hold_dispatch(now, 1, 0, SliceKind::kPass, in.front().packet, true);
+  hold_dispatch(now, 1, 0, SliceKind::kPass, in.front().packet, !in.front().passes);
   return true;
 }
 

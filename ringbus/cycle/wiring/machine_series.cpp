@@ -107,6 +107,7 @@ class SeriesWriter {
     for (const UnitKindRow& unit : kUnitKinds)
       row({part, fmt::format("{} busy", unit.name), "share", Kind::kMean}, own(unit_index(unit.kind)));
     row({part, "ray reads busy", "share", Kind::kMean}, own(counter_index(ResourceCounter::kRayReads)));
+    row({part, "primitive ray reads busy", "share", Kind::kMean}, own(counter_index(ResourceCounter::kPrimitiveReads)));
     row({part, "dispatch busy", "share", Kind::kMean}, own(counter_index(ResourceCounter::kDispatch)));
   }
 

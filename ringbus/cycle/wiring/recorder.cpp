@@ -26,7 +26,7 @@ Recorder::Recorder(const Config& config, const Machine& machine, const Observati
       options_(slices_wanted(observed)),
       ray_(observed.ray),
       contexts_(static_cast<std::uint32_t>(config.testers.contexts)),
-      per_resource_(1 + contexts_ + static_cast<std::uint32_t>(kUnitKinds.size()) + 1),
+      per_resource_(1 + contexts_ + static_cast<std::uint32_t>(kUnitKinds.size()) + 2),
       trips_(machine.packets.size()) {
   const std::size_t nodes = topology_.resources() + topology_.hubs().size();
   for (std::size_t i = 0; i < nodes; ++i) slices_.emplace_back(options_);
@@ -65,6 +65,7 @@ Timeline Recorder::timeline(Cycle end) const {
     for (std::uint32_t c = 0; c < contexts_; ++c) out.tracks.push_back({part, fmt::format("test context {}", c)});
     for (const UnitKindRow& unit : kUnitKinds) out.tracks.push_back({part, fmt::format("{} units", unit.name)});
     out.tracks.push_back({part, "ray reads"});
+    out.tracks.push_back({part, "primitive ray reads"});
   }
   for (std::size_t w = 0; w < topology_.wires().size(); ++w) {
     const Topology::Wire& wire = topology_.wires()[w];

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/run/memory_need.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "tests/app/support/program.h"
 

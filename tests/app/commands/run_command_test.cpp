@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "report/run/report_json.h"
 #include "tests/app/support/program.h"

@@ -53,9 +53,9 @@ TEST_F(CentralCells, FixedPlacesCostAndTheReportCountsThem) {
       EXPECT_EQ(cells["digest"], free["digest"]);
       EXPECT_EQ(banks["digest"], free["digest"]);
       EXPECT_GT(banks["resources"][0]["units"]["bank_conflicts"].get<std::uint64_t>(), 0u);
-      const Json& reads = banks["resources"][0]["units"]["ray_reads"];
-      // A bank reads at most one record a cycle.
-      EXPECT_GE(4 * reads["busy"].get<double>(),
+      const Json& units = banks["resources"][0]["units"];
+      // Each of a bank's two ports reads at most one record a cycle.
+      EXPECT_GE(4 * (units["ray_reads"]["busy"].get<double>() + units["primitive_ray_reads"]["busy"].get<double>()),
                 banks["packets"]["rays_mean"].get<double>() * banks["packets"]["issued"].get<double>());
     }
   }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "tests/core/config/config_issues.h"
 

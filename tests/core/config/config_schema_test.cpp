@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/config/config_page.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
 #include "core/config/write.h"

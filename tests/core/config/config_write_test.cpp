@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "tests/core/config/random_config.h"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 
 namespace carousel::ringbus::cycle {
 namespace {

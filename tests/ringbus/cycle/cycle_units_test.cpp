@@ -85,6 +85,44 @@ TEST(Lanes, ASingleRayFillsOneLaneOrItsShapesDo) {
   EXPECT_EQ(Tester(config).ray(100, counts), 100u + 1 + 10);
 }
 
+// ---- banks of ray memory
+
+/// When the tests of three packets end that come at the same time: one, one against boxes, and one against triangles.
+struct TestEnds {
+  Cycle first, then_boxes, then_triangles;
+  Cycle busy_reads;  ///< of the ports
+};
+
+// 8 rays in 4 banks, `most` of them in one; box and triangle units for all at once, with a latency of 10.
+TestEnds banked_ends(std::uint64_t boxes, std::uint64_t triangles, std::uint64_t most) {
+  TestersConfig config;
+  config.units[UnitKind::kBox] = config.units[UnitKind::kTriangle] = {64, 1, 10};
+  Tester tester(config, CullPlanesConfig::Order::kBoxFirst, 0, 1, 4);
+  const auto strip = [&](Cycle at, std::uint64_t b, std::uint64_t t) {
+    IntersectionCounts counts;
+    counts.box = b;
+    counts.triangle = t;
+    return tester.strip(at, counts, 8, {}, {0, most});
+  };
+  const Cycle one = strip(100, boxes, triangles);
+  return {one, strip(100, 8, 0), strip(100, 0, 8), tester.reads_before(1000) + tester.primitive_reads_before(1000)};
+}
+
+TEST(RayBanks, HaveAPortToTheBoxUnitsAndOneToThoseOfPrimitives) {
+  // The fullest bank reads 5 records, one a cycle; tests begin behind the last of them.
+  const TestEnds boxes = banked_ends(8, 0, 5), triangles = banked_ends(0, 8, 5), both = banked_ends(8, 8, 5);
+  EXPECT_EQ(boxes.first, 100u + 5 + 10);
+  EXPECT_EQ(boxes.then_boxes, 100u + 10 + 10) << "behind the others of that port";
+  EXPECT_EQ(boxes.then_triangles, 100u + 5 + 10) << "beside them";
+  EXPECT_EQ(triangles.then_boxes, 100u + 5 + 10);
+  EXPECT_EQ(triangles.then_triangles, 100u + 10 + 10);
+  // A node with boxes and triangles reads each record through both ports.
+  EXPECT_EQ(both.then_boxes, 100u + 10 + 10);
+  EXPECT_EQ(both.then_triangles, 100u + 10 + 10);
+  EXPECT_EQ(boxes.busy_reads, 15u);
+  EXPECT_EQ(both.busy_reads, 20u);
+}
+
 // ---- caches and memory
 
 TEST(LineCache, LeastRecentlyUsedGoesFirst) {

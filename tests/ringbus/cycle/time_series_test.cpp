@@ -77,6 +77,7 @@ TEST(CycleSeriesTotals, AddsUpToTheTotalsOfTheRun) {
       const std::string part = "resource " + std::to_string(r);
       for (const auto [kind, use] : c.tiles[r].units) is(part, std::string(unit_row(kind).name) + " busy", use.busy);
       is(part, "ray reads busy", c.tiles[r].ray_reads.busy);
+      is(part, "primitive ray reads busy", c.tiles[r].primitive_ray_reads.busy);
       is(part, "dispatch busy", c.tiles[r].dispatch.busy);
       is(part, "packets under way", c.tiles[r].packet_cycles);
       is(part, "rays completed", out.result.resources[r].rays_completed);

@@ -62,6 +62,7 @@ TEST(CycleTimeline, AddsUpToTheBusyCycles) {
       for (const auto [kind, use] : c.tiles[r].units)
         EXPECT_EQ(times[part + ", " + unit_row(kind).name + " units"], use.busy) << part << ", " << unit_row(kind).name;
       EXPECT_EQ(times[part + ", ray reads"], c.tiles[r].ray_reads.busy) << part;
+      EXPECT_EQ(times[part + ", primitive ray reads"], c.tiles[r].primitive_ray_reads.busy) << part;
       EXPECT_EQ(times[part + ", dispatch"], c.tiles[r].dispatch.busy) << part;
     }
     for (std::size_t l = 0; l < c.links.size(); ++l)

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/ringbus/support/test_machine.h"

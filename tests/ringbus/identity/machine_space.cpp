@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 
 namespace carousel::ringbus {
 

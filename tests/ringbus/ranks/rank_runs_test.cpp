@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/build/build.h"
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
 #include "ringbus/native/native_engine.h"

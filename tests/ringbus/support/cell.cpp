@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/config/validate.h"
+#include "core/config/load/validate.h"
 #include "core/config/write.h"
 
 namespace carousel::ringbus {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/config/config.h"
-#include "core/config/validate.h"
+#include "core/config/load/validate.h"
 #include "core/types/enum_names.h"
 
 namespace carousel::ringbus {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "core/types/enum_names.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "tests/ringbus/traffic/traffic_config.h"

@@ -78,7 +78,7 @@ class Testers:
         self.simd, self.window = t["simd"], t["window"]
         self.reads_per_cycle = config["rays"]["reads_per_cycle"]
         self.store = Bank(max(1, self.reads_per_cycle), 1, 1)
-        self.ray_banks = config["rays"]["banks"]
+        self.ray_banks, self.primitive_store = config["rays"]["banks"], Bank(1, 1, 1)
         self.cells = self.simd["lanes"] if config["topology"]["shape"] == "central" else 0
 
     def vectors(self, tests, rays, slots=()):
@@ -97,9 +97,11 @@ class Testers:
         """The most of these slots that share one of the places, which hold slots in turn."""
         return max(Counter(slot % places for slot in slots).values(), default=0) if places else 0
 
-    def _reads(self, at, reads, slots):
+    def _reads(self, at, reads, slots, counts):
         if self.ray_banks:
-            return self.store.reserve(at, self.most(slots, self.ray_banks))
+            primitives = counts.triangle > 0 or counts.procedural > 0
+            port = self.primitive_store if primitives else self.store
+            return port.reserve(at, self.most(slots, self.ray_banks))
         return self.store.reserve(at, reads if self.reads_per_cycle > 0 else 0)
 
     @staticmethod
@@ -112,7 +114,7 @@ class Testers:
 
     def strip(self, at, counts, slots):
         reads = len(slots)
-        first, last = self._reads(at, reads, slots)
+        first, last = self._reads(at, reads, slots, counts)
         inverse = self.banks[TRANSFORM].reserve(first, counts.inversion_passes())[1]
         moved = self._behind(self.banks[TRANSFORM], (inverse, max(inverse, last)),
                              self.vectors(counts.passes(TRANSFORM), reads, slots))

@@ -102,10 +102,10 @@ class Tile(Issues, Tests, Travel, Window):
     def reading(self, ids):
         return max(1, ceil_div(ids, self.ids_per_cycle))
 
-    def sort(self, now, joined, ids):
-        """Dispatch, which has read so many IDs, goes on until those that join collections are sorted."""
-        if self.sort_rate > 0 and ceil_div(joined, self.sort_rate) > self.reading(ids):
-            self.dispatch_free = max(self.dispatch_free, now) + ceil_div(joined, self.sort_rate) - self.reading(ids)
+    def sort(self, now, joined, entries):
+        """Dispatch, which has just read so many entries, goes on until the IDs that join collections are sorted."""
+        if self.sort_rate > 0 and ceil_div(joined, self.sort_rate) > self.reading(entries):
+            self.dispatch_free = max(self.dispatch_free, now) + ceil_div(joined, self.sort_rate) - self.reading(entries)
             self.clock.wake(self.dispatch_free)
 
     def dispatch(self, now, ids):
@@ -191,7 +191,7 @@ class Tile(Issues, Tests, Travel, Window):
             self.dispatch(now, token.entries)
             packet.due -= 1
             if packet.due == 0:
-                self.test_own(packet, now) if own else self.retire(packet, now)
+                self.test_own(packet, now) if own else self.retire(packet, now, token.entries)
             return True
         if packet.records is not None:
             return self.handle_rays(port, out, packet, now)
@@ -203,8 +203,9 @@ class Tile(Issues, Tests, Travel, Window):
             return True
         if packet.owner == self.number:
             port.take(now)
-            self.dispatch(now, self.read_at_owner(packet))
-            self.retire(packet, now)
+            entries = self.read_at_owner(packet)
+            self.dispatch(now, entries)
+            self.retire(packet, now, entries)
             return True
         if not out.has_place():
             return False
@@ -265,10 +266,11 @@ class Tile(Issues, Tests, Travel, Window):
         self.dispatch(now, self.read_on_visit(packet))
         self.begin_test(self.free_context(), packet, self.dispatch_free, False)
 
-    def retire(self, packet, now):
+    def retire(self, packet, now, entries):
+        """Dispatch has read so many entries of it."""
         self.trace.note(now, self.number, "retire", packet.number, len(packet.rays))
-        ids, held = len(packet.rays), self.resource.collections.memberships()
+        held = self.resource.collections.memberships()
         self.resource.retire(packet, now)
-        self.sort(now, self.resource.collections.memberships() - held, ids)
+        self.sort(now, self.resource.collections.memberships() - held, entries)
         self.free[packet.direction].append(packet)
         self.write_spilled(now)

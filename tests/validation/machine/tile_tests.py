@@ -73,8 +73,9 @@ class Tests:
             context.phase = FREE
             self.hand_over(context.completed)
             if packet.owner == self.number and (self.own_last or not self.travels(packet)):
-                self.dispatch(now, self.read_at_owner(packet))
-                self.retire(packet, now)
+                entries = self.read_at_owner(packet)
+                self.dispatch(now, entries)
+                self.retire(packet, now, entries)
             else:
                 self.out_ports[packet.direction].reserved -= 1
                 self.depart(packet, now)

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "ringbus/cycle/memory/memory_agent.h"
 #include "ringbus/cycle/memory/shape_cache.h"
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "ringbus/cycle/memory/dram/dram_map.h"
 #include "ringbus/cycle/memory/memory_trace.h"
 #include "tests/ringbus/cycle/memory/dram_patterns.h"

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {

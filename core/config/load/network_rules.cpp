@@ -1,4 +1,4 @@
-#include "core/config/network_rules.h"
+#include "core/config/load/network_rules.h"
 
 #include <algorithm>
 #include <map>

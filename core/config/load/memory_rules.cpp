@@ -1,4 +1,4 @@
-#include "core/config/memory_rules.h"
+#include "core/config/load/memory_rules.h"
 
 #include <numeric>
 #include <string_view>

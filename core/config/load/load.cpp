@@ -1,4 +1,4 @@
-#include "core/config/load.h"
+#include "core/config/load/load.h"
 
 #include <algorithm>
 #include <cerrno>

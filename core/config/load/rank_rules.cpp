@@ -1,4 +1,4 @@
-#include "core/config/rank_rules.h"
+#include "core/config/load/rank_rules.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/config/config.h"
-#include "core/config/network_rules.h"
+#include "core/config/load/network_rules.h"
 
 namespace carousel::config {
 

@@ -1,4 +1,4 @@
-#include "core/config/validate.h"
+#include "core/config/load/validate.h"
 
 #include <algorithm>
 #include <string>
@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "core/config/bound_rules.h"
-#include "core/config/edit_distance.h"
-#include "core/config/memory_rules.h"
-#include "core/config/network_rules.h"
+#include "core/config/load/bound_rules.h"
+#include "core/config/load/memory_rules.h"
+#include "core/config/load/network_rules.h"
+#include "core/config/load/rank_rules.h"
 #include "core/config/not_built.h"
-#include "core/config/rank_rules.h"
 #include "core/config/schema.h"
+#include "core/text/edit_distance.h"
 #include "core/types/effect.h"
 
 namespace carousel {

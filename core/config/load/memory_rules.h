@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/config/network_rules.h"
+#include "core/config/load/network_rules.h"
 
 namespace carousel::config {
 

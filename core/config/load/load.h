@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/config/config.h"
+#include "core/config/load/validate.h"
 #include "core/config/tree/positions.h"
-#include "core/config/validate.h"
 
 namespace carousel {
 

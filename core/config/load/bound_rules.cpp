@@ -1,4 +1,4 @@
-#include "core/config/bound_rules.h"
+#include "core/config/load/bound_rules.h"
 
 #include <bit>
 #include <string_view>

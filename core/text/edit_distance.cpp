@@ -1,6 +1,6 @@
 // Optimal string alignment: Damerau 1964, "A technique for computer detection and correction of spelling
 // errors", without overlapping swaps.
-#include "core/config/edit_distance.h"
+#include "core/text/edit_distance.h"
 
 #include <algorithm>
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "core/types/workload.h"
+
+namespace carousel {
+
+/// A workload that passes every call on to another one. What derives from it looks at some of them, or changes them.
+class WrappedWorkload : public Workload {
+ public:
+  /// Keeps a reference.
+  explicit WrappedWorkload(Workload& inner) : inner_(inner) {}
+
+  Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
+    return inner_.generate(worker, max_rays, out);
+  }
+  ShadeWork extra_work(const RayResult& result) const override { return inner_.extra_work(result); }
+  std::uint32_t shader(const RayResult& result) const override { return inner_.shader(result); }
+  PathMemory path_memory(const RayTag& tag) const override { return inner_.path_memory(tag); }
+  void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override {
+    inner_.shade(worker, completed, out);
+  }
+
+ protected:
+  Workload& inner_;
+};
+
+}  // namespace carousel
