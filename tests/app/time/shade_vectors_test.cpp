@@ -1,4 +1,6 @@
 // Shader workers with several lanes, with and without sorting by shader.
+#include <fmt/format.h>
+
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::shade_vectors_test {

@@ -1,4 +1,6 @@
 // Hits that are sorted by child before they join collections, and the lanes that tests fill.
+#include <fmt/format.h>
+
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::sorted_ids_test {
