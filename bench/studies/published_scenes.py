@@ -4,6 +4,7 @@
   rules are the book's; the random numbers are not.
 - bunny: a closed, bumpy body with a head and ears of 69,000 triangles, as many as the Stanford bunny has, in a Cornell box.
 - reflections: spheres and boxes of metal and glass in the same box.
+- bunny_unlit, reflections_unlit: the same without the lamp, under a sky, so that there are no shadow rays.
 
 The Cornell box has the measures of the original (555 units), open to the camera, with a lamp below its ceiling.
 """
@@ -105,7 +106,7 @@ def weekend(seed=1):
     return model
 
 
-def cornell():
+def cornell(lamp):
     model, far = Model(), -555
     white = model.material([0.73, 0.73, 0.73])
     model.quads([[(0, 0, 0), (555, 0, 0), (555, 0, far), (0, 0, far)],
@@ -114,7 +115,7 @@ def cornell():
     model.quads([[(555, 0, 0), (555, 555, 0), (555, 555, far), (555, 0, far)]], model.material([0.65, 0.05, 0.05]))
     model.quads([[(0, 0, 0), (0, 0, far), (0, 555, far), (0, 555, 0)]], model.material([0.12, 0.45, 0.15]))
     model.quads([[(213, 554, -227), (213, 554, -332), (343, 554, -332), (343, 554, -227)]],
-                model.material([0.78, 0.78, 0.78], light=15))
+                model.material([0.78, 0.78, 0.78], light=15 if lamp else 0))
     return model, white
 
 
@@ -143,8 +144,8 @@ def rings(centre, radii, around, bump, seed):
     return vertices, triangles
 
 
-def bunny(seed=1):
-    model, white = cornell()
+def bunny(seed=1, lamp=True):
+    model, white = cornell(lamp)
     vertices, triangles = [], []
     parts = [((278, 130, -280), (140, 130, 110), 190), ((370, 260, -260), (75, 70, 65), 140),
              ((350, 370, -275), (22, 90, 14), 90), ((400, 370, -250), (22, 90, 14), 90)]
@@ -157,8 +158,8 @@ def bunny(seed=1):
     return model
 
 
-def reflections(seed=1):
-    model, white = cornell()
+def reflections(seed=1, lamp=True):
+    model, white = cornell(lamp)
     draw = random.Random(seed)
     steel, glass = model.material([0.9, 0.9, 0.9], 1, 0), model.material([1, 1, 1], roughness=0, glass=True)
     for centre, radius, material in [((150, 100, -180), 100, steel), ((410, 90, -160), 90, glass),
@@ -173,4 +174,7 @@ def reflections(seed=1):
     return model
 
 
-SCENES = {"weekend": (weekend, WEEKEND), "bunny": (bunny, CORNELL), "reflections": (reflections, CORNELL)}
+# How it is made, its camera, the strength of its sky.
+SCENES = {"weekend": (weekend, WEEKEND, 1), "bunny": (bunny, CORNELL, 0), "reflections": (reflections, CORNELL, 0),
+          "bunny_unlit": (lambda: bunny(lamp=False), CORNELL, 1),
+          "reflections_unlit": (lambda: reflections(lamp=False), CORNELL, 1)}
