@@ -27,8 +27,8 @@ CollectionStore::Settings collection_settings(const ResourceSettings& settings, 
 }
 
 TraversalSettings traversal_settings(const ResourceSettings& settings) {
-  return {settings.collections.traversal, settings.packets.shapes, settings.bundles, settings.treelet_triangles,
-          settings.scene_size};
+  return {settings.collections.traversal, settings.collections.order, settings.packets.shapes, settings.bundles,
+          settings.treelet_triangles,     settings.scene_size};
 }
 
 }  // namespace

@@ -59,13 +59,13 @@ class Install(unittest.TestCase):
             self.assertNotIn(str(SOURCE), file.read_text(), file)
 
     def test_the_program_runs_every_configuration(self):
-        found = [file for file in (self.prefix / "share/carousel/configs").iterdir()
+        found = [file for file in (self.prefix / "share/carousel/configs").rglob("*.*")
                  if file.name not in ("schema.json", "README.md")]
         self.assertGreaterEqual(len(found), 8)
         self.assertIn(".json", [file.suffix for file in found])
         for config in found:
             run(self.program, "check", config)
-            self.assertRegex(config.read_text(), r'(?m)^(# yaml-language-server: \$schema=| +"\$schema": ")schema.json')
+            self.assertRegex(config.read_text(), r'(?m)^(# yaml-language-server: \$schema=| +"\$schema": ")(\.\./)?schema.json')
 
     def test_python_finds_the_program(self):
         package = self.one("lib/**/carousel/__init__.py").parent.parent

@@ -13,6 +13,13 @@ inline constexpr auto kEnumNames<Traversal> = [] {
   return names<Traversal>({{kSpread, "spread"}, {kOrdered, "ordered"}, {kTreelet, "treelet"}});
 }();
 
+enum class ChildOrder { kNearest, kStored };
+template <>
+inline constexpr auto kEnumNames<ChildOrder> = [] {
+  using enum ChildOrder;
+  return names<ChildOrder>({{kNearest, "nearest"}, {kStored, "stored"}});
+}();
+
 enum class Policy { kFullest, kOldest, kNewest, kDeepest, kNearest };
 template <>
 inline constexpr auto kEnumNames<Policy> = [] {
@@ -52,6 +59,7 @@ inline constexpr auto kEnumNames<WhenFull> = [] {
 struct CollectionsConfig {
   std::int64_t ready = 32;
   Traversal traversal = Traversal::kSpread;
+  ChildOrder order = ChildOrder::kNearest;
   Policy policy = Policy::kNearest;
   Select select = Select::kFullFirst;
   Partial partial = Partial::kAhead;
@@ -70,6 +78,9 @@ void describe(V& v, CollectionsConfig& c) {
   v.choice("traversal", c.traversal,
            "The way of a ray down the tree: into all children that it hits (spread), into the nearest one first "
            "(ordered), or through a whole subtree at one visit (treelet).");
+  v.choice("order", c.order,
+           "A ray that goes depth first, which is with traversal: ordered, in treelets and on independent resources, "
+           "takes of the children that it hits the nearest one first, or the first one in the order of the node.");
   v.choice("policy", c.policy, "The rule that chooses the collection that is tested next.");
   v.choice("select", c.select, "Full collections are tested first, or the policy alone decides.");
   v.choice(

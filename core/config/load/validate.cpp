@@ -40,6 +40,7 @@ class Rules {
     shapes_reach_the_resources();
     effects_are_known();
     ordered_needs_strips();
+    order_has_a_depth_first_ray();
     query_needs_a_file();
     hashed_homes_spill();
     config::check_network(c, options_.force, breach);
@@ -179,6 +180,18 @@ class Rules {
   void ordered_needs_strips() {
     if (c.collections.traversal == Traversal::kOrdered && c.packets.shapes != PacketShapes::kStrip)
       issue("packets.shapes", "traversal: ordered sorts the hits of a whole strip; expected strip, found single");
+  }
+
+  void order_has_a_depth_first_ray() {
+    if (c.collections.order == ChildOrder::kNearest || c.topology.shape == TopologyShape::kIndependent) return;
+    if (c.collections.traversal == Traversal::kSpread)
+      issue("collections.order",
+            "traversal: spread takes a ray into all children at once; expected nearest, or traversal: ordered or "
+            "treelet, found stored");
+    if (c.collections.traversal == Traversal::kTreelet && c.engine.kind == EngineKind::kNative)
+      issue("collections.order",
+            "the native engine takes a ray through a treelet nearest first; expected nearest, or engine.kind: cycle, "
+            "found stored");
   }
 
   void hashed_homes_spill() {

@@ -24,7 +24,7 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       completed_port_(settings.link, ports),
       help_(settings.link, ports),
       transforms_(settings.accuracy, machine.accel, store_.slots()),
-      threads_(store_.slots(), Thread{{}, RayWalk(transforms_), {}, 0}),
+      threads_(store_.slots(), Thread{{}, RayWalk(transforms_, settings.resource.collections.order), {}, 0}),
       ledger_(tester_),
       samples_(settings.observed.samples, kFirstPortCounter),
       recording_(settings.recording) {

@@ -12,7 +12,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       id_(id),
       trace_(id.value, settings.observed.steps),
       transforms_(settings.accuracy, machine.accel, machine.stores[id.value]->slots()),
-      walk_(machine.accel, transforms_),
+      walk_(machine.accel, transforms_, settings.resource.collections.order),
       resource_(settings.resource, machine.accel, *machine.stores[id.value],
                 {settings.statistics ? &sink_ : nullptr, &walk_, &transforms_,
                  settings.resource.collections.when_full == WhenFull::kSpill, ports.questions != nullptr}),

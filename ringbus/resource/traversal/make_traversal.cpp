@@ -32,8 +32,8 @@ Method make_spread(const TraversalSettings& settings, const VisitContext& contex
   return std::make_unique<SpreadTraversal>(context);
 }
 
-Method make_ordered(const TraversalSettings&, const VisitContext& context) {
-  return std::make_unique<OrderedTraversal>(context);
+Method make_ordered(const TraversalSettings& settings, const VisitContext& context) {
+  return std::make_unique<OrderedTraversal>(context, settings.order);
 }
 
 Method make_treelet(const TraversalSettings& settings, const VisitContext& context) {

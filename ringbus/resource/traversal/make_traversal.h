@@ -14,6 +14,7 @@ struct VisitContext;
 /// The parts of the configuration that decide how rays go down the tree.
 struct TraversalSettings {
   Traversal traversal = Traversal::kSpread;
+  ChildOrder order = ChildOrder::kNearest;
   PacketShapes shapes = PacketShapes::kStrip;
   BundlesConfig bundles;
   std::int64_t treelet_triangles = 2048;

@@ -1,7 +1,7 @@
 #include "ringbus/resource/traversal/ordered.h"
 
 #include "accel/traverse/kernels.h"
-#include "ringbus/resource/traversal/farthest_first.h"
+#include "ringbus/resource/traversal/last_first.h"
 #include "ringbus/resource/visit/count_children.h"
 
 namespace carousel::ringbus {
@@ -23,7 +23,7 @@ void OrderedTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outco
   for (std::size_t i = 0; i < local.size(); ++i) {
     const std::uint32_t slot = local.slots[i];
     const float* entry = entries_.data() + accel::kMaxWidth * i;
-    farthest_first(masks_[i], entry, [&](int lane) {
+    last_first(order_, masks_[i], entry, [&](int lane) {
       stacks_.push(slot, {context_.accel.child_key(packet.key, lane), entry[lane],
                           static_cast<std::uint16_t>(packet.depth + 1), true});
     });

@@ -2,20 +2,24 @@
 
 #include <vector>
 
+#include "core/config/config.h"
 #include "ringbus/resource/traversal/ray_stacks.h"
 #include "ringbus/resource/traversal/traversal_method.h"
 #include "ringbus/resource/visit/visit_context.h"
 
 namespace carousel::ringbus {
 
-/// `traversal: ordered`: a ray is in one collection at a time, that of its nearest pending node. The other nodes wait
-/// on a short stack beside its record, and its owner writes the next node into the packet.
+/// `traversal: ordered`: a ray is in one collection at a time, that of the node that comes next: the nearest child that
+/// it hits, or with `order: stored` the first one of its node. The other nodes wait on a short stack beside its record,
+/// and its owner writes the next node into the packet.
 ///
 /// A ray waits for one test until it has no node left. A packet's retirement may take a block for each of its rays.
 class OrderedTraversal final : public TraversalMethod {
  public:
-  explicit OrderedTraversal(const VisitContext& context)
-      : context_(context), stacks_(context.store.slots(), context.accel.width, context.accel.max_depth) {}
+  OrderedTraversal(const VisitContext& context, ChildOrder order)
+      : context_(context),
+        order_(order),
+        stacks_(context.store.slots(), context.accel.width, context.accel.max_depth) {}
 
   std::int32_t tests_at(accel::NodeKey) const override { return 1; }
   std::uint32_t lanes(std::uint32_t) const override { return ~0u; }
@@ -27,6 +31,7 @@ class OrderedTraversal final : public TraversalMethod {
 
  private:
   const VisitContext context_;
+  ChildOrder order_;
   RayStacks stacks_;
   std::vector<std::uint8_t> masks_;  // scratch: one a local ray
   std::vector<float> entries_;       // scratch: kMaxWidth a local ray

@@ -2,6 +2,8 @@
 
 #include <random>
 
+#include <fmt/format.h>
+
 #include "tests/scene/gltf/gltf_builder.h"
 
 namespace carousel {

@@ -1,5 +1,7 @@
 // A central machine of test cells over ray memory with banks: the cycles of one vector by hand, and that cells and
 // banks serialise what shares them.
+#include <fmt/format.h>
+
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::central_cells_test {

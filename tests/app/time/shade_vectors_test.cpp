@@ -1,4 +1,6 @@
 // Shader workers with several lanes, with and without sorting by shader.
+#include <fmt/format.h>
+
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::shade_vectors_test {
@@ -56,13 +58,21 @@ TEST_F(ShadeVectors, SortedHaveOneShaderAndTheSamePicture) {
   }
 }
 
-// A sorter of one ray a cycle is slower than a ray a cycle, whatever stands behind it.
+// A machine that completes four rays a cycle, all of which miss. A sorter of one ray a cycle is slower than a ray a
+// cycle, whatever stands around it.
 TEST_F(ShadeVectors, TheSorterBoundsThem) {
-  const Json r = report(
-      "scene: {builtin: cornell}\nimage: {width: 32, height: 32, samples: 1}\n"
-      "topology: {resources: 4}\nshading: {workers: 64, cycles_per_shade: 1, lanes: 64, sort: shader, "
-      "sort_rays_per_cycle: 1}\n");
-  EXPECT_GT(r["engine"]["cycles"].get<std::uint64_t>(), r["shading"]["shaded"].get<std::uint64_t>());
+  const auto cycles_a_ray = [this](int rate) {
+    const Json r = report(
+        "scene: {builtin: cornell}\nimage: {width: 32, height: 32, samples: 4, max_depth: 1}\n"
+        "camera: {eye: [0, 0, 100], target: [0, 0, 200]}\n"
+        "topology: {resources: 16, shape: independent}\ntesters: {box: {units: 64}}\n"
+        "shading: {workers: 64, cycles_per_shade: 1, lanes: 64, sort: shader, effects: []}\n",
+        {fmt::format("shading.sort_rays_per_cycle={}", rate)});
+    return r["engine"]["cycles"].get<double>() / r["shading"]["shaded"].get<double>();
+  };
+  EXPECT_GT(cycles_a_ray(1), 1);
+  EXPECT_GT(cycles_a_ray(2), 0.5);
+  EXPECT_LT(cycles_a_ray(64), 0.5) << "so that the sorter is what the lines above see";
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Hits that are sorted by child before they join collections, and the lanes that tests fill.
+#include <fmt/format.h>
+
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::sorted_ids_test {
@@ -35,6 +37,27 @@ TEST_F(SortedIds, TakeDispatchAsLongAsItsRateNeeds) {
       EXPECT_EQ(slow["digest"], free["digest"]);
     }
   }
+}
+
+// Eight rays go from the root to three leaves each. Dispatch has read the 8 IDs of the root's packet, an ID a cycle,
+// and goes on until their 24 memberships are sorted; at the leaves nothing joins.
+TEST_F(SortedIds, KeepDispatchForWhatIsLeftToSortAfterReading) {
+  std::string rays = "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n";
+  for (int i = 0; i < 8; ++i) rays += fmt::format("{},camera,-900,0,-900,1,0,1,0,inf\n", i);
+  program_.write("rays.csv", rays);
+  const auto run = [this](int rate) {
+    return report(
+        "scene: {builtin: terrain, triangles: 18}\nworkload: {rays_from: rays.csv}\ntopology: {resources: 1}\n"
+        "bvh: {width: 4, leaf_triangles: 16}\npackets: {rays: 8, ids_per_cycle: 1}\n",
+        {fmt::format("collections.sort_ids_per_cycle={}", rate)});
+  };
+  const Json free = run(0);
+  ASSERT_EQ(free["packets"]["issued"], 4);
+  ASSERT_EQ(free["nodes"]["by_depth"][0]["children_hit"], 24);
+  EXPECT_EQ(dispatch_cycles(run(1)) - dispatch_cycles(free), 24 - 8);
+  EXPECT_EQ(dispatch_cycles(run(2)) - dispatch_cycles(free), 12 - 8);
+  EXPECT_EQ(dispatch_cycles(run(3)), dispatch_cycles(free));
+  EXPECT_EQ(dispatch_cycles(run(4)), dispatch_cycles(free));
 }
 
 TEST_F(SortedIds, TheReportHasTheFillOfLanes) {

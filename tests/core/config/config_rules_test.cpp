@@ -280,6 +280,13 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:3:19: packets.shapes: traversal: ordered sorts the hits of a whole strip; "
                   "expected strip, "
                   "found single"},
+        BadConfig{
+            "OrderOfSpread", SCENE "collections: {order: stored}\n",
+            "test.yaml:2:22: collections.order: traversal: spread takes a ray into all children at once; expected "
+            "nearest, or traversal: ordered or treelet, found stored"},
+        BadConfig{"OrderOfNativeTreelets", SCENE "collections: {traversal: treelet, order: stored}\n",
+                  "test.yaml:2:42: collections.order: the native engine takes a ray through a treelet nearest first; "
+                  "expected nearest, or engine.kind: cycle, found stored"},
         BadConfig{"HashReserve", SCENE "collections: {home: hash}\n",
                   "test.yaml:2:14: collections.when_full: home: hash can fill one resource with another's "
                   "collections and "

@@ -1,4 +1,4 @@
-// A ray's way through a tree: nearest first, and what its stack moves.
+// A ray's way through a tree: nearest first or in stored order, and what its stack moves.
 #include "ringbus/cycle/tile/walk/ray_walk.h"
 
 #include <bit>
@@ -29,7 +29,7 @@ TEST(RayWalk, PushesAllChildrenHitButTheNearest) {
   large_leaves.leaf_triangles = 16;  // so that the root has some
   const accel::Accel& accel = scene.accel(large_leaves);
   std::vector<RayRecord> records = records_of(scene);
-  int several = 0, leaves = 0;
+  int several = 0, leaves = 0, others = 0;
   for (std::uint32_t slot = 0; slot < records.size(); ++slot) {
     const accel::RayMembers ray{records.data(), &slot, 1};
     std::uint8_t mask = 0;
@@ -38,7 +38,10 @@ TEST(RayWalk, PushesAllChildrenHitButTheNearest) {
     IntersectionCounts counts;
     accel::test_strip(accel, accel.root_key(), ~0u, ray, {&mask, nearest, entry}, counts);
     TransformAccount transforms({}, accel, records.size());
-    RayWalk walk(transforms);
+    RayRecord again = records[slot];  // before the test of the walk
+    const std::uint32_t first = 0;
+    RayWalk stored(transforms, ChildOrder::kStored);
+    RayWalk walk(transforms, ChildOrder::kNearest);
     walk.start(accel.root_key());
     ASSERT_EQ(walk.next(records[slot]), accel.root_key());
     EXPECT_EQ(walk.test(accel, accel.root_key(), ray), counts);
@@ -59,16 +62,26 @@ TEST(RayWalk, PushesAllChildrenHitButTheNearest) {
       among |= entry[lane] == least && accel.child_key(accel.root_key(), lane) == *next;
     }
     EXPECT_TRUE(among);
+    stored.start(accel.root_key());
+    ASSERT_EQ(stored.next(again), accel.root_key());
+    stored.test(accel, accel.root_key(), {&again, &first, 1});
+    const accel::NodeKey least_lane = accel.child_key(accel.root_key(), std::countr_zero(unsigned{mask}));
+    EXPECT_EQ(stored.next(again), least_lane);
+    EXPECT_EQ(stored.stack_bytes().held, bytes - entry_bytes(least_lane));
+    others += *next != least_lane;
     EXPECT_EQ(walk.stack_bytes().pushed, bytes - entry_bytes(*next));
     EXPECT_EQ(walk.stack_bytes().held, walk.stack_bytes().pushed);
     EXPECT_EQ(walk.stack_bytes().popped, 0u);
     several += std::popcount(mask) > 1;
   }
   EXPECT_GT(several, 100);
+  EXPECT_GT(others, 100);
   EXPECT_GT(leaves, 100);
 }
 
-TEST(RayWalk, FindsWhatTheKernelsFindAndLeavesNothingOnTheStack) {
+class RayWalkInOrder : public ::testing::TestWithParam<ChildOrder> {};
+
+TEST_P(RayWalkInOrder, FindsWhatTheKernelsFindAndLeavesNothingOnTheStack) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 400, 0);
   const accel::Accel& accel = scene.accel(BvhConfig{});
   std::vector<RayRecord> records = records_of(scene), expected = records;
@@ -77,7 +90,7 @@ TEST(RayWalk, FindsWhatTheKernelsFindAndLeavesNothingOnTheStack) {
   for (std::uint32_t slot = 0; slot < records.size(); ++slot) {
     IntersectionCounts ignored;
     accel::trace_subtree(accel, accel.root_key(), {expected.data(), &slot, 1}, ignored);
-    RayWalk walk(account);
+    RayWalk walk(account, GetParam());
     walk.start(accel.root_key());
     std::uint32_t last = kNoInstance;
     while (const std::optional<accel::NodeKey> key = walk.next(records[slot])) {
@@ -95,6 +108,8 @@ TEST(RayWalk, FindsWhatTheKernelsFindAndLeavesNothingOnTheStack) {
   EXPECT_GT(transforms, 0u);
   EXPECT_LT(transforms, by_strip);
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, RayWalkInOrder, ::testing::Values(ChildOrder::kNearest, ChildOrder::kStored));
 
 }  // namespace
 }  // namespace carousel::ringbus::cycle

@@ -86,6 +86,7 @@ std::vector<Factor> traversal_and_units() {
       {"collections.ready", {"1", "16", "300"}},
       {"collections.sort_ids_per_cycle", {"0", "1"}, {"engine.kind=cycle"}},
       {"collections.traversal", all<Traversal>()},
+      {"collections.order", all<ChildOrder>()},
       {"bvh.treelet_triangles", {"1", "64", "100000"}, {"collections.traversal=treelet"}},
       {"collections.policy", all<Policy>()},
       {"collections.select", all<Select>()},

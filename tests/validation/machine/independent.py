@@ -8,8 +8,8 @@ from .walk import Walk
 
 
 class Thread:
-    def __init__(self, ray, nodes, transforms):
-        self.ray, self.walk, self.node, self.user = ray, Walk(ray, 0, nodes, transforms), None, User(self)
+    def __init__(self, ray, nodes, transforms, order):
+        self.ray, self.walk, self.node, self.user = ray, Walk(ray, 0, nodes, transforms, order), None, User(self)
 
 
 class IndependentTile:
@@ -21,13 +21,14 @@ class IndependentTile:
         self.transforms = Transforms(machine.config)
         self.tests, self.turn = [], 0
         self.done = []
+        self.order = machine.config["collections"]["order"]
 
     def step(self, now):
         while self.control.new_rays.ready(now):
             rays = self.control.new_rays.take()
             self.trace.note(now, self.number, "new_rays", 0, len(rays))
             for ray in rays:
-                self.go_on(Thread(ray, self.nodes, self.transforms), now)
+                self.go_on(Thread(ray, self.nodes, self.transforms, self.order), now)
         self.shapes.take_answers(now)
         self.serve(now)
         while self.tests and self.tests[0][0] <= now:

@@ -107,4 +107,6 @@ def draw(seed, index):
         config["testers"]["window"] = pick([1, 2, 3, 16])
         config["packets"]["results"] = pick(["mask", "message", "implied_order",
                                              "mask" if config["collections"]["traversal"] == "ordered" else "per_shape"])
+    if config["topology"]["shape"] == "independent" or config["collections"]["traversal"] != "spread":
+        config["collections"]["order"] = pick(["nearest", "stored"])
     return config

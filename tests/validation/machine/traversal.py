@@ -1,6 +1,6 @@
 """How rays go down the tree: what a packet's visit tests, and which collections its rays join afterwards ("Visits")."""
 from .testers import Counts
-from .walk import Walk, farthest_first
+from .walk import Walk, last_first
 
 
 class Transforms:
@@ -44,6 +44,7 @@ class Spread:
         self.nodes = nodes
         self.transforms = Transforms(config)
         self.single = config["packets"]["shapes"] == "single"
+        self.order = config["collections"]["order"]
         treelets = config["collections"]["traversal"] == "treelet"
         self.most_triangles = config["bvh"]["treelet_triangles"] if treelets else None
 
@@ -97,7 +98,7 @@ class Spread:
         ways = []
         for i in members:
             ray, steps = packet.rays[i], []
-            walk = Walk(ray, packet.node, self.nodes, self.transforms)
+            walk = Walk(ray, packet.node, self.nodes, self.transforms, self.order)
             while (node := walk.next()) is not None:
                 steps.append((node, walk.test(node)))
             ways.append(steps)
@@ -117,7 +118,7 @@ class Spread:
 
 
 class Ordered(Spread):
-    """A ray is in one collection, that of its nearest node; the others wait on its stack."""
+    """A ray is in one collection, that of its next node; the others wait on its stack."""
 
     ordered = True
 
@@ -134,7 +135,7 @@ class Ordered(Spread):
                 hits = ray.meet_boxes(node, range(node.shapes))
                 for lane, entry in hits:
                     packet.nearest[lane] = min(packet.nearest[lane], entry)
-                for lane, entry in farthest_first(hits):
+                for lane, entry in last_first(self.order, hits):
                     ray.stack.append((node.children[lane], entry, packet.depth + 1))
             elif not ray.done:
                 if node.procedural:

@@ -1,20 +1,20 @@
-"""Rays that go through a subtree by themselves, depth first and nearest first ("Walks")."""
+"""Rays that go through a subtree by themselves, depth first ("Walks")."""
 import heapq
 
 from .shape_buffer import User
 from .testers import Counts
 
 
-def farthest_first(hits):
-    """[(lane, entry)] by falling entry; of equal entries the higher lane first."""
-    return sorted(hits, key=lambda hit: (-hit[1], -hit[0]))
+def last_first(order, hits):
+    """[(lane, entry)] as they go on a stack: by falling entry, of equal entries the higher lane first; or by falling lane."""
+    return sorted(hits, key=lambda hit: (-hit[1] if order == "nearest" else 0, -hit[0]))
 
 
 class Walk:
     """The way of one ray: its next strip, and its tests there. Hits count at once."""
 
-    def __init__(self, ray, root, nodes, transforms):
-        self.ray, self.nodes, self.transforms = ray, nodes, transforms
+    def __init__(self, ray, root, nodes, transforms, order):
+        self.order, self.ray, self.nodes, self.transforms = order, ray, nodes, transforms
         self.stack = [(root, 0.0)]
         self.instance = 0xffffffff
 
@@ -38,7 +38,7 @@ class Walk:
                 self.transforms.invert(node, counts)
         if node.inner:
             counts.box = node.shapes
-            for lane, entry in farthest_first(self.ray.meet_boxes(node, range(node.shapes))):
+            for lane, entry in last_first(self.order, self.ray.meet_boxes(node, range(node.shapes))):
                 self.stack.append((node.children[lane], entry))
         else:
             setattr(counts, "procedural" if node.procedural else "triangle", node.shapes)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ringbus/resource/traversal/farthest_first.h"
+#include "ringbus/resource/traversal/last_first.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -17,7 +17,7 @@ std::uint64_t entry_bytes(accel::NodeKey key) {
 
 void RayWalk::start(accel::NodeKey from) {
   stack_.assign(1, {from, 0, 0, true});
-  nearest_in_hand_ = true;
+  next_in_hand_ = true;
   instance_ = kNoInstance;
   bytes_ = {};
 }
@@ -36,7 +36,7 @@ std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record) {
 NextNode RayWalk::pop() {
   const NextNode top = stack_.back();
   stack_.pop_back();
-  if (std::exchange(nearest_in_hand_, false)) return top;
+  if (std::exchange(next_in_hand_, false)) return top;
   bytes_.popped += entry_bytes(top.key);
   bytes_.held -= entry_bytes(top.key);
   return top;
@@ -60,12 +60,12 @@ IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, 
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
   if (!key.ref.is_inner() || mask == 0) return tests;
   std::uint64_t bytes = 0;
-  farthest_first(mask, entry, [&](int lane) {
+  last_first(order_, mask, entry, [&](int lane) {
     stack_.push_back({accel.child_key(key, lane), entry[lane], 0, true});
     bytes += entry_bytes(stack_.back().key);
   });
   bytes -= entry_bytes(stack_.back().key);
-  nearest_in_hand_ = true;
+  next_in_hand_ = true;
   bytes_.held += bytes;
   bytes_.pushed += bytes;
   return tests;

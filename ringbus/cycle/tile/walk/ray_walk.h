@@ -6,21 +6,22 @@
 
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
+#include "core/config/config.h"
 #include "core/statistics/intersection_counts.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/resource/visit/transform_account.h"
 
 namespace carousel::ringbus::cycle {
 
-/// Walks one ray through a tree, depth-first and nearest first, a strip at a time.
+/// Walks one ray through a tree, depth-first and in either order of the children hit, a strip at a time.
 ///
-/// Nodes wait on a stack, an entry of 32 bits for an inner node and of 96 for a leaf; the walk goes on with the nearest
+/// Nodes wait on a stack, an entry of 32 bits for an inner node and of 96 for a leaf; the walk goes on with the first
 /// child at once, which is never put there. The transformed copy of the ray is kept while the ray is within an
 /// instance. The transform account decides whether it is made anew when the ray comes there again.
 class RayWalk {
  public:
   /// Keeps a reference.
-  explicit RayWalk(TransformAccount& transforms) : transforms_(&transforms) {}
+  RayWalk(TransformAccount& transforms, ChildOrder order) : transforms_(&transforms), order_(order) {}
   void start(accel::NodeKey from);
   /// The strip that the ray has to be tested against next; nothing when it is through or needs no more tests.
   std::optional<accel::NodeKey> next(const RayRecord& record);
@@ -41,8 +42,9 @@ class RayWalk {
   void enter(std::uint32_t instance, std::uint32_t slot, IntersectionCounts& tests);
 
   TransformAccount* transforms_;
-  std::vector<NextNode> stack_;  // and on top of it the nearest child
-  bool nearest_in_hand_ = false;
+  ChildOrder order_;
+  std::vector<NextNode> stack_;  // and on top of it the first child
+  bool next_in_hand_ = false;
   std::uint32_t instance_ = kNoInstance;
   StackBytes bytes_;
 };

@@ -25,12 +25,13 @@ struct WalkSteps {
   std::vector<std::uint32_t> ends;  ///< by ray: the end of its steps
 };
 
-/// Takes rays through a subtree, depth-first and nearest first, a strip at a time, and writes down their ways for the
+/// Takes rays through a subtree, depth-first, a strip at a time, and writes down their ways for the
 /// clock to follow (SubtreeVisits). The kernels' own walk is faster on the host but writes nothing down.
 class SubtreeWalk final : public SubtreeTracer {
  public:
   /// Keeps references.
-  SubtreeWalk(const accel::Accel& accel, TransformAccount& transforms) : accel_(accel), walk_(transforms) {}
+  SubtreeWalk(const accel::Accel& accel, TransformAccount& transforms, ChildOrder order)
+      : accel_(accel), walk_(transforms, order) {}
 
   void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) override;
   /// The ways of the last trace(). The caller may take them away.

@@ -93,7 +93,7 @@ std::vector<Chain> chains(TestScene& scene, const accel::Accel& accel) {
     RayRecord record;
     accel::start_record(ray, record);
     TransformAccount transforms({}, accel, 1);
-    RayWalk walk(transforms);
+    RayWalk walk(transforms, ChildOrder::kNearest);
     walk.start(accel.root_key());
     const std::uint32_t slot = 0;
     std::map<std::uint32_t, std::size_t> depth{{accel.root_key().ref.bits(), 1}};
