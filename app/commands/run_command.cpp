@@ -19,6 +19,7 @@
 #include "app/run/hit_recorder.h"
 #include "app/run/render_job.h"
 #include "app/sampled/sampled_run.h"
+#include "app/sweep/plan/content.h"
 #include "app/trace/memory_csv.h"
 #include "app/trace/trace_file.h"
 #include "core/config/write.h"
@@ -156,7 +157,9 @@ int run_command(const RunArguments& arguments) {
       prepare(arguments, {.force = arguments.force, .ranks = true}, keep_hits, [&](const Config& config) {
         if (config.engine.transport != EngineTransport::kLocal) {
           require_one_rank(arguments);
-          ranks.emplace(config);
+          ranks.emplace(config, program_identity());
+          ranks->require_files(
+              [&] { return ContentDigests(std::filesystem::path(arguments.config).parent_path()).of(config); });
           if (ranks->rank() != 0) return;  // one writes the files
         }
         output.emplace(out_folder(arguments), &config, arguments.force,

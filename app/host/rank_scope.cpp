@@ -10,7 +10,6 @@
 #include <spdlog/sinks/sink.h>
 #include <spdlog/spdlog.h>
 
-#include "app/host/program_info.h"
 #include "core/config/write.h"
 #include "core/system/error.h"
 
@@ -42,7 +41,7 @@ std::string difference(const std::string& ours, const std::string& theirs) {
 
 }  // namespace
 
-RankScope::RankScope(const Config& config) {
+RankScope::RankScope(const Config& config, const std::string& program) {
   if (!ringbus::MpiTransport::built())
     refuse("engine.transport",
            "this program was built without MPI (cmake -DCAROUSEL_MPI=ON); expected local, found mpi");
@@ -52,8 +51,7 @@ RankScope::RankScope(const Config& config) {
   transport_ = ringbus::MpiTransport::start();
   for (const auto& sink : spdlog::default_logger()->sinks())
     sink->set_pattern(fmt::format("rank {}: %^%l%$: %v", rank()));
-  const report::Program program = program_info();
-  require_same("program", fmt::format("{} {}{}", program.version, program.commit, program.checked ? " checked" : ""));
+  require_same("program", program);
   require_same("configuration", resolved_yaml(config));
   require_room(config);
 }
@@ -68,6 +66,21 @@ void RankScope::require_same(const std::string& what, const std::string& digest)
     if (all[r] != all[0])
       refuse("engine.transport", fmt::format("rank {} has another {} than rank 0: {}; expected the same on all ranks",
                                              r, what, difference(all[r], all[0])));
+}
+
+void RankScope::require_files(const std::function<std::string()>& digest) {
+  std::string own, error;
+  try {
+    own = digest();
+  } catch (const FileError& e) {
+    error = e.what();
+  }
+  const std::vector<std::string> errors = transport_->gather(error);
+  for (std::uint32_t r = 0; r < errors.size(); ++r)
+    if (!errors[r].empty())
+      refuse("engine.transport",
+             fmt::format("rank {}: {}; expected the files on the hosts of all ranks", r, errors[r]));
+  require_same("content of the scene's files", own);
 }
 
 void RankScope::require_room(const Config& config) const {

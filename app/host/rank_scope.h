@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -15,8 +16,8 @@ class RankScope {
  public:
   /// Joins the ranks that mpirun has started. Throws a ConfigError that names the rank where this program has no MPI,
   /// where nobody has started ranks, where there are more than the machine takes, or where a rank has another program
-  /// or another configuration.
-  explicit RankScope(const Config& config);
+  /// or another configuration. `program` tells this program apart.
+  RankScope(const Config& config, const std::string& program);
   /// Without leave() the ranks have failed: waits a little for them, so that each can say why.
   ~RankScope();
   RankScope(const RankScope&) = delete;
@@ -28,6 +29,9 @@ class RankScope {
   /// Makes sure that all ranks hold the same in `what`, e.g. the scene, of which `digest` tells. Every rank calls.
   /// Throws a ConfigError.
   void require_same(const std::string& what, const std::string& digest);
+  /// The same for the files that the configuration names, of which `digest` tells. One that this rank cannot read is an
+  /// error of all ranks, before any of them begins to load.
+  void require_files(const std::function<std::string()>& digest);
   /// Waits until all ranks are done.
   void leave();
 

@@ -7,8 +7,10 @@ import functools
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
+import struct
 import subprocess
 import tempfile
 import time
@@ -141,9 +143,57 @@ class Refusals(Ranks):
     def test_ranks_of_other_configurations(self):
         one = self.command("ranks", ["engine.transport=mpi"])
         other = self.command("ranks", ["engine.transport=mpi", "image.seed=7"])
-        run = subprocess.run(["mpirun", "-n", "1", *one, ":", "-n", "1", *other], capture_output=True, text=True,
-                             timeout=60, env=ENVIRONMENT)
-        self.refused(run, "rank 1 has another configuration", "seed: 7")
+        self.refused(self.side_by_side(one, other), "rank 1 has another configuration", "seed: 7")
+
+    def side_by_side(self, *commands):
+        """Runs a command a rank."""
+        words = [word for command in commands for word in (":", "-n", "1", *command)][1:]
+        return subprocess.run(["mpirun", *words], capture_output=True, text=True, timeout=60, env=ENVIRONMENT)
+
+    def test_ranks_of_other_programs(self):
+        version = subprocess.run([CAROUSEL, "--version"], capture_output=True, text=True, check=True).stdout
+        commit = re.search(r"\b[0-9a-f]{7,40}\b", version)
+        if commit is None:
+            self.skipTest("the program does not know its commit")
+        commit = commit[0].encode()
+        # The compiler may have made two words of it, in instructions, that overlap.
+        pieces = re.compile(re.escape(commit) + b"|" + re.escape(commit[:4]) + b"(?=.{0,16}" + re.escape(commit[3:7]) + b")", re.S)
+        content, places = pieces.subn(lambda at: b"zzzz" + at[0][4:], pathlib.Path(CAROUSEL).read_bytes())
+        if places == 0:
+            self.skipTest("the commit cannot be found in the program")
+        other = self.folder / "carousel"
+        other.write_bytes(content)
+        other.chmod(0o755)
+        command = self.command("ranks", ["engine.transport=mpi"])
+        self.refused(self.side_by_side(command, command, [str(other), *command[1:]]), "rank 2 has another program")
+
+    def test_files_that_a_rank_does_not_have(self):
+        """Two hosts, played by two folders with the same configuration."""
+        triangle = {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                                   "min": [0, 0, 0], "max": [1, 1, 0]}],
+                    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                    "buffers": [{"uri": "points.bin", "byteLength": 36}]}
+        commands = []
+        for host in "one", "other":
+            (self.folder / host).mkdir()
+            config = self.folder / host / "machine.yaml"
+            config.write_text(MACHINE.replace("builtin: terrain, triangles: 2000", "file: scene.gltf"))
+            commands.append([str(config) if word == str(self.config) else word
+                             for word in self.command("ranks", ["engine.transport=mpi"])])
+            (self.folder / host / "points.bin").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0))
+        scene = self.folder / "one" / "scene.gltf"
+        scene.write_text(json.dumps(triangle))
+        self.refused(self.side_by_side(*commands), "rank 1: cannot read", "scene.gltf")
+        self.refused(self.side_by_side(*reversed(commands)), "rank 0: cannot read", "scene.gltf")
+        shutil.copy(scene, self.folder / "other")
+        self.assertEqual(self.side_by_side(*commands).returncode, 0)
+        shutil.rmtree(self.folder / "ranks")
+        (self.folder / "other" / "points.bin").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 2, 0))
+        self.refused(self.side_by_side(*commands), "rank 1 has another content of the scene's files")
+        (self.folder / "other" / "points.bin").unlink()
+        self.refused(self.side_by_side(*commands), "rank 1 has another content of the scene's files")
 
     def test_what_ranks_do_not_carry(self):
         for assignment in ("faults.links.drop=0.1", "bundles.size=4", "rays.placement=first_taker", "verify=reference",
@@ -151,6 +201,12 @@ class Refusals(Ranks):
             refusal = self.alone(["engine.transport=mpi", assignment])
             self.assertEqual(refusal.returncode, 2)
             self.assertIn("engine.transport: local", refusal.stderr)
+
+    def test_what_no_run_survives(self):
+        for recover in "true", "false":
+            refusal = self.alone(["engine.transport=mpi", "faults.resource.kind=stop", f"faults.resource.recover={recover}"])
+            self.assertEqual(refusal.returncode, 2)
+            self.assertIn("no run survives the loss of a rank", refusal.stderr)
 
     def test_commands_for_one_process(self):
         run = subprocess.run([CAROUSEL, "follow", str(self.config), "--ray", "0", *sets(["engine.transport=mpi"])],

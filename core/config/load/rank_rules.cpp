@@ -27,7 +27,8 @@ void check_ranks(const Config& config, const RuleBreach& breach) {
   refuse(config.faults.links.any(), "faults.links",
          "faulty links are not carried over ranks yet; expected no faults of links");
   refuse(config.faults.resource.kind != FaultsConfig::Resource::Kind::kNone, "faults.resource.kind",
-         fmt::format("faults of resources are not carried over ranks yet; expected none, found {}",
+         fmt::format("faults of resources are not carried over ranks yet, and no run survives the loss of a rank, "
+                     "whatever faults.resource.recover says; expected none, found {}",
                      enum_name(config.faults.resource.kind)));
   refuse(config.verify != Verify::kNone, "verify",
          fmt::format("rays are not verified over ranks yet; expected none, found {}", enum_name(config.verify)));
