@@ -112,6 +112,9 @@ Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bv
     for (std::size_t i = begin; i < end; ++i)
       fill_block(mesh, opacity, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
   });
+  for (const TriangleBlock& block : blas.blocks)
+    for (const std::uint32_t primitive : block.primitive)
+      blas.has_non_opaque |= primitive != kNoPrimitive && (primitive & kNonOpaqueBit) != 0;
   return blas;
 }
 

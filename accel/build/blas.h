@@ -18,6 +18,7 @@ struct Blas {
   BlockArray blocks;
   WideTree tree;  ///< meaningless when the mesh is empty
   Aabb box;
+  bool has_non_opaque = false;  ///< some primitives have kNonOpaqueBit
 };
 
 /// Primitives that may be non-opaque get kNonOpaqueBit.

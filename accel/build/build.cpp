@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 
-#include "accel/build/blas.h"
 #include "accel/build/bounding_spheres.h"
 #include "accel/build/group_levels.h"
+#include "accel/build/placed_blas.h"
 #include "accel/build/quantised_boxes.h"
+#include "accel/build/rank_shares.h"
 #include "accel/build/sah_build.h"
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
@@ -18,34 +20,11 @@ namespace carousel::accel {
 
 namespace {
 
-/// A BLAS and where its arrays start in the joint ones.
-struct PlacedBlas {
-  Blas blas;
-  std::uint32_t first_node = 0, first_block = 0;
-
-  NodeRef place(NodeRef ref) const {
-    if (ref.is_inner()) return NodeRef::inner(ref.node() + first_node);
-    const std::uint32_t block = ref.first_block() + first_block;
-    return ref.is_procedural() ? NodeRef::procedural(block, ref.triangles()) : NodeRef::leaf(block, ref.triangles());
-  }
-};
-
-/// The mesh as its instance stands in the world, for transforms that have no inverse.
-scene::Mesh bake(const scene::Mesh& mesh, const scene::Affine& m) {
-  scene::Mesh out;
-  out.indices = mesh.indices;
-  out.triangle_materials = mesh.triangle_materials;
-  out.colors = mesh.colors;
-  out.positions.reserve(mesh.positions.size());
-  for (const Vec3& p : mesh.positions) out.positions.push_back(m.linear * p + m.translation);
-  return out;
-}
-
 class AccelBuilder {
  public:
   AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
-               const CullPlanesConfig& planes)
-      : scene_(scene), config_(config), executor_(executor), planes_(planes) {
+               const CullPlanesConfig& planes, const BuildRanks* ranks)
+      : scene_(scene), config_(config), executor_(executor), planes_(planes), ranks_(ranks) {
     accel_.width = static_cast<int>(config.width);
     accel_.accuracy = accuracy;
   }
@@ -60,14 +39,13 @@ class AccelBuilder {
     first_of_top_ = accel_.nodes.size();
     build_tlas(top);
     for (std::size_t i = above; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
-    for (const TriangleBlock& block : accel_.blocks)
-      for (const std::uint32_t primitive : block.primitive)
-        accel_.has_non_opaque |= primitive != kNoPrimitive && (primitive & kNonOpaqueBit) != 0;
+    for (const PlacedBlas& placed : blases_) accel_.has_non_opaque |= placed.blas.has_non_opaque;
     for (const scene::Instance& instance : scene_.instances)
       accel_.procedural_primitives |= !scene_.meshes[instance.mesh.value].spheres.empty();
     mix_nodes();
     if (config_.elements == BvhConfig::Elements::kSpheres) accel_.spheres = bounding_spheres(accel_, executor_);
     add_cull_planes(accel_, scene_, planes_, executor_);
+    if (accel_.partition) accel_.guests = std::make_shared<GuestShapes>(accel_.nodes, accel_.blocks);
     return std::move(accel_);
   }
 
@@ -104,34 +82,70 @@ class AccelBuilder {
   void build_blases() {
     const scene::Opacity opacity(scene_);
     blases_.resize(sources_.size());
+    if (ranks_ != nullptr) share_out();
     executor_.parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) blases_[i].blas = build_blas(*sources_[i], opacity, config_, executor_);
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!here(i)) continue;
+        PlacedBlas& placed = blases_[i];
+        placed.blas = build_blas(*sources_[i], opacity, config_, executor_);
+        placed.nodes = static_cast<std::uint32_t>(placed.blas.nodes.size());
+        placed.blocks = static_cast<std::uint32_t>(placed.blas.blocks.size());
+      }
     });
+    if (ranks_ != nullptr) exchange_summaries(*ranks_, home_, blases_);
   }
 
+  bool here(std::size_t i) const { return ranks_ == nullptr || home_[i] == ranks_->rank; }
+
+  void share_out() {
+    std::vector<std::uint64_t> sizes;
+    for (const scene::Mesh* mesh : sources_) sizes.push_back(mesh->triangle_count() + mesh->spheres.size());
+    home_ = share_meshes(sizes, ranks_->ranks);
+  }
+
+  // The shapes of a rank have consecutive numbers (Partition).
   void join_blases() {
+    std::vector<std::uint32_t> order(blases_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    if (ranks_ != nullptr)
+      std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return home_[a] < home_[b]; });
+    std::vector<std::uint64_t> node_sums(ranks_ == nullptr ? 0 : ranks_->ranks), block_sums(node_sums.size());
     std::size_t nodes = 0, blocks = 0;
-    for (PlacedBlas& placed : blases_) {
+    for (const std::uint32_t i : order) {
+      PlacedBlas& placed = blases_[i];
       placed.first_node = static_cast<std::uint32_t>(nodes);
       placed.first_block = static_cast<std::uint32_t>(blocks);
-      nodes += placed.blas.nodes.size();
-      blocks += placed.blas.blocks.size();
+      nodes += placed.nodes;
+      blocks += placed.blocks;
       if (nodes + 2 * scene_.instances.size() >= kMaxNodes || blocks >= kMaxBlocks)
         throw SceneError(scene_.name, "", "has more triangles than the acceleration structure can name");
+      if (ranks_ == nullptr) continue;
+      node_sums[home_[i]] += placed.nodes;
+      block_sums[home_[i]] += placed.blocks;
     }
-    if (blases_.size() == 1) {
+    if (ranks_ != nullptr) {
+      accel_.partition = std::make_shared<Partition>(partition_of(ranks_->rank, node_sums, block_sums));
+      accel_.nodes.allow_gaps(kMaxNodes);
+      accel_.blocks.allow_gaps(kMaxBlocks);
+    } else if (blases_.size() == 1) {
       accel_.nodes = std::move(blases_[0].blas.nodes);
       accel_.blocks = std::move(blases_[0].blas.blocks);
       return;
     }
     accel_.nodes.reserve(nodes);
     accel_.blocks.reserve(blocks);
-    for (PlacedBlas& placed : blases_) {
+    for (const std::uint32_t i : order) {
+      PlacedBlas& placed = blases_[i];
+      if (!here(i)) {
+        accel_.nodes.skip(placed.nodes);
+        accel_.blocks.skip(placed.blocks);
+        continue;
+      }
       for (Node& node : placed.blas.nodes) {
         for (int lane = 0; lane < node.count; ++lane) node.child[lane] = placed.place(node.child[lane]);
         accel_.nodes.push_back(node);
       }
-      accel_.blocks.insert(accel_.blocks.end(), placed.blas.blocks.begin(), placed.blas.blocks.end());
+      for (const TriangleBlock& block : placed.blas.blocks) accel_.blocks.push_back(block);
       placed.blas.nodes = {};
       placed.blas.blocks = {};
     }
@@ -203,11 +217,12 @@ class AccelBuilder {
   // top level may hold primitives and instances (US 12394134, paragraph 8: leaf nodes that reference primitives in
   // world space, and leaf nodes that reference instances).
   void mix_nodes() {
-    for (std::size_t i = 0; i < accel_.nodes.size(); ++i) {
-      Node& node = accel_.nodes[i];
-      for (int lane = 0; lane < node.count; ++lane)
-        if (holds(node.child[lane], i >= first_of_top_)) node.direct |= static_cast<std::uint8_t>(1u << lane);
-    }
+    for (const auto& part : accel_.nodes.parts())
+      for (std::size_t i = part.begin; i < part.end; ++i) {
+        Node& node = accel_.nodes[i];
+        for (int lane = 0; lane < node.count; ++lane)
+          if (holds(node.child[lane], i >= first_of_top_)) node.direct |= static_cast<std::uint8_t>(1u << lane);
+      }
   }
   bool holds(NodeRef child, bool in_top) const {
     if (!child.is_instance()) return !child.is_inner() && child.triangles() <= config_.mixed_triangles;
@@ -236,10 +251,12 @@ class AccelBuilder {
   const BvhConfig& config_;
   Executor& executor_;
   const CullPlanesConfig& planes_;
+  const BuildRanks* ranks_;  // null: the whole structure is built here
   Accel accel_;
   std::vector<const scene::Mesh*> sources_;  // one a BLAS
   std::vector<std::unique_ptr<scene::Mesh>> baked_;
   std::vector<std::uint32_t> blas_of_;  // one an instance
+  std::vector<std::uint32_t> home_;     // with ranks_: the rank of each BLAS
   int blas_depth_ = 0;
   std::size_t first_of_top_ = 0;  // node
   std::vector<PlacedBlas> blases_;
@@ -248,8 +265,8 @@ class AccelBuilder {
 }  // namespace
 
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
-            const CullPlanesConfig& planes) {
-  Accel accel = AccelBuilder(scene, config, executor, accuracy, planes).run();
+            const CullPlanesConfig& planes, const BuildRanks* ranks) {
+  Accel accel = AccelBuilder(scene, config, executor, accuracy, planes, ranks).run();
   if (config.storage == BvhConfig::Storage::kQuantised) quantise_boxes(accel);
   return accel;
 }

@@ -62,7 +62,8 @@ StructureSize structure_size(const Accel& accel) {
   StructureSize out;
   std::unordered_set<std::uint32_t> roots;
   for (const InstanceNode& instance : accel.instances)
-    if (!instance.group && instance.triangles > 0 && roots.insert(instance.root.bits()).second)
+    if (!instance.group && instance.triangles > 0 && (!accel.partition || accel.partition->here(instance.root)) &&
+        roots.insert(instance.root.bits()).second)
       add_mesh(accel, instance.root, out);
   if (out.primitives > 0) out.surface_cost /= static_cast<double>(out.primitives);
   return out;

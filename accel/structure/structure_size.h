@@ -6,7 +6,7 @@
 
 namespace carousel::accel {
 
-/// The structures over meshes, each counted once.
+/// The structures over meshes that are here, each counted once.
 struct StructureSize {
   std::uint64_t primitives = 0, references = 0;
   std::uint64_t inner_nodes = 0, leaves = 0;
