@@ -20,6 +20,8 @@ namespace carousel::accel {
 
 namespace {
 
+constexpr std::size_t kGuestNumbers = 1 << 24;  // for shapes of other ranks: some gigabytes of addresses
+
 class AccelBuilder {
  public:
   AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
@@ -33,6 +35,7 @@ class AccelBuilder {
     place_instances();
     build_blases();
     join_blases();
+    join_pieces();
     const std::size_t above = accel_.nodes.size();
     fill_instances();
     const TopMembers top = top_members();
@@ -45,7 +48,11 @@ class AccelBuilder {
     mix_nodes();
     if (config_.elements == BvhConfig::Elements::kSpheres) accel_.spheres = bounding_spheres(accel_, executor_);
     add_cull_planes(accel_, scene_, planes_, executor_);
-    if (accel_.partition) accel_.guests = std::make_shared<GuestShapes>(accel_.nodes, accel_.blocks);
+    if (ranks_ != nullptr) {
+      partition_.above_end = static_cast<std::uint32_t>(accel_.nodes.size());
+      accel_.partition = std::make_shared<Partition>(partition_);
+      accel_.guests = std::make_shared<GuestShapes>(accel_.nodes, accel_.blocks);
+    }
     return std::move(accel_);
   }
 
@@ -81,15 +88,17 @@ class AccelBuilder {
 
   void build_blases() {
     const scene::Opacity opacity(scene_);
-    blases_.resize(sources_.size());
-    if (ranks_ != nullptr) share_out();
-    executor_.parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    divide_meshes();
+    executor_.parallel_for(blases_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (!here(i)) continue;
         PlacedBlas& placed = blases_[i];
-        placed.blas = build_blas(*sources_[i], opacity, config_, executor_);
-        placed.nodes = static_cast<std::uint32_t>(placed.blas.nodes.size());
-        placed.blocks = static_cast<std::uint32_t>(placed.blas.blocks.size());
+        if (here(i)) {
+          placed.blas = build_blas(*sources_[placed.source], opacity, config_, executor_,
+                                   placed.piece.empty() ? nullptr : &placed.piece);
+          placed.nodes = static_cast<std::uint32_t>(placed.blas.nodes.size());
+          placed.blocks = static_cast<std::uint32_t>(placed.blas.blocks.size());
+        }
+        placed.piece = {};
       }
     });
     if (ranks_ != nullptr) exchange_summaries(*ranks_, home_, blases_);
@@ -97,10 +106,11 @@ class AccelBuilder {
 
   bool here(std::size_t i) const { return ranks_ == nullptr || home_[i] == ranks_->rank; }
 
-  void share_out() {
-    std::vector<std::uint64_t> sizes;
-    for (const scene::Mesh* mesh : sources_) sizes.push_back(mesh->triangle_count() + mesh->spheres.size());
-    home_ = share_meshes(sizes, ranks_->ranks);
+  // One BLAS a mesh. For ranks meshes are divided so far that the shares can be about equal.
+  void divide_meshes() {
+    if (ranks_ != nullptr) return share_out(sources_, *ranks_, blases_, home_);
+    blases_.resize(sources_.size());
+    for (std::uint32_t i = 0; i < sources_.size(); ++i) blases_[i].source = i;
   }
 
   // The shapes of a rank have consecutive numbers (Partition).
@@ -124,9 +134,9 @@ class AccelBuilder {
       block_sums[home_[i]] += placed.blocks;
     }
     if (ranks_ != nullptr) {
-      accel_.partition = std::make_shared<Partition>(partition_of(ranks_->rank, node_sums, block_sums));
-      accel_.nodes.allow_gaps(kMaxNodes);
-      accel_.blocks.allow_gaps(kMaxBlocks);
+      partition_ = partition_of(ranks_->rank, node_sums, block_sums);
+      accel_.nodes.allow_gaps(std::min<std::size_t>(kMaxNodes, nodes + 2 * scene_.instances.size() + kGuestNumbers));
+      accel_.blocks.allow_gaps(std::min<std::size_t>(kMaxBlocks, blocks + kGuestNumbers));
     } else if (blases_.size() == 1) {
       accel_.nodes = std::move(blases_[0].blas.nodes);
       accel_.blocks = std::move(blases_[0].blas.blocks);
@@ -151,20 +161,33 @@ class AccelBuilder {
     }
   }
 
+  // The nodes above the pieces of a mesh are at every rank, as those of the top level are.
+  void join_pieces() {
+    meshes_.resize(sources_.size());
+    for (std::size_t first = 0, end; first < blases_.size(); first = end) {
+      PlacedMesh& mesh = meshes_[blases_[first].source];
+      end = first + 1;
+      while (end < blases_.size() && blases_[end].source == blases_[first].source) ++end;
+      mesh = {blases_[first].blas.tree, blases_[first].blas.box};
+      if (mesh.tree.triangles > 0) mesh.tree.root = blases_[first].place(mesh.tree.root);
+      if (end - first > 1)
+        mesh = join_at_top({blases_.data() + first, end - first}, accel_.width, executor_, accel_.nodes);
+    }
+  }
+
   bool is_baked(std::size_t i) const { return sources_[blas_of_[i]] != &scene_.meshes[scene_.instances[i].mesh.value]; }
 
   void fill_instances() {
     for (std::size_t i = 0; i < accel_.instances.size(); ++i) {
-      const PlacedBlas& placed = blases_[blas_of_[i]];
-      if (placed.blas.tree.triangles == 0) continue;
+      const PlacedMesh& placed = meshes_[blas_of_[i]];
+      if (placed.tree.triangles == 0) continue;
       InstanceNode& node = accel_.instances[i];
-      node.root = placed.place(placed.blas.tree.root);
-      node.strip_size = placed.blas.tree.root_strip_size;
-      node.triangles = placed.blas.tree.triangles;
-      node.world = is_baked(i)
-                       ? placed.blas.box
-                       : world_box(scene_.instances[i].world_from_model, placed.blas.box, accel_.accuracy.transform);
-      blas_depth_ = std::max(blas_depth_, placed.blas.tree.depth);
+      node.root = placed.tree.root;
+      node.strip_size = placed.tree.root_strip_size;
+      node.triangles = placed.tree.triangles;
+      node.world = is_baked(i) ? placed.box
+                               : world_box(scene_.instances[i].world_from_model, placed.box, accel_.accuracy.transform);
+      blas_depth_ = std::max(blas_depth_, placed.tree.depth);
     }
   }
 
@@ -173,7 +196,7 @@ class AccelBuilder {
     if (config_.levels > 2 && !scene_.placements.empty()) {
       const auto box_of = [&](std::uint32_t i) {
         return is_baked(i) ? PlacedBox{accel_.instances[i].world, {}}
-                           : PlacedBox{blases_[blas_of_[i]].blas.box, scene_.instances[i].world_from_model};
+                           : PlacedBox{meshes_[blas_of_[i]].box, scene_.instances[i].world_from_model};
       };
       return build_group_levels(scene_, config_, box_of, executor_, accel_);
     }
@@ -225,6 +248,7 @@ class AccelBuilder {
       }
   }
   bool holds(NodeRef child, bool in_top) const {
+    if (ranks_ != nullptr && !partition_.here(child)) return false;  // nodes above a mesh's pieces
     if (!child.is_instance()) return !child.is_inner() && child.triangles() <= config_.mixed_triangles;
     if (!in_top) return false;  // a group's member, which has a frame of its own
     const InstanceNode& instance = accel_.instances[child.instance_index()];
@@ -253,13 +277,15 @@ class AccelBuilder {
   const CullPlanesConfig& planes_;
   const BuildRanks* ranks_;  // null: the whole structure is built here
   Accel accel_;
-  std::vector<const scene::Mesh*> sources_;  // one a BLAS
+  std::vector<const scene::Mesh*> sources_;  // one a mesh, and those that are baked
   std::vector<std::unique_ptr<scene::Mesh>> baked_;
-  std::vector<std::uint32_t> blas_of_;  // one an instance
+  std::vector<std::uint32_t> blas_of_;  // one an instance, in sources_
   std::vector<std::uint32_t> home_;     // with ranks_: the rank of each BLAS
+  Partition partition_;                 // with ranks_
   int blas_depth_ = 0;
-  std::size_t first_of_top_ = 0;  // node
-  std::vector<PlacedBlas> blases_;
+  std::size_t first_of_top_ = 0;    // node
+  std::vector<PlacedBlas> blases_;  // in order of sources_
+  std::vector<PlacedMesh> meshes_;  // as sources_
 };
 
 }  // namespace

@@ -5,14 +5,17 @@
 #include <numeric>
 #include <string>
 #include <type_traits>
+#include <utility>
+
+#include "accel/build/sah_build.h"
 
 namespace carousel::accel {
 
 namespace {
 
-/// What other ranks have to know of a structure that they do not have.
+/// What other ranks have to know of a piece's structure that they do not have.
 struct Summary {
-  std::uint32_t mesh = 0, nodes = 0, blocks = 0;
+  std::uint32_t piece = 0, nodes = 0, blocks = 0;
   std::uint32_t has_non_opaque = 0;
   WideTree tree;
   Aabb box;
@@ -34,6 +37,53 @@ std::vector<std::uint32_t> share_meshes(std::span<const std::uint64_t> sizes, st
   return home;
 }
 
+void share_out(std::span<const scene::Mesh* const> meshes, const BuildRanks& ranks, std::vector<PlacedBlas>& pieces,
+               std::vector<std::uint32_t>& home) {
+  constexpr std::uint64_t kLeast = 64, kPieces = 8;
+  const auto size_of = [](const scene::Mesh& mesh) { return mesh.triangle_count() + mesh.spheres.size(); };
+  std::uint64_t all = 0;
+  for (const scene::Mesh* mesh : meshes) all += size_of(*mesh);
+  const std::uint64_t most = std::max(kLeast, all / (kPieces * ranks.ranks));
+  std::vector<std::uint64_t> sizes;
+  for (std::uint32_t i = 0; i < meshes.size(); ++i) {
+    if (size_of(*meshes[i]) <= most) {
+      pieces.emplace_back().source = i;
+      sizes.push_back(size_of(*meshes[i]));
+      continue;
+    }
+    for (MeshPiece& piece : divide_mesh(*meshes[i], most)) {
+      sizes.push_back(piece.size());
+      PlacedBlas& placed = pieces.emplace_back();
+      placed.source = i;
+      placed.piece = std::move(piece);
+    }
+  }
+  home = share_meshes(sizes, ranks.ranks);
+}
+
+PlacedMesh join_at_top(std::span<const PlacedBlas> pieces, int width, Executor& executor, NodeArray& nodes) {
+  std::vector<BuildPrimitive> primitives;
+  PlacedMesh out;
+  int depth = 0;
+  for (const PlacedBlas& piece : pieces) {
+    BuildPrimitive& p = primitives.emplace_back();
+    p.lo = piece.blas.box.lo;
+    p.hi = piece.blas.box.hi;
+    p.index = static_cast<std::uint32_t>(&piece - pieces.data());
+    out.box.extend(piece.blas.box);
+    depth = std::max(depth, piece.blas.tree.depth);
+  }
+  const std::vector<BinaryNode> binary = build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor);
+  const auto make_leaf = [&](const BinaryNode& leaf) {
+    const PlacedBlas& piece = pieces[primitives[leaf.first].index];
+    const WideTree& tree = piece.blas.tree;
+    return WideLeaf{piece.place(tree.root), tree.root_strip_size, tree.triangles};
+  };
+  out.tree = collapse(binary, width, make_leaf, nodes);
+  out.tree.depth += depth;
+  return out;
+}
+
 void exchange_summaries(const BuildRanks& ranks, std::span<const std::uint32_t> home, std::span<PlacedBlas> blases) {
   std::vector<Summary> own;
   for (std::uint32_t i = 0; i < blases.size(); ++i)
@@ -45,8 +95,8 @@ void exchange_summaries(const BuildRanks& ranks, std::span<const std::uint32_t> 
     for (std::size_t at = 0; at + sizeof(Summary) <= bytes.size(); at += sizeof(Summary)) {
       Summary other;
       std::memcpy(static_cast<void*>(&other), bytes.data() + at, sizeof other);
-      if (home[other.mesh] == ranks.rank) continue;
-      PlacedBlas& placed = blases[other.mesh];
+      if (home[other.piece] == ranks.rank) continue;
+      PlacedBlas& placed = blases[other.piece];
       placed.nodes = other.nodes;
       placed.blocks = other.blocks;
       placed.blas.has_non_opaque = other.has_non_opaque != 0;
@@ -58,7 +108,7 @@ void exchange_summaries(const BuildRanks& ranks, std::span<const std::uint32_t> 
 
 Partition partition_of(std::uint32_t rank, std::span<const std::uint64_t> nodes,
                        std::span<const std::uint64_t> blocks) {
-  Partition out{rank, {0}, {0}};
+  Partition out{rank, {0}, {0}, 0};
   for (std::size_t r = 0; r < nodes.size(); ++r) {
     out.node_begin.push_back(static_cast<std::uint32_t>(out.node_begin.back() + nodes[r]));
     out.block_begin.push_back(static_cast<std::uint32_t>(out.block_begin.back() + blocks[r]));

@@ -117,9 +117,8 @@ accel::StructureSize whole_structure(const accel::StructureSize& share, ringbus:
     sum.references += other.references;
     sum.inner_nodes += other.inner_nodes;
     sum.leaves += other.leaves;
-    sum.surface_cost += other.surface_cost * static_cast<double>(other.primitives);
+    sum.surface_cost += other.surface_cost;
   }
-  if (sum.primitives > 0) sum.surface_cost /= static_cast<double>(sum.primitives);
   return sum;
 }
 

@@ -20,8 +20,8 @@ class Treelets {
   }
 
  private:
-  /// Below the top level of a partitioned scene are shapes of several ranks.
-  bool spans_ranks(accel::NodeKey key) const { return accel_.partition && key.instance == kNoInstance; }
+  /// Below nodes that every rank of a partitioned scene has are shapes of several ranks.
+  bool spans_ranks(accel::NodeKey key) const { return accel_.partition && accel_.partition->above(key.ref); }
 
   const accel::Accel& accel_;
   std::optional<std::uint64_t> most_triangles_;

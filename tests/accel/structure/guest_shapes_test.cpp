@@ -1,12 +1,20 @@
+#include <algorithm>
+#include <barrier>
 #include <bit>
 #include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "accel/build/build.h"
+#include "accel/build/mesh_pieces.h"
 #include "accel/build/rank_shares.h"
+#include "accel/structure/structure_size.h"
 #include "accel/traverse/kernels.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
@@ -22,20 +30,22 @@ scene::Scene partitioned_scene() {
   return scene::make_builtin(config);
 }
 
-/// The structures of `ranks` ranks that are built one after another: in a first round they only tell what they have.
+/// The structures of ranks that are threads.
 std::vector<Accel> partitioned(const scene::Scene& scene, const BvhConfig& config, std::uint32_t ranks) {
   std::vector<std::string> told(ranks);
-  std::vector<Accel> out;
-  for (int round = 0; round < 2; ++round) {
-    out.clear();
-    for (std::uint32_t r = 0; r < ranks; ++r) {
-      const BuildRanks all{r, ranks, [&](const std::string& bytes) {
+  std::vector<Accel> out(ranks);
+  std::barrier all_here(static_cast<std::ptrdiff_t>(ranks));
+  std::vector<std::jthread> threads;
+  for (std::uint32_t r = 0; r < ranks; ++r)
+    threads.emplace_back([&, r] {
+      const BuildRanks all{r, ranks, [&, r](const std::string& bytes) {
                              told[r] = bytes;
+                             all_here.arrive_and_wait();
                              return told;
                            }};
-      out.push_back(build(scene, config, *make_tbb_executor(1), {}, {}, &all));
-    }
-  }
+      out[r] = build(scene, config, *make_tbb_executor(1), {}, {}, &all);
+    });
+  threads.clear();
   return out;
 }
 
@@ -47,24 +57,50 @@ TEST(ShareMeshes, KeepsTheSharesAboutEqual) {
   EXPECT_EQ(load, (std::vector<std::uint64_t>{70, 70, 60}));
 }
 
+TEST(ShareMeshes, DividesThoseThatAreLarge) {
+  const scene::Scene scene = partitioned_scene();
+  const scene::Mesh& mesh = scene.meshes[1];
+  std::vector<bool> found(mesh.triangle_count());
+  for (const MeshPiece& piece : divide_mesh(mesh, 100)) {
+    EXPECT_LE(piece.size(), 100u);
+    EXPECT_GT(piece.size(), 40u);
+    EXPECT_TRUE(std::is_sorted(piece.begin(), piece.end()));
+    for (const std::uint32_t primitive : piece) {
+      EXPECT_FALSE(found.at(primitive));
+      found.at(primitive) = true;
+    }
+  }
+  EXPECT_EQ(std::count(found.begin(), found.end(), false), 0);
+}
+
 TEST(Partition, HasEachShapeAtOneRankAndTheTopLevelAtAll) {
   const scene::Scene scene = partitioned_scene();
   const Accel whole = build(scene, {}, *make_tbb_executor(1));
   const std::vector<Accel> parts = partitioned(scene, {}, 3);
-  std::size_t nodes = 0, blocks = 0;
+  StructureSize sum;
+  std::size_t blocks = 0;
   for (const Accel& part : parts) {
     const Partition& partition = *part.partition;
-    EXPECT_EQ(part.nodes.size(), whole.nodes.size());
-    nodes += partition.node_begin[partition.rank + 1] - partition.node_begin[partition.rank];
+    EXPECT_EQ(part.nodes.size(), parts[0].nodes.size());
     blocks += part.blocks.here();
-    EXPECT_LT(part.blocks.here(), whole.blocks.size());
+    EXPECT_LT(part.blocks.here(), whole.blocks.size() / 2);
     for (std::size_t i = 0; i < part.instances.size(); ++i)
       EXPECT_EQ(part.instances[i].root, parts[0].instances[i].root);
-    for (std::uint32_t i = partition.node_begin.back(); i < part.nodes.size(); ++i)
+    for (std::uint32_t i = partition.node_begin.back(); i < part.nodes.size(); ++i) {
       EXPECT_EQ(partition.home(NodeRef::inner(i)), std::nullopt);
+      EXPECT_TRUE(partition.above(NodeRef::inner(i)));
+      EXPECT_EQ(std::memcmp(&part.nodes[i].child, &parts[0].nodes[i].child, sizeof part.nodes[i].child), 0);
+    }
+    const StructureSize size = structure_size(part);
+    sum.primitives += size.primitives;
+    sum.references += size.references;
+    sum.surface_cost += size.surface_cost;
   }
-  EXPECT_EQ(nodes, parts[0].partition->node_begin.back());
-  EXPECT_EQ(blocks, whole.blocks.size());
+  EXPECT_EQ(blocks, parts[0].blocks.size());
+  const StructureSize all = structure_size(whole);
+  EXPECT_EQ(sum.primitives, all.primitives);
+  EXPECT_EQ(sum.references, all.references);
+  EXPECT_NEAR(sum.surface_cost / all.surface_cost, 1, 0.3);
 }
 
 /// A ray from outside through the middle of each instance's mesh.
@@ -87,7 +123,8 @@ TEST(GuestShapes, AreHitAsWhereTheyComeFrom) {
   std::vector<std::uint64_t> words, again;
   int hits = 0;
   for (std::uint32_t i = 0; i < parts[0].instances.size(); ++i) {
-    const NodeRef root = parts[0].instances[i].root;
+    NodeRef root = parts[0].instances[i].root;
+    while (!parts[0].partition->home(root)) root = parts[0].nodes[root.node()].child[0];  // of a mesh that is divided
     const std::uint32_t home = *parts[0].partition->home(root);
     Accel& from = parts[home];
     Accel& to = parts[1 - home];
@@ -114,7 +151,8 @@ TEST(GuestShapes, AreHitAsWhereTheyComeFrom) {
 TEST(GuestShapes, RefuseWhatIsCutOffOrTooLarge) {
   std::vector<Accel> parts = partitioned(partitioned_scene(), {}, 2);
   std::vector<std::uint64_t> words;
-  const NodeRef root = parts[0].instances[0].root;
+  NodeRef root = parts[0].instances[0].root;
+  while (!parts[0].partition->home(root)) root = parts[0].nodes[root.node()].child[0];
   const std::uint32_t home = *parts[0].partition->home(root);
   pack_shapes(parts[home], root, true, words);
   GuestShapes& guests = *parts[1 - home].guests;
