@@ -27,11 +27,11 @@ std::unique_ptr<Link> RankGate::make_link(std::uint32_t wire, std::size_t depth)
   const std::uint32_t from = machine_.share.rank_of(ends.from), to = machine_.share.rank_of(ends.to);
   RankLink::Send send;
   if (from == rank_) {
-    send = [this, wire, to, &peer = *peers_[to]](std::span<const PacketId> packets) {
+    send = [this, wire, at = ends.to, &peer = *peers_[to]](std::span<const PacketId> packets) {
       const std::lock_guard lock(peer.mutex);
       for (const PacketId id : packets) {
         peer.next.add(wire, id, machine_.packet(id));
-        if (shapes_) shapes_->take_along(id, machine_.packet(id), to, peer.next);
+        if (shapes_) shapes_->take_along(id, machine_.packet(id), at, peer.next);
       }
     };
   }

@@ -19,8 +19,9 @@ class ShapeTravel {
   /// Keeps references. Preconditions: the structure is partitioned.
   ShapeTravel(const Config& config, const Machine& machine);
 
-  /// Adds the shape of a packet that goes to rank `to` to the message, unless it is there. Returns its bytes.
-  std::size_t take_along(PacketId id, const Packet& packet, std::uint32_t to, RankMessage& message) const;
+  /// Adds the shape of a packet that goes to resource `to` of another rank to the message, unless no rank from there on
+  /// needs it.
+  void take_along(PacketId id, const Packet& packet, ResourceId to, RankMessage& message) const;
   /// The shapes of a packet from another rank, before the packet arrives.
   void enter(PacketId id, std::span<const std::uint64_t> shapes);
   /// What the shape that a packet names is called here, for a test.
@@ -29,6 +30,8 @@ class ShapeTravel {
   std::uint64_t guest_bytes() const { return machine_.accel.guests->bytes(); }
 
  private:
+  bool needed(const Packet& packet, ResourceId from, std::uint32_t home) const;
+
   const Machine& machine_;
   const accel::Partition& partition_;
   std::optional<std::uint64_t> treelet_triangles_;

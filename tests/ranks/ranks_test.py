@@ -156,11 +156,13 @@ def write_patches(path, side, cells):
                 points.extend((x / cells, height, z / cells))
         position = add(points, "VEC3", 5126, row * row, min=[0, -1, 0], max=[1, 1, 1])
         meshes.append({"primitives": [{"attributes": {"POSITION": position},
-                                       "indices": add(indices, "SCALAR", 5125, len(indices))}]})
+                                       "indices": add(indices, "SCALAR", 5125, len(indices)), "material": mesh % 2}]})
     nodes = [{"mesh": mesh, "translation": [mesh % side, 0, mesh // side]} for mesh in range(side * side)]
     path.with_suffix(".bin").write_bytes(data)
     path.write_text(json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes,
+        "asset": {"version": "2.0"}, "scene": 0, "materials": [
+            {"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1]}},
+            {"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.6, 0.9, 0.4]}, "alphaMode": "BLEND"}], "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes,
         "meshes": meshes, "accessors": accessors, "bufferViews": views,
         "buffers": [{"uri": path.with_suffix(".bin").name, "byteLength": len(data)}]}))
 
@@ -171,7 +173,7 @@ class PartitionedScene(Ranks):
         whole = ["collections={home: hash, when_full: spill}", *assignments]
         with self.subTest(assignments=assignments, ranks=ranks):
             self.assertEqual(self.alone(whole).returncode, 0)
-            run = self.over(ranks, PARTITIONED + assignments)
+            run = self.over(ranks, [*whole, "scene.placement=partitioned"])
             self.assertEqual(run.returncode, 0, run.stderr)
             one, several = self.report("alone"), self.report("ranks")
             self.assertEqual(several["digest"], one["digest"])
@@ -193,6 +195,8 @@ class PartitionedScene(Ranks):
                                  "bvh.treelet_triangles=100"])):
             self.partitioned(scene + more, ranks)
         self.partitioned([], 3)  # a scene of one mesh
+        write_patches(self.folder / "patches.gltf", 3, 8)
+        self.partitioned(["scene={file: patches.gltf}"], 3)  # every second mesh lets light through
 
     def test_what_it_does_not_do(self):
         for assignment in ("engine.transport=local", "collections.home=issuer", "packets.shapes=single",
