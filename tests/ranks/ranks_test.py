@@ -190,7 +190,7 @@ class PartitionedScene(Ranks):
     def test_any_number_of_ranks_and_traversal(self):
         scene = ["scene.builtin=instances", "scene.instances=60"]
         for ranks, more in ((1, []), (2, ["collections.traversal=treelet"]), (3, ["collections.traversal=ordered"]),
-                            (4, ["engine.threads=1"]), (3, ["topology.shape=point_to_point", "topology.visit=owners"]),
+                            (4, ["engine.threads=1"]), (3, ["packets.shapes=single"]), (3, ["topology.shape=point_to_point", "topology.visit=owners"]),
                             (2, ["topology.shape=bidirectional", "collections.traversal=treelet",
                                  "bvh.treelet_triangles=100"])):
             self.partitioned(scene + more, ranks)
@@ -199,12 +199,14 @@ class PartitionedScene(Ranks):
         self.partitioned(["scene={file: patches.gltf}"], 3)  # every second mesh lets light through
 
     def test_what_it_does_not_do(self):
-        for assignment in ("engine.transport=local", "collections.home=issuer", "packets.shapes=single",
-                           "cull_planes.count=4", "bvh.storage=quantised", "bvh.elements=spheres", "bvh.levels=3",
+        for assignment in ("engine.transport=local", "collections.home=issuer", "cull_planes.count=4", "bvh.storage=quantised", "bvh.elements=spheres", "bvh.levels=3",
                            "bvh.top_triangles=4"):
             refusal = self.alone(["engine.transport=mpi", *PARTITIONED, assignment])
             self.assertEqual(refusal.returncode, 2)
             self.assertIn("scene.placement: replicated", refusal.stderr)
+        refusal = self.alone(["engine.transport=mpi", *PARTITIONED, "packets.shapes=single",
+                              "collections.traversal=treelet"])
+        self.assertIn("packets.shapes: above treelets", refusal.stderr)
 
     def test_a_scene_that_no_rank_could_hold(self):
         """The limit lies between what a rank needs of four and what each needs for the whole: a million triangles, of

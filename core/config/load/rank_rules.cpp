@@ -19,9 +19,11 @@ void check_placement(const Config& config, const RuleBreach& breach) {
   refuse(config.collections.home != Home::kHash, "collections.home",
          fmt::format("the collections of a partitioned scene are where its shapes are; expected hash, found {}",
                      enum_name(config.collections.home)));
-  refuse(config.packets.shapes != PacketShapes::kStrip, "packets.shapes",
-         fmt::format("the strips of a partitioned scene are not taken apart yet; expected strip, found {}",
-                     enum_name(config.packets.shapes)));
+  refuse(
+      config.packets.shapes != PacketShapes::kStrip && config.collections.traversal == Traversal::kTreelet,
+      "packets.shapes",
+      fmt::format("above treelets the strips of a partitioned scene are not taken apart yet; expected strip, found {}",
+                  enum_name(config.packets.shapes)));
   refuse(config.cull_planes.count > 0, "cull_planes.count",
          fmt::format("cull planes are not partitioned yet; expected 0, found {}", config.cull_planes.count));
   refuse(config.bvh.elements != BvhConfig::Elements::kBoxes, "bvh.elements",

@@ -166,6 +166,7 @@ TEST_F(RankRuns, GiveThemWithAPartitionedScene) {
       {"collections.traversal=treelet", "engine.threads=2"},
       {"scene={builtin: spheres, triangles: 300, procedural: true, placement: partitioned}"},
       {"scene={builtin: terrain, triangles: 2000, placement: partitioned}", "bvh.mixed_triangles=4"},
+      {"packets.shapes=single"},
   };
   bool odd = false;
   for (const auto& sets : machines) {
