@@ -12,17 +12,18 @@ namespace carousel::accel {
 namespace {
 
 /// Triangles, then spheres, with their boxes.
-std::vector<BuildPrimitive> boxes(const scene::Mesh& mesh, Executor& executor) {
+std::vector<BuildPrimitive> boxes(const scene::Mesh& mesh, const MeshPiece* piece, Executor& executor) {
   const std::size_t triangles = mesh.triangle_count();
-  std::vector<BuildPrimitive> out(triangles + mesh.spheres.size());
+  std::vector<BuildPrimitive> out(piece != nullptr ? piece->size() : triangles + mesh.spheres.size());
   executor.parallel_for(out.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
+    for (std::size_t at = begin; at < end; ++at) {
+      const std::size_t i = piece != nullptr ? (*piece)[at] : at;
       Aabb box;
       for (std::size_t k = 0; k < 3 && i < triangles; ++k) box.extend(mesh.positions[mesh.indices[3 * i + k]]);
       if (i >= triangles) box = sphere_box(mesh.spheres[i - triangles].center, mesh.spheres[i - triangles].radius);
-      out[i].lo = box.lo;
-      out[i].hi = box.hi;
-      out[i].index = static_cast<std::uint32_t>(i);
+      out[at].lo = box.lo;
+      out[at].hi = box.hi;
+      out[at].index = static_cast<std::uint32_t>(i);
     }
   });
   return out;
@@ -81,14 +82,18 @@ std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std:
 
 }  // namespace
 
-Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor) {
+Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
+                const MeshPiece* piece) {
   Blas blas;
-  std::vector<BuildPrimitive> primitives = boxes(mesh, executor);
+  std::vector<BuildPrimitive> primitives = boxes(mesh, piece, executor);
   if (primitives.empty()) return blas;
+  const auto first_sphere = std::find_if(primitives.begin(), primitives.end(),
+                                         [&](const BuildPrimitive& p) { return p.index >= mesh.triangle_count(); });
+  const auto triangles = static_cast<std::size_t>(first_sphere - primitives.begin());
   SahSettings settings;
   settings.leaf_primitives = static_cast<std::uint32_t>(config.leaf_triangles);
   settings.block_primitives = std::min<std::uint32_t>(kBlockTriangles, settings.leaf_primitives);
-  const std::vector<BinaryNode> binary = build_both(primitives, mesh.triangle_count(), config, settings, executor);
+  const std::vector<BinaryNode> binary = build_both(primitives, triangles, config, settings, executor);
   blas.box = binary[0].box;
 
   struct Fill {
@@ -112,6 +117,9 @@ Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bv
     for (std::size_t i = begin; i < end; ++i)
       fill_block(mesh, opacity, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
   });
+  for (const TriangleBlock& block : blas.blocks)
+    for (const std::uint32_t primitive : block.primitive)
+      blas.has_non_opaque |= primitive != kNoPrimitive && (primitive & kNonOpaqueBit) != 0;
   return blas;
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "accel/build/mesh_pieces.h"
 #include "accel/build/wide_collapse.h"
 #include "accel/structure/node.h"
 #include "core/config/config.h"
@@ -18,9 +19,11 @@ struct Blas {
   BlockArray blocks;
   WideTree tree;  ///< meaningless when the mesh is empty
   Aabb box;
+  bool has_non_opaque = false;  ///< some primitives have kNonOpaqueBit
 };
 
-/// Primitives that may be non-opaque get kNonOpaqueBit.
-Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor);
+/// Primitives that may be non-opaque get kNonOpaqueBit. With `piece` over these primitives alone.
+Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
+                const MeshPiece* piece = nullptr);
 
 }  // namespace carousel::accel

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 
-#include "accel/build/blas.h"
 #include "accel/build/bounding_spheres.h"
 #include "accel/build/group_levels.h"
+#include "accel/build/placed_blas.h"
 #include "accel/build/quantised_boxes.h"
+#include "accel/build/rank_shares.h"
 #include "accel/build/sah_build.h"
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
@@ -18,34 +20,13 @@ namespace carousel::accel {
 
 namespace {
 
-/// A BLAS and where its arrays start in the joint ones.
-struct PlacedBlas {
-  Blas blas;
-  std::uint32_t first_node = 0, first_block = 0;
-
-  NodeRef place(NodeRef ref) const {
-    if (ref.is_inner()) return NodeRef::inner(ref.node() + first_node);
-    const std::uint32_t block = ref.first_block() + first_block;
-    return ref.is_procedural() ? NodeRef::procedural(block, ref.triangles()) : NodeRef::leaf(block, ref.triangles());
-  }
-};
-
-/// The mesh as its instance stands in the world, for transforms that have no inverse.
-scene::Mesh bake(const scene::Mesh& mesh, const scene::Affine& m) {
-  scene::Mesh out;
-  out.indices = mesh.indices;
-  out.triangle_materials = mesh.triangle_materials;
-  out.colors = mesh.colors;
-  out.positions.reserve(mesh.positions.size());
-  for (const Vec3& p : mesh.positions) out.positions.push_back(m.linear * p + m.translation);
-  return out;
-}
+constexpr std::size_t kGuestNumbers = 1 << 24;  // for shapes of other ranks: some gigabytes of addresses
 
 class AccelBuilder {
  public:
   AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
-               const CullPlanesConfig& planes)
-      : scene_(scene), config_(config), executor_(executor), planes_(planes) {
+               const CullPlanesConfig& planes, const BuildRanks* ranks)
+      : scene_(scene), config_(config), executor_(executor), planes_(planes), ranks_(ranks) {
     accel_.width = static_cast<int>(config.width);
     accel_.accuracy = accuracy;
   }
@@ -54,20 +35,24 @@ class AccelBuilder {
     place_instances();
     build_blases();
     join_blases();
+    join_pieces();
     const std::size_t above = accel_.nodes.size();
     fill_instances();
     const TopMembers top = top_members();
     first_of_top_ = accel_.nodes.size();
     build_tlas(top);
     for (std::size_t i = above; i < accel_.nodes.size(); ++i) accel_.nodes[i].above_instances = true;
-    for (const TriangleBlock& block : accel_.blocks)
-      for (const std::uint32_t primitive : block.primitive)
-        accel_.has_non_opaque |= primitive != kNoPrimitive && (primitive & kNonOpaqueBit) != 0;
+    for (const PlacedBlas& placed : blases_) accel_.has_non_opaque |= placed.blas.has_non_opaque;
     for (const scene::Instance& instance : scene_.instances)
       accel_.procedural_primitives |= !scene_.meshes[instance.mesh.value].spheres.empty();
     mix_nodes();
     if (config_.elements == BvhConfig::Elements::kSpheres) accel_.spheres = bounding_spheres(accel_, executor_);
     add_cull_planes(accel_, scene_, planes_, executor_);
+    if (ranks_ != nullptr) {
+      partition_.above_end = static_cast<std::uint32_t>(accel_.nodes.size());
+      accel_.partition = std::make_shared<Partition>(partition_);
+      accel_.guests = std::make_shared<GuestShapes>(accel_.nodes, accel_.blocks);
+    }
     return std::move(accel_);
   }
 
@@ -103,37 +88,90 @@ class AccelBuilder {
 
   void build_blases() {
     const scene::Opacity opacity(scene_);
-    blases_.resize(sources_.size());
-    executor_.parallel_for(sources_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) blases_[i].blas = build_blas(*sources_[i], opacity, config_, executor_);
+    divide_meshes();
+    executor_.parallel_for(blases_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        PlacedBlas& placed = blases_[i];
+        if (here(i)) {
+          placed.blas = build_blas(*sources_[placed.source], opacity, config_, executor_,
+                                   placed.piece.empty() ? nullptr : &placed.piece);
+          placed.nodes = static_cast<std::uint32_t>(placed.blas.nodes.size());
+          placed.blocks = static_cast<std::uint32_t>(placed.blas.blocks.size());
+        }
+        placed.piece = {};
+      }
     });
+    if (ranks_ != nullptr) exchange_summaries(*ranks_, home_, blases_);
   }
 
+  bool here(std::size_t i) const { return ranks_ == nullptr || home_[i] == ranks_->rank; }
+
+  // One BLAS a mesh. For ranks meshes are divided so far that the shares can be about equal.
+  void divide_meshes() {
+    if (ranks_ != nullptr) return share_out(sources_, *ranks_, blases_, home_);
+    blases_.resize(sources_.size());
+    for (std::uint32_t i = 0; i < sources_.size(); ++i) blases_[i].source = i;
+  }
+
+  // The shapes of a rank have consecutive numbers (Partition).
   void join_blases() {
+    std::vector<std::uint32_t> order(blases_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    if (ranks_ != nullptr)
+      std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return home_[a] < home_[b]; });
+    std::vector<std::uint64_t> node_sums(ranks_ == nullptr ? 0 : ranks_->ranks), block_sums(node_sums.size());
     std::size_t nodes = 0, blocks = 0;
-    for (PlacedBlas& placed : blases_) {
+    for (const std::uint32_t i : order) {
+      PlacedBlas& placed = blases_[i];
       placed.first_node = static_cast<std::uint32_t>(nodes);
       placed.first_block = static_cast<std::uint32_t>(blocks);
-      nodes += placed.blas.nodes.size();
-      blocks += placed.blas.blocks.size();
+      nodes += placed.nodes;
+      blocks += placed.blocks;
       if (nodes + 2 * scene_.instances.size() >= kMaxNodes || blocks >= kMaxBlocks)
         throw SceneError(scene_.name, "", "has more triangles than the acceleration structure can name");
+      if (ranks_ == nullptr) continue;
+      node_sums[home_[i]] += placed.nodes;
+      block_sums[home_[i]] += placed.blocks;
     }
-    if (blases_.size() == 1) {
+    if (ranks_ != nullptr) {
+      partition_ = partition_of(ranks_->rank, node_sums, block_sums);
+      accel_.nodes.allow_gaps(std::min<std::size_t>(kMaxNodes, nodes + 2 * scene_.instances.size() + kGuestNumbers));
+      accel_.blocks.allow_gaps(std::min<std::size_t>(kMaxBlocks, blocks + kGuestNumbers));
+    } else if (blases_.size() == 1) {
       accel_.nodes = std::move(blases_[0].blas.nodes);
       accel_.blocks = std::move(blases_[0].blas.blocks);
       return;
     }
     accel_.nodes.reserve(nodes);
     accel_.blocks.reserve(blocks);
-    for (PlacedBlas& placed : blases_) {
+    for (const std::uint32_t i : order) {
+      PlacedBlas& placed = blases_[i];
+      if (!here(i)) {
+        accel_.nodes.skip(placed.nodes);
+        accel_.blocks.skip(placed.blocks);
+        continue;
+      }
       for (Node& node : placed.blas.nodes) {
         for (int lane = 0; lane < node.count; ++lane) node.child[lane] = placed.place(node.child[lane]);
         accel_.nodes.push_back(node);
       }
-      accel_.blocks.insert(accel_.blocks.end(), placed.blas.blocks.begin(), placed.blas.blocks.end());
+      for (const TriangleBlock& block : placed.blas.blocks) accel_.blocks.push_back(block);
       placed.blas.nodes = {};
       placed.blas.blocks = {};
+    }
+  }
+
+  // The nodes above the pieces of a mesh are at every rank, as those of the top level are.
+  void join_pieces() {
+    meshes_.resize(sources_.size());
+    for (std::size_t first = 0, end; first < blases_.size(); first = end) {
+      PlacedMesh& mesh = meshes_[blases_[first].source];
+      end = first + 1;
+      while (end < blases_.size() && blases_[end].source == blases_[first].source) ++end;
+      mesh = {blases_[first].blas.tree, blases_[first].blas.box};
+      if (mesh.tree.triangles > 0) mesh.tree.root = blases_[first].place(mesh.tree.root);
+      if (end - first > 1)
+        mesh = join_at_top({blases_.data() + first, end - first}, accel_.width, executor_, accel_.nodes);
     }
   }
 
@@ -141,16 +179,15 @@ class AccelBuilder {
 
   void fill_instances() {
     for (std::size_t i = 0; i < accel_.instances.size(); ++i) {
-      const PlacedBlas& placed = blases_[blas_of_[i]];
-      if (placed.blas.tree.triangles == 0) continue;
+      const PlacedMesh& placed = meshes_[blas_of_[i]];
+      if (placed.tree.triangles == 0) continue;
       InstanceNode& node = accel_.instances[i];
-      node.root = placed.place(placed.blas.tree.root);
-      node.strip_size = placed.blas.tree.root_strip_size;
-      node.triangles = placed.blas.tree.triangles;
-      node.world = is_baked(i)
-                       ? placed.blas.box
-                       : world_box(scene_.instances[i].world_from_model, placed.blas.box, accel_.accuracy.transform);
-      blas_depth_ = std::max(blas_depth_, placed.blas.tree.depth);
+      node.root = placed.tree.root;
+      node.strip_size = placed.tree.root_strip_size;
+      node.triangles = placed.tree.triangles;
+      node.world = is_baked(i) ? placed.box
+                               : world_box(scene_.instances[i].world_from_model, placed.box, accel_.accuracy.transform);
+      blas_depth_ = std::max(blas_depth_, placed.tree.depth);
     }
   }
 
@@ -159,7 +196,7 @@ class AccelBuilder {
     if (config_.levels > 2 && !scene_.placements.empty()) {
       const auto box_of = [&](std::uint32_t i) {
         return is_baked(i) ? PlacedBox{accel_.instances[i].world, {}}
-                           : PlacedBox{blases_[blas_of_[i]].blas.box, scene_.instances[i].world_from_model};
+                           : PlacedBox{meshes_[blas_of_[i]].box, scene_.instances[i].world_from_model};
       };
       return build_group_levels(scene_, config_, box_of, executor_, accel_);
     }
@@ -203,13 +240,15 @@ class AccelBuilder {
   // top level may hold primitives and instances (US 12394134, paragraph 8: leaf nodes that reference primitives in
   // world space, and leaf nodes that reference instances).
   void mix_nodes() {
-    for (std::size_t i = 0; i < accel_.nodes.size(); ++i) {
-      Node& node = accel_.nodes[i];
-      for (int lane = 0; lane < node.count; ++lane)
-        if (holds(node.child[lane], i >= first_of_top_)) node.direct |= static_cast<std::uint8_t>(1u << lane);
-    }
+    for (const auto& part : accel_.nodes.parts())
+      for (std::size_t i = part.begin; i < part.end; ++i) {
+        Node& node = accel_.nodes[i];
+        for (int lane = 0; lane < node.count; ++lane)
+          if (holds(node.child[lane], i >= first_of_top_)) node.direct |= static_cast<std::uint8_t>(1u << lane);
+      }
   }
   bool holds(NodeRef child, bool in_top) const {
+    if (ranks_ != nullptr && !partition_.here(child)) return false;  // nodes above a mesh's pieces
     if (!child.is_instance()) return !child.is_inner() && child.triangles() <= config_.mixed_triangles;
     if (!in_top) return false;  // a group's member, which has a frame of its own
     const InstanceNode& instance = accel_.instances[child.instance_index()];
@@ -236,20 +275,24 @@ class AccelBuilder {
   const BvhConfig& config_;
   Executor& executor_;
   const CullPlanesConfig& planes_;
+  const BuildRanks* ranks_;  // null: the whole structure is built here
   Accel accel_;
-  std::vector<const scene::Mesh*> sources_;  // one a BLAS
+  std::vector<const scene::Mesh*> sources_;  // one a mesh, and those that are baked
   std::vector<std::unique_ptr<scene::Mesh>> baked_;
-  std::vector<std::uint32_t> blas_of_;  // one an instance
+  std::vector<std::uint32_t> blas_of_;  // one an instance, in sources_
+  std::vector<std::uint32_t> home_;     // with ranks_: the rank of each BLAS
+  Partition partition_;                 // with ranks_
   int blas_depth_ = 0;
-  std::size_t first_of_top_ = 0;  // node
-  std::vector<PlacedBlas> blases_;
+  std::size_t first_of_top_ = 0;    // node
+  std::vector<PlacedBlas> blases_;  // in order of sources_
+  std::vector<PlacedMesh> meshes_;  // as sources_
 };
 
 }  // namespace
 
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
-            const CullPlanesConfig& planes) {
-  Accel accel = AccelBuilder(scene, config, executor, accuracy, planes).run();
+            const CullPlanesConfig& planes, const BuildRanks* ranks) {
+  Accel accel = AccelBuilder(scene, config, executor, accuracy, planes, ranks).run();
   if (config.storage == BvhConfig::Storage::kQuantised) quantise_boxes(accel);
   return accel;
 }

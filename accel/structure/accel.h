@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "accel/structure/cull_plane.h"
 #include "accel/structure/group_placement.h"
+#include "accel/structure/guest_shapes.h"
 #include "accel/structure/node.h"
 #include "accel/structure/node_spheres.h"
+#include "accel/structure/partition.h"
 #include "accel/transform/transform.h"
 #include "core/config/config.h"
 #include "core/types/aabb.h"
@@ -34,17 +37,19 @@ struct InstanceNode {
 struct Accel {
   NodeArray nodes;
   BlockArray blocks;
-  NodeArray full_nodes;                 ///< with bvh.storage: quantised the nodes as they were; else empty
-  std::vector<CullPlane> planes;        ///< in order of the nodes; empty without cull_planes
-  std::vector<NodeSpheres> spheres;     ///< by node, tested instead of its boxes; empty with bvh.elements: boxes
-  bool shared_normals = false;          ///< of siblings; `planes` repeats them
-  bool planes_first = false;            ///< a child's planes are tested before its box
-  std::uint64_t plane_bytes = 0;        ///< of the planes, normals that are shared counted once
-  std::vector<InstanceNode> instances;  ///< indexed as Scene::instances; behind these the placements of groups
-  std::vector<GroupPlacement> groups;   ///< of the last of the instances; empty with two levels
-  std::vector<std::uint32_t> members;   ///< of these placements: indices of instances
-  NodeKey root;                         ///< as root_key()
-  const AnyHit* any_hit = nullptr;      ///< answers any-hit calls, set before tracing; null: every surface is opaque
+  NodeArray full_nodes;                        ///< with bvh.storage: quantised the nodes as they were; else empty
+  std::vector<CullPlane> planes;               ///< in order of the nodes; empty without cull_planes
+  std::vector<NodeSpheres> spheres;            ///< by node, tested instead of its boxes; empty with bvh.elements: boxes
+  bool shared_normals = false;                 ///< of siblings; `planes` repeats them
+  bool planes_first = false;                   ///< a child's planes are tested before its box
+  std::uint64_t plane_bytes = 0;               ///< of the planes, normals that are shared counted once
+  std::vector<InstanceNode> instances;         ///< indexed as Scene::instances; behind these the placements of groups
+  std::vector<GroupPlacement> groups;          ///< of the last of the instances; empty with two levels
+  std::vector<std::uint32_t> members;          ///< of these placements: indices of instances
+  NodeKey root;                                ///< as root_key()
+  std::shared_ptr<const Partition> partition;  ///< null: all shapes are here
+  std::shared_ptr<GuestShapes> guests;         ///< shapes of other ranks while packets bring them; with `partition`
+  const AnyHit* any_hit = nullptr;     ///< answers any-hit calls, set before tracing; null: every surface is opaque
   HitSink* all_hits = nullptr;         ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
   AccuracyConfig accuracy;             ///< arithmetic of the tests on it
   bool procedural_primitives = false;  ///< there are some
@@ -56,8 +61,9 @@ struct Accel {
 
   /// A hit that is reported costs a call.
   bool calls_any_hit() const { return (has_non_opaque && any_hit != nullptr) || all_hits != nullptr; }
+  /// Of what is here.
   std::size_t size_bytes() const {
-    return nodes.size() * sizeof(Node) + blocks.size() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
+    return nodes.here() * sizeof(Node) + blocks.here() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
            plane_bytes + instances.size() * sizeof(InstanceNode) + groups.size() * sizeof(GroupPlacement) +
            members.size() * sizeof(std::uint32_t);
   }
@@ -96,6 +102,8 @@ struct Accel {
   }
   /// Shapes in the strip of `key`: children of an inner node, triangles of a leaf.
   int strip_size(NodeKey key) const;
+  /// The same of a child of a node, for which the child need not be here.
+  int child_strip_size(NodeKey parent, int lane) const { return nodes[parent.ref.node()].strip_size[lane]; }
   /// Triangles below `key`.
   std::uint32_t triangles_below(NodeKey key) const;
 };

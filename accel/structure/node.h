@@ -2,9 +2,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
 
-#include "core/system/huge_pages.h"
+#include "accel/structure/shape_array.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -112,7 +111,7 @@ struct alignas(16) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 160);
 
-using NodeArray = std::vector<Node, HugePageAllocator<Node>>;
-using BlockArray = std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>>;
+using NodeArray = ShapeArray<Node>;
+using BlockArray = ShapeArray<TriangleBlock>;
 
 }  // namespace carousel::accel

@@ -19,23 +19,28 @@ Aabb lane_box(const Node& node, int lane) {
   return box;
 }
 
-/// Adds what stands below `root`; `surface_cost` grows by its visits times its primitives.
-void add_mesh(const Accel& accel, NodeRef root, StructureSize& out) {
+/// Adds what stands below `root` and is here; `surface_cost` grows by its visits times the mesh's `weight`, or its
+/// primitives if that is 0. Nodes that every rank has count at the first.
+void add_mesh(const Accel& accel, NodeRef root, double weight, StructureSize& out) {
   struct Open {
     NodeRef ref;
     double area;
   };
+  const Partition* const partition = accel.partition.get();
+  if (partition != nullptr && !partition->here(root)) return;
   Aabb whole;
   if (root.is_inner())
     for (int lane = 0; lane < accel.nodes[root.node()].count; ++lane)
       whole.extend(lane_box(accel.nodes[root.node()], lane));
   double visits = 0;
-  std::uint32_t last = 0;  // a mesh's primitives are numbered from 0 on, and its leaves hold each
+  std::vector<bool> found;  // a mesh's primitives are numbered from 0 on
+  std::uint64_t primitives = 0;
   std::vector<Open> open{{root, whole.half_area()}};
   const double area = whole.half_area();
   while (!open.empty()) {
     const Open at = open.back();
     open.pop_back();
+    if (partition != nullptr && !partition->here(at.ref)) continue;
     const double chance = area > 0 ? at.area / area : 1;
     if (!at.ref.is_inner()) {
       ++out.leaves;
@@ -43,17 +48,22 @@ void add_mesh(const Accel& accel, NodeRef root, StructureSize& out) {
       visits += chance * at.ref.blocks();
       for (std::uint32_t i = 0; i < at.ref.triangles(); ++i) {
         const TriangleBlock& block = accel.blocks[at.ref.first_block() + i / kBlockTriangles];
-        last = std::max(last, block.primitive[i % kBlockTriangles] & kPrimitiveMask);
+        const std::uint32_t primitive = block.primitive[i % kBlockTriangles] & kPrimitiveMask;
+        if (found.size() <= primitive) found.resize(std::max<std::size_t>(primitive + 1, 2 * found.size()));
+        primitives += !found[primitive];
+        found[primitive] = true;
       }
       continue;
     }
-    ++out.inner_nodes;
-    visits += chance;
+    if (partition == nullptr || partition->rank == 0 || !partition->above(at.ref)) {
+      ++out.inner_nodes;
+      visits += chance;
+    }
     const Node& node = accel.nodes[at.ref.node()];
     for (int lane = 0; lane < node.count; ++lane) open.push_back({node.child[lane], lane_box(node, lane).half_area()});
   }
-  out.primitives += last + 1;
-  out.surface_cost += visits * (last + 1.0);
+  out.primitives += primitives;
+  out.surface_cost += visits * (weight > 0 ? weight : static_cast<double>(primitives));
 }
 
 }  // namespace
@@ -61,10 +71,14 @@ void add_mesh(const Accel& accel, NodeRef root, StructureSize& out) {
 StructureSize structure_size(const Accel& accel) {
   StructureSize out;
   std::unordered_set<std::uint32_t> roots;
+  double all = 0;
   for (const InstanceNode& instance : accel.instances)
-    if (!instance.group && instance.triangles > 0 && roots.insert(instance.root.bits()).second)
-      add_mesh(accel, instance.root, out);
-  if (out.primitives > 0) out.surface_cost /= static_cast<double>(out.primitives);
+    if (!instance.group && instance.triangles > 0 && roots.insert(instance.root.bits()).second) {
+      all += instance.triangles;
+      add_mesh(accel, instance.root, accel.partition ? instance.triangles : 0, out);
+    }
+  if (!accel.partition) all = static_cast<double>(out.primitives);
+  if (all > 0) out.surface_cost /= all;
   return out;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "accel/structure/structure_size.h"
 #include "accel/traverse/kernels.h"
 #include "app/build_report/cycle_sections.h"
 #include "app/build_report/effects.h"
@@ -15,6 +14,7 @@
 #include "core/config/config.h"
 #include "core/config/write.h"
 #include "core/numeric/condition.h"
+#include "core/system/process_memory.h"
 #include "core/types/enum_names.h"
 #include "report/text/ratio.h"
 
@@ -51,7 +51,7 @@ report::SceneSummary summary(const Prepared& p) {
 }
 
 report::Structure structure(const Prepared& p) {
-  const accel::StructureSize size = accel::structure_size(p.accel);
+  const accel::StructureSize& size = p.structure;
   return {size.primitives,  size.references, size.references - size.primitives,
           size.inner_nodes, size.leaves,     size.surface_cost};
 }

@@ -19,6 +19,7 @@
 #include "app/run/effects_proof.h"
 #include "app/run/fault_cost.h"
 #include "app/run/machine_log.h"
+#include "app/run/memory_need.h"
 #include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
 #include "app/sampled/sampled_run.h"
@@ -66,7 +67,10 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   if (trace != nullptr) options.timeline = trace->wanted();
   options.memory = memory;
   options.transport = job.ranks();
-  if (job.ranks() != nullptr) options.samples = 0;  // their clocks differ
+  if (job.ranks() != nullptr) {
+    options.samples = 0;  // their clocks differ
+    options.scene_bytes = scene_bytes(p.scene);
+  }
   const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);

@@ -5,6 +5,7 @@
 #include "app/host/program_info.h"
 #include "core/config/write.h"
 #include "core/numeric/digest.h"
+#include "core/system/process_memory.h"
 #include "report/text/ratio.h"
 
 namespace carousel::app {

@@ -46,7 +46,7 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Config&
   collections.fullness_mean =
       ratio(sum.packet_rays, sum.packets_issued * static_cast<std::uint64_t>(config.packets.rays));
   r.tests = report::Tests{sum.tests, sum.reads, rays, ringbus::features_of(config, accel)};
-  if (!sum.nodes.empty()) r.nodes = nodes_section(accel, sum.nodes);
+  if (!sum.nodes.empty() && !accel.partition) r.nodes = nodes_section(accel, sum.nodes);
   if (!sum.bundles.empty()) r.tests->bundles = report::Bundles{sum.bundles, sizeof(RayRecord)};
   if (!accel.planes.empty())
     r.cull_planes = report::CullPlanes{accel.planes.size(), accel.plane_bytes,
@@ -58,7 +58,7 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Config&
 
 void add_census(report::Report& r, const RayCensus& census, const accel::Accel& accel) {
   r.rays.by_bounce = census.by_bounce();
-  if (r.tests) r.tests->depth_first = census.depth_first(accel);
+  if (r.tests && !accel.partition) r.tests->depth_first = census.depth_first(accel);  // no rank has it all
 }
 
 void add_ranks(report::Report& r, const ringbus::RunResult& result) {
@@ -67,7 +67,7 @@ void add_ranks(report::Report& r, const ringbus::RunResult& result) {
   r.rank_links.emplace();
   for (std::size_t from = 0; from < result.ranks.size(); ++from) {
     const ringbus::RankResult& rank = result.ranks[from];
-    r.ranks->push_back({from, rank.first_resource, rank.resources, rank.threads, rank.rays_completed});
+    r.ranks->push_back({from, rank.first_resource, rank.resources, rank.threads, rank.rays_completed, rank.memory});
     for (std::size_t to = 0; to < rank.to.size(); ++to)
       if (to != from) r.rank_links->push_back({from, to, rank.to[to]});
   }

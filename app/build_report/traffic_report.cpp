@@ -8,6 +8,7 @@
 #include "core/config/config.h"
 #include "core/config/write.h"
 #include "core/numeric/digest.h"
+#include "core/system/process_memory.h"
 #include "core/types/enum_names.h"
 #include "report/text/ratio.h"
 

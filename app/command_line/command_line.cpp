@@ -32,6 +32,7 @@
 #include "app/host/version_text.h"
 #include "app/usage/examples.h"
 #include "core/system/error.h"
+#include "core/system/process_memory.h"
 #include "core/text/edit_distance.h"
 
 namespace carousel::app {
@@ -159,7 +160,22 @@ int run_command_line(int argc, const char* const* argv) {
   return schema_command(arguments.schema);
 }
 
+/// With a limit of the process's own, a lack of memory or of threads is most likely due to that.
+bool no_memory_left() {
+  const std::uint64_t limit = data_memory_limit();
+  if (limit > 0)
+    spdlog::error("not enough memory: the run needs more than the limit of {} MiB (engine.memory_limit_mib, ulimit -d)",
+                  limit >> 20);
+  return limit > 0;
+}
+
+ExitStatus no_memory() {
+  if (!no_memory_left()) spdlog::error("not enough memory; carousel check prints how much the configuration needs");
+  return kUsage;
+}
+
 ExitStatus no_thread() {
+  if (no_memory_left()) return kUsage;
   spdlog::error("cannot start a thread: not enough memory, address space or processes (ulimit -v, ulimit -u)");
   return kUsage;
 }
@@ -180,8 +196,7 @@ int main(int argc, const char* const* argv) {
     spdlog::error("{}", error.what());
     return kUsage;
   } catch (const std::bad_alloc&) {
-    spdlog::error("not enough memory; carousel check prints how much the configuration needs");
-    return kUsage;
+    return no_memory();
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::resource_unavailable_try_again) return no_thread();
     spdlog::error("internal error: {}", error.what());

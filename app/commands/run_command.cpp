@@ -124,14 +124,18 @@ void require_estimates(const RunArguments& arguments, const Config& config) {
                         "sampling.fraction=0.1, or a run without this option"}});
 }
 
-/// Tells two scenes apart, and the structures built of them.
+/// Tells two scenes apart, and the structures built of them, as far as all ranks have these.
 std::string scene_digest(const Prepared& p) {
   const scene::Scene& s = p.scene;
-  const auto digest = [](const auto& array) {
-    return bytes_digest({reinterpret_cast<const char*>(array.data()), array.size() * sizeof array[0]});
+  const accel::Partition* const parts = p.accel.partition.get();
+  const auto digest = [](const auto& array, std::size_t first) {
+    return bytes_digest(
+        {reinterpret_cast<const char*>(array.data() + first), (array.size() - first) * sizeof array[0]});
   };
   return fmt::format("{} triangles, {} instances, {} materials, structure {}, primitives {}", s.unique_triangle_count(),
-                     s.instances.size(), s.materials.size(), digest(p.accel.nodes), digest(p.accel.blocks));
+                     s.instances.size(), s.materials.size(),
+                     digest(p.accel.nodes, parts != nullptr ? parts->node_begin.back() : 0),
+                     digest(p.accel.blocks, parts != nullptr ? parts->block_begin.back() : 0));
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
@@ -153,8 +157,9 @@ int run_command(const RunArguments& arguments) {
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
   std::optional<OutputFolder> output;
   std::optional<RankScope> ranks;
-  const Prepared p =
-      prepare(arguments, {.force = arguments.force, .ranks = true}, keep_hits, [&](const Config& config) {
+  const Prepared p = prepare(
+      arguments, {.force = arguments.force, .ranks = true}, keep_hits,
+      [&](const Config& config) {
         if (config.engine.transport != EngineTransport::kLocal) {
           require_one_rank(arguments);
           ranks.emplace(config, program_identity());
@@ -164,7 +169,8 @@ int run_command(const RunArguments& arguments) {
         }
         output.emplace(out_folder(arguments), &config, arguments.force,
                        Results::kRun);  // before any work that could be lost
-      });
+      },
+      [&] { return ranks ? &ranks->transport() : nullptr; });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
   if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *output);

@@ -5,9 +5,10 @@
 #include <string>
 #include <thread>
 
-#include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
+
+#include "core/system/process_memory.h"
 
 namespace carousel::app {
 
@@ -47,13 +48,11 @@ std::uint64_t usable_memory_bytes() {
     std::uint64_t limit = 0;  // stays 0 for "max", which is no limit
     if (in >> limit && limit > 0) bytes = std::min(bytes, limit);
   }
+  // Of a limit that was set, what the libraries have taken before there was any scene is gone.
+  static const std::uint64_t taken = data_memory_bytes();
+  if (const std::uint64_t limit = data_memory_limit(); limit > 0)
+    bytes = std::min(bytes, std::max<std::uint64_t>(limit, taken + 1) - taken);
   return bytes;
-}
-
-std::uint64_t peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace carousel::app

@@ -9,10 +9,7 @@ namespace carousel::app {
 /// The machine that runs this program; a value that cannot be determined is empty or 0.
 report::Machine machine_info();
 
-/// Memory this process may use: the machine's, or its control group's limit if that is less.
+/// Memory this process may use: the machine's, or the limit of its control group or of its data if that is less.
 std::uint64_t usable_memory_bytes();
-
-/// Most memory the process has had resident.
-std::uint64_t peak_memory_bytes();
 
 }  // namespace carousel::app

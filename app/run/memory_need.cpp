@@ -7,6 +7,7 @@
 
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
+#include "core/system/process_memory.h"
 #include "report/csv/ray_csv.h"
 #include "report/text/number_text.h"
 #include "shading/effects/effects_plan.h"
@@ -41,6 +42,8 @@ MemoryNeed frame_need(const Config& config, bool keep_hits) {
   return need;
 }
 
+}  // namespace
+
 std::uint64_t scene_bytes(const scene::Scene& scene) {
   std::uint64_t bytes =
       scene.instances.size() * sizeof(scene::Instance) + scene.placements.size() * sizeof(scene::GroupPlacement);
@@ -52,8 +55,6 @@ std::uint64_t scene_bytes(const scene::Scene& scene) {
   }
   return bytes;
 }
-
-}  // namespace
 
 std::uint64_t paths_in_flight(const Config& config) {
   const auto slots = static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
@@ -67,6 +68,7 @@ MemoryNeed estimate_before_scene(const Config& config, bool keep_hits) {
   const bool instances = *config.scene.builtin == BuiltinScene::kInstances;
   const bool sized = *config.scene.builtin != BuiltinScene::kCornell && !instances;
   if (sized) need.scene = static_cast<std::uint64_t>(config.scene.triangles) * kSceneBytesPerTriangle;
+  if (config.scene.placement == ScenePlacement::kPartitioned) return need;  // this rank's share may be small
   if (sized) need.accel = static_cast<std::uint64_t>(config.scene.triangles) * kAccelBytesPerTriangle;
   if (instances) need.accel = static_cast<std::uint64_t>(config.scene.instances) * kBytesPerInstance;
   return need;
@@ -113,9 +115,9 @@ void require_fit(const MemoryNeed& need, std::uint64_t usable_bytes, const KeyPo
   const auto most =
       std::max_element(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   throw ConfigError({{positions.find(most->first), most->first,
-                      fmt::format("expected what fits into the machine's {}, found a need of about {}, {} of it here",
-                                  report::bytes_text(usable_bytes), report::bytes_text(need.total()),
-                                  report::bytes_text(most->second))}});
+                      fmt::format("expected what fits into the {} {}, found a need of about {}, {} of it here",
+                                  data_memory_limit() > 0 ? "process's" : "machine's", report::bytes_text(usable_bytes),
+                                  report::bytes_text(need.total()), report::bytes_text(most->second))}});
 }
 
 }  // namespace carousel::app

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "app/run/memory_need.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
+#include "core/system/process_memory.h"
 #include "report/text/number_text.h"
 #include "ringbus/cycle/memory/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
@@ -99,12 +101,37 @@ void set_query(Prepared& p) {
   p.accel.all_hits = p.all_hits.get();
 }
 
-void build_accel(Prepared& p) {
+accel::BuildRanks build_ranks(ringbus::Transport* transport) {
+  if (transport == nullptr) return {};
+  return {transport->rank(), transport->ranks(),
+          [transport](const std::string& bytes) { return transport->gather(bytes); }};
+}
+
+/// Adds up the shares of the ranks.
+accel::StructureSize whole_structure(const accel::StructureSize& share, ringbus::Transport& ranks) {
+  accel::StructureSize sum;
+  for (const std::string& bytes : ranks.gather({reinterpret_cast<const char*>(&share), sizeof share})) {
+    accel::StructureSize other;
+    std::memcpy(&other, bytes.data(), sizeof other);
+    sum.primitives += other.primitives;
+    sum.references += other.references;
+    sum.inner_nodes += other.inner_nodes;
+    sum.leaves += other.leaves;
+    sum.surface_cost += other.surface_cost;
+  }
+  return sum;
+}
+
+void build_accel(Prepared& p, ringbus::Transport* transport) {
   accel::select_simd_target(p.config().engine.simd);
   const auto executor = make_tbb_executor(p.threads);
   {
     Phase phase("build");
-    p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy);
+    const accel::BuildRanks ranks = build_ranks(transport);
+    const bool parts = transport != nullptr && p.config().scene.placement == ScenePlacement::kPartitioned;
+    p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy, {}, parts ? &ranks : nullptr);
+    p.structure = accel::structure_size(p.accel);
+    if (parts) p.structure = whole_structure(p.structure, *transport);
     p.build_seconds = phase.seconds();
     phase.result(fmt::format("{}, {} nodes; kernels {}", report::bytes_text(p.accel.size_bytes()), p.accel.nodes.size(),
                              accel::simd_targets().front()));
@@ -151,14 +178,28 @@ void require_one_rank(const Prepared& p) {
                                     enum_name(p.config().engine.transport))}});
 }
 
+/// From here on the process gets no more memory than the configuration says, which has to be more than it has.
+void limit_memory(const Prepared& p) {
+  constexpr std::uint64_t kMib = 1 << 20, kLeast = 16 * kMib;
+  const auto limit = static_cast<std::uint64_t>(p.config().engine.memory_limit_mib) * kMib;
+  limit_data_memory(0);
+  if (const std::uint64_t taken = data_memory_bytes(); limit > 0 && limit < taken + kLeast)
+    throw ConfigError({{p.located.positions.find("engine.memory_limit_mib"), "engine.memory_limit_mib",
+                        fmt::format("this process has {} MiB before it has a scene; expected at least {}, found {}",
+                                    taken / kMib, (taken + kLeast) / kMib + 1, limit / kMib)}});
+  static_cast<void>(usable_memory_bytes());  // looks at what has been taken so far
+  limit_data_memory(limit);
+}
+
 /// Does all preparation after reading the configuration.
-void prepare_located(Prepared& p, bool keep_hits) {
+void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport = nullptr) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
   // A second thread makes the cycle engine faster only if each thread has many resources (docs/performance.md).
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
   spdlog::debug("threads: {}{}", p.threads, p.config().engine.threads ? "" : ", chosen");
+  limit_memory(p);
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene
   const KeyPositions& positions = p.located.positions;
   require_list(p);
@@ -166,7 +207,7 @@ void prepare_located(Prepared& p, bool keep_hits) {
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
     load_scene(p);
-    build_accel(p);
+    build_accel(p, transport);
   });
   require_room(p, keep_hits);
 }
@@ -188,14 +229,15 @@ float Prepared::scene_size() const {
 }
 
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits,
-                 const std::function<void(const Config&)>& before_scene) {
+                 const std::function<void(const Config&)>& before_scene,
+                 const std::function<ringbus::Transport*()>& ranks) {
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
   fit_area(p.located);
   if (!options.ranks) require_one_rank(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   if (before_scene) with_positions(p.located.positions, [&] { before_scene(p.config()); });
-  prepare_located(p, keep_hits);
+  prepare_located(p, keep_hits, ranks ? ranks() : nullptr);
   return p;
 }
 
@@ -203,6 +245,7 @@ void set_machine(Prepared& p, LocatedConfig located) {
   p.located = std::move(located);
   fit_area(p.located);
   require_one_rank(p);
+  limit_memory(p);
   if (!p.has_rays()) return;
   set_query(p);
   require_room(p, false);

@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
+#include "accel/structure/structure_size.h"
 #include "app/run/all_hits.h"
 #include "core/config/load/load.h"
+#include "ringbus/transport/transport.h"
 #include "scene/load_scene.h"
 #include "scene/model/scene.h"
 #include "shading/surface/alpha_test.h"
@@ -31,6 +33,7 @@ struct Prepared {
   scene::Scene& scene = *scene_storage;  ///< keeps its address when the object is moved, since others refer to it
   std::vector<std::string> warnings;     ///< of the import
   accel::Accel accel;
+  accel::StructureSize structure;                  ///< of the whole, also where this rank has a part
   std::unique_ptr<shading::AlphaTest> alpha_test;  ///< any-hit calls of `accel`; null if every material is opaque
   std::unique_ptr<AllHits> all_hits;               ///< with rays.query: all those of `accel`; else null
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
@@ -42,10 +45,12 @@ struct Prepared {
 };
 
 /// Loads configuration, scene and structure; for synthetic traffic the configuration only. Refuses a scene that would
-/// not fit into the machine's memory before loading it. `before_scene` is called with the configuration first. Throws
-/// ConfigError, SceneError and FileError; logs warnings and the times of the phases.
+/// not fit into the machine's memory before loading it. `before_scene` is called with the configuration first, then
+/// `ranks` for the way to the other ranks, null if there are none. Throws ConfigError, SceneError and FileError; logs
+/// warnings and the times of the phases.
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits,
-                 const std::function<void(const Config&)>& before_scene = {});
+                 const std::function<void(const Config&)>& before_scene = {},
+                 const std::function<ringbus::Transport*()>& ranks = {});
 
 /// The same for a configuration given as text; files that it names are looked for in the working folder.
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {});

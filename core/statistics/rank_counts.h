@@ -9,7 +9,8 @@ namespace carousel {
 
 /// What a rank has sent to one other rank, and how it waited for it.
 struct RankCounts {
-  std::uint64_t messages = 0, bytes = 0, packets = 0, rays = 0, results = 0, holds = 0, heartbeats = 0;
+  std::uint64_t messages = 0, bytes = 0, packets = 0, rays = 0, results = 0, holds = 0, heartbeats = 0, shapes = 0,
+                shape_bytes = 0;
 
   static constexpr auto counters() {
     using C = RankCounts;
@@ -21,6 +22,8 @@ struct RankCounts {
         Counter{"results", &C::results, "rays", "completed rays in them, on the way to the rank that shades them"},
         Counter{"holds", &C::holds, "times", "times that something to send waited for earlier messages to leave"},
         Counter{"heartbeats", &C::heartbeats, "messages", "messages with nothing in them but a sign of life"},
+        Counter{"shapes", &C::shapes, "packets", "packets that brought the data of their shapes along"},
+        Counter{"shape_bytes", &C::shape_bytes, "bytes", "those data; they are a part of `bytes`"},
     };
   }
   friend bool operator==(const RankCounts&, const RankCounts&) = default;

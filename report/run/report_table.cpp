@@ -290,8 +290,14 @@ std::string report_table(const Report& report) {
   if (report.ranks) {
     RankCounts all;
     for (const RankLink& link : *report.rank_links) all += link.sent;
-    table.line("ranks", "{} ranks   {} messages   {} between them", report.ranks->size(), grouped(all.messages),
-               bytes_text(all.bytes));
+    std::uint64_t peak = 0, structure = 0;
+    for (const Rank& rank : *report.ranks) {
+      peak = std::max(peak, rank.memory.peak_memory_bytes);
+      structure = std::max(structure, rank.memory.structure_bytes);
+    }
+    table.line("ranks", "{} ranks   {} messages   {} between them   {} memory at most, {} of it structure",
+               report.ranks->size(), grouped(all.messages), bytes_text(all.bytes), bytes_text(peak),
+               bytes_text(structure));
   }
   if (report.faults && report.faults->cycles_without)
     table.line(

@@ -64,7 +64,9 @@ void ray_words(Words& w) {
   w.line("ranks")
       .item("N ranks", "ranks")
       .item("N messages", "rank_links[].messages")
-      .item("N between them", "rank_links[].bytes");
+      .item("N between them", "rank_links[].bytes")
+      .item("N memory at most, N of it structure", "ranks[].peak_memory_bytes",
+            "most memory of any rank, and the largest acceleration structure of any");
   w.line("faults").item("cost N cycles: N without them, *", "faults.cycles_lost");
   w.line("throughput")
       .item("N rays/s", "host.rays_per_second",

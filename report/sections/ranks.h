@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/statistics/rank_counts.h"
+#include "core/statistics/rank_memory.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -8,6 +9,7 @@ namespace carousel::report {
 /// A process of a run with `engine.transport: mpi`.
 struct Rank {
   std::uint64_t rank = 0, first_resource = 0, resources = 0, threads = 0, rays_shaded = 0;
+  RankMemory memory{};
 };
 
 template <class V>
@@ -17,6 +19,7 @@ void describe(V& v, const Rank& r) {
   v.field("resources", r.resources, "resources", "resources that it plays");
   v.field("threads", r.threads, "threads", "threads that play them");
   v.field("rays_shaded", r.rays_shaded, "rays", "rays of the paths that it owns");
+  describe(v, r.memory);
 }
 
 /// What went from one rank to another.

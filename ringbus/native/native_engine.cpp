@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "core/system/error.h"
+#include "core/system/process_memory.h"
 #include "ringbus/faults/unfinished_rays.h"
 #include "ringbus/native/native_machine.h"
 #include "ringbus/native/native_port.h"
@@ -278,7 +279,11 @@ class NativeRun {
     out.start = start_;
     if (machine_->gate) {
       out.ranks.resize(machine_->shared.share.ranks());
-      out.ranks[machine_->shared.share.rank()].to = machine_->gate->counts();
+      RankResult& own = out.ranks[machine_->shared.share.rank()];
+      own.to = machine_->gate->counts();
+      const ShapeTravel* const shapes = machine_->gate->shapes();
+      own.memory = {options_.scene_bytes, accel_.size_bytes(), shapes != nullptr ? shapes->guest_bytes() : 0,
+                    peak_memory_bytes()};
     }
     if (series_.on()) out.series = series_.finish();
     if (!recorder_) return out;

@@ -9,7 +9,7 @@ NativeMachine::NativeMachine(const Config& config, const accel::Accel& accel, fl
                                   : RankShare(transport->rank(), transport->ranks(), config.topology.resources)) {
   // One resource sends on a wire and one receives, and one thread at a time plays a resource.
   require_parties(config.topology.link.queue, "topology.link.queue", Parties::kOne, Parties::kOne);
-  if (!shared.share.alone()) gate = std::make_unique<RankGate>(*transport, shared, completed);
+  if (!shared.share.alone()) gate = std::make_unique<RankGate>(config, *transport, shared, completed);
   for (const Topology::Wire& wire : shared.topology.wires()) {
     if (gate && !gate->here(wire)) {
       links.push_back(gate->make_link(static_cast<std::uint32_t>(links.size()),

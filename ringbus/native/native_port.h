@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ringbus/faults/resource_fault.h"
@@ -91,7 +92,10 @@ class NativePort {
   void forward(PacketId id);
   void test(Packet& packet) {
     ++visits_now_;
+    if (gate_ == nullptr || gate_->shapes() == nullptr) return static_cast<void>(resource_.test(packet));
+    const accel::NodeKey key = std::exchange(packet.key, gate_->shapes()->key_here(packet));
     resource_.test(packet);
+    packet.key = key;
   }
   void inject(PacketId id);
 

@@ -10,7 +10,7 @@
 
 namespace carousel::ringbus {
 
-RankGate::RankGate(Transport& transport, Machine& machine, CompletedQueue& completed)
+RankGate::RankGate(const Config& config, Transport& transport, Machine& machine, CompletedQueue& completed)
     : transport_(transport),
       machine_(machine),
       completed_(completed),
@@ -18,6 +18,7 @@ RankGate::RankGate(Transport& transport, Machine& machine, CompletedQueue& compl
       links_(machine.topology.wires().size(), nullptr),
       end_(machine.share.rank(), machine.share.ranks()) {
   for (std::uint32_t r = 0; r < machine.share.ranks(); ++r) peers_.push_back(std::make_unique<Peer>());
+  if (machine.accel.partition) shapes_.emplace(config, machine);
   machine_.control.place_by(*this);
 }
 
@@ -26,9 +27,12 @@ std::unique_ptr<Link> RankGate::make_link(std::uint32_t wire, std::size_t depth)
   const std::uint32_t from = machine_.share.rank_of(ends.from), to = machine_.share.rank_of(ends.to);
   RankLink::Send send;
   if (from == rank_) {
-    send = [this, wire, &peer = *peers_[to]](std::span<const PacketId> packets) {
+    send = [this, wire, at = ends.to, &peer = *peers_[to]](std::span<const PacketId> packets) {
       const std::lock_guard lock(peer.mutex);
-      for (const PacketId id : packets) peer.next.add(wire, id, machine_.packet(id));
+      for (const PacketId id : packets) {
+        peer.next.add(wire, id, machine_.packet(id));
+        if (shapes_) shapes_->take_along(id, machine_.packet(id), at, peer.next);
+      }
     };
   }
   auto link = std::make_unique<RankLink>(ends.from, ends.to, depth, std::move(send));
@@ -137,6 +141,8 @@ bool RankGate::send(std::uint32_t rank) {
     sending_.results.swap(peer.next.results);
     sending_.packets.swap(peer.next.packets);
     sending_.images.swap(peer.next.images);
+    sending_.guests.swap(peer.next.guests);
+    sending_.shapes.swap(peer.next.shapes);
   }
   if (has_token) sending_.token = std::exchange(token_, std::nullopt);
   const bool moved = sending_.items() > 0;
@@ -155,6 +161,8 @@ void RankGate::send_now(std::uint32_t rank, RankMessage& message) {
   peer.counts.packets += message.packets.size();
   peer.counts.rays += message.rays.size();
   peer.counts.results += message.results.size();
+  peer.counts.shapes += message.guests.size();
+  peer.counts.shape_bytes += message.shapes.size() * sizeof message.shapes[0];
   transport_.send(rank, words_);
   peer.said = Clock::now();
   message.clear();
@@ -188,6 +196,8 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
   peer.rays_received += message.rays.size();
   peer.rays_taken = message.rays_taken;
   take_results(message);
+  for (std::size_t i = 0; i < message.guests.size(); ++i)
+    if (shapes_) shapes_->enter(message.guests[i].packet, message.shapes_of(i));
   for (std::size_t i = 0; i < message.packets.size(); ++i) {
     const PacketOnWire& at = message.packets[i];
     message.restore_packet(i, machine_.packet(at.packet));

@@ -16,6 +16,7 @@
 #include "core/statistics/rank_counts.h"
 #include "ringbus/native/completed_queue.h"
 #include "ringbus/native/rank_link.h"
+#include "ringbus/native/shape_travel.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/ranks/end_count.h"
 #include "ringbus/ranks/rank_message.h"
@@ -30,7 +31,7 @@ namespace carousel::ringbus {
 class RankGate final : public RemotePlacing {
  public:
   /// Keeps references.
-  RankGate(Transport& transport, Machine& machine, CompletedQueue& completed);
+  RankGate(const Config& config, Transport& transport, Machine& machine, CompletedQueue& completed);
 
   /// The link of a wire of which not both ends are here.
   std::unique_ptr<Link> make_link(std::uint32_t wire, std::size_t depth);
@@ -42,6 +43,9 @@ class RankGate final : public RemotePlacing {
   /// Sends those of the completed rays of `resource` away that other ranks shade, and returns the others in place.
   /// `slots` are the slots that they leave.
   void send_results(ResourceId resource, HitBatch& done, std::vector<std::uint32_t>& slots);
+
+  /// The shapes that travel with packets; null where every rank has all.
+  const ShapeTravel* shapes() const { return shapes_ ? &*shapes_ : nullptr; }
 
   /// Before the first step: the others live from now on.
   void start();
@@ -103,6 +107,7 @@ class RankGate final : public RemotePlacing {
   Machine& machine_;
   CompletedQueue& completed_;
   std::uint32_t rank_;
+  std::optional<ShapeTravel> shapes_;
   std::vector<std::unique_ptr<Peer>> peers_;  // by rank; this one's own is not used
   std::vector<RankLink*> links_;              // by wire; null where both ends are here
   std::mutex held_mutex_;

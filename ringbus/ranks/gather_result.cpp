@@ -46,6 +46,7 @@ std::string pack(const RankShare& share, const RunResult& result) {
     writer.part(result.collections[r]);
   }
   for (const LinkResult& link : result.links) writer.part(link.statistics);
+  writer.part(result.ranks.at(share.rank()).memory);
   writer.part(result.ranks.at(share.rank()).to);
   return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]};
 }
@@ -84,6 +85,7 @@ void unpack(const std::string& bytes, std::uint32_t rank, const RankShare& share
     reader.part(link);
     if (rank != share.rank()) add_link(link, sum.statistics);
   }
+  reader.part(own.memory);
   reader.part(own.to);
   if (rank == share.rank()) return;
   result.complete &= sums.complete;

@@ -16,6 +16,8 @@ void visit(Visitor& visitor, SomeMessage& message) {
   visitor.part(message.results);
   visitor.part(message.packets);
   visitor.part(message.images);
+  visitor.part(message.guests);
+  visitor.part(message.shapes);
 }
 
 /// Bits of the word that says which of the parts follow that most messages have not.
@@ -36,12 +38,21 @@ void RankMessage::restore_packet(std::size_t i, Packet& packet) const {
   restore(std::span(images).subspan(at.first, at.words), packet);
 }
 
+std::span<const std::uint64_t> RankMessage::shapes_of(std::size_t i) const {
+  const ShapesOnWire& at = guests[i];
+  if (std::size_t{at.first} + at.words > shapes.size())
+    throw SimulationError("a message between ranks names shapes that are not in it");
+  return std::span(shapes).subspan(at.first, at.words);
+}
+
 void RankMessage::clear() {
   credits.clear();
   rays.clear();
   results.clear();
   packets.clear();
   images.clear();
+  guests.clear();
+  shapes.clear();
   token.reset();
   farewell.reset();
 }

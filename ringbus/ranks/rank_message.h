@@ -20,6 +20,12 @@ struct PacketOnWire {
   std::uint32_t first = 0, words = 0;  ///< place in RankMessage::images
 };
 
+/// Shapes that a packet of the message brings to a rank that does not have them. They stand among those of the message.
+struct ShapesOnWire {
+  PacketId packet;
+  std::uint32_t first = 0, words = 0;  ///< place in RankMessage::shapes
+};
+
 /// The number of packets that a link has taken from its other rank and that have been received since the start; so many
 /// places of the link are free again.
 struct LinkCredit {
@@ -61,12 +67,16 @@ struct RankMessage {
   std::vector<ResultOnWire> results;
   std::vector<PacketOnWire> packets;
   PacketImage images;
+  std::vector<ShapesOnWire> guests;
+  std::vector<std::uint64_t> shapes;  ///< as accel::pack_shapes() writes them
   std::optional<EndToken> token;
   std::optional<Farewell> farewell;
 
   void add(std::uint32_t wire, PacketId id, const Packet& packet);
   /// Writes the contents of packets[i] back into a packet.
   void restore_packet(std::size_t i, Packet& packet) const;
+  /// The shapes of guests[i]. Throws a SimulationError where they are not in the message.
+  std::span<const std::uint64_t> shapes_of(std::size_t i) const;
   /// What EndCount counts.
   std::uint64_t items() const { return rays.size() + results.size() + packets.size(); }
   void clear();

@@ -12,7 +12,7 @@ Offer Offering::offer(bool partial, Packet& packet) {
     const std::optional<CollectionId> chosen = choose(partial, storage);
     if (!chosen) return storage ? Offer::kStorage : Offer::kNothing;
     take(*chosen);
-  } else if (in_flight_ > 0 && !storage_.fits(traversal_.blocks_needed(block_.key, 0), 0)) {
+  } else if (in_flight_ > 0 && !storage_.fits(blocks_needed(block_.key, 0), 0)) {
     return Offer::kStorage;
   }
   fill(packet);
@@ -23,7 +23,7 @@ Offer Offering::offer(bool partial, Packet& packet) {
 std::optional<CollectionId> Offering::choose(bool partial, bool& storage) {
   const std::optional<CollectionId> best = collections_.best(partial);
   if (!best) return best;
-  const std::uint32_t needed = traversal_.blocks_needed(collections_.key(*best), collections_.front_rays(*best));
+  const std::uint32_t needed = blocks_needed(collections_.key(*best), collections_.front_rays(*best));
   if (storage_.fits(needed, collections_.front_blocks(*best))) return best;
   // One packet at a time, deepest first: each level down needs at most width - 1 blocks more, which the reserve holds,
   // and gives them all back when its subtree is done.

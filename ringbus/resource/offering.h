@@ -61,6 +61,9 @@ class Offering {
   };
 
   std::optional<CollectionId> choose(bool partial, bool& storage);
+  std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const {
+    return homes_.away(key) ? 0 : traversal_.blocks_needed(key, rays);  // they only travel on from here
+  }
   void take(CollectionId chosen);
   void fill(Packet& packet);
   void mark_owners(Packet& packet) const;

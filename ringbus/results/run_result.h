@@ -9,6 +9,7 @@
 
 #include "core/statistics/link_fault_counts.h"
 #include "core/statistics/rank_counts.h"
+#include "core/statistics/rank_memory.h"
 #include "core/types/ids.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
@@ -28,6 +29,7 @@ struct RankResult {
   std::uint32_t first_resource = 0, resources = 0;  ///< its arc
   std::uint64_t rays_completed = 0;                 ///< and shaded by it
   std::size_t threads = 1;
+  RankMemory memory{};
   std::vector<RankCounts> to;  ///< by rank; its own is empty
 };
 
@@ -41,6 +43,7 @@ struct RunOptions {
   TimelineOptions timeline{};                    ///< slices of time that are recorded
   FollowedRay* ray = nullptr;                    ///< its life is recorded, in place of the timeline
   Transport* transport = nullptr;                ///< native: to the other ranks of the run
+  std::uint64_t scene_bytes = 0;                 ///< of the scene that this rank has, for its report
   MemoryLog* memory = nullptr;                   ///< cycle: requests to the memory are appended
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start

@@ -1,4 +1,4 @@
-"""Every key, value and test that docs/patents.md names exists, and what it calls not built is refused by name."""
+"""Every key, value, test and file that docs/patents.md names exists, and what it calls not built is refused by name."""
 
 import json
 import pathlib
@@ -7,15 +7,16 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NAMED = re.compile(r'`([^`]+)`')
-KEY = re.compile(r'^[a-z_]+(\.[a-z_]+)*$')
-TEST = re.compile(r'^[A-Z][A-Za-z0-9]*\.([A-Z][A-Za-z0-9]*|\*)$')
+KEY = re.compile(r'^([a-z_]+(?:\.[a-z0-9_]+)*)(?:: ([a-z_]+))?$')
+TEST = re.compile(r'^[A-Z]\w*\.([A-Z]\w*|\*)$')
+ANSWERS = re.compile(r'^(yes(, cycle|, native)?|partly(, cycle)?|\*\*no\*\*)$')
 
 
 def rows():
-    """Cells of each row of the page's tables: feature, keys, shown by."""
+    """Cells of each row of the page's tables: number, feature, works, shown by, missing."""
     for line in (ROOT / 'docs/patents.md').read_text().splitlines():
-        cells = [cell.strip() for cell in line.strip('|').split('|')]
-        if line.startswith('|') and cells[0] != 'feature' and not cells[0].startswith('---'):
+        cells = [cell.strip() for cell in line.split('|')[1:-1]]
+        if cells and cells[0].isdigit():
             yield cells
 
 
@@ -51,34 +52,52 @@ class PatentsPage(unittest.TestCase):
     def setUp(self):
         self.schema = json.loads((ROOT / 'configs/schema.json').read_text())
 
+    def test_every_feature_has_an_answer(self):
+        table = list(rows())
+        self.assertEqual([int(row[0]) for row in table], list(range(1, len(table) + 1)))
+        count = {'yes': 0, 'partly': 0, '**no**': 0}
+        for number, _, works, shown, missing in table:
+            self.assertRegex(works, ANSWERS, number)
+            self.assertTrue(missing or works.startswith('yes'), f'{number} does not say what is missing')
+            self.assertTrue(shown or works == '**no**', f'{number} does not say how it is shown')
+            count[works.split(',')[0]] += 1
+        page = (ROOT / 'docs/patents.md').read_text()
+        self.assertIn(f'Of {len(table)} features {count["yes"]} work, {count["partly"]} work in part and {count["**no**"]} do not',
+                      page)
+
     def test_keys_and_values_exist(self):
-        known = 0
-        for _, keys, _ in rows():
+        report, known = (ROOT / 'docs/report.md').read_text(), 0
+        for number, _, _, shown, missing in rows():
             last = None
-            for named in NAMED.findall(keys):
-                key, _, value = named.partition(': ')
-                if '.' not in key and last is not None and not value and at(self.schema, key) is None:
+            for named in NAMED.findall(shown + missing):
+                if not KEY.match(named) or (ROOT / named).exists():
+                    continue
+                key, value = KEY.match(named).groups()
+                if at(self.schema, key) is None and '.' not in key and last is not None:
                     key, value = last, key       # a further value of the key before
-                self.assertRegex(key, KEY)
                 found = at(self.schema, key)
-                self.assertIsNotNone(found, f'there is no key {key}')
+                if found is None:
+                    self.assertTrue(f'`{key}`' in report, f'{number}: there is no key {key}')
                 if value:
-                    self.assertIn(f'"{value}"', json.dumps(found), f'{key} has no value {value}')
+                    self.assertIn(f'"{value}"', json.dumps(found), f'{number}: {key} has no value {value}')
                 last, known = key, known + 1
         self.assertGreater(known, 100)
 
-    def test_tests_exist(self):
+    def test_tests_and_files_exist(self):
         existing, known = tests(), 0
-        for _, _, shown in rows():
-            for named in NAMED.findall(shown):
-                if TEST.match(named):
-                    self.assertIn(named, existing)
-                    known += 1
-        self.assertGreater(known, 90)
+        page = (ROOT / 'docs/patents.md').read_text()
+        for named in NAMED.findall(page):
+            if TEST.match(named):
+                self.assertIn(named, existing)
+                known += 1
+        self.assertGreater(known, 150)
+        for name in re.findall(r'\]\(([^)#]+)', page) + re.findall(r'\b(configs/\w+\.yaml)', page):
+            self.assertTrue((ROOT / 'docs' / name).exists() or (ROOT / name).exists(), f'there is no {name}')
 
     def test_what_is_not_built_is_refused(self):
         refused = (ROOT / 'core/config/not_built.cpp').read_text()
-        missing = {NAMED.findall(keys)[0] for _, keys, shown in rows() if shown.startswith('not built')}
+        missing = {named for _, _, works, shown, _ in rows() if works == '**no**' for named in NAMED.findall(shown)
+                   if ': ' in named}
         both = {f'{key}: {value}' for key, value in re.findall(r'\{"([\w.]+)", "(\w+)", kBoth\}', refused)}
         self.assertEqual(missing, both)
 

@@ -3,8 +3,10 @@ ranks cannot do is refused by name; a rank that dies or hangs ends the run, with
 
 CAROUSEL names the program. Where it was built without MPI, the suite checks that it says so, and skips the rest."""
 
+import array
 import functools
 import json
+import math
 import os
 import pathlib
 import re
@@ -127,6 +129,104 @@ class SameHits(Ranks):
 
     def test_over_tcp(self):
         self.same([], 3, options=("--mca", "btl", "self,tcp"))
+
+
+PARTITIONED = ["scene.placement=partitioned", "collections={home: hash, when_full: spill}"]
+
+
+def write_patches(path, side, cells):
+    """A landscape of side * side meshes, each of cells * cells * 2 triangles."""
+    data, views, accessors = bytearray(), [], []
+
+    def add(words, kind, component, count, **more):
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(words) * words.itemsize})
+        data.extend(words.tobytes())
+        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": count, "type": kind, **more})
+        return len(accessors) - 1
+
+    corners = ((z * (cells + 1) + x) for z in range(cells) for x in range(cells))
+    row = cells + 1
+    indices = array.array("I", (v for a in corners for v in (a, a + row, a + 1, a + 1, a + row, a + row + 1)))
+    meshes = []
+    for mesh in range(side * side):
+        points = array.array("f")
+        for z in range(row):
+            for x in range(row):
+                u, v = x / cells + mesh % side, z / cells + mesh // side
+                height = 0.15 * math.sin(5 * u) * math.cos(4 * v) + 0.02 * math.sin(31 * u + 17 * v)
+                points.extend((x / cells, height, z / cells))
+        position = add(points, "VEC3", 5126, row * row, min=[0, -1, 0], max=[1, 1, 1])
+        meshes.append({"primitives": [{"attributes": {"POSITION": position},
+                                       "indices": add(indices, "SCALAR", 5125, len(indices)), "material": mesh % 2}]})
+    nodes = [{"mesh": mesh, "translation": [mesh % side, 0, mesh // side]} for mesh in range(side * side)]
+    path.with_suffix(".bin").write_bytes(data)
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "materials": [
+            {"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1]}},
+            {"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.6, 0.9, 0.4]}, "alphaMode": "BLEND"}], "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes,
+        "meshes": meshes, "accessors": accessors, "bufferViews": views,
+        "buffers": [{"uri": path.with_suffix(".bin").name, "byteLength": len(data)}]}))
+
+
+class PartitionedScene(Ranks):
+    def partitioned(self, assignments, ranks):
+        """The whole scene in one process, and its shares at several ranks, give the same."""
+        whole = ["collections={home: hash, when_full: spill}", *assignments]
+        with self.subTest(assignments=assignments, ranks=ranks):
+            self.assertEqual(self.alone(whole).returncode, 0)
+            run = self.over(ranks, [*whole, "scene.placement=partitioned"])
+            self.assertEqual(run.returncode, 0, run.stderr)
+            one, several = self.report("alone"), self.report("ranks")
+            self.assertEqual(several["digest"], one["digest"])
+            self.assertEqual(several["rays"]["completed"], one["rays"]["completed"])
+            self.assertEqual(several["structure"]["primitives"], one["structure"]["primitives"])
+            self.assertAlmostEqual(several["structure"]["surface_cost"] / one["structure"]["surface_cost"], 1, delta=0.4)
+            self.counted(ranks)
+            if ranks > 1:
+                self.assertGreater(sum(link["shape_bytes"] for link in several["rank_links"]), 0)
+                for rank in several["ranks"]:
+                    self.assertLess(rank["structure_bytes"], one["host"]["accel_bytes"])
+            shutil.rmtree(self.folder / "ranks")
+
+    def test_any_number_of_ranks_and_traversal(self):
+        scene = ["scene.builtin=instances", "scene.instances=60"]
+        for ranks, more in ((1, []), (2, ["collections.traversal=treelet"]), (3, ["collections.traversal=ordered"]),
+                            (4, ["engine.threads=1"]), (3, ["packets.shapes=single"]), (3, ["topology.shape=point_to_point", "topology.visit=owners"]),
+                            (2, ["topology.shape=bidirectional", "collections.traversal=treelet",
+                                 "bvh.treelet_triangles=100"])):
+            self.partitioned(scene + more, ranks)
+        self.partitioned([], 3)  # a scene of one mesh
+        write_patches(self.folder / "patches.gltf", 3, 8)
+        self.partitioned(["scene={file: patches.gltf}"], 3)  # every second mesh lets light through
+
+    def test_what_it_does_not_do(self):
+        for assignment in ("engine.transport=local", "collections.home=issuer", "cull_planes.count=4", "bvh.storage=quantised", "bvh.elements=spheres", "bvh.levels=3",
+                           "bvh.top_triangles=4"):
+            refusal = self.alone(["engine.transport=mpi", *PARTITIONED, assignment])
+            self.assertEqual(refusal.returncode, 2)
+            self.assertIn("scene.placement: replicated", refusal.stderr)
+        refusal = self.alone(["engine.transport=mpi", *PARTITIONED, "packets.shapes=single",
+                              "collections.traversal=treelet"])
+        self.assertIn("packets.shapes: above treelets", refusal.stderr)
+
+    def test_a_scene_that_no_rank_could_hold(self):
+        """The limit lies between what a rank needs of four and what each needs for the whole: a million triangles, of
+        which a process holds 110 MB, and more while it builds the structure."""
+        write_patches(self.folder / "patches.gltf", 6, 120)
+        scene = ["scene={file: patches.gltf}", "engine.threads=1", "image.samples=1"]
+        taken = re.search("has ([0-9]+) MiB before", self.over(4, scene + ["engine.memory_limit_mib=1"]).stderr)
+        self.assertTrue(taken)
+        if int(taken[1]) > 1000:
+            self.skipTest("this program's memory is watched by a sanitizer")
+        self.assertEqual(self.alone(scene).returncode, 0)
+        scene.append(f"engine.memory_limit_mib={int(taken[1]) + 110}")
+        refused = self.over(4, scene)
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertRegex(refused.stderr, "rank [0-3]: error: .*memory")
+        self.assertFalse((self.folder / "ranks").exists())
+        run = self.over(4, scene + PARTITIONED)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(self.digests("ranks"), self.digests("alone"))
 
 
 class Refusals(Ranks):

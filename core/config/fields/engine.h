@@ -35,6 +35,7 @@ struct EngineConfig {
   std::int64_t clock_mhz = 1000;
   SimdTarget simd = SimdTarget::kAuto;
   EngineTransport transport = EngineTransport::kLocal;
+  std::int64_t memory_limit_mib = 0;  ///< 0: none
   bool what_if = true;
 };
 
@@ -52,6 +53,9 @@ void describe(V& v, EngineConfig& c) {
       "transport", c.transport,
       "With mpi the processes that mpirun has started play the native engine's machine together, each an arc of its "
       "resources; with local one process plays all of it.");
+  v.field("memory_limit_mib", c.memory_limit_mib, IntRange{0, 1 << 30}, "MiB",
+          "A process, each rank of several, takes no more memory than this for its data; with 0 there is no limit but "
+          "the machine's.");
   v.field(
       "what_if", c.what_if, "",
       "The cycle engine finds the bottleneck: it simulates a part of the rays again, each time with one class of parts "

@@ -20,6 +20,13 @@ inline constexpr auto kEnumNames<BuiltinScene> = [] {
                               {kSliver, "sliver"}});
 }();
 
+enum class ScenePlacement { kReplicated, kPartitioned };
+template <>
+inline constexpr auto kEnumNames<ScenePlacement> = [] {
+  using enum ScenePlacement;
+  return names<ScenePlacement>({{kReplicated, "replicated"}, {kPartitioned, "partitioned"}});
+}();
+
 struct SkyConfig {
   Vec3 color{0.6f, 0.7f, 0.9f};
   float strength = 1;
@@ -35,6 +42,7 @@ struct SceneConfig {
   std::int64_t seed = 1;
   std::int64_t camera = 0;
   std::optional<SkyConfig> sky;
+  ScenePlacement placement = ScenePlacement::kReplicated;
 };
 
 namespace config {
@@ -62,6 +70,9 @@ void describe(V& v, SceneConfig& c) {
   v.field("camera", c.camera, IntRange{0, 65535}, "", "The index of the camera among those of the scene.");
   v.section("sky", c.sky,
             "A sky of one colour. Without this key a built-in scene has its own sky, and a file has the default.");
+  v.choice("placement", c.placement,
+           "With engine.transport mpi each rank has the whole acceleration structure, or with partitioned that of its "
+           "share of the meshes; packets then start where their shape is, and bring it along.");
 }
 
 }  // namespace config

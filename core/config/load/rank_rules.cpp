@@ -6,7 +6,42 @@
 
 namespace carousel::config {
 
+namespace {
+
+/// What the ranks of a partitioned scene would have to know of shapes that they do not have.
+void check_placement(const Config& config, const RuleBreach& breach) {
+  if (config.scene.placement == ScenePlacement::kReplicated) return;
+  const auto refuse = [&](bool wrong, const char* key, const std::string& message) {
+    if (wrong) breach(key, message + ", or scene.placement: replicated");
+  };
+  refuse(config.engine.transport == EngineTransport::kLocal, "scene.placement",
+         "one process has the whole scene; expected engine.transport: mpi");
+  refuse(config.collections.home != Home::kHash, "collections.home",
+         fmt::format("the collections of a partitioned scene are where its shapes are; expected hash, found {}",
+                     enum_name(config.collections.home)));
+  refuse(
+      config.packets.shapes != PacketShapes::kStrip && config.collections.traversal == Traversal::kTreelet,
+      "packets.shapes",
+      fmt::format("above treelets the strips of a partitioned scene are not taken apart yet; expected strip, found {}",
+                  enum_name(config.packets.shapes)));
+  refuse(config.cull_planes.count > 0, "cull_planes.count",
+         fmt::format("cull planes are not partitioned yet; expected 0, found {}", config.cull_planes.count));
+  refuse(config.bvh.elements != BvhConfig::Elements::kBoxes, "bvh.elements",
+         fmt::format("spheres are not partitioned yet; expected boxes, found {}", enum_name(config.bvh.elements)));
+  refuse(
+      config.bvh.storage != BvhConfig::Storage::kFull, "bvh.storage",
+      fmt::format("pieces of boxes are not partitioned yet; expected full, found {}", enum_name(config.bvh.storage)));
+  refuse(config.bvh.levels > 2, "bvh.levels",
+         fmt::format("groups are not partitioned yet; expected 2, found {}", config.bvh.levels));
+  refuse(config.bvh.top_triangles > 0, "bvh.top_triangles",
+         fmt::format("the top level holds no shapes of a partitioned scene; expected 0, found {}",
+                     config.bvh.top_triangles));
+}
+
+}  // namespace
+
 void check_ranks(const Config& config, const RuleBreach& breach) {
+  check_placement(config, breach);
   if (config.engine.transport == EngineTransport::kLocal) return;
   const std::string ranks = fmt::format("engine.transport: {}", enum_name(config.engine.transport));
   const auto refuse = [&](bool wrong, const char* key, const std::string& message) {

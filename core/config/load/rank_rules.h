@@ -5,7 +5,7 @@
 
 namespace carousel::config {
 
-/// The rules of `engine.transport`: what a machine that several processes play cannot do yet.
+/// The rules of `engine.transport` and `scene.placement`: what a machine that several processes play cannot do yet.
 void check_ranks(const Config& config, const RuleBreach& breach);
 
 }  // namespace carousel::config

@@ -10,7 +10,11 @@ std::int32_t SingleShapeTraversal::tests_at(const accel::Accel& accel, const Tre
 }
 
 void SingleShapeTraversal::answer(Packet& packet, const LocalRays& local, const std::vector<std::uint8_t>& masks) {
-  const std::int32_t below = tests_at(context_.accel.child_key(packet.key, std::countr_zero(packet.lanes)));
+  const int lane = std::countr_zero(packet.lanes);
+  const accel::Accel& accel = context_.accel;
+  // Of a partitioned scene the child may be at another rank; there are no treelets then.
+  const std::int32_t below =
+      accel.partition ? accel.child_strip_size(packet.key, lane) : tests_at(accel.child_key(packet.key, lane));
   for (std::size_t i = 0; i < local.size(); ++i) {
     packet.members[local.members[i]].mask = masks[i];
     context_.completion.add_pending(local.slots[i], (masks[i] != 0 ? below : 0) - 1);

@@ -106,11 +106,12 @@ class KeyEffects : public testing::Test {
   }
 
   /// By the table of what the engine does not have; an instruction set that this machine does not have;
-  /// and ranks, which mpirun starts.
+  /// ranks, which mpirun starts; and less memory than the program has.
   static bool may_be_refused(const KeyRow& row, const std::string& value, const Json& config,
                              const std::string& refusal) {
     if (refusal.find("--set " + row.key + "=" + value + ": " + row.key + ": ") == refusal.npos) return false;
-    if (row.key == "engine.simd" || row.key == "engine.transport") return true;
+    if (row.key == "engine.simd" || row.key == "engine.transport" || row.key == "scene.placement") return true;
+    if (row.key == "engine.memory_limit_mib") return true;
     const auto having = config::engines_with(row.key, value);
     const auto engine = enum_value<EngineKind>(config["engine"]["kind"].get<std::string>());
     return having.empty() && engine && refusal.find("is not built yet") != refusal.npos;

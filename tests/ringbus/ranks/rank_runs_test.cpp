@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <functional>
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -62,6 +64,16 @@ class RankRuns : public testing::Test {
   }
   /// What rank `transport` makes of the picture; all of it without one.
   Ended trace(Transport* transport, const std::function<void(std::size_t)>& shaded = {}, std::stop_token stop = {}) {
+    if (transport == nullptr || config_.scene.placement == ScenePlacement::kReplicated)
+      return trace(transport, shaded, std::move(stop), accel_);
+    const accel::BuildRanks ranks{transport->rank(), transport->ranks(),
+                                  [transport](const std::string& bytes) { return transport->gather(bytes); }};
+    return trace(
+        transport, shaded, std::move(stop),
+        accel::build(scene_, config_.bvh, *make_tbb_executor(1), config_.accuracy, config_.cull_planes, &ranks));
+  }
+  Ended trace(Transport* transport, const std::function<void(std::size_t)>& shaded, std::stop_token stop,
+              const accel::Accel& accel) {
     shading::PathTracer tracer(scene_, config_, 4096, static_cast<std::size_t>(shader_workers(config_)));
     std::optional<shading::PathSample> share;
     RunOptions options;
@@ -75,7 +87,7 @@ class RankRuns : public testing::Test {
     RankWorkload workload(tracer, shaded);
     Ended out;
     try {
-      out.result = run_native(config_, accel_, 3.0f, workload, options);
+      out.result = run_native(config_, accel, 3.0f, workload, options);
       if (transport != nullptr) {
         std::vector<std::uint64_t> sums = tracer.sums();
         transport->sum(sums);
@@ -139,6 +151,51 @@ TEST_F(RankRuns, GiveTheHitsAndThePictureOfOneProcess) {
       for (const ResourceStatistics& r : ended[0].result.resources) sum += r;
       EXPECT_EQ(sum.rays_completed, alone.result.rays_completed);
       EXPECT_EQ(sum.packets_retired, sum.packets_issued);
+    }
+  }
+}
+
+TEST_F(RankRuns, GiveThemWithAPartitionedScene) {
+  const std::vector<std::string> partitioned{"scene={builtin: instances, instances: 60, placement: partitioned}",
+                                             "engine.transport=mpi", "collections={home: hash, when_full: spill}"};
+  const std::vector<std::vector<std::string>> machines{
+      {},
+      {"topology.shape=bidirectional", "engine.threads=2", "collections.traversal=ordered"},
+      {"topology.shape=point_to_point", "topology.visit=owners", "bvh.mixed_triangles=2"},
+      {"collections.traversal=treelet", "bvh.treelet_triangles=64", "topology.flow=bubble", "topology.link.depth=2"},
+      {"collections.traversal=treelet", "engine.threads=2"},
+      {"scene={builtin: spheres, triangles: 300, procedural: true, placement: partitioned}"},
+      {"scene={builtin: terrain, triangles: 2000, placement: partitioned}", "bvh.mixed_triangles=4"},
+      {"packets.shapes=single"},
+  };
+  bool odd = false;
+  for (const auto& sets : machines) {
+    odd = !odd;
+    std::vector<std::string> all = partitioned;
+    all.insert(all.end(), sets.begin(), sets.end());
+    SCOPED_TRACE(testing::PrintToString(sets));
+    load(all);
+    const Ended alone = trace(nullptr);
+    ASSERT_EQ(alone.fault, "");
+    for (const std::uint32_t ranks : odd ? std::vector{1u, 3u} : std::vector{2u, 5u}) {
+      SCOPED_TRACE(ranks);
+      const std::vector<Ended> ended = over(ranks);
+      std::uint64_t structure = 0, largest = 0, shapes = 0;
+      for (const Ended& rank : ended) {
+        ASSERT_EQ(rank.fault, "");
+        EXPECT_EQ(rank.result.rays_completed, alone.result.rays_completed);
+        for (const RankResult& of : rank.result.ranks) largest = std::max(largest, of.memory.structure_bytes);
+      }
+      EXPECT_EQ(ended[0].hits, alone.hits);
+      EXPECT_EQ(ended[0].image, alone.image);
+      if (ranks == 1) continue;
+      for (const RankResult& rank : ended[0].result.ranks) {
+        structure += rank.memory.structure_bytes;
+        for (const RankCounts& to : rank.to) shapes += to.shapes;
+      }
+      EXPECT_LT(largest, accel_.size_bytes());  // no rank has it all
+      EXPECT_GT(structure, accel_.size_bytes() / 2);
+      EXPECT_GT(shapes, 0u);
     }
   }
 }
