@@ -18,62 +18,11 @@
 #include "accel/primitive/triangle_block-inl.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
+#include "accel/traverse/stack-inl.h"
 #include "core/statistics/intersection_counts.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
-
-/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/build/sah_build.cpp), above the instances and
-/// again below one that is entered in passing; a level leaves at most seven siblings behind.
-inline constexpr int kStackCapacity = 1024;
-
-/// Nodes that wait for their turn, a node's nearest child on top.
-struct DepthFirstStack {
-  struct Entry {
-    float entry;
-    std::uint32_t ref;  // bits of a NodeRef, which would be initialised: 1024 times a call for nothing
-  };
-  Entry entries[kStackCapacity];
-};
-
-HWY_INLINE void prefetch_lines(const void* bytes) {
-  for (std::size_t line = 0; line < sizeof(Node); line += 64)
-    __builtin_prefetch(static_cast<const char*>(bytes) + line);
-}
-
-/// Prefetches a stacked node, so that it arrives from memory while nearer nodes are visited.
-HWY_INLINE void prefetch(const Accel& accel, NodeRef ref) {
-  if (ref.is_inner())
-    prefetch_lines(accel.nodes.data() + ref.node());
-  else
-    prefetch_lines(accel.blocks.data() + ref.first_block());  // an instance: some block, which does no harm
-}
-
-/// The nearest of the children in `mask`, which is not empty; the others are pushed, the nearest of them on top.
-HWY_INLINE NodeRef nearest_child(const Accel& accel, const Node& node, std::uint32_t mask, const float* entry,
-                                 DepthFirstStack::Entry*& top) {
-  const int first = std::countr_zero(mask);
-  mask &= mask - 1;
-  if (mask == 0) return node.child[first];
-  const int second = std::countr_zero(mask);
-  mask &= mask - 1;
-  // Selected by arithmetic: compilers make a branch of a conditional, and which of the two is nearer is hard to guess.
-  const int flip = -static_cast<int>(entry[second] < entry[first]) & (first ^ second);
-  const int near_lane = first ^ flip, far_lane = second ^ flip;
-  DepthFirstStack::Entry nearest{entry[near_lane], node.child[near_lane].bits()};
-  DepthFirstStack::Entry* const bottom = top;
-  *top++ = {entry[far_lane], node.child[far_lane].bits()};
-  prefetch(accel, node.child[far_lane]);
-  for (; mask != 0; mask &= mask - 1) {
-    const int lane = std::countr_zero(mask);
-    DepthFirstStack::Entry other{entry[lane], node.child[lane].bits()};
-    if (other.entry < nearest.entry) std::swap(other, nearest);
-    DepthFirstStack::Entry* at = top++;
-    for (; at > bottom && at[-1].entry < other.entry; --at) *at = at[-1];
-    *at = other;
-  }
-  return NodeRef::from_bits(nearest.ref);
-}
 
 /// The counts of a traversal.
 struct TraversalCounts : IntersectionCounts {
@@ -114,18 +63,35 @@ HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Ve
   return met;
 }
 
+/// What the nodes of a structure hold beside boxes, chosen once a call: code for what is not there would take the
+/// plain loop's registers.
+enum class Nodes : std::uint8_t {
+  kPlain,  ///< boxes alone, or with leaves of their own
+  kOther,  ///< spheres, cull planes, or the boxes before quantisation
+};
+
+inline Nodes nodes_of(const Accel& accel) {
+  return accel.spheres.empty() && accel.planes.empty() && accel.full_nodes.empty() ? Nodes::kPlain : Nodes::kOther;
+}
+
 /// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node
 /// holds itself are not among them, nor counted.
-template <class Slab, class Registers>
+template <Nodes kNodes, class Slab, class Registers>
 HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const LocalRay<Slab>& frame,
                                       const Registers& ray, float tmax, float* entry, std::uint64_t& tested) {
   const Node& node = accel.nodes[ref.node()];
+  const std::uint32_t direct = node.direct;
   tested += node.count;
-  if (HWY_LIKELY(accel.spheres.empty() && node.direct == 0)) return slab_node(node, ray, tmax, entry);
-  tested -= static_cast<std::uint64_t>(std::popcount(node.direct));
-  if (accel.spheres.empty()) return slab_node(node, ray, tmax, entry) & ~std::uint32_t{node.direct};
-  return met_spheres(accel, ref, frame.origin, frame.direction, ray, frame.slab.tmin, tmax, entry, tested) &
-         ~std::uint32_t{node.direct};
+  if (HWY_UNLIKELY(direct != 0)) tested -= static_cast<std::uint64_t>(std::popcount(direct));
+  if constexpr (kNodes == Nodes::kOther)
+    if (!accel.spheres.empty()) {
+      std::uint64_t more = 0;  // a counter whose address is known elsewhere would not stay in a register
+      const std::uint32_t met =
+          met_spheres(accel, ref, frame.origin, frame.direction, ray, frame.slab.tmin, tmax, entry, more);
+      tested += more;
+      return met & ~direct;
+    }
+  return slab_node(node, ray, tmax, entry) & ~direct;
 }
 
 /// Counts the children in `mask` that the ray meets only because their boxes are quantised. Called with full_nodes.
@@ -143,12 +109,12 @@ enum class Then { kPop, kEnter, kStop };
 /// Visits everything below `root`, until `visit_other(ref)`, which is called for all but inner nodes, returns kStop;
 /// after kEnter the traversal goes on with the node that `ref` has been set to. Adds the boxes and planes tested to
 /// `counts`. True if it was stopped.
-template <class Slab, class VisitOther>
+template <Nodes kNodes, class Slab, class VisitOther>
 HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Slab>& frame, const Hit& hit,
                             DepthFirstStack& stack, TraversalCounts& counts, const VisitOther& visit_other) {
   const auto ray = in_registers(frame.slab);
   const Node* const nodes = accel.nodes.data();
-  const bool quantised = !accel.full_nodes.empty();
+  const bool quantised = kNodes == Nodes::kOther && !accel.full_nodes.empty();
   DepthFirstStack::Entry* top = stack.entries;
   NodeRef ref = root;
   std::uint64_t tested = 0;
@@ -156,7 +122,7 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Sla
     while (ref.is_inner()) {
       const Node& node = nodes[ref.node()];
       alignas(64) float entry[kMaxWidth];
-      const std::uint32_t hits = met_children(accel, ref, frame, ray, hit.t, entry, tested);
+      std::uint32_t mask = met_children<kNodes>(accel, ref, frame, ray, hit.t, entry, tested);
       for (std::uint32_t left = node.direct; HWY_UNLIKELY(left != 0); left &= left - 1) {
         NodeRef leaf = node.child[std::countr_zero(left)];
         Then then = visit_other(leaf);
@@ -165,7 +131,8 @@ HWY_INLINE bool depth_first(const Accel& accel, NodeRef root, const LocalRay<Sla
         counts.box += tested;
         return true;
       }
-      const std::uint32_t mask = cull(accel, node, frame.slab, frame.direction, ~0u, hits, counts, counts.culls);
+      if constexpr (kNodes == Nodes::kOther)
+        mask = cull(accel, node, frame.slab, frame.direction, ~0u, mask, counts, counts.culls);
       if (mask == 0) goto pop;
       if (HWY_UNLIKELY(quantised)) count_extra_hits(accel, ref, ray, hit.t, mask, counts);
       ref = nearest_child(accel, node, mask, entry, top);
@@ -205,24 +172,24 @@ HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, LocalRay<Slab>&
 
 /// Traces `record`'s ray below an instance with a transform, or one that is a group or in a group. True when a search
 /// for any hit has found one.
-template <class Slab>
+template <Nodes kNodes, class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, std::uint32_t instance, RayRecord& record, TraceStacks& stacks,
                                  TraversalCounts& counts);
 
 /// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform
 /// are entered in passing; `level` is 0 there and 1 below an instance with one.
-template <class Slab>
+template <Nodes kNodes, class Slab>
 HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, LocalRay<Slab>& frame,
                               TraceStacks& stacks, int level, TraversalCounts& counts) {
   const bool any_hit = takes_any_hit(record.tag);
   Hit& hit = record.hit;
-  return depth_first(accel, root, frame, hit, stacks.at[level], counts, [&](NodeRef& ref) HWY_ATTR {
+  return depth_first<kNodes>(accel, root, frame, hit, stacks.at[level], counts, [&](NodeRef& ref) HWY_ATTR {
     if (HWY_LIKELY(!ref.is_instance())) {
       count_leaf(ref, counts);
       return test_leaf(accel, ref, ~0u, frame, hit) && any_hit ? Then::kStop : Then::kPop;
     }
     if (enter_instance(accel, ref, frame)) return Then::kEnter;
-    return trace_instance<Slab>(accel, ref.instance_index(), record, stacks, counts) ? Then::kStop : Then::kPop;
+    return trace_instance<kNodes, Slab>(accel, ref.instance_index(), record, stacks, counts) ? Then::kStop : Then::kPop;
   });
 }
 
@@ -258,7 +225,7 @@ HWY_INLINE bool misses_member(const Accel& accel, std::uint32_t instance, const 
 }
 
 /// Traces `record`'s ray below a node of a group's structure. True when a search for any hit has found one.
-template <class Slab>
+template <Nodes kNodes, class Slab>
 HWY_NOINLINE bool trace_group(const Accel& accel, NodeKey key, RayRecord& record, TraceStacks& stacks,
                               TraversalCounts& counts) {
   const WideSlabLanes ray = in_registers(group_ray(accel, key.instance, record.ray, counts));
@@ -277,7 +244,7 @@ HWY_NOINLINE bool trace_group(const Accel& accel, NodeKey key, RayRecord& record
     } else {
       const std::uint32_t member = accel.instance_at(key.instance, ref);
       if (!misses_member<Slab>(accel, member, record, counts) &&
-          trace_instance<Slab>(accel, member, record, stacks, counts))
+          trace_instance<kNodes, Slab>(accel, member, record, stacks, counts))
         return true;
     }
     do {
@@ -288,15 +255,15 @@ HWY_NOINLINE bool trace_group(const Accel& accel, NodeKey key, RayRecord& record
   }
 }
 
-template <class Slab>
+template <Nodes kNodes, class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, std::uint32_t instance, RayRecord& record, TraceStacks& stacks,
                                  TraversalCounts& counts) {
   const NodeRef root = accel.instances[instance].root;
   if (HWY_UNLIKELY(accel.instances[instance].group))
-    return trace_group<Slab>(accel, {instance, root}, record, stacks, counts);
+    return trace_group<kNodes, Slab>(accel, {instance, root}, record, stacks, counts);
   FrameStorage<Slab> below;
   enter_frame(accel, instance, record, &below.ray, counts);
-  return trace_frame(accel, root, record, below.ray, stacks, 1, counts);
+  return trace_frame<kNodes>(accel, root, record, below.ray, stacks, 1, counts);
 }
 
 }  // namespace carousel::accel::HWY_NAMESPACE

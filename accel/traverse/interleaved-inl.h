@@ -8,9 +8,13 @@
 #define CAROUSEL_ACCEL_INTERLEAVED_INL_H_
 #endif
 
+#include <cstddef>
+#include <utility>
+
 #include <hwy/highway.h>
 
 #include "accel/traverse/depth_first-inl.h"
+#include "accel/traverse/members-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -30,7 +34,7 @@ struct Walker {
 
 /// Takes a walker on from `ref`, or when it hit no child from its stack, to its next inner node; false when its ray is
 /// done.
-template <class Slab>
+template <Nodes kNodes, class Slab>
 HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, NodeRef ref, TraceStacks& stacks,
                         TraversalCounts& counts) {
   LocalRay<Slab>& frame = walker.frame.ray;
@@ -44,7 +48,7 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
       ref = NodeRef::from_bits(walker.top->ref);
     }
     if (HWY_UNLIKELY(ref.is_instance()) && !enter_instance(accel, ref, frame)) {
-      if (trace_instance<Slab>(accel, ref.instance_index(), *walker.record, stacks, counts)) return false;
+      if (trace_instance<kNodes, Slab>(accel, ref.instance_index(), *walker.record, stacks, counts)) return false;
       continue;
     }
     if (ref.is_inner()) {
@@ -55,6 +59,68 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
     count_leaf(ref, counts);
     if (test_leaf(accel, ref, ~0u, frame, hit) && walker.any_hit) return false;
   }
+}
+
+/// Traces the members, each through everything below `key`.
+template <Nodes kNodes, class Slab>
+void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& total) {
+  constexpr std::size_t kWalkers = 4;  // two gain half as much, six nothing more
+  const Node* const nodes = accel.nodes.data();
+  TraceStacks stacks;
+  TraversalCounts counts(members.culls);
+  std::size_t next = 0;
+  Walker<Slab> walkers[kWalkers];
+  Walker<Slab>* active[kWalkers];
+  std::size_t count = 0;
+  const bool quantised = kNodes == Nodes::kOther && !accel.full_nodes.empty();
+  const auto start = [&](Walker<Slab>& walker) HWY_ATTR {
+    while (next < members.count) {
+      RayRecord& record = member<8>(members, next++);
+      if (record.tag.flags & kRayDone) continue;
+      enter_frame(accel, key.instance, record, &walker.frame.ray, counts);
+      walker.record = &record;
+      walker.any_hit = takes_any_hit(record.tag);
+      walker.top = walker.stack.entries;
+      if (walk_on<kNodes>(accel, walker, true, key.ref, stacks, counts)) return true;
+      settle(record);
+    }
+    return false;
+  };
+  for (Walker<Slab>& walker : walkers)
+    if (start(walker)) active[count++] = &walker;
+  while (count > 0) {
+    for (std::size_t k = 0; k < count; ++k) {
+      Walker<Slab>& walker = *active[k];
+      const Node& node = nodes[walker.ref.node()];
+      LocalRay<Slab>& frame = walker.frame.ray;
+      walker.mask = met_children<kNodes>(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t,
+                                         walker.entry, counts.box);
+      if constexpr (kNodes == Nodes::kOther)
+        walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
+      if (HWY_UNLIKELY(quantised) && walker.mask != 0)
+        count_extra_hits(accel, walker.ref, in_registers(frame.slab), walker.record->hit.t, walker.mask, counts);
+      if (HWY_UNLIKELY(node.direct != 0) && test_direct(accel, node, ~0u, frame, walker.record->hit, counts) &&
+          walker.any_hit) {
+        walker.mask = 0;
+        walker.top = walker.stack.entries;
+      }
+    }
+    for (std::size_t k = 0; k < count;) {
+      Walker<Slab>& walker = *active[k];
+      const bool any = walker.mask != 0;
+      NodeRef ref;
+      if (any) ref = nearest_child(accel, nodes[walker.ref.node()], walker.mask, walker.entry, walker.top);
+      if (!walk_on<kNodes>(accel, walker, any, ref, stacks, counts)) {
+        settle(*walker.record);
+        if (!start(walker)) {
+          std::swap(active[k], active[--count]);
+          continue;
+        }
+      }
+      ++k;
+    }
+  }
+  total += counts;
 }
 
 }  // namespace carousel::accel::HWY_NAMESPACE

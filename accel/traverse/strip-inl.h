@@ -1,0 +1,174 @@
+// Rays against the shapes of one strip: the boxes of a node, or the triangles of a leaf.
+#if defined(CAROUSEL_ACCEL_STRIP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CAROUSEL_ACCEL_STRIP_INL_H_
+#undef CAROUSEL_ACCEL_STRIP_INL_H_
+#else
+#define CAROUSEL_ACCEL_STRIP_INL_H_
+#endif
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include "accel/box/double_slab-inl.h"
+#include "accel/box/slab-inl.h"
+#include "accel/traverse/depth_first-inl.h"
+#include "accel/traverse/members-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace carousel::accel::HWY_NAMESPACE {
+
+/// Tests the primitives of the node's own leaves among `lanes`; true when the hit changed.
+template <class Slab>
+HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_t lanes, LocalRay<Slab>& frame,
+                              Hit& hit, IntersectionCounts& counts) {
+  bool changed = false;
+  for (std::uint32_t left = node.direct & lanes; left != 0; left &= left - 1) {
+    NodeRef leaf = node.child[std::countr_zero(left)];
+    if (leaf.is_instance()) enter_instance(accel, leaf, frame);
+    count_leaf(leaf, counts);
+    changed |= test_leaf(accel, leaf, ~0u, frame, hit);
+  }
+  return changed;
+}
+
+/// The same for a ray that is not yet in the node's frame.
+template <class Slab>
+HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key, std::uint32_t lanes, RayRecord& record,
+                              std::uint8_t* any_hit_calls, IntersectionCounts& counts) {
+  IntersectionCounts own;
+  FrameStorage<Slab> frame;
+  enter_frame(accel, key.instance, record, &frame.ray, own);
+  own.transforms = own.transforms_in_double = 0;  // counted with the boxes
+  test_direct(accel, node, lanes, frame.ray, record.hit, own);
+  settle(record);
+  if (any_hit_calls != nullptr)
+    *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, own.any_hit_calls));
+  counts += own;
+}
+
+// Slab: SlabRay, or DoubleSlabRay for accuracy.box: double. kMember: Accel::enters_member() of the key.
+template <class Slab, bool kMember>
+void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
+                IntersectionCounts& counts) {
+  const Node& node = accel.nodes[key.ref.node()];
+  const InstanceTransform* transform = key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
+  lanes &= (1u << node.count) - 1;
+  const std::uint32_t direct = node.direct & lanes, held = ~std::uint32_t{node.direct};
+  const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes & held));
+  const float widening = far_widening(accel.accuracy.box);
+  const bool quantised = !accel.full_nodes.empty();
+  alignas(64) float nearest[kMaxWidth];
+  std::copy(hits.nearest, hits.nearest + kMaxWidth, nearest);
+  for (std::size_t i = 0; i < members.count; ++i) {
+    RayRecord& record = member<16>(members, i);
+    if (record.tag.flags & kRayDone) {
+      hits.masks[i] = 0;
+      continue;
+    }
+    if constexpr (kMember)
+      if (misses_member<Slab>(accel, key.instance, record, counts)) {
+        hits.masks[i] = 0;
+        continue;
+      }
+    const bool move = transform != nullptr && !transform->identity;
+    const Ray model = move ? transform->to_model(record.ray) : record.ray;
+    const Slab ray(model, widening);
+    counts.transforms += move;
+    counts.transforms_in_double += move && transform->promoted;
+    counts.box += boxes;
+    alignas(64) float entry[kMaxWidth];
+    std::uint32_t mask;
+    if (HWY_LIKELY(node.plane_counts == 0 && accel.spheres.empty())) {
+      mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes & held;
+    } else {
+      mask = accel.spheres.empty() ? slab_node(node, in_registers(ray), record.hit.t, entry)
+                                   : met_spheres(accel, key.ref, model.origin, model.direction, in_registers(ray),
+                                                 model.tmin, record.hit.t, entry, counts.box);
+      mask &= lanes & held;
+      mask = cull(accel, node, ray, model.direction, lanes, mask, counts, members.culls);
+      for (int lane = 0; lane < kMaxWidth; ++lane)
+        if (mask >> lane & 1) nearest[lane] = std::min(nearest[lane], entry[lane]);
+    }
+    if (HWY_UNLIKELY(quantised) && mask != 0)
+      count_extra_hits(accel, key.ref, in_registers(ray), record.hit.t, mask, counts);
+    if (HWY_UNLIKELY(direct != 0))
+      test_direct<Slab>(accel, node, key, direct, record,
+                        members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i, counts);
+    hits.masks[i] = static_cast<std::uint8_t>(mask);
+    if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
+  }
+  for (int lane = 0; lane < kMaxWidth; ++lane)
+    if (lanes >> lane & 1) hits.nearest[lane] = nearest[lane];
+}
+
+/// The nodes of a group: boxes alone.
+template <class Slab>
+void test_members(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                  const StripHits& hits, IntersectionCounts& counts) {
+  const bool enters = accel.enters_member(key);
+  for (std::size_t i = 0; i < members.count; ++i) {
+    RayRecord& record = member<16>(members, i);
+    hits.masks[i] = 0;
+    if ((record.tag.flags & kRayDone) != 0) continue;
+    if (enters && misses_member<Slab>(accel, key.instance, record, counts)) continue;
+    alignas(64) float entry[kMaxWidth];
+    const WideSlabLanes ray = in_registers(group_ray(accel, key.instance, record.ray, counts));
+    const std::uint32_t mask = met_members(accel, key.ref, lanes, ray, record.hit.t, entry, counts);
+    for (std::uint32_t left = mask; left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      hits.nearest[lane] = std::min(hits.nearest[lane], entry[lane]);
+    }
+    hits.masks[i] = static_cast<std::uint8_t>(mask);
+    if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
+  }
+}
+
+template <class Slab, bool kMember>
+void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                    IntersectionCounts& counts) {
+  lanes &= (1u << key.ref.triangles()) - 1;
+  const std::uint64_t tested = static_cast<std::uint64_t>(std::popcount(lanes));
+  std::uint64_t& tests = key.ref.is_procedural() ? counts.procedural : counts.triangle;
+  for (std::size_t i = 0; i < members.count; ++i) {
+    RayRecord& record = member<4>(members, i);
+    if (record.tag.flags & kRayDone) continue;
+    if constexpr (kMember)
+      if (misses_member<Slab>(accel, key.instance, record, counts)) continue;
+    tests += tested;
+    const std::uint64_t any_hit_calls = counts.any_hit_calls;
+    FrameStorage<Slab> frame;
+    enter_frame(accel, key.instance, record, &frame.ray, counts);
+    test_leaf(accel, key.ref, lanes, frame.ray, record.hit);
+    if (members.any_hit_calls != nullptr)
+      members.any_hit_calls[i] = static_cast<std::uint8_t>(counts.any_hit_calls - any_hit_calls);  // 32 at most
+    settle(record);
+  }
+}
+
+template <class Slab, bool kMember>
+void test_shapes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
+                 IntersectionCounts& counts) {
+  if (key.ref.is_inner())
+    test_boxes<Slab, kMember>(accel, key, lanes, members, hits, counts);
+  else
+    test_triangles<Slab, kMember>(accel, key, lanes, members, counts);
+}
+
+template <class Slab>
+void test_any_level(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members,
+                    const StripHits& hits, IntersectionCounts& counts) {
+  if (HWY_UNLIKELY(accel.is_group(key.instance)))
+    test_members<Slab>(accel, key, lanes, members, hits, counts);
+  else if (HWY_UNLIKELY(accel.enters_member(key)))
+    test_shapes<Slab, true>(accel, key, lanes, members, hits, counts);
+  else
+    test_shapes<Slab, false>(accel, key, lanes, members, hits, counts);
+}
+
+}  // namespace carousel::accel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
