@@ -250,8 +250,7 @@ class NativeRun {
       throw SimulationError(
           fmt::format("{} rays emitted, {} completed", count_.emitted.load(), count_.completed.load()));
     for (const auto& port : ports_)
-      if (!(given_up_ && port->resource().id() == *excluded_) && !port->drained())
-        throw SimulationError("something was left behind: " + port->describe());
+      if (!port->drained()) throw SimulationError("something was left behind: " + port->describe());
   }
 
   RunResult result(bool complete, double wall_seconds) {
@@ -262,6 +261,7 @@ class NativeRun {
     out.rays_restarted = rays_restarted_;
     out.paths_restarted = paths_restarted_;
     out.packets_discarded = packets_discarded_;
+    for (const auto& port : ports_) out.packets_discarded += port->packets_discarded();
     out.recovery_seconds = recovery_seconds_;
     out.wall_seconds = wall_seconds;
     out.threads = threads_;

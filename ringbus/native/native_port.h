@@ -42,8 +42,11 @@ class NativePort {
   /// Own packets under way, as of some recent moment. Any thread may call.
   // Acquire: pairs with the release in packet_returned; a thread that sees a packet at home sees what it brought.
   std::uint32_t packets_out() const { return out_.load(std::memory_order_acquire); }
-  /// Nothing is left here: no packet of its own on the way, no egress, no collection, no new ray.
+  /// Nothing is left here: no packet of its own on the way, no egress, and unless it has stopped no collection and no
+  /// new ray.
   bool drained() const;
+  /// Packets of its own that it did not take in, since it has stopped.
+  std::uint64_t packets_discarded() const { return logic_.stopped() ? resource_.packets_in_flight() : 0; }
   /// From now on it only forwards, as a resource that has stopped does.
   void stop() { logic_.stop(); }
   /// From now on another resource is known to have stopped. Before the first step.

@@ -10,8 +10,10 @@ namespace carousel::ringbus {
 bool NativePort::drained() const {
   const bool egress_empty =
       std::all_of(out_ports_.begin(), out_ports_.end(), [](const OutPort& out) { return out.egress.empty(); });
-  return packets_out() == 0 && egress_empty && logic_.at_rest() && rounds_.empty() &&
-         machine_.control.free_slots(resource_.id()) == machine_.control.slots(resource_.id());
+  if (packets_out() > 0 || !egress_empty) return false;
+  // A resource that has stopped took nothing in of what came back to it, and may have stopped when no ray needed that.
+  return logic_.stopped() || (logic_.at_rest() && rounds_.empty() &&
+                              machine_.control.free_slots(resource_.id()) == machine_.control.slots(resource_.id()));
 }
 
 std::string NativePort::describe() const {

@@ -180,6 +180,30 @@ TEST(StoppedResource, WhenAllIsDoneIsNotWaitedFor) {
   EXPECT_LT(first_end, never.result.cycle->cycles + 1000);
 }
 
+// Packets whose rays have all missed may still be on their way home when the last ray is complete. A resource stops
+// after as many rays as it completes, or some less.
+TEST(StoppedResource, MayStopWhenItsLastPacketsBringNothing) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 100, 0);
+  std::uint64_t discarded = 0;
+  for (const std::int64_t resources : {8, 16}) {
+    Cell cell = with_a_stop(EngineKind::kNative, resources, 0, 1'000'000'000);
+    cell.config.topology.shape = TopologyShape::kBidirectional;
+    cell.threads = 1;  // the same steps each time; packets go backwards by one resource a round of steps
+    const Outcome never = run_cell(scene, cell);
+    ASSERT_EQ(never.fault, "");
+    for (std::int64_t number = 0; number < resources; ++number)
+      for (std::int64_t less = 0; less < 2; ++less) {
+        const ResourceStatistics& all = never.result.resources[static_cast<std::size_t>(number)];
+        cell.config.faults.resource.number = number;
+        cell.config.faults.resource.after_rays = static_cast<std::int64_t>(all.rays_completed) - less;
+        const Outcome late = run_cell(scene, cell);
+        EXPECT_EQ(late.fault, "") << number << " of " << resources << ", " << less;
+        if (late.result.rays_restarted == 0) discarded += late.result.packets_discarded;
+      }
+  }
+  EXPECT_GT(discarded, 0u) << "none stopped with packets on their way and no ray that needs them";
+}
+
 TEST(StoppedResource, WithoutRecoveryTheRunSaysWhatIsMissing) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 200, 1);
   for (const EngineKind engine : {EngineKind::kNative, EngineKind::kCycle}) {
