@@ -10,7 +10,7 @@ export const pages = {
   machine: {...machine('demo', [...cycle, 'image.width=16', 'engine.what_if=true', 'topology.resources=2', 'cull_planes.count=2',
     'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}', 'energy.profile=n45']),
     drawn: ['fig-energy', 'fig-area']},
-  native: machine('bundles', [...small, 'engine.kind=native', 'primary=raster']),
+  native: machine('bundle_tester', [...small, 'engine.kind=native', 'primary=raster']),
   traffic: machine('traffic', ['workload.traffic.packets=2000']),
   accuracy: {command: 'accuracy', config: 'demo', sets: [...small, 'image.width=8', 'image.height=8', 'scene.triangles=200'],
     options: ['--rays', '60', '--hard-rays', '30', '--repetitions', '1']},
@@ -33,7 +33,7 @@ export const all = {
   point_to_point: shape('point_to_point'),
   independent: shape('independent'),
   many: shape('ring', 'topology.resources=96', 'rays.slots_per_resource=256'),
-  bundles: machine('bundles', cycle),
+  bundles: machine('bundle_tester', cycle),
   native_life: {command: 'follow', config: 'demo', sets: small, options: ['--pixel', '3,9', '--shadow']},
   side_by_side: {command: 'compare', of: ['ring', 'bus', 'independent'], options: ['--all']},
 };
