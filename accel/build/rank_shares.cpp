@@ -13,7 +13,7 @@ namespace carousel::accel {
 
 namespace {
 
-/// What other ranks have to know of a piece's structure that they do not have.
+/// The facts of a piece's structure that ranks without it need for the nodes above it.
 struct Summary {
   std::uint32_t piece = 0, nodes = 0, blocks = 0;
   std::uint32_t has_non_opaque = 0;

@@ -102,7 +102,7 @@ struct Accel {
   }
   /// Shapes in the strip of `key`: children of an inner node, triangles of a leaf.
   int strip_size(NodeKey key) const;
-  /// The same of a child of a node, for which the child need not be here.
+  /// Shapes in the strip of the child in a lane of `parent`; the child need not be here.
   int child_strip_size(NodeKey parent, int lane) const { return nodes[parent.ref.node()].strip_size[lane]; }
   /// Triangles below `key`.
   std::uint32_t triangles_below(NodeKey key) const;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kNodeWords = sizeof(Node) / sizeof(std::uint64_t);
 constexpr std::size_t kBlockWords = sizeof(TriangleBlock) / sizeof(std::uint64_t);
 
-/// What a packing begins with.
+/// The first two words of a packing.
 struct Header {
   std::uint32_t nodes = 0, blocks = 0;
   std::uint32_t first = 0;    // bits of the NodeRef, by number within the packing

@@ -11,7 +11,7 @@
 
 namespace carousel::accel {
 
-/// What the ranks that build one structure together have to know of one another.
+/// The ranks that build one structure together, and the way between them.
 struct BuildRanks {
   std::uint32_t rank = 0, ranks = 1;
   /// Returns every rank's bytes, by rank. Every rank calls, in the same order.
@@ -21,7 +21,6 @@ struct BuildRanks {
 /// With `scene.placement: partitioned`: which rank has which shapes. The shapes of a rank have consecutive numbers.
 /// Nodes above what lies at several ranks have the numbers behind all these, and are at every rank; so are guests,
 /// behind them.
-
 struct Partition {
   std::uint32_t rank = 0;
   std::vector<std::uint32_t> node_begin, block_begin;  ///< by rank, and the end

@@ -63,8 +63,8 @@ HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Ve
   return met;
 }
 
-/// What the nodes of a structure hold beside boxes, chosen once a call: code for what is not there would take the
-/// plain loop's registers.
+/// The kinds of structures by the contents of their nodes beside boxes. A call chooses its code by the kind once: code
+/// for contents that are not there would take the plain loop's registers.
 enum class Nodes : std::uint8_t {
   kPlain,  ///< boxes alone, or with leaves of their own
   kOther,  ///< spheres, cull planes, or the boxes before quantisation

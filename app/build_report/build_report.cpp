@@ -51,7 +51,7 @@ report::SceneSummary summary(const Prepared& p) {
 }
 
 report::Structure structure(const Prepared& p) {
-  const accel::StructureSize& size = p.structure;
+  const accel::StructureSize size = p.structure ? *p.structure : accel::structure_size(p.accel);
   return {size.primitives,  size.references, size.references - size.primitives,
           size.inner_nodes, size.leaves,     size.surface_cost};
 }

@@ -49,6 +49,7 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
   }
   if (config.rays.banks > 0) {
     out.bank_conflicts = tile.bank_conflicts;
+    out.second_reads = tile.second_reads;
     out.primitive_ray_reads = unit_cycles(tile.primitive_ray_reads, tile);
   }
   if (config.rays.reads_per_cycle > 0 || config.rays.banks > 0) out.ray_reads = unit_cycles(tile.ray_reads, tile);

@@ -44,7 +44,10 @@ class Account {
     if (!r_.tests) return;
     for (const UnitKindRow& row : kUnitKinds)
       parts_.units[row.kind].add(static_cast<double>(r_.tests->counts.*row.tests), pj(energy_of(row.kind)));
-    access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(r_.tests->ray_reads), rays_kib_);
+    std::uint64_t reads = r_.tests->ray_reads;
+    for (const report::Resource& resource : *r_.resources)
+      reads += resource.units ? resource.units->second_reads.value_or(0) : 0;
+    access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(reads), rays_kib_);
   }
 
   void stores() {

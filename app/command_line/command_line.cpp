@@ -160,8 +160,9 @@ int run_command_line(int argc, const char* const* argv) {
   return schema_command(arguments.schema);
 }
 
-/// With a limit of the process's own, a lack of memory or of threads is most likely due to that.
-bool no_memory_left() {
+/// Where the process has a limit of its own, a lack of memory or of threads is most likely due to it: says so. Returns
+/// whether there is one.
+bool blames_the_limit() {
   const std::uint64_t limit = data_memory_limit();
   if (limit > 0)
     spdlog::error("not enough memory: the run needs more than the limit of {} MiB (engine.memory_limit_mib, ulimit -d)",
@@ -170,12 +171,12 @@ bool no_memory_left() {
 }
 
 ExitStatus no_memory() {
-  if (!no_memory_left()) spdlog::error("not enough memory; carousel check prints how much the configuration needs");
+  if (!blames_the_limit()) spdlog::error("not enough memory; carousel check prints how much the configuration needs");
   return kUsage;
 }
 
 ExitStatus no_thread() {
-  if (no_memory_left()) return kUsage;
+  if (blames_the_limit()) return kUsage;
   spdlog::error("cannot start a thread: not enough memory, address space or processes (ulimit -v, ulimit -u)");
   return kUsage;
 }

@@ -130,9 +130,8 @@ void build_accel(Prepared& p, ringbus::Transport* transport) {
     const accel::BuildRanks ranks = build_ranks(transport);
     const bool parts = transport != nullptr && p.config().scene.placement == ScenePlacement::kPartitioned;
     p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy, {}, parts ? &ranks : nullptr);
-    p.structure = accel::structure_size(p.accel);
-    if (parts) p.structure = whole_structure(p.structure, *transport);
     p.build_seconds = phase.seconds();
+    if (parts) p.structure = whole_structure(accel::structure_size(p.accel), *transport);
     phase.result(fmt::format("{}, {} nodes; kernels {}", report::bytes_text(p.accel.size_bytes()), p.accel.nodes.size(),
                              accel::simd_targets().front()));
   }

@@ -33,7 +33,7 @@ struct Prepared {
   scene::Scene& scene = *scene_storage;  ///< keeps its address when the object is moved, since others refer to it
   std::vector<std::string> warnings;     ///< of the import
   accel::Accel accel;
-  accel::StructureSize structure;                  ///< of the whole, also where this rank has a part
+  std::optional<accel::StructureSize> structure;   ///< of all ranks' shares; absent where all of it is here
   std::unique_ptr<shading::AlphaTest> alpha_test;  ///< any-hit calls of `accel`; null if every material is opaque
   std::unique_ptr<AllHits> all_hits;               ///< with rays.query: all those of `accel`; else null
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;

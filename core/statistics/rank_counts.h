@@ -7,7 +7,7 @@
 
 namespace carousel {
 
-/// What a rank has sent to one other rank, and how it waited for it.
+/// The messages of a rank to one other rank, and its waits for them to leave.
 struct RankCounts {
   std::uint64_t messages = 0, bytes = 0, packets = 0, rays = 0, results = 0, holds = 0, heartbeats = 0, shapes = 0,
                 shape_bytes = 0;

@@ -4,7 +4,7 @@
 
 namespace carousel {
 
-/// A workload that passes every call on to another one. What derives from it looks at some of them, or changes them.
+/// A workload that passes every call on to another one. Derived classes look at some of the calls, or change them.
 class WrappedWorkload : public Workload {
  public:
   /// Keeps a reference.

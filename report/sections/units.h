@@ -39,7 +39,7 @@ struct Units {
   std::optional<LaneFill> lane_fill{};
   RunFeatures features{};
   std::optional<UnitCycles> ray_reads{}, primitive_ray_reads{};
-  std::optional<std::uint64_t> bank_conflicts{};
+  std::optional<std::uint64_t> bank_conflicts{}, second_reads{};
   std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
 };
 
@@ -64,6 +64,8 @@ void describe(V& v, const Units& r) {
   kind(unit_row(UnitKind::kTransform));
   v.field("bank_conflicts", r.bank_conflicts, "cycles",
           "reading took longer than with the records evenly over the banks, with rays.banks; of both ports");
+  v.field("second_reads", r.second_reads, "records",
+          "with rays.banks, records that both ports read, for nodes that hold boxes and primitives");
   v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
   v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");

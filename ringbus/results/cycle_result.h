@@ -59,9 +59,11 @@ struct SpillBytes {
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
   PerUnit<BankUse> units;
-  BankUse ray_reads;            ///< the port of the ray store; with `rays.banks` that of its banks to the box units
-  BankUse primitive_ray_reads;  ///< with `rays.banks` that to the units for primitives
-  Cycle bank_conflicts = 0;  ///< of it, beyond those in which the reads would be over if they were even over its banks
+  BankUse ray_reads;               ///< the port of the ray store; with `rays.banks` that of its banks to the box units
+  BankUse primitive_ray_reads;     ///< with `rays.banks` that to the units for primitives
+  std::uint64_t second_reads = 0;  ///< records that both ports have read for one test
+  Cycle bank_conflicts =
+      0;  ///< of the ports, beyond those in which the reads would be over if they were even over its banks
   Utilisation dispatch;
   PacketKindCounts sent;
   ShapeBufferCounts shapes;

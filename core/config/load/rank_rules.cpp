@@ -8,7 +8,7 @@ namespace carousel::config {
 
 namespace {
 
-/// What the ranks of a partitioned scene would have to know of shapes that they do not have.
+/// Refuses keys with which the ranks of a partitioned scene would need shapes that they do not have.
 void check_placement(const Config& config, const RuleBreach& breach) {
   if (config.scene.placement == ScenePlacement::kReplicated) return;
   const auto refuse = [&](bool wrong, const char* key, const std::string& message) {

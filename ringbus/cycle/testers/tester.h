@@ -100,6 +100,7 @@ class Tester {
     }
     result.ray_reads = ray_reads_.use;
     result.primitive_ray_reads = primitive_reads_.use;
+    result.second_reads = second_reads_;
     result.bank_conflicts = conflicts_;
   }
 
@@ -172,6 +173,7 @@ class Tester {
     };
     if (boxes) through(store_);
     if (primitives) through(primitive_store_);
+    if (boxes && primitives) second_reads_ += reads;
     return read;
   }
   /// Tests for rays that come one after another from the bank before: the last of them is tested last.
@@ -219,7 +221,7 @@ class Tester {
   Cycle accounted_ = 0;
   Order order_;
   bool reads_cost_;
-  std::uint64_t banks_of_rays_, conflicts_ = 0;  // see TileResult::bank_conflicts
+  std::uint64_t banks_of_rays_, conflicts_ = 0, second_reads_ = 0;  // see TileResult
   bool inline_;
 };
 

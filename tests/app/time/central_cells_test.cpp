@@ -63,5 +63,20 @@ TEST_F(CentralCells, FixedPlacesCostAndTheReportCountsThem) {
   }
 }
 
+// A node that holds boxes and triangles reads a record for its boxes and once more for its triangles.
+TEST_F(CentralCells, ASecondReadOfARecordCostsJoulesToo) {
+  const std::string machine =
+      "scene: {builtin: terrain, triangles: 3000}\nimage: {width: 24, height: 16, samples: 1}\n"
+      "topology: {shape: central, resources: 1}\ntesters: {simd: {lanes: 32}}\nenergy: {profile: n45}\n"
+      "bvh: {mixed_triangles: 4}\n";
+  const Json one = report(machine), banks = report(machine, {"rays.banks=4"});
+  const auto accesses = [](const Json& r) { return r["energy"]["parts"]["ray_store"]["events"].get<double>(); };
+  const double again = banks["resources"][0]["units"]["second_reads"];
+  EXPECT_GT(again, 0);
+  EXPECT_EQ(accesses(banks) - accesses(one), 8 * (again + banks["tests"]["ray_reads"]["count"].get<double>() -
+                                                  one["tests"]["ray_reads"]["count"].get<double>()));
+  EXPECT_EQ(report(machine, {"rays.banks=4", "bvh.mixed_triangles=0"})["resources"][0]["units"]["second_reads"], 0);
+}
+
 }  // namespace
 }  // namespace carousel::central_cells_test

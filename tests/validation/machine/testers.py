@@ -100,8 +100,11 @@ class Testers:
     def _reads(self, at, reads, slots, counts):
         if self.ray_banks:
             primitives = counts.triangle > 0 or counts.procedural > 0
-            port = self.primitive_store if primitives else self.store
-            return port.reserve(at, self.most(slots, self.ray_banks))
+            ports = [self.primitive_store] if primitives else []
+            if counts.box > 0 or not primitives:
+                ports.append(self.store)
+            read = [port.reserve(at, self.most(slots, self.ray_banks)) for port in ports]
+            return max(first for first, _ in read), max(last for _, last in read)
         return self.store.reserve(at, reads if self.reads_per_cycle > 0 else 0)
 
     @staticmethod
