@@ -37,7 +37,7 @@ bool has_units(const Config& c, UnitKind kind) {
 void add_units(report::AreaOf& out, const Config& c, const TestersConfig& testers) {
   for (const auto [kind, units] : testers.units) {
     if (!has_units(c, kind)) continue;
-    const auto lanes = static_cast<double>(units.units * testers.simd.lanes);
+    const auto lanes = static_cast<double>(units.units * testers.simd.lanes * own_testers(c));
     out.size += lanes;
     out.mm2 += lanes * cost(c, area_of(kind));
   }
@@ -88,8 +88,15 @@ report::Area machine_area(const Config& c) {
   store(AreaPart::kL2, static_cast<double>(caches * c.memory.l2_kib));
   store(AreaPart::kLinkQueues, static_cast<double>(topology.wires().size()) *
                                    static_cast<double>(c.topology.link.depth) * place_bytes(c) / kKiB);
+  const TestersConfig::Distributor& distributor = c.testers.distributor;
+  if (has_distributor(c))
+    store(AreaPart::kLinkQueues, static_cast<double>(distributor.testers) *
+                                     (kIdBytes * static_cast<double>(distributor.queue) +
+                                      kHeaderBytes * static_cast<double>(distributor.results)) /
+                                     kKiB);
   report::AreaOf& wires = parts[AreaPart::kWires];
-  wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm * wire_lengths(topology);
+  wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm *
+               (wire_lengths(topology) + (has_distributor(c) ? 1 : 0));  // the bus to the testers
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
   report::AreaOf& shaders = parts[AreaPart::kShaders];
   shaders.size = static_cast<double>(shader_workers(c) * c.shading.lanes *

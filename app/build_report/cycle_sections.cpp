@@ -53,6 +53,7 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
     out.primitive_ray_reads = unit_cycles(tile.primitive_ray_reads, tile);
   }
   if (config.rays.reads_per_cycle > 0 || config.rays.banks > 0) out.ray_reads = unit_cycles(tile.ray_reads, tile);
+  out.distributor = tile.distributor;
   out.dispatch_busy = tile.dispatch.busy;
   out.dispatch_idle = cycles - tile.dispatch.busy;
   return out;

@@ -23,7 +23,11 @@ class Account {
 
  public:
   Account(const report::Report& r, const Config& config, double link_mm)
-      : r_(r), c_(config), link_mm_(link_mm), rays_kib_(static_cast<double>(config.rays.slots_per_resource) / 16) {}
+      : r_(r),
+        c_(config),
+        link_mm_(link_mm),
+        rays_kib_(static_cast<double>(config.rays.slots_per_resource) / 16 / static_cast<double>(own_testers(config))) {
+  }
 
   report::EnergyParts take() {
     tests();

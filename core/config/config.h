@@ -78,6 +78,16 @@ inline bool has_cells(const Config& c) {
   return c.topology.shape == TopologyShape::kCentral && c.topology.form == CentralForm::kCells;
 }
 
+/// A central machine with a distributor in front of testers.
+inline bool has_distributor(const Config& c) {
+  return c.topology.shape == TopologyShape::kCentral && c.topology.form == CentralForm::kDistributor;
+}
+
+/// Testers of a resource that have units, and a share of its ray memory, of their own.
+inline std::int64_t own_testers(const Config& c) {
+  return has_distributor(c) ? c.testers.distributor.testers : 1;
+}
+
 /// The number of shader workers that `shading.workers` stands for.
 inline std::int64_t shader_workers(const Config& c) {
   return c.shading.workers.value_or(

@@ -23,7 +23,6 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"topology.shape", "bus", kNative},
     {"topology.shape", "independent", kNative},
     {"topology.shape", "central", kNative},
-    {"topology.form", "distributor", kBoth},
     {"topology.link.queue", "", kCycle, "real queues"},
     {"collections.partial", "after", kNative, "clock for collections that wait"},
     {"collections.sort_ids_per_cycle", "", kNative, "clock for the sorting of ray IDs"},

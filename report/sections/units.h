@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/statistics/distributor_counts.h"
 #include "core/types/unit_kind.h"
 #include "report/sections/visitor.h"
 
@@ -40,6 +41,7 @@ struct Units {
   RunFeatures features{};
   std::optional<UnitCycles> ray_reads{}, primitive_ray_reads{};
   std::optional<std::uint64_t> bank_conflicts{}, second_reads{};
+  std::optional<DistributorCounts> distributor{};
   std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
 };
 
@@ -66,6 +68,10 @@ void describe(V& v, const Units& r) {
           "reading took longer than with the records evenly over the banks, with rays.banks; of both ports");
   v.field("second_reads", r.second_reads, "records",
           "with rays.banks, records that both ports read, for nodes that hold boxes and primitives");
+  v.section(
+      "distributor", r.distributor,
+      "the testers behind a distributor, with topology.form: distributor; the cycles of units are the mean of the "
+      "testers");
   v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
   v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");

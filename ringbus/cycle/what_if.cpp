@@ -75,6 +75,23 @@ constexpr PartClass kPartClasses[] = {
      [](Config& c) { c.rays.banks *= 2; }},
     {"cells", "twice testers.simd.lanes", has_cells,
      [](Config& c) { for_all_testers(c, [](TestersConfig& testers) { testers.simd.lanes *= 2; }); }},
+    {"distributed_testers", "twice testers.distributor.testers", has_distributor,
+     [](Config& c) { c.testers.distributor.testers *= 2; }},
+    {"handing_out", "twice testers.distributor.ids_per_cycle", has_distributor,
+     [](Config& c) { c.testers.distributor.ids_per_cycle *= 2; }},
+    {"tester_queues", "twice testers.distributor.queue and results", has_distributor,
+     [](Config& c) { c.testers.distributor.queue *= 2, c.testers.distributor.results *= 2; }},
+    {"out_of_order", "twice testers.distributor.out_of_order, or 1", has_distributor,
+     [](Config& c) {
+       c.testers.distributor.out_of_order = std::max<std::int64_t>(1, 2 * c.testers.distributor.out_of_order);
+     }},
+    {"decision_point", "twice testers.distributor.results_per_cycle", has_distributor,
+     [](Config& c) { c.testers.distributor.results_per_cycle *= 2; }},
+    {"stragglers", "testers.distributor.stragglers: forward",
+     [](const Config& c) {
+       return has_distributor(c) && c.testers.distributor.stragglers == TestersConfig::Distributor::Stragglers::kWait;
+     },
+     [](Config& c) { c.testers.distributor.stragglers = TestersConfig::Distributor::Stragglers::kForward; }, 0},
     {"bundle_builder", "twice bundles.builder.rays_per_cycle", has_bundles,
      [](Config& c) { c.bundles.builder.rays_per_cycle *= 2; }},
     {"bundles_open", "twice bundles.builder.open", has_bundles, [](Config& c) { c.bundles.builder.open *= 2; }},

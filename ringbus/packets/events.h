@@ -20,6 +20,7 @@ enum class EventKind : std::uint8_t {
   kTest,      ///< a packet's `rays` local members were tested; `tests` is their cost. 0 rays: an idle visit
   kHop,       ///< a packet was sent on to a neighbour
   kRetire,    ///< a packet is back at its owner; `rays` memberships joined collections
+  kPart,      ///< some members of a packet are, before the others; likewise
   kComplete,  ///< `rays` rays were handed over to shading
   kStall,     ///< something could not proceed; `reason` says why
 };

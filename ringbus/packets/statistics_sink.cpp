@@ -56,6 +56,9 @@ void StatisticsSink::record(const Event& event) {
       ++s.packets_retired;
       s.memberships += event.rays;
       break;
+    case EventKind::kPart:
+      s.memberships += event.rays;
+      break;
     case EventKind::kComplete:
       s.rays_completed += event.rays;
       break;

@@ -88,6 +88,10 @@ void Offering::retire(const Packet& packet, std::size_t joined) {
   --in_flight_;
 }
 
+void Offering::retire_part(const Packet& part, std::size_t joined) {
+  storage_.retire(0, part.members.size(), joined);  // what is promised to the packet stays so, until it is back
+}
+
 std::uint32_t Offering::discard() {
   block_ = {};
   storage_.discard();

@@ -42,6 +42,8 @@ class Offering {
   Offer offer(bool partial, Packet& packet);
   /// A packet is back; of its rays, `joined` are in collections again.
   void retire(const Packet& packet, std::size_t joined);
+  /// Some of its members are, `part`, before the others.
+  void retire_part(const Packet& part, std::size_t joined);
 
   /// True if a block has gone out in part.
   bool busy() const { return !block_.rays.empty(); }

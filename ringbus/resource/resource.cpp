@@ -90,11 +90,22 @@ TestOutcome Resource::test(Packet& packet) {
 }
 
 std::size_t Resource::retire(Packet& packet) {
+  const std::size_t joined = join_children(packet, EventKind::kRetire);
+  offering_.retire(packet, joined);
+  return joined;
+}
+
+std::size_t Resource::retire_part(Packet& part) {
+  const std::size_t joined = join_children(part, EventKind::kPart);
+  offering_.retire_part(part, joined);
+  return joined;
+}
+
+std::size_t Resource::join_children(Packet& packet, EventKind kind) {
   const std::size_t before = collections_.memberships();
   if (packet.kind == PacketKind::kTest) traversal_->retire(packet, collections_);
   const std::size_t joined = collections_.memberships() - before;
-  offering_.retire(packet, joined);
-  record({.kind = EventKind::kRetire,
+  record({.kind = kind,
           .resource = id(),
           .key = packet.key,
           .rays = static_cast<std::uint32_t>(joined),

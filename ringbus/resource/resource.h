@@ -67,6 +67,8 @@ class Resource {
   /// Takes back a packet of its own: members that hit join the children's collections. Returns how many memberships
   /// that makes.
   std::size_t retire(Packet& packet);
+  /// The same for some members of a packet, `part`, which is not back yet and goes on without them.
+  std::size_t retire_part(Packet& part);
   /// Takes the members of a membership packet that has reached its home.
   void join(Packet& packet);
 
@@ -86,6 +88,7 @@ class Resource {
   std::uint32_t packets_in_flight() const { return offering_.in_flight(); }
 
  private:
+  std::size_t join_children(Packet& packet, EventKind kind);
   void record(const Event& event) {
     if (events_ != nullptr) [[unlikely]]
       events_->record(event);

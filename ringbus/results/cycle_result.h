@@ -8,6 +8,7 @@
 #include "core/numeric/latency_histogram.h"
 #include "core/numeric/log2_histogram.h"
 #include "core/statistics/cache_counts.h"
+#include "core/statistics/distributor_counts.h"
 #include "core/statistics/packet_kind_counts.h"
 #include "core/statistics/ray_bytes.h"
 #include "core/statistics/shape_buffer_counts.h"
@@ -64,6 +65,7 @@ struct TileResult {
   std::uint64_t second_reads = 0;  ///< records that both ports have read for one test
   Cycle bank_conflicts =
       0;  ///< of the ports, beyond those in which the reads would be over if they were even over its banks
+  std::optional<DistributorCounts> distributor;  ///< of a central machine with one
   Utilisation dispatch;
   PacketKindCounts sent;
   ShapeBufferCounts shapes;

@@ -27,6 +27,15 @@ struct TestersConfig {
     enum class Map { kRays, kShapes } map = Map::kRays;
     std::int64_t reformat_cycles = 1;
   } simd;
+  struct Distributor {
+    std::int64_t testers = 8;
+    std::int64_t ids_per_cycle = 8;
+    std::int64_t queue = 8;
+    std::int64_t out_of_order = 1;
+    enum class Stragglers { kWait, kForward } stragglers = Stragglers::kWait;
+    std::int64_t results_per_cycle = 8;
+    std::int64_t results = 8;
+  } distributor;
   std::int64_t contexts = 16;
   std::int64_t window = 1;
   enum class OwnRays { kBefore, kAfter } own_rays = OwnRays::kBefore;
@@ -38,6 +47,12 @@ template <>
 inline constexpr auto kEnumNames<TestersConfig::Simd::Map> = [] {
   using enum TestersConfig::Simd::Map;
   return names<TestersConfig::Simd::Map>({{kRays, "rays"}, {kShapes, "shapes"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<TestersConfig::Distributor::Stragglers> = [] {
+  using enum TestersConfig::Distributor::Stragglers;
+  return names<TestersConfig::Distributor::Stragglers>({{kWait, "wait"}, {kForward, "forward"}});
 }();
 
 template <>
@@ -78,9 +93,30 @@ void describe(V& v, TestersConfig::Simd& c) {
 }
 
 template <class V>
+void describe(V& v, TestersConfig::Distributor& c) {
+  v.field("testers", c.testers, IntRange{1, 1024}, "testers",
+          "The number of testers. Each has the units of `testers`, tests one ray at a time, and has its share of ray "
+          "memory: the slots that are equal modulo this number.");
+  v.field("ids_per_cycle", c.ids_per_cycle, IntRange{1, 1024}, "IDs/cycle",
+          "The ray IDs that the distributor hands to the testers.");
+  v.field("queue", c.queue, IntRange{1, 1024}, "IDs", "The number of ray IDs that wait at a tester.");
+  v.field(
+      "out_of_order", c.out_of_order, IntRange{0, 63}, "packets",
+      "The number of packets that testers may begin while an older one has not been tested. With 0 testers that are "
+      "done with a packet stand still until all are.");
+  v.choice("stragglers", c.stragglers,
+           "The results of a packet go on together when the last is there, or each when it is there.");
+  v.field("results_per_cycle", c.results_per_cycle, IntRange{1, 1024}, "results/cycle",
+          "The results that the decision point takes from the testers, those of older packets first.");
+  v.field("results", c.results, IntRange{1, 1024}, "results",
+          "The number of results of a tester that wait for the decision point.");
+}
+
+template <class V>
 void describe(V& v, TestersConfig& c) {
   for (const UnitKindRow& row : kUnitKinds) v.section_or_number(row.key, c.units[row.kind], row.meaning);
   v.section("simd", c.simd, "The lanes of the units.");
+  v.section("distributor", c.distributor, "Testers behind a distributor, with topology.form: distributor.");
   v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.");
   v.field("window", c.window, IntRange{1, 64}, "packets",
           "The number of packets at the front of a resource's input queue among which it takes the first that can go "

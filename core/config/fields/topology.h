@@ -139,7 +139,7 @@ void describe(V& v, TopologyConfig& c) {
   v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "The number of groups of a hierarchical network.");
   v.choice("form", c.form,
            "The form of a central machine: test cells (testers.simd.lanes), each for the rays of its places in ray "
-           "memory, or testers behind a distributor.");
+           "memory, or testers behind a distributor (testers.distributor).");
   v.choice("visit", c.visit,
            "A packet is handled by all resources, or only by the owners of its rays, which point_to_point implies.");
   v.choice("flow", c.flow, "The rule that keeps the links from filling up. The value none needs --force.");

@@ -82,21 +82,39 @@ class NetworkRules {
                           most, traffic.rate));
   }
 
-  /// US 9633468: one collection buffer, and for each cell the rays of its own places.
+  /// US 9633468: one collection buffer, and for each cell, or each tester behind the distributor, the rays of its own
+  /// places.
   void central_is_one_unit() {
     if (!cycle() || c.topology.shape != TopologyShape::kCentral) return;
+    const bool cells = has_cells(c);
     if (c.topology.resources != 1)
       breach_("topology.resources",
-              fmt::format("a central machine is one unit, with testers.simd.lanes cells; expected 1, found {}",
+              fmt::format("a central machine is one unit, with {}; expected 1, found {}",
+                          cells ? "testers.simd.lanes cells" : "testers.distributor.testers testers",
                           c.topology.resources));
-    if (!has_cells(c)) return;
-    if (c.testers.simd.map != TestersConfig::Simd::Map::kRays)
-      breach_("testers.simd.map", "a test cell holds a ray; expected rays, found shapes");
+    const char* one = cells ? "a test cell holds a ray" : "a tester tests one ray at a time";
+    if (cells && c.testers.simd.map != TestersConfig::Simd::Map::kRays)
+      breach_("testers.simd.map", fmt::format("{}; expected rays, found shapes", one));
     if (c.collections.traversal == Traversal::kTreelet)
       breach_("collections.traversal",
-              "test cells test the rays of a collection side by side; expected spread or ordered, found treelet");
-    if (c.bundles.size > 0)
-      breach_("bundles.size", fmt::format("a test cell holds a ray; expected 0, found {}", c.bundles.size));
+              fmt::format("{} test the rays of a collection side by side; expected spread or ordered, found treelet",
+                          cells ? "test cells" : "testers"));
+    if (c.bundles.size > 0) breach_("bundles.size", fmt::format("{}; expected 0, found {}", one, c.bundles.size));
+    if (!cells) testers_have_their_own_memory(one);
+  }
+
+  void testers_have_their_own_memory(const char* one) {
+    if (c.testers.simd.lanes > 1)
+      breach_("testers.simd.lanes", fmt::format("{}; expected 1, found {}", one, c.testers.simd.lanes));
+    const auto reads = [&](const char* key, std::int64_t found) {
+      if (found > 0)
+        breach_(key,
+                fmt::format("each tester reads a record a cycle from its own ray memory; expected 0, found {}", found));
+    };
+    reads("rays.reads_per_cycle", c.rays.reads_per_cycle);
+    reads("rays.banks", c.rays.banks);
+    if (!c.topology.overrides.empty())
+      breach_("topology.overrides", "all testers behind a distributor are equal; expected none");
   }
 
   void banks_are_read_together() {

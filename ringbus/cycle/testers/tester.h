@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "core/config/config.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/types/ids.h"
+#include "ringbus/cycle/testers/distributor.h"
 #include "ringbus/cycle/testers/lanes.h"
 #include "ringbus/cycle/testers/level_cycles.h"
 #include "ringbus/cycle/testers/ray_places.h"
+#include "ringbus/cycle/testers/ray_stages.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/cycle/testers/unit_passes.h"
 #include "ringbus/faults/resource_fault.h"
@@ -28,18 +33,20 @@ class Tester {
  public:
   using Order = CullPlanesConfig::Order;
   /// `reads_per_cycle`: as rays.reads_per_cycle; 0: reads take no time. `regrouped_per_cycle`: rays that the builder of
-  /// bundles takes. `banks_of_rays`: as rays.banks; 0: the store has one port.
+  /// bundles takes. `banks_of_rays`: as rays.banks; 0: the store has one port. `to_distributor`: its links with the
+  /// testers; null: there is none.
   explicit Tester(const TestersConfig& config, Order order = Order::kBoxFirst, std::int64_t reads_per_cycle = 0,
-                  std::int64_t regrouped_per_cycle = 1, std::int64_t banks_of_rays = 0)
+                  std::int64_t regrouped_per_cycle = 1, std::int64_t banks_of_rays = 0,
+                  const LinkConfig* to_distributor = nullptr)
       : store_({std::max<std::int64_t>(1, reads_per_cycle), 1, 1}),
         builder_({regrouped_per_cycle, 1, 1}),
         lanes_(config.simd),
         blocks_(config.bundle_blocks),
-        order_(order),
+        stages_{order, config.any_hit == TestersConfig::AnyHit::kInline},
         reads_cost_(reads_per_cycle > 0),
-        banks_of_rays_(static_cast<std::uint64_t>(banks_of_rays)),
-        inline_(config.any_hit == TestersConfig::AnyHit::kInline) {
+        banks_of_rays_(static_cast<std::uint64_t>(banks_of_rays)) {
     for (const auto [kind, bank] : banks_) bank = UnitBank(config.units[kind]);
+    if (to_distributor != nullptr) distributor_.emplace(config, stages_, *to_distributor);
   }
 
   /// The time of the last answer to the tests of one strip, started at `at`, for `reads` records, and for the passes
@@ -57,20 +64,25 @@ class Tester {
     return bundles.regrouped == 0 ? end : builder_.reserve(end, bundles.regrouped).last;
   }
 
+  /// The same behind a distributor, as Distributor::test().
+  void distribute(Cycle at, std::span<const std::uint32_t> slots, const IntersectionCounts& counts,
+                  std::uint64_t shape_bytes, std::vector<Cycle>& decided) {
+    for (const UnitKindRow& row : kUnitKinds)
+      passes_[row.kind] += row.stage == Stage::kAnyHit ? lookups(counts) : passes_of(row.kind, counts);
+    passes_[UnitKind::kTransform] += inversion_passes(counts);
+    distributor_->test(at, slots, counts, shape_bytes, decided);
+  }
+  Distributor* distributor() { return distributor_ ? &*distributor_ : nullptr; }
+  const Distributor* distributor() const { return distributor_ ? &*distributor_ : nullptr; }
+
   /// The same for a single ray, beside others.
   Cycle ray(Cycle at, const RayTests& ray) {
-    const auto beside = [&](UnitKind kind, Cycle from) {
-      return banks_[kind].reserve_beside(from, starts(kind, ray.tests[kind], {1})).last;
-    };
     if (ray.inversion > 0) at = invert(at, ray.inversion);
-    const Cycle moved = beside(UnitKind::kTransform, at);
-    const bool planes_first = order_ == Order::kPlanesFirst && ray.tests[UnitKind::kPlane] > 0;
-    const Cycle boxed = planes_first ? beside(UnitKind::kBox, beside(UnitKind::kPlane, moved))
-                                     : beside(UnitKind::kPlane, beside(UnitKind::kBox, moved));
-    Cycle met = moved;
+    PerUnit<std::uint64_t> vectors{};
     for (const UnitKindRow& row : kUnitKinds)
-      if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, moved));
-    return std::max(boxed, inline_ ? beside(UnitKind::kAnyHit, met) : met);
+      if (row.stage != Stage::kAnyHit || stages_.inline_any_hit)
+        vectors[row.kind] = starts(row.kind, ray.tests[row.kind], {1});
+    return stages_.through(banks_, at, vectors);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
   /// The end of the inversion of a matrix, which takes so many passes.
@@ -84,7 +96,9 @@ class Tester {
   /// Adds the cycles in which each bank was busy, from the last call until `now`, to those in `state`, the resource's
   /// state in all of these cycles.
   void account(TileState state, Cycle now) {
-    for (const auto [kind, bank] : banks_) units_[kind].account(bank, state, now);
+    for (const auto [kind, bank] : banks_)
+      distributor_ ? units_[kind].account(distributor_->units(kind), state, now)
+                   : units_[kind].account(bank, state, now);
     ray_reads_.account(store_, state, now);
     primitive_reads_.account(primitive_store_, state, now);
     accounted_ = now;
@@ -102,6 +116,7 @@ class Tester {
     result.primitive_ray_reads = primitive_reads_.use;
     result.second_reads = second_reads_;
     result.bank_conflicts = conflicts_;
+    if (distributor_) result.distributor = distributor_->counts();
   }
 
   /// Its busy cycles alone.
@@ -116,7 +131,8 @@ class Tester {
   /// The cycles before `at` in which each bank was busy. Times of calls, also of account(), must not decrease.
   PerUnit<Cycle> busy_before(Cycle at) {
     PerUnit<Cycle> busy{};
-    for (const auto [kind, bank] : banks_) busy[kind] = bank.busy_before(at);
+    for (const auto [kind, bank] : banks_)
+      busy[kind] = distributor_ ? distributor_->units(kind).busy_before(at) : bank.busy_before(at);
     return busy;
   }
   Cycle reads_before(Cycle at) { return store_.busy_before(at); }
@@ -141,7 +157,8 @@ class Tester {
   struct Ledger {
     BankUse use;
 
-    void account(UnitBank& bank, TileState state, Cycle now) {
+    template <class Bank>
+    void account(Bank&& bank, TileState state, Cycle now) {
       if (use.busy == bank.busy()) return;  // it has been idle since
       const Cycle busy = bank.busy_before(now);
       use.busy_in[static_cast<std::size_t>(state)] += busy - use.busy;
@@ -194,7 +211,7 @@ class Tester {
     UnitBank &box = banks_[UnitKind::kBox], &plane = banks_[UnitKind::kPlane];
     const std::uint64_t box_starts = starts(UnitKind::kBox, counts, of),
                         plane_starts = starts(UnitKind::kPlane, counts, of);
-    if (order_ == Order::kBoxFirst || counts.plane == 0)
+    if (stages_.order == Order::kBoxFirst || counts.plane == 0)
       return tested(plane, tested(box, moved, box_starts), plane_starts).last;
     return tested(box, tested(plane, moved, plane_starts), box_starts).last;
   }
@@ -208,7 +225,9 @@ class Tester {
     return tested(banks_[UnitKind::kAnyHit], met, starts(UnitKind::kAnyHit, lookups(counts), of)).last;
   }
   /// Any-hit calls that units of the resource answer.
-  std::uint64_t lookups(const IntersectionCounts& counts) const { return inline_ ? counts.any_hit_calls : 0; }
+  std::uint64_t lookups(const IntersectionCounts& counts) const {
+    return stages_.inline_any_hit ? counts.any_hit_calls : 0;
+  }
   Cycle inverted(Cycle at, const IntersectionCounts& counts) { return invert(at, inversion_passes(counts)); }
 
   PerUnit<UnitBank> banks_;
@@ -219,10 +238,10 @@ class Tester {
   PerUnit<Ledger> units_;
   Ledger ray_reads_, primitive_reads_;
   Cycle accounted_ = 0;
-  Order order_;
+  RayStages stages_;
+  std::optional<Distributor> distributor_;
   bool reads_cost_;
   std::uint64_t banks_of_rays_, conflicts_ = 0, second_reads_ = 0;  // see TileResult
-  bool inline_;
 };
 
 /// The testers of a resource: the machine's or its own, slowed by a fault, at the levels of accuracy.

@@ -19,7 +19,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       logic_(machine, resource_),
       ports_(std::move(ports)),
       tester_(settings.testers, settings.plane_order, settings.reads_per_cycle,
-              settings.resource.bundles.builder.rays_per_cycle, settings.banks),
+              settings.resource.bundles.builder.rays_per_cycle, settings.banks,
+              settings.has_distributor ? &settings.link : nullptr),
       shapes_(settings.memory, settings.link, ports_),
       completed_port_(settings.link, ports_),
       travelling_(machine, id, settings.link),
@@ -34,6 +35,8 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       visit_all_(machine.topology.visits_all()),
       cuts_through_(!visit_all_ && !machine.topology.direct()),
       broadcasts_(machine.topology.broadcasts()),
+      two_outputs_(settings.central),
+      forwards_(settings.testers.distributor.stragglers == TestersConfig::Distributor::Stragglers::kForward),
       fetch_by_resource_(settings.memory.fetch != MemoryConfig::Fetch::kPacket),
       multicast_(settings.memory, id, machine.topology.resources()),
       contexts_fetch_(!machine.stays &&

@@ -19,6 +19,7 @@
 #include "ringbus/cycle/tile/rays_in_test.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/resource_samples.h"
+#include "ringbus/cycle/tile/result_times.h"
 #include "ringbus/cycle/tile/round_trips.h"
 #include "ringbus/cycle/tile/shade_help.h"
 #include "ringbus/cycle/tile/spill_memory.h"
@@ -85,6 +86,7 @@ class Tile final : public ResourceAgent {
     std::uint32_t reads = 0;    // records read for them
     BundlePasses bundle_passes;
     RayPlaces places{};
+    ResultTimes results;                // behind a distributor
     AnyHitQuestion question;            // asked when the tests are done
     std::vector<std::uint32_t> tested;  // slots of its rays, for RaysInTest
     HitBatch completed;                 // rays handed over then, with the slots they leave
@@ -108,7 +110,7 @@ class Tile final : public ResourceAgent {
   void note_admitted(std::span<const RayId> rays);
   void note_tested(const Packet& packet, PacketId id, Cycle at);
   Hit hit_of(RayId ray) const;
-  void note_retired(PacketId id);
+  void note_retired(const Packet& packet, PacketId id);
   void note_done(Cycle now);
 
   std::uint64_t hops() const;
@@ -181,21 +183,28 @@ class Tile final : public ResourceAgent {
   void begin_test(Context& context, PacketId id, Cycle at, bool has_data);
   void start(Context& context, Cycle now);
   void compute(Context& context, Cycle at);
+  void distribute(Context& context, Cycle at);
   bool fetches_ahead(const Packet& packet) const;
   ShapeNeed shape_data(const Packet& packet, bool transform) const;
   void end_test(Context& context, Cycle now);
+  void end_part(Context& context, Cycle now);
   void ask(Context& context, Cycle now);
   void depart(PacketId id, Cycle ready, bool reserved);
   void count_sent(const Packet& packet, const PacketLoad& load, bool answers);
   bool take_answer(std::size_t d, Cycle now);
   void test_own_rays(Context& context, PacketId id, Cycle now);
   void retire_at_owner(PacketId id, std::size_t entries);
+  void retire_part(PacketId id, Cycle now);
   void take_completed(HitBatch& rays, std::vector<std::uint32_t>& slots);
   void hand_over(Cycle now);
   std::size_t read_on_visit(const Packet& packet) const {
     return packet_size_.read_on_visit(packet, memory_, resource_.is_treelet(packet.key));
   }
   std::size_t read_at_owner(const Packet& packet) const {
+    // What has met primitives goes past the collections, but for rays that have other nodes to visit.
+    if (two_outputs_ && !packet.key.ref.is_inner())
+      return static_cast<std::size_t>(
+          std::count_if(packet.next.begin(), packet.next.end(), [](const NextNode& next) { return next.any; }));
     return packet_size_.read_at_owner(packet, memory_, resource_.is_treelet(packet.key), broadcasts_);
   }
   void note_answered(Packet& packet, std::size_t before) const;
@@ -229,7 +238,8 @@ class Tile final : public ResourceAgent {
   Cycle ids_per_cycle_, sort_rate_;
   SideWire question_wire_;
   std::size_t issue_places_;
-  bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;
+  bool visit_all_, cuts_through_, broadcasts_;
+  bool two_outputs_, forwards_, fetch_by_resource_;
   Multicast multicast_;
   bool contexts_fetch_;  // packets travel, and wait in the contexts of others for shapes
   Partial partial_;
@@ -251,6 +261,7 @@ class Tile final : public ResourceAgent {
   Cycle next_partial_ = kNever;  // a collection that is not ready may go then
   std::size_t issued_ = 0;
   std::vector<Context> contexts_;
+  PacketPart part_;  // scratch
   ContextPhases phases_;
   SubtreeVisits visits_;
   bool storage_full_ = false;

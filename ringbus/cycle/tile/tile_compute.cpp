@@ -33,6 +33,8 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   context.reads = outcome.reads;
   context.bundle_passes = outcome.bundle_passes;
   context.places = places_.of(resource_.tested());
+  if (tester_.distributor() != nullptr)
+    context.results.slots.assign(resource_.tested().begin(), resource_.tested().end());
   for (const AnyHitCall& call : outcome.any_hit_calls) {
     context.question.slots.push_back(call.slot);
     context.question.times += call.times;
@@ -85,8 +87,17 @@ void Tile::start(Context& context, Cycle now) {
 
 void Tile::compute(Context& context, Cycle at) {
   context.begun = at;
+  if (tester_.distributor() != nullptr) return distribute(context, at);
   enter(context, ContextPhase::kComputing,
         tester_.strip(at, context.counts, context.reads, context.bundle_passes, context.places));
+}
+
+/// The same behind a distributor, which says when each result is there.
+void Tile::distribute(Context& context, Cycle at) {
+  const ShapeNeed shapes = shape_data(machine_.packet(context.packet), context.counts.transforms > 0);
+  tester_.distribute(at, context.results.slots, context.counts, shapes[0].bytes + shapes[1].bytes,
+                     context.results.cycles);
+  enter(context, ContextPhase::kComputing, forwards_ ? context.results.first() : context.results.last());
 }
 
 /// Rays in subtrees go on, and those whose data has come begin their tests, then packets likewise.
@@ -115,6 +126,11 @@ bool Tile::finish_tests(Cycle now) {
 void Tile::end_test(Context& context, Cycle now) {
   const PacketId id = context.packet;
   const Packet& packet = machine_.packet(id);
+  if (Distributor* distributor = tester_.distributor(); distributor != nullptr) {
+    const std::size_t due = context.results.due(now);
+    distributor->part_went_on(due);
+    if (due < context.results.size()) return end_part(context, now);
+  }
   trace_.note(now, StepKind::kTested, id.value, packet.members.size());
   if (recording_.slices != nullptr) [[unlikely]]
     note_test(context, now);
@@ -126,8 +142,22 @@ void Tile::end_test(Context& context, Cycle now) {
   take_completed(context.completed, context.freed_slots);
   if (logic_.leaves_after_test(packet)) return depart(id, now, true);
   const std::size_t entries = read_at_owner(packet);
-  occupy_dispatch(now, entries, SliceKind::kRetire, id);
+  if (entries > 0) occupy_dispatch(now, entries, SliceKind::kRetire, id);
   retire_at_owner(id, entries);
+}
+
+/// Behind a distributor that forwards stragglers: results that are there go on, and those members leave the packet.
+void Tile::end_part(Context& context, Cycle now) {
+  Packet& packet = machine_.packet(context.packet);
+  context.results.take_due(now, packet, part_.packet, part_.slots);
+  enter(context, ContextPhase::kComputing, context.results.first());
+  part_.take_completed(context.completed, context.freed_slots);
+  if (!context.tested.empty()) {
+    context.tested = context.results.slots;
+    in_test_.end(part_.slots);
+  }
+  take_completed(part_.completed, part_.freed_slots);
+  retire_part(context.packet, now);
 }
 
 void Tile::ask(Context& context, Cycle now) {

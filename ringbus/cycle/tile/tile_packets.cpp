@@ -83,10 +83,22 @@ void Tile::retire_at_owner(PacketId id, std::size_t entries) {
   Packet& packet = machine_.packet(id);
   trace_.note(now_, StepKind::kRetire, id.value, packet.members.size());
   if (recording_.ray != nullptr) [[unlikely]]
-    note_retired(id);
+    note_retired(packet, id);
   trips_.return_home(id.value, now_);
   sort_ids(logic_.retire(id, packet), entries, id);
   write_spilled(now_);
+}
+
+/// The members of part_ come back before the rest of the packet.
+void Tile::retire_part(PacketId id, Cycle now) {
+  Packet& part = part_.packet;
+  trace_.note(now, StepKind::kRetire, id.value, part.members.size());
+  if (recording_.ray != nullptr) [[unlikely]]
+    note_retired(part, id);
+  const std::size_t entries = read_at_owner(part);
+  if (entries > 0) occupy_dispatch(now, entries, SliceKind::kRetire, id);
+  sort_ids(resource_.retire_part(part), entries, id);
+  write_spilled(now);
 }
 
 /// The `joined` ray IDs that join collections are put in order of what comes next (US 9633468). Dispatch, which has

@@ -66,8 +66,7 @@ Hit Tile::hit_of(RayId ray) const {
   return store.records()[store.layout().slot(ray)].hit;  // the ray may have left the slot a moment ago
 }
 
-void Tile::note_retired(PacketId id) {
-  const Packet& packet = machine_.packet(id);
+void Tile::note_retired(const Packet& packet, PacketId id) {
   const auto member = recording_.ray->ray->find(packet.members);
   if (!member) return;
   recording_.ray->facts.push_back({.kind = RayFact::Kind::kRetired,

@@ -16,6 +16,7 @@ struct TileSettings {
   CullPlanesConfig::Order plane_order = CullPlanesConfig::Order::kBoxFirst;
   std::int64_t reads_per_cycle = 0;
   std::int64_t cells = 0, banks = 0;  ///< that hold its slots in turn; 0: none
+  bool central = false, has_distributor = false;
   MemoryConfig memory;
   LinkConfig link;
   FaultsConfig::Resource fault;
@@ -33,6 +34,8 @@ inline TileSettings tile_settings(const Config& config, ResourceId id, float sce
           config.rays.reads_per_cycle,
           has_cells(config) ? testers_of(config, id).simd.lanes : 0,
           config.rays.banks,
+          config.topology.shape == TopologyShape::kCentral,
+          has_distributor(config),
           config.memory,
           config.topology.link,
           config.faults.resource,

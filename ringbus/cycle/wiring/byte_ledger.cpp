@@ -64,6 +64,27 @@ ByteRow ray_data(const SimulatedMachine& machine, const MemoryConfig& memory) {
   return row;
 }
 
+/// What goes from the distributor to its testers, and from them to the decision point.
+void add_distributor(std::vector<ByteRow>& rows, const SimulatedMachine& machine, const Config& config) {
+  constexpr std::uint64_t kId = 4, kMask = 1, kNext = 12;
+  const std::uint64_t result = kId + (config.collections.traversal == Traversal::kOrdered ? kNext : kMask);
+  const TestersConfig::Distributor& of = config.testers.distributor;
+  const DistributorCounts counts = *machine.resources().front()->result().distributor;
+  ByteRow ids{"ray IDs", "distributor", "testers", "wires of IDs", kId * static_cast<std::uint64_t>(of.ids_per_cycle)};
+  ByteRow shapes{"shapes", "distributor", "testers", "bus of shapes",
+                 static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle)};
+  ByteRow results{"results", "testers", "decision point", "wires of results",
+                  result * static_cast<std::uint64_t>(of.results_per_cycle)};
+  ids.messages = results.messages = counts.ids;
+  ids.bytes = kId * counts.ids;
+  ids.bytes_taken = kId * counts.results;
+  shapes.messages = counts.packets;
+  shapes.bytes = shapes.bytes_taken = counts.shape_bytes;
+  results.bytes = result * counts.ids;
+  results.bytes_taken = result * counts.results;
+  rows.insert(rows.end(), {ids, shapes, results});
+}
+
 }  // namespace
 
 std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& config) {
@@ -133,6 +154,7 @@ std::vector<ByteRow> byte_ledger(const SimulatedMachine& machine, const Config& 
     for (const auto& channels : machine.channels()) add(pushed, *channels->ports().pushed);
     rows.push_back(pushed);
   }
+  if (has_distributor(config)) add_distributor(rows, machine, config);
   if (!machine.memory().own_caches().empty()) rows.insert(rows.end(), {own_addresses, own_data});
   return rows;
 }

@@ -42,9 +42,19 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"Shape", SCENE "topology: {shape: bus}\n",
                   "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
                   "point_to_point"},
-        BadConfig{"CentralForm",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 1}\n",
-                  "test.yaml:3:34: topology.form: distributor is not built yet; expected cells"},
+        BadConfig{"DistributorUnit",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 2}\n",
+                  "test.yaml:3:58: topology.resources: a central machine is one unit, with testers.distributor.testers "
+                  "testers; expected 1, found 2"},
+        BadConfig{"DistributorLanes",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 1}\n"
+                        "testers: {simd: {lanes: 8}}\n",
+                  "test.yaml:4:25: testers.simd.lanes: a tester tests one ray at a time; expected 1, found 8"},
+        BadConfig{"DistributorBanks",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 1}\n"
+                        "rays: {banks: 4}\n",
+                  "test.yaml:4:15: rays.banks: each tester reads a record a cycle from its own ray memory; expected 0, "
+                  "found 4"},
         BadConfig{"CentralUnit", SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 4}\n",
                   "test.yaml:3:39: topology.resources: a central machine is one unit, with testers.simd.lanes cells; "
                   "expected 1, found 4"},

@@ -20,6 +20,16 @@ void as_cells(Config& c) {
   c.testers.units[UnitKind::kBox] = {1, 1, 1};
 }
 
+void as_distributor(Config& c) {
+  c.topology.shape = TopologyShape::kCentral;
+  c.topology.form = CentralForm::kDistributor;
+  c.topology.resources = 1;
+  c.topology.link = {.latency_cycles = 1, .bytes_per_cycle = 1024};
+  c.testers.units[UnitKind::kBox] = {1, 1, 1};
+  c.testers.distributor = {
+      .testers = 8, .ids_per_cycle = 16, .queue = 64, .out_of_order = 8, .results_per_cycle = 16, .results = 64};
+}
+
 void shade_in_vectors(Config& c, std::int64_t lanes) {
   c.shading.workers = 1;
   c.shading.cycles_per_shade = 200;
@@ -76,6 +86,28 @@ TEST(WhatIf, EveryLiftIsNoticed) {
       {"sorting", [](Config& c) { c.collections.sort_ids_per_cycle = 1; }},
       {"ray_banks", [](Config& c) { as_cells(c), c.rays.banks = 1; }},
       {"cells", [](Config& c) { as_cells(c), c.testers.simd.lanes = 2; }},
+      {"distributed_testers", [](Config& c) { as_distributor(c), c.testers.distributor.testers = 1; }},
+      {"handing_out", [](Config& c) { as_distributor(c), c.testers.distributor.ids_per_cycle = 1; }},
+      {"tester_queues",
+       [](Config& c) {
+         as_distributor(c);
+         c.testers.distributor.queue = c.testers.distributor.results = 1;
+         c.topology.link.latency_cycles = 50;
+       }},
+      {"out_of_order",
+       [](Config& c) {
+         as_distributor(c);
+         c.testers.distributor.out_of_order = 0;
+         c.topology.link.latency_cycles = 50;
+       }},
+      {"decision_point", [](Config& c) { as_distributor(c), c.testers.distributor.results_per_cycle = 1; }},
+      {"stragglers",
+       [](Config& c) {
+         as_distributor(c);
+         c.testers.distributor.testers = 2;
+         c.testers.units[UnitKind::kBox] = {1, 20, 20};
+       },
+       0.1},
       {"shading_lanes", [](Config& c) { shade_in_vectors(c, 2); }},
       {"shading_order", [](Config& c) { shade_in_vectors(c, 8); }},
       {"shading_sorter",

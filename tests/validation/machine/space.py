@@ -100,7 +100,16 @@ def draw(seed, index):
     if (resources == 1 and topology["shape"] in ("ring", "bidirectional", "multi_ring") and traversal != "treelet" and
             r.random() < 0.7):
         config["topology"]["shape"] = "central"
-        config["testers"]["simd"].update(lanes=pick([2, 5, 8]), map="rays")
+        if r.random() < 0.6:
+            config["topology"]["form"] = "distributor"
+            config["testers"]["simd"].update(lanes=1)
+            config["rays"].update(banks=0, reads_per_cycle=0)
+            config["testers"]["distributor"] = {
+                "testers": pick([1, 2, 5]), "ids_per_cycle": pick([1, 3, 16]), "queue": pick([1, 2, 8]),
+                "out_of_order": pick([0, 1, 3]), "stragglers": pick(["wait", "forward"]),
+                "results_per_cycle": pick([1, 2, 8]), "results": pick([1, 2, 8])}
+        else:
+            config["testers"]["simd"].update(lanes=pick([2, 5, 8]), map="rays")
     if config["topology"]["shape"] != "independent" and memory["fetch"] != "multicast":
         config["testers"]["own_rays"] = pick(["before", "after"])
     if config["topology"]["shape"] != "independent":

@@ -2,6 +2,7 @@
 from collections import Counter
 
 from .clock import ceil_div
+from .distributor import Distributor
 
 BOX, TRIANGLE, PLANE, BUNDLE, TRANSFORM, PROCEDURAL, ANY_HIT = (
     "box", "triangle", "plane", "bundle", "transform", "procedural", "any_hit_unit")
@@ -73,13 +74,17 @@ class Testers:
         accuracy = config["accuracy"]
         longer = {TRIANGLE: accuracy["triangle"] in ("double", "exact"), BOX: accuracy["box"] == "double",
                   TRANSFORM: accuracy["transform"] == "two_step_double"}
-        self.banks = {k: Bank(t[k]["units"], t[k]["interval_cycles"] * (DOUBLE_PASSES if longer.get(k) else 1),
-                              t[k]["latency_cycles"]) for k in KINDS}
+        new_banks = lambda: {k: Bank(t[k]["units"], t[k]["interval_cycles"] * (DOUBLE_PASSES if longer.get(k) else 1),
+                                     t[k]["latency_cycles"]) for k in KINDS}
+        self.banks = new_banks()
+        central = config["topology"]["shape"] == "central"
+        form = config["topology"].get("form", "cells")
+        self.distributor = Distributor(config, new_banks) if central and form == "distributor" else None
         self.simd, self.window = t["simd"], t["window"]
         self.reads_per_cycle = config["rays"]["reads_per_cycle"]
         self.store = Bank(max(1, self.reads_per_cycle), 1, 1)
         self.ray_banks, self.primitive_store = config["rays"]["banks"], Bank(1, 1, 1)
-        self.cells = self.simd["lanes"] if config["topology"]["shape"] == "central" else 0
+        self.cells = self.simd["lanes"] if central and form == "cells" else 0
 
     def vectors(self, tests, rays, slots=()):
         """Starts of units with lanes: a vector of rays against a shape, or of shapes against a ray."""
@@ -125,6 +130,10 @@ class Testers:
         for kind in (TRIANGLE, PROCEDURAL):
             end = max(end, self._behind(self.banks[kind], moved, self.vectors(counts.passes(kind), reads, slots))[1])
         return end + (self.simd["reformat_cycles"] if self.simd["lanes"] > 1 else 0)
+
+    def distribute(self, at, counts, slots, shape_bytes):
+        passes = {kind: counts.passes(kind) for kind in (BOX, TRIANGLE, TRANSFORM, PROCEDURAL)}
+        return self.distributor.test(at, slots, passes, counts.inversion_passes(), shape_bytes)
 
     def read(self, at, records):
         return self.store.reserve_beside(at, records) if self.reads_per_cycle > 0 else at

@@ -54,6 +54,8 @@ class Tile(Issues, Tests, Travel, Window):
         self.bubble = config["topology"]["flow"] == "bubble" and not self.topology.bus
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
         self.own_last = config["testers"]["own_rays"] == "after"
+        self.central = config["topology"]["shape"] == "central"
+        self.forwards = config["testers"].get("distributor", {}).get("stragglers") == "forward"
         self.start_travel(config)
         self.contexts = [Context() for _ in range(config["testers"]["contexts"])]
         each = (config["testers"]["contexts"] + 1 + config["memory"]["fetch_ahead"]
@@ -258,6 +260,8 @@ class Tile(Issues, Tests, Travel, Window):
         return self.size.on_visit(packet, self.is_treelet(packet))
 
     def read_at_owner(self, packet):
+        if self.central and not self.nodes[packet.node].inner:  # past the collections
+            return sum(following is not None for following in packet.next)
         return self.size.at_owner(packet, self.is_treelet(packet), self.topology.bus)
 
     def test_own(self, packet, now):
@@ -265,6 +269,14 @@ class Tile(Issues, Tests, Travel, Window):
         self.trace.note(now, self.number, "take", packet.number, len(packet.rays))
         self.dispatch(now, self.read_on_visit(packet))
         self.begin_test(self.free_context(), packet, self.dispatch_free, False)
+
+    def retire_part(self, part, now, entries):
+        self.trace.note(now, self.number, "retire", part.number, len(part.rays))
+        held = self.resource.collections.memberships()
+        self.resource.retire(part, now)
+        self.resource.in_flight += 1  # the rest of the packet
+        self.sort(now, self.resource.collections.memberships() - held, entries)
+        self.write_spilled(now)
 
     def retire(self, packet, now, entries):
         """Dispatch has read so many entries of it."""

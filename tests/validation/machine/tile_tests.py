@@ -1,4 +1,6 @@
 """The tests of a packet at a resource ("Shapes", "Finish tests")."""
+import copy
+
 from .shape_buffer import User
 from .walk import Visit
 
@@ -47,6 +49,11 @@ class Tests:
             context.phase = FETCHING
 
     def compute(self, context, now):
+        if self.testers.distributor:
+            shapes = self.shape_data(context.packet, context.tests.transforms > 0)
+            context.results = self.testers.distribute(now, context.tests, context.slots, sum(span[1] for span in shapes))
+            context.phase, context.at = COMPUTING, (min if self.forwards else max)(context.results)
+            return self.clock.wake(context.at)
         context.phase, context.at = COMPUTING, self.testers.strip(now, context.tests, context.slots)
         self.clock.wake(context.at)
 
@@ -67,6 +74,9 @@ class Tests:
                 continue
             moved = True
             packet = context.packet
+            if context.phase == COMPUTING and self.testers.distributor and max(context.results) > now:
+                self.end_part(context, now)
+                continue
             self.trace.note(now, self.number, "tested", packet.number, len(packet.rays))
             if context.phase == COMPUTING:
                 self.shapes.release(context.user, now)
@@ -74,12 +84,36 @@ class Tests:
             self.hand_over(context.completed)
             if packet.owner == self.number and (self.own_last or not self.travels(packet)):
                 entries = self.read_at_owner(packet)
-                self.dispatch(now, entries)
+                if entries > 0:
+                    self.dispatch(now, entries)
                 self.retire(packet, now, entries)
             else:
                 self.out_ports[packet.direction].reserved -= 1
                 self.depart(packet, now)
         return moved
+
+    def end_part(self, context, now):
+        """Behind a distributor that forwards stragglers: what is there goes on."""
+        there = [at <= now for at in context.results]
+        split = lambda values: ([v for v, t in zip(values, there) if t], [v for v, t in zip(values, there) if not t])
+        packet, part = context.packet, copy.copy(context.packet)
+        part.rays, packet.rays = split(packet.rays)
+        part.masks, packet.masks = split(packet.masks)
+        part.next, packet.next = split(packet.next)
+        part.answered = min(packet.answered, len(part.rays))
+        packet.answered -= part.answered
+        part.blocks = 0
+        _, context.results = split(context.results)
+        _, context.rays = split(context.rays)
+        done = [ray for ray in context.completed if ray in part.rays]
+        context.completed = [ray for ray in context.completed if ray not in part.rays]
+        context.at = min(context.results)
+        self.clock.wake(context.at)
+        self.hand_over(done)
+        entries = self.read_at_owner(part)
+        if entries > 0:
+            self.dispatch(now, entries)
+        self.retire_part(part, now, entries)
 
     def hand_over(self, completed):
         """Those that another visit still tests are kept back."""

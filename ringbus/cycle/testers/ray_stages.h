@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/config/config.h"
+#include "ringbus/cycle/testers/unit_bank.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The way of a single ray through units of each kind (core/types/unit_kind.h): to model space, then boxes and planes,
+/// beside primitives of all kinds and their opacity.
+struct RayStages {
+  CullPlanesConfig::Order order = CullPlanesConfig::Order::kBoxFirst;
+  bool inline_any_hit = true;
+
+  /// The last answer to `starts` tests of each kind, the first at `at`, beside the tests of others.
+  Cycle through(PerUnit<UnitBank>& units, Cycle at, const PerUnit<std::uint64_t>& starts) const {
+    const auto beside = [&](UnitKind kind, Cycle from) { return units[kind].reserve_beside(from, starts[kind]).last; };
+    const Cycle moved = beside(UnitKind::kTransform, at);
+    const bool planes_first = order == CullPlanesConfig::Order::kPlanesFirst && starts[UnitKind::kPlane] > 0;
+    const Cycle boxed = planes_first ? beside(UnitKind::kBox, beside(UnitKind::kPlane, moved))
+                                     : beside(UnitKind::kPlane, beside(UnitKind::kBox, moved));
+    Cycle met = moved;
+    for (const UnitKindRow& row : kUnitKinds)
+      if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, moved));
+    return std::max(boxed, inline_any_hit ? beside(UnitKind::kAnyHit, met) : met);
+  }
+};
+
+}  // namespace carousel::ringbus::cycle
