@@ -34,7 +34,6 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"accuracy.invert", "", kNative, "choice of stored matrices"},
     {"bundles.edges", "parallel", kNative, "clock for parallel edges"},
     {"testers.window", "", kNative, "choice among packets that have arrived"},
-    {"packets.made_per", "child", kBoth},
     {"energy.profile", "n45", kNative, "count of joules"},
     {"energy.profile", "n7", kNative, "count of joules"},
     {"testers.any_hit", "shader", kNative, "any-hit calls by shader workers"},

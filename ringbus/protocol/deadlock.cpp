@@ -15,8 +15,8 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
   if (config.collections.when_full == WhenFull::kSpill || !Topology(config.topology).has_packets()) return 0;
   if (one_collection_a_ray(config.collections.traversal)) return 1;
-  const std::int64_t reserve = reserve_blocks(config.collections, config.bundles, width, max_depth);
-  const std::int64_t children = width * std::max<std::int64_t>(1, config.bundles.size);
+  const std::int64_t reserve = reserve_blocks(config.collections, config.packets, config.bundles, width, max_depth);
+  const std::int64_t children = most_blocks(config.packets, config.bundles, width);
   return 2 * (reserve + children + 1) * config.packets.rays;
 }
 

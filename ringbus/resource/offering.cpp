@@ -37,13 +37,15 @@ std::optional<CollectionId> Offering::choose(bool partial, bool& storage) {
 
 void Offering::take(CollectionId chosen) {
   block_.key = collections_.key(chosen);
+  block_.shape = collections_.shape(chosen);
   block_.depth = collections_.depth(chosen);
   block_.entry = collections_.entry(chosen);
   collections_.take(chosen, block_.rays);
   block_.next_packet = 0;
   // Memberships that move to another home are not tested on their way: one packet carries them.
   const bool tested = homes_.of(block_.key) == rays_.owner();
-  block_.packets = tested ? static_cast<std::uint32_t>(traversal_.tests_at(block_.key)) : 1;
+  const std::int32_t packets = tested ? traversal_.tests_at(block_.key) / traversal_.collections_at(block_.key) : 1;
+  block_.packets = static_cast<std::uint32_t>(packets);
 }
 
 void Offering::fill(Packet& packet) {
@@ -53,7 +55,7 @@ void Offering::fill(Packet& packet) {
   packet.kind = packet.home == packet.owner ? PacketKind::kTest : PacketKind::kMemberships;
   packet.key = block_.key;
   packet.depth = block_.depth;
-  packet.lanes = traversal_.lanes(block_.next_packet);
+  packet.lanes = traversal_.lanes(block_.shape + block_.next_packet);
   packet.reserved_blocks = packet.kind == PacketKind::kTest
                                ? traversal_.blocks_needed(block_.key, static_cast<std::uint32_t>(rays.size()))
                                : 0;

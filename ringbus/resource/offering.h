@@ -57,6 +57,7 @@ class Offering {
   struct Block {
     std::vector<RayId> rays;
     accel::NodeKey key;
+    std::uint8_t shape = 0;
     std::uint16_t depth = 0;
     float entry = 0;
     std::uint32_t next_packet = 0, packets = 0;

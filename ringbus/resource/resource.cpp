@@ -1,6 +1,7 @@
 #include "ringbus/resource/resource.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "ringbus/resource/traversal/make_traversal.h"
 #include "ringbus/resource/visit/visit_context.h"
@@ -27,8 +28,13 @@ CollectionStore::Settings collection_settings(const ResourceSettings& settings, 
 }
 
 TraversalSettings traversal_settings(const ResourceSettings& settings) {
-  return {settings.collections.traversal, settings.collections.order, settings.packets.shapes, settings.bundles,
-          settings.treelet_triangles,     settings.scene_size};
+  return {settings.collections.traversal,
+          settings.collections.order,
+          settings.packets.shapes,
+          settings.packets.made_per,
+          settings.bundles,
+          settings.treelet_triangles,
+          settings.scene_size};
 }
 
 }  // namespace
@@ -42,7 +48,8 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
       collections_(collection_settings(settings, accel, hooks.spills_take_time)),
       homes_(settings.collections.home, store.owner(), settings.resources, accel.partition.get()),
       storage_(settings.collections, block_rays(settings.collections, settings.packets),
-               reserve_blocks(settings.collections, settings.bundles, accel.width, accel.max_depth), collections_),
+               reserve_blocks(settings.collections, settings.packets, settings.bundles, accel.width, accel.max_depth),
+               initial_collections(traversal_settings(settings), accel), collections_),
       completion_(store, hooks.transforms),
       any_hit_(store, hooks.hold_any_hit_rays),
       traversal_(make_traversal(
@@ -59,8 +66,11 @@ std::int32_t Resource::initial_tests(const ResourceSettings& settings, const acc
 }
 
 void Resource::admit(std::span<const RayId> rays) {
+  const std::int32_t shapes = traversal_->collections_at(root_);
   for (std::size_t i = 0; i < rays.size(); i += packet_rays_)
-    collections_.add(root_, 0, 0.0f, rays.subspan(i, std::min(packet_rays_, rays.size() - i)));
+    for (std::int32_t shape = 0; shape < shapes; ++shape)
+      collections_.add(root_, 0, 0.0f, rays.subspan(i, std::min(packet_rays_, rays.size() - i)),
+                       static_cast<std::uint8_t>(shape));
   storage_.admit(rays.size());
   record({.kind = EventKind::kAdmit, .resource = id(), .rays = static_cast<std::uint32_t>(rays.size())});
 }
@@ -116,7 +126,8 @@ std::size_t Resource::join_children(Packet& packet, EventKind kind) {
 void Resource::join(Packet& packet) {
   ids_.clear();
   for (const PacketMember& member : packet.members) ids_.push_back(member.ray);
-  collections_.add(packet.key, packet.depth, packet.nearest[0], ids_);
+  collections_.add(packet.key, packet.depth, packet.nearest[0], ids_,
+                   static_cast<std::uint8_t>(std::countr_zero(packet.lanes)));
   packet.members.clear();
 }
 

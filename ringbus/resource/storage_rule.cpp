@@ -6,10 +6,15 @@
 
 namespace carousel::ringbus {
 
-std::uint32_t reserve_blocks(const CollectionsConfig& collections, const BundlesConfig& bundles, int width,
-                             int max_depth) {
+std::int64_t most_blocks(const PacketsConfig& packets, const BundlesConfig& bundles, int width) {
+  if (packets.made_per == MadePer::kChild) return std::max<std::int64_t>(width, accel::kMaxLeafTriangles);
+  return width * std::max<std::int64_t>(1, bundles.size);
+}
+
+std::uint32_t reserve_blocks(const CollectionsConfig& collections, const PacketsConfig& packets,
+                             const BundlesConfig& bundles, int width, int max_depth) {
   if (one_collection_a_ray(collections.traversal)) return 0;
-  const int children = width * static_cast<int>(std::max<std::int64_t>(1, bundles.size));
+  const std::int64_t children = most_blocks(packets, bundles, width);
   return static_cast<std::uint32_t>((children - 1) * (max_depth + 1) + children);
 }
 
@@ -18,12 +23,13 @@ std::int64_t block_rays(const CollectionsConfig& collections, const PacketsConfi
 }
 
 StorageRule::StorageRule(const CollectionsConfig& config, std::int64_t block_rays, std::uint32_t reserve,
-                         const CollectionStore& store)
+                         std::int64_t collections, const CollectionStore& store)
     : bounded_(config.when_full == WhenFull::kReserve),
       single_(one_collection_a_ray(config.traversal)),
       block_rays_(block_rays),
       blocks_(config.capacity / block_rays),
       reserve_(reserve),
+      collections_(collections),
       store_(store) {}
 
 std::size_t StorageRule::admissible() const {
@@ -33,7 +39,7 @@ std::size_t StorageRule::admissible() const {
   if (single_) return static_cast<std::size_t>(std::max<std::int64_t>(0, blocks_ - rays_held_));
   // Only above half free: the new rays in the root's collection must never crowd out their children.
   const std::int64_t room = store_.free_blocks() - blocks_promised_ - std::max<std::int64_t>(reserve_, blocks_ / 2);
-  return room <= 0 ? 0 : static_cast<std::size_t>(room * block_rays_);
+  return room <= 0 ? 0 : static_cast<std::size_t>(room / collections_ * block_rays_);
 }
 
 bool StorageRule::fits(std::uint32_t needed, std::uint32_t freed) const {

@@ -10,10 +10,13 @@ namespace carousel::ringbus {
 
 /// Collection blocks that must stay free so that draining deepest first cannot run out (DESIGN.md section 4): a packet
 /// retired at each level leaves at most width - 1 more blocks than it took, and one more strip's worth is in flight.
-/// With bundles an ID may become as many at one level as a bundle has rays. None are needed where a ray is in one
+/// Of packets made per child, an ID becomes as many as a child has shapes. With bundles an ID may become as many at one
+/// level as a bundle has rays. None are needed where a ray is in one
 /// collection at a time, as a new ray enters only if a place is left for it.
-std::uint32_t reserve_blocks(const CollectionsConfig& collections, const BundlesConfig& bundles, int width,
-                             int max_depth);
+std::uint32_t reserve_blocks(const CollectionsConfig& collections, const PacketsConfig& packets,
+                             const BundlesConfig& bundles, int width, int max_depth);
+/// Blocks that a packet's retirement may take at most.
+std::int64_t most_blocks(const PacketsConfig& packets, const BundlesConfig& bundles, int width);
 
 /// IDs in a block of collection storage: packets.rays, or 1 where a ray is in one collection at a time. There the rays
 /// of a packet may join as many collections as they are, each with a block of its own, so that larger blocks would
@@ -24,8 +27,9 @@ std::int64_t block_rays(const CollectionsConfig& collections, const PacketsConfi
 /// packet may be issued. With `when_full: spill` everything may.
 class StorageRule {
  public:
-  /// `reserve` as reserve_blocks() says, `block_rays` as block_rays() does. Keeps a reference to `store`.
-  StorageRule(const CollectionsConfig& config, std::int64_t block_rays, std::uint32_t reserve,
+  /// `reserve` as reserve_blocks() says, `block_rays` as block_rays() does. `collections`: that a new ray
+  /// joins. Keeps a reference to `store`.
+  StorageRule(const CollectionsConfig& config, std::int64_t block_rays, std::uint32_t reserve, std::int64_t collections,
               const CollectionStore& store);
 
   /// How many rays may join the root's collection now.
@@ -44,6 +48,7 @@ class StorageRule {
   bool bounded_, single_;  // single_: a ray is in one collection at a time, a block holds one ID
   std::int64_t block_rays_, blocks_;
   std::uint32_t reserve_;
+  std::int64_t collections_;
   const CollectionStore& store_;
   std::uint32_t blocks_promised_ = 0;  // to packets in flight
   std::uint32_t rays_held_ = 0;        // in collections or in packets; counted with single_

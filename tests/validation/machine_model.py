@@ -57,7 +57,7 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "memory.fetch": {"multicast": "resource"}, "memory.ray_records": {"master": "resource"},
         "memory.path_state": {"memory": "free"}, "memory.film": {"memory": "free"},
         "packets.results": {"per_shape": "mask", "message": "mask", "implied_order": "mask"},
-        "testers.own_rays": {"after": "before"}, "testers.window": 1}
+        "packets.made_per": {"child": "parent"}, "testers.own_rays": {"after": "before"}, "testers.window": 1}
 
 
 def notices(lie, runs):

@@ -53,7 +53,8 @@ void describe(V& v, PacketsConfig& c) {
   v.choice("carry", c.carry, "A packet carries a reference to its shapes, or their data.");
   v.choice("results", c.results, "The way in which hits travel back to the owner of the packet.");
   v.choice("made_per", c.made_per,
-           "Rays gather at the node whose children they are tested against, or at each child of a node that they hit.");
+           "Rays gather at the node whose children they are tested against, or at each child of a node that they hit, "
+           "which has a collection and packets of its own, with shapes: single.");
   v.field("ids_per_cycle", c.ids_per_cycle, IntRange{1, 1024}, "ray IDs/cycle",
           "The number of a packet's ray IDs that a resource reads, to find its own rays or to gather hits.");
 }

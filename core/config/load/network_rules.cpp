@@ -43,6 +43,7 @@ class NetworkRules {
     overrides_name_resources();
     own_rays_come_last_where_packets_go_round();
     results_travel();
+    children_are_single_shapes();
     windows_have_queues();
     faults_have_a_place();
   }
@@ -194,6 +195,12 @@ class NetworkRules {
       breach_("packets.results",
               "traversal: ordered has one result for a whole strip, the next node; expected mask, message or "
               "implied_order, found per_shape");
+  }
+
+  void children_are_single_shapes() {
+    if (c.packets.made_per != MadePer::kChild || c.packets.shapes == PacketShapes::kSingle) return;
+    breach_("packets.made_per",
+            "a packet of a child tests one shape; expected parent, or packets.shapes: single; found child");
   }
 
   void windows_have_queues() {

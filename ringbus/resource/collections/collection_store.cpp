@@ -31,7 +31,8 @@ void CollectionStore::relist(std::uint32_t index, bool was_ready) {
   enlist(index, bucket);
 }
 
-std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t depth, float entry) {
+std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t depth, float entry,
+                                              std::uint8_t shape) {
   std::uint32_t index;
   if (free_collections_.empty()) {
     index = static_cast<std::uint32_t>(collections_.size());
@@ -43,9 +44,9 @@ std::uint32_t CollectionStore::new_collection(accel::NodeKey key, std::uint16_t 
     free_collections_.pop_back();
   }
   const std::uint32_t waits = collections_[index].waits;
-  collections_[index] = {key, 0, 0, 0, now_, entry, depth, settings_.select == Select::kStrict, false, waits};
+  collections_[index] = {key, 0, 0, 0, now_, entry, depth, settings_.select == Select::kStrict, false, waits, shape};
   begin_to_wait(index);
-  table_.insert(key, index);
+  table_.insert(key, index, shape);
   ++statistics_.created;
   statistics_.peak = std::max<std::uint64_t>(statistics_.peak, table_.size());
   enlist(index, bucket(collections_[index]));
@@ -111,10 +112,11 @@ void CollectionStore::free_block(std::uint32_t block) {
   --blocks_spilled_;
 }
 
-void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays) {
+void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays,
+                          std::uint8_t shape) {
   if (rays.empty()) return;
-  const std::optional<std::uint32_t> found = table_.find(key);
-  const std::uint32_t index = found ? *found : new_collection(key, depth, entry);
+  const std::optional<std::uint32_t> found = table_.find(key, shape);
+  const std::uint32_t index = found ? *found : new_collection(key, depth, entry, shape);
   Collection& c = collections_[index];
   c.entry = std::min(c.entry, entry);
   const std::uint32_t b = settings_.block_rays;
@@ -184,7 +186,7 @@ void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
   memberships_ -= n;
   if (c.count == 0) {
     list(c).remove(id.value);
-    table_.erase(c.key);
+    table_.erase(c.key, c.shape);
     free_collections_.push_back(id.value);
   } else {
     begin_to_wait(id.value);

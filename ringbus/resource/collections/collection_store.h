@@ -51,11 +51,12 @@ class CollectionStore {
 
   explicit CollectionStore(const Settings& settings);
 
-  /// Adds rays to the collection of `key`, created if need be. `entry` is the nearest entry of any of them.
-  /// Takes at most one new block when at most block_rays rays are added. Without a free block within the capacity it
-  /// takes one in memory, a spilled one, until that is taken away; the caller says whether that may happen
-  /// (StorageRule). Spilled blocks are numbered from 0 on, and a new one takes the number that was given up last.
-  void add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays);
+  /// Adds rays to the collection of `key`, or of one shape of its strip, created if need be. `entry` is the nearest
+  /// entry of any of them. Takes at most one new block when at most block_rays rays are added. Without a free block
+  /// within the capacity it takes one in memory, a spilled one, until that is taken away; the caller says whether that
+  /// may happen (StorageRule). Spilled blocks are numbered from 0 on, and a new one takes the number that was given up
+  /// last.
+  void add(accel::NodeKey key, std::uint16_t depth, float entry, std::span<const RayId> rays, std::uint8_t shape = 0);
 
   /// The collection to issue from, by policy: among those that are ready, or with `partial` among all; with
   /// `select: strict` always among all.
@@ -64,6 +65,7 @@ class CollectionStore {
   std::optional<CollectionId> deepest() const;
 
   accel::NodeKey key(CollectionId id) const { return collections_[id.value].key; }
+  std::uint8_t shape(CollectionId id) const { return collections_[id.value].shape; }
   std::uint16_t depth(CollectionId id) const { return collections_[id.value].depth; }
   float entry(CollectionId id) const { return collections_[id.value].entry; }
   /// How many rays the next take() gives.
@@ -108,13 +110,14 @@ class CollectionStore {
     bool ready = false;
     bool ripe = false;        // it has waited for long enough
     std::uint32_t waits = 0;  // how often it has begun to wait, to tell old entries of waiting_ from its own
+    std::uint8_t shape = 0;
   };
   struct Waiting {
     std::uint64_t since;
     std::uint32_t collection, waits;
   };
 
-  std::uint32_t new_collection(accel::NodeKey key, std::uint16_t depth, float entry);
+  std::uint32_t new_collection(accel::NodeKey key, std::uint16_t depth, float entry, std::uint8_t shape);
   std::uint32_t new_block();
   void free_block(std::uint32_t block);
   std::uint32_t bucket(const Collection& c) const;

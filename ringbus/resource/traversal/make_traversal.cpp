@@ -28,7 +28,7 @@ Treelets treelets_of(const TraversalSettings& settings, const accel::Accel& acce
 
 Method make_spread(const TraversalSettings& settings, const VisitContext& context) {
   if (settings.shapes == PacketShapes::kSingle)
-    return std::make_unique<SingleShapeTraversal>(context, treelets_of(settings, context.accel));
+    return std::make_unique<SingleShapeTraversal>(context, treelets_of(settings, context.accel), settings.made_per);
   return std::make_unique<SpreadTraversal>(context);
 }
 
@@ -72,6 +72,10 @@ std::unique_ptr<TraversalMethod> make_traversal(const TraversalSettings& setting
 std::int32_t initial_tests(const TraversalSettings& settings, const accel::Accel& accel) {
   if (settings.shapes == PacketShapes::kStrip) return 1;
   return SingleShapeTraversal::tests_at(accel, treelets_of(settings, accel), accel.root_key());
+}
+
+std::int32_t initial_collections(const TraversalSettings& settings, const accel::Accel& accel) {
+  return settings.made_per == MadePer::kChild ? initial_tests(settings, accel) : 1;
 }
 
 bool one_collection_a_ray(Traversal traversal) {

@@ -16,6 +16,7 @@ struct TraversalSettings {
   Traversal traversal = Traversal::kSpread;
   ChildOrder order = ChildOrder::kNearest;
   PacketShapes shapes = PacketShapes::kStrip;
+  MadePer made_per = MadePer::kParent;
   BundlesConfig bundles;
   std::int64_t treelet_triangles = 2048;
   float scene_size = 1;
@@ -25,6 +26,9 @@ std::unique_ptr<TraversalMethod> make_traversal(const TraversalSettings& setting
 
 /// Tests that a new ray waits for at the root, as TraversalMethod::tests_at() would say.
 std::int32_t initial_tests(const TraversalSettings& settings, const accel::Accel& accel);
+
+/// Collections that it joins there, as TraversalMethod::collections_at() would say.
+std::int32_t initial_collections(const TraversalSettings& settings, const accel::Accel& accel);
 
 /// True if a ray is in one collection at a time: then packets carry each ray's next node (Packet::next), and storage
 /// is bounded by a block a ray. Otherwise a ray joins the collections of all children that it hits.

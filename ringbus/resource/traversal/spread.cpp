@@ -49,8 +49,10 @@ void SpreadTraversal::retire(const Packet& packet, CollectionStore& collections)
       ids_[count] = member.ray;
       count += (member.mask >> lane) & 1u;
     }
-    collections.add(context_.accel.child_key(packet.key, lane), static_cast<std::uint16_t>(packet.depth + 1),
-                    packet.nearest[lane], std::span(ids_).first(count));
+    const std::int32_t shapes = collections_below(packet.key, lane);
+    for (std::int32_t shape = 0; shape < shapes; ++shape)
+      collections.add(context_.accel.child_key(packet.key, lane), static_cast<std::uint16_t>(packet.depth + 1),
+                      packet.nearest[lane], std::span(ids_).first(count), static_cast<std::uint8_t>(shape));
   }
 }
 

@@ -22,6 +22,8 @@ class SpreadTraversal : public TraversalMethod {
   void retire(const Packet& packet, CollectionStore& collections) final;
 
  protected:
+  /// Collections that a ray joins which hits a child of `key`.
+  virtual std::int32_t collections_below(accel::NodeKey /*key*/, int /*lane*/) const { return 1; }
   /// Writes the masks of children hit, one a local ray, into the packet and changes the rays' counts.
   virtual void answer(Packet& packet, const LocalRays& local, const std::vector<std::uint8_t>& masks);
 

@@ -16,9 +16,11 @@ class TraversalMethod {
  public:
   virtual ~TraversalMethod() = default;
 
-  /// Tests that a ray waits for when it joins the collection of `key`, and so the packets that carry a block of that
-  /// collection.
+  /// Tests that a ray waits for when it comes to `key`, and so the packets that carry a block of its collection, or one
+  /// of each of its collections.
   virtual std::int32_t tests_at(accel::NodeKey key) const = 0;
+  /// Collections that a ray joins then: one, or with `packets.made_per: child` one for each test.
+  virtual std::int32_t collections_at(accel::NodeKey /*key*/) const { return 1; }
   /// Shapes of the strip that the n-th of these packets tests, a bit a lane.
   virtual std::uint32_t lanes(std::uint32_t n) const = 0;
   /// Collection blocks that retire() may take for a packet with `rays` members at `key`.

@@ -20,6 +20,9 @@ class TreeletTraversal final : public TraversalMethod {
   std::int32_t tests_at(accel::NodeKey key) const override {
     return treelets_.contains(key) ? 1 : above_->tests_at(key);
   }
+  std::int32_t collections_at(accel::NodeKey key) const override {
+    return treelets_.contains(key) ? 1 : above_->collections_at(key);
+  }
   std::uint32_t lanes(std::uint32_t n) const override { return above_->lanes(n); }
   std::uint32_t blocks_needed(accel::NodeKey key, std::uint32_t rays) const override {
     return treelets_.contains(key) ? 0 : above_->blocks_needed(key, rays);

@@ -81,7 +81,7 @@ inline std::vector<KeyRow> key_rows() {
       {"packets.shapes", kTerrain},
       {"packets.carry", kTerrain, {"packets.carry=reference"}, {"data"}, {"memory.fetch=packet"}},
       {"packets.results", kTerrain},
-      {"packets.made_per", kTerrain},
+      {"packets.made_per", kTerrain, {"packets.shapes=single"}},
       {"packets.ids_per_cycle", kTerrain, {}, {"1"}},
       {"collections.ready", kTerrain, {}, {"3"}},
       {"collections.sort_ids_per_cycle", kTerrain, {"packets.ids_per_cycle=64"}, {"1"}},

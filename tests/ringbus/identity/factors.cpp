@@ -80,6 +80,7 @@ std::vector<Factor> network() {
       {"rays.reads_per_cycle", {"0", "2"}, {"engine.kind=cycle"}},
       {"packets.rays", {"1", "5", "32", "128"}},
       {"packets.shapes", all<PacketShapes>()},
+      {"packets.made_per", all<MadePer>(), {"packets.shapes=single"}},
       {"packets.carry", all<PacketCarry>()},
       {"packets.results", all<PacketResults>()},
       {"packets.ids_per_cycle", {"1", "16"}, {"engine.kind=cycle"}},

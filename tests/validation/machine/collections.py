@@ -11,7 +11,7 @@ def octave_eighths(x):
 
 
 class Collection:
-    __slots__ = ("node", "depth", "entry", "rays", "blocks", "ready", "bucket", "turn", "place", "ripe", "since")
+    __slots__ = ("node", "depth", "entry", "rays", "blocks", "ready", "bucket", "turn", "place", "ripe", "since", "shape")
 
 
 class Collections:
@@ -78,18 +78,18 @@ class Collections:
             return None
         return c.since[0] + self.ripe_after
 
-    def add(self, node, depth, entry, rays, now):
+    def add(self, node, depth, entry, rays, now, shape=0):
         if not rays:
             return
-        c = self.by_node.get(node)
+        c = self.by_node.get((node, shape))
         if c is None:
             c = Collection()
-            c.node, c.depth, c.entry, c.rays, c.blocks = node, depth, entry, [], []
+            c.node, c.depth, c.entry, c.rays, c.blocks, c.shape = node, depth, entry, [], [], shape
             if self.free_places:
                 c.place = self.free_places.pop()
             else:
                 c.place, self.places = self.places, self.places + 1
-            self.by_node[node] = c
+            self.by_node[node, shape] = c
             self.begin_to_wait(c, now)
             self.enlist(c, self.strict, self.bucket(c))
         c.entry = min(c.entry, entry)
@@ -146,7 +146,7 @@ class Collections:
             self.begin_to_wait(c, now)
             self.relist(c)
         else:
-            del self.by_node[c.node]
+            del self.by_node[c.node, c.shape]
             self.free_places.append(c.place)
         return rays
 
@@ -154,13 +154,15 @@ class Collections:
 class Storage:
     """The rule of `when_full: reserve`; with `spill` everything may."""
 
-    def __init__(self, config, facts, store):
+    def __init__(self, config, facts, store, collections_at_root):
         c = config["collections"]
         self.store = store
         self.bounded = c["when_full"] == "reserve"
         self.single = c["traversal"] == "ordered"
         self.block, self.blocks = store.block, store.capacity
-        width = facts["width"]
+        per_child = config["packets"].get("made_per") == "child"
+        width = max(facts["width"], 16) if per_child else facts["width"]
+        self.collections_at_root = collections_at_root
         self.reserve = 0 if self.single else (width - 1) * (facts["max_depth"] + 1) + width
         self.promised = self.held = 0
 
@@ -170,7 +172,7 @@ class Storage:
         if self.single:
             return max(0, self.blocks - self.held)
         room = self.store.free_blocks() - self.promised - max(self.reserve, self.blocks // 2)
-        return max(0, room * self.block)
+        return max(0, room // self.collections_at_root * self.block)
 
     def fits(self, needed, freed):
         return not self.bounded or self.store.free_blocks() + freed - self.promised - needed >= self.reserve

@@ -12,9 +12,9 @@ class Resource:
         self.hash = config["collections"]["home"] == "hash"
         self.local = self.resources == 1 or config["collections"]["home"] == "local"
         self.collections = Collections(config, facts)
-        self.storage = Storage(config, facts, self.collections)
         ordered = config["collections"]["traversal"] == "ordered"
         self.traversal = (Ordered if ordered else Spread)(config, facts, nodes)
+        self.storage = Storage(config, facts, self.collections, self.traversal.collections_at(0))
         self.block = config["packets"]["rays"]
         self.in_flight = 0
         self.rest = None  # of a block that goes out in several packets: (rays, node, depth, entry, next, packets)
@@ -30,7 +30,8 @@ class Resource:
 
     def admit(self, rays, now):
         for first in range(0, len(rays), self.block):
-            self.collections.add(0, 0, 0.0, rays[first:first + self.block], now)
+            for shape in range(self.traversal.collections_at(0)):
+                self.collections.add(0, 0, 0.0, rays[first:first + self.block], now, shape)
         self.storage.held += len(rays)
 
     def offer(self, partial, packet, now):
@@ -45,10 +46,10 @@ class Resource:
                 if self.in_flight > 0:
                     return STORAGE
                 c = self.collections.deepest()
-            node, depth, entry = c.node, c.depth, c.entry
+            node, depth, entry, shape = c.node, c.depth, c.entry, c.shape
             rays = self.collections.take(c, now)
-            packets = t.tests_at(node) if self.home_of(node) == self.number else 1
-            self.rest = (rays, node, depth, entry, 0, packets)
+            packets = t.tests_at(node) // t.collections_at(node) if self.home_of(node) == self.number else 1
+            self.rest = (rays, node, depth, entry, shape, shape + packets)
         elif self.in_flight > 0 and not self.storage.fits(t.blocks_needed(self.rest[1], 0), 0):
             return STORAGE
         rays, node, depth, entry, number, packets = self.rest
@@ -83,5 +84,6 @@ class Resource:
         self.in_flight -= 1
 
     def join(self, packet, now):
-        self.collections.add(packet.node, packet.depth, packet.entry, packet.rays, now)
+        self.collections.add(packet.node, packet.depth, packet.entry, packet.rays, now,
+                             packet.lane or 0)
         packet.rays, packet.masks, packet.next = [], [], []

@@ -52,6 +52,10 @@ def draw(seed, index):
                     "sort": pick(["none", "shader"]), "sort_rays_per_cycle": pick([1, 2, 4]),
                     "distribute": pick(["fifo_fill", "load", "round_robin"]), "effects": pick(["auto", "all"])},
     }
+    if config["packets"]["shapes"] == "single":
+        config["packets"]["made_per"] = pick(["parent", "child"])
+        if full == "reserve":
+            config["collections"]["capacity"] *= 2
     if config["packets"]["shapes"] == "strip":
         config["bvh"].update(storage=pick(["full", "quantised"]), leaves=pick(["triangles", "triangles", "strips"]))
     preset = pick(["pipe", "pipe", "gddr6_14", "hbm2_2", "lpddr5_6400"])
@@ -80,7 +84,7 @@ def draw(seed, index):
         memory.update(strip_end="flag", strip_ahead=pick([0, 1, 3, 8]))
     if r.random() < 0.15:  # independent resources read few of these keys
         config["topology"]["shape"] = "independent"
-        config["packets"].update(shapes="strip", carry="reference")
+        config["packets"].update(shapes="strip", carry="reference", made_per="parent")
         config["collections"].update(traversal="spread", home="issuer")
         config["memory"]["fetch"] = "resource"
     elif r.random() < 0.15:

@@ -44,6 +44,7 @@ class Spread:
         self.nodes = nodes
         self.transforms = Transforms(config)
         self.single = config["packets"]["shapes"] == "single"
+        self.per_child = config["packets"].get("made_per") == "child"
         self.order = config["collections"]["order"]
         treelets = config["collections"]["traversal"] == "treelet"
         self.most_triangles = config["bvh"]["treelet_triangles"] if treelets else None
@@ -56,9 +57,15 @@ class Spread:
             return 1
         return max(1, self.nodes[node].shapes)
 
+    def collections_at(self, node):
+        """That a ray joins which comes to a node."""
+        return self.tests_at(node) if self.per_child else 1
+
     def blocks_needed(self, node, rays):
         if self.is_treelet(node) or not self.nodes[node].inner:
             return 0
+        if self.per_child:
+            return max([1] + [self.tests_at(child) for child in self.nodes[node].children])
         return 1 if self.single else len(self.nodes[node].children)
 
     def lanes(self, packet):
@@ -114,7 +121,8 @@ class Spread:
             return
         for lane, child in enumerate(node.children):
             rays = [ray for ray, mask in zip(packet.rays, packet.masks) if lane in mask]
-            collections.add(child, packet.depth + 1, packet.nearest[lane], rays, now)
+            for shape in range(self.collections_at(child)):
+                collections.add(child, packet.depth + 1, packet.nearest[lane], rays, now, shape)
 
 
 class Ordered(Spread):
