@@ -23,6 +23,17 @@ void append_ray(std::string& line, std::size_t number, const RayResult& result) 
   }
 }
 
+void append_flags(std::string& line, std::uint8_t flags) {
+  char before = ',';
+  for (const FlagWord& each : kFlagWords) {
+    if ((flags & each.flag) == 0) continue;
+    line += before;
+    line += each.word;
+    before = '+';
+  }
+  if (before == ',') line += before;
+}
+
 void append_hit(std::string& line, const RayResult& result) {
   const Hit& hit = result.hit;
   line += hit.valid() ? ",1" : ",0";
@@ -41,6 +52,9 @@ void write_csv(const std::filesystem::path& path, const std::vector<HitRow>& row
   std::string line;
   const std::size_t columns = hits ? kColumns.size() : kRayColumns;
   for (std::size_t i = 0; i < columns; ++i) line += (i == 0 ? "" : ",") + std::string(kColumns[i]);
+  const bool flags =
+      std::any_of(rows.begin(), rows.end(), [](const HitRow& row) { return (row.result.tag.flags & kWordFlags) != 0; });
+  if (flags) line.append(",").append(kFlagsColumn);
   file.write(line + "\n");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool of_all = (rows[i].result.tag.flags & kRayAll) != 0;
@@ -48,6 +62,7 @@ void write_csv(const std::filesystem::path& path, const std::vector<HitRow>& row
     line.clear();
     append_ray(line, of_all ? rows[i].pixel : i, rows[i].result);
     if (hits) append_hit(line, rows[i].result);
+    if (flags) append_flags(line, rows[i].result.tag.flags);
     line += '\n';
     file.write(line);
   }

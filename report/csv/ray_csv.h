@@ -23,14 +23,15 @@ void sort_rows(std::vector<HitRow>& rows);
 
 /// One row a ray, in the order given; `ray` is the row's number. Columns of DESIGN.md section 7, world space,
 /// floats with the fewest digits that read back to the same bits. A miss has t = inf and no instance,
-/// primitive, u and v; of a shadow ray only `hit` is known. Throws FileError.
+/// primitive, u and v; of a shadow ray only `hit` is known. If a ray has flags (ray_csv_columns.h) there is a last
+/// column of them. Throws FileError.
 void write_hits_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows);
 
-/// The first ten of these columns: the rays without their hits. Throws FileError.
+/// The first ten of these columns, and that of the flags: the rays without their hits. Throws FileError.
 void write_rays_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows);
 
-/// Rays to trace, in file order: a header and at least the first ten columns; further ones are passed over,
-/// so that a hits.csv can be read too. The tag's path is the row's number. Throws a ConfigError with the
+/// Rays to trace, in file order: a header and at least the first ten columns; of further ones only `flags` is
+/// read, so that a hits.csv can be read too. The tag's path is the row's number. Throws a ConfigError with the
 /// positions of the first problems, and FileError when the file cannot be read.
 RayBatch read_rays_csv(const std::filesystem::path& path);
 RayBatch read_rays_csv(std::istream& in, const std::string& name);

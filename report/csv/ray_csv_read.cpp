@@ -17,21 +17,24 @@ namespace {
 
 constexpr std::size_t kMostIssues = 20;
 constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kNowhere = ~std::size_t{0};
 
-/// The values of one line and the columns (from 1) they begin at.
+/// The values of one line and the columns (from 1) they begin at: those of the ray, then that of its flags.
 struct Cells {
-  std::array<std::string_view, kRayColumns> text;
-  std::array<int, kRayColumns> column{};
+  std::array<std::string_view, kRayColumns + 1> text;
+  std::array<int, kRayColumns + 1> column{};
   std::size_t count = 0;  // of all cells, kept or not
 };
 
-Cells split(std::string_view line) {
+/// Cell `flags` (from 0) is that of the flags.
+Cells split(std::string_view line, std::size_t flags) {
   Cells cells;
   for (std::size_t begin = 0; begin <= line.size(); ++cells.count) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
-    if (cells.count < kRayColumns) {
-      cells.text[cells.count] = line.substr(begin, end - begin);
-      cells.column[cells.count] = static_cast<int>(begin) + 1;
+    if (cells.count < kRayColumns || cells.count == flags) {
+      const std::size_t kept = std::min(cells.count, kRayColumns);
+      cells.text[kept] = line.substr(begin, end - begin);
+      cells.column[kept] = static_cast<int>(begin) + 1;
     }
     begin = end + 1;
   }
@@ -84,21 +87,31 @@ class RayReader {
   void read_header(std::string_view line) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     if (line.substr(0, 3) == kByteOrderMark) line.remove_prefix(3);
-    const Cells cells = split(line);
+    const Cells cells = split(line, kNowhere);
     for (std::size_t i = 0; i < kRayColumns; ++i)
       if (cells.text[i] != kColumns[i])
         return issue(std::max(1, cells.column[i]), fmt::format("expected the header {}, found '{}' in place of {}",
                                                                header(), cells.text[i], kColumns[i]));
+    std::size_t begin = 0;
+    for (std::size_t cell = 0; begin <= line.size(); ++cell) {
+      const std::size_t end = std::min(line.find(',', begin), line.size());
+      if (cell >= kRayColumns && line.substr(begin, end - begin) == kFlagsColumn) {
+        if (flags_ != kNowhere) return issue(static_cast<int>(begin) + 1, "there is a column flags already");
+        flags_ = cell;
+      }
+      begin = end + 1;
+    }
   }
 
   void read_ray(std::string_view line) {
-    const Cells cells = split(line);
+    const Cells cells = split(line, flags_);
     if (cells.count < kRayColumns)
       return issue(1, fmt::format("expected at least {} values, found {}", kRayColumns, cells.count));
     const std::size_t before = issues_.size();
     RayRequest request;
     request.tag.path = static_cast<std::uint32_t>(rays_.size());
     request.tag.kind = kind(cells);
+    request.tag.flags = flags(cells);
     std::array<float, 8> values{};
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = number(cells, i + 2);
     const auto& [ox, oy, oz, dx, dy, dz, tmin, tmax] = values;
@@ -119,6 +132,26 @@ class RayReader {
     return static_cast<RayKind>(found - kRayKindNames.begin());
   }
 
+  /// A line that ends before the column has none.
+  std::uint8_t flags(const Cells& cells) {
+    std::uint8_t out = 0;
+    const std::string_view text = cells.text[kRayColumns];
+    for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
+      const std::size_t end = std::min(text.find('+', begin), text.size());
+      const std::string_view word = text.substr(begin, end - begin);
+      const auto* found =
+          std::find_if(kFlagWords.begin(), kFlagWords.end(), [&](const FlagWord& each) { return each.word == word; });
+      if (found == kFlagWords.end()) {
+        issue(cells.column[kRayColumns] + static_cast<int>(begin),
+              fmt::format("expected cull_back, cull_front or force_opaque, joined by +, found '{}'", word));
+        return 0;
+      }
+      out |= static_cast<std::uint8_t>(found->flag);
+      begin = end + 1;
+    }
+    return out;
+  }
+
   float number(const Cells& cells, std::size_t cell) {
     const std::optional<float> value = read_float(cells.text[cell]);
     const bool may_be_infinite = kColumns[cell] == "tmax";
@@ -132,6 +165,7 @@ class RayReader {
 
   const std::string& name_;
   int line_ = 1;
+  std::size_t flags_ = kNowhere;  // the cell of the flags
   RayBatch rays_;
   std::vector<ConfigIssue> issues_;
 };

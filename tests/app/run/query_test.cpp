@@ -121,6 +121,48 @@ std::string every_hit(const scene::Scene& scene, const RayBatch& rays, std::size
   return text.str();
 }
 
+// A ray that passes through two walls of a closed surface: each flag takes one of them away.
+TEST(Query, EachRayOfAFileHasItsFlags) {
+  Program program;
+  const std::vector<std::string> flags{"", "cull_back", "cull_front", "cull_back+cull_front", "force_opaque", ""};
+  std::string rays = "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax,flags\n";
+  SceneConfig config;
+  config.builtin = BuiltinScene::kSpheres;
+  config.triangles = 400;
+  config.procedural = true;
+  const scene::Scene scene = scene::make_builtin(config);
+  const Vec3 centre = scene.bounds().centre(), extent = scene.bounds().extent();
+  for (int i = 0; i < 180; ++i) {
+    const int place = i / static_cast<int>(flags.size());
+    rays += fmt::format("{},camera,{},{},{},{},-1,{},0,inf,{}\n", i, centre.x + extent.x * 0.01f * float(place - 15),
+                        scene.bounds().hi.y + 1, centre.z, 0.01 * place, 0.003 * place,
+                        flags[static_cast<std::size_t>(i) % flags.size()]);
+  }
+  program.write("rays.csv", rays);
+  program.write("rays.yaml",
+                "scene: {builtin: spheres, triangles: 400, procedural: true}\nworkload: {rays_from: rays.csv}\n"
+                "topology: {resources: 3}\nverify: reference\n");
+  std::vector<report::HitRow> expected;
+  for (const RayRequest& ray : report::read_rays_csv(program.folder() / "rays.csv"))
+    expected.push_back({ray.tag.path, 0, {ray.ray, accel::brute_force(scene, ray), ray.tag}});
+  report::write_hits_csv(program.folder() / "expected.csv", expected);
+  int fewer = 0, none = 0;
+  for (std::size_t i = 0; i < expected.size(); i += flags.size()) {
+    const auto t = [&](std::size_t k) { return expected[i + k].result.hit.t; };
+    fewer += t(2) > t(0) && t(1) == t(0);
+    none += expected[i].result.hit.valid() && !expected[i + 3].result.hit.valid();
+    EXPECT_EQ(t(4), t(0));
+  }
+  EXPECT_GT(fewer, 3);
+  EXPECT_GT(none, 3);
+  for (const std::string engine : {"cycle", "native"}) {
+    const Outcome outcome = program.run(
+        {"run", "rays.yaml", "--hits", "--out", "out", "--force", "--quiet", "--set", "engine.kind=" + engine});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(program.read("out/hits.csv"), program.read("expected.csv")) << engine;
+  }
+}
+
 struct SceneOfAllHits {
   std::string builtin;
   std::string text;

@@ -133,6 +133,34 @@ TEST(RayCsv, RefusesBadRowsAllTogether) {
                           "r.csv:8:20: expected a finite number for dz, found '1e99'"));
 }
 
+TEST(RayCsv, EachRayHasItsFlags) {
+  std::vector<HitRow> rows(4, row(0, 0, RayKind::kCamera, 0, true));
+  rows[1].result.tag.flags = kRayCullFront | kRayForceOpaque | kRayDone;
+  rows[2].result.tag.flags = kRayCullBack;
+  const auto path = temporary("flags.csv");
+  for (const auto write : {write_rays_csv, write_hits_csv}) {
+    write(path, rows);
+    EXPECT_THAT(content(path), HasSubstr(",flags\n"));
+    EXPECT_THAT(content(path), HasSubstr(",cull_front+force_opaque\n"));
+    const RayBatch rays = read_rays_csv(path);
+    ASSERT_EQ(rays.size(), 4u);
+    EXPECT_EQ(rays[0].tag.flags, 0);
+    EXPECT_EQ(rays[1].tag.flags, kRayCullFront | kRayForceOpaque);
+    EXPECT_EQ(rays[2].tag.flags, kRayCullBack);
+    EXPECT_EQ(rays[3].tag.flags, 0);
+  }
+  std::filesystem::remove(path);
+  EXPECT_THAT(problems("ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax,more,flags\n"
+                       "0,camera,0,0,0,0,0,1,0,inf,x,cull_back+cull\n"
+                       "1,camera,0,0,0,0,0,1,0,inf,x\n"
+                       "2,camera,0,0,0,0,0,1,0,inf,cull,\n"
+                       "3,camera,0,0,0,0,0,1,0,inf,x,cull_back+\n"),
+              ElementsAre("r.csv:2:40: expected cull_back, cull_front or force_opaque, joined by +, found 'cull'",
+                          "r.csv:5:40: expected cull_back, cull_front or force_opaque, joined by +, found ''"));
+  EXPECT_THAT(problems("ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax,flags,flags\n"),
+              ElementsAre("r.csv:1:44: there is a column flags already"));
+}
+
 TEST(RayCsv, RefusesAMissingHeader) {
   EXPECT_THAT(problems(""), ElementsAre(HasSubstr("r.csv:1: expected the header ray,kind,")));
   EXPECT_THAT(problems("0,camera,0,0,0,0,0,1,0,inf\n"), ElementsAre(HasSubstr("r.csv:1:1: expected the header")));
