@@ -13,6 +13,7 @@ struct MemoryConfig {
   std::int64_t l2_lines_per_cycle = 4, l2_latency_cycles = 160, dram_latency_cycles = 200, dram_bytes_per_cycle = 64;
   enum class Fetch { kPacket, kResource, kMulticast } fetch = Fetch::kResource;
   std::int64_t fetch_ahead = 2, shape_buffer_kib = 32;
+  enum class ShapeStay { kUntilReplaced, kWhileUsed } shape_stay = ShapeStay::kUntilReplaced;
   enum class StripEnd { kLength, kFlag } strip_end = StripEnd::kLength;
   std::int64_t strip_ahead = 0;
   std::int64_t l2_banks = 1, l2_mshrs = 0;
@@ -29,6 +30,12 @@ template <>
 inline constexpr auto kEnumNames<MemoryConfig::Fetch> = [] {
   using enum MemoryConfig::Fetch;
   return names<MemoryConfig::Fetch>({{kPacket, "packet"}, {kResource, "resource"}, {kMulticast, "multicast"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<MemoryConfig::ShapeStay> = [] {
+  using enum MemoryConfig::ShapeStay;
+  return names<MemoryConfig::ShapeStay>({{kUntilReplaced, "until_replaced"}, {kWhileUsed, "while_used"}});
 }();
 
 template <>
@@ -112,6 +119,10 @@ void describe(V& v, MemoryConfig& c) {
           "With strip_end: flag, the lines of a strip that are looked up ahead of the next one whose flags are read.");
   v.field("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB",
           "The shape data that a resource holds, in places of 64 bytes.");
+  v.choice(
+      "shape_stay", c.shape_stay,
+      "Shapes keep their places until others need them, or only while a test, or a packet whose shapes are fetched "
+      "in advance, uses them.");
   v.section("dram", c.dram, "The memory behind the shared caches.");
 }
 

@@ -9,6 +9,7 @@ namespace carousel::ringbus::cycle {
 ShapeBuffer::ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports)
     : port_(config, link, ports),
       pushed_(ports.pushed),
+      drops_(config.shape_stay == MemoryConfig::ShapeStay::kWhileUsed),
       places_(static_cast<std::uint64_t>(config.shape_buffer_kib) * 1024 / kPlaceBytes),
       free_places_(places_),
       buckets_(64, kNone),
@@ -100,11 +101,15 @@ void ShapeBuffer::clear_queue(Cycle now) {
 bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) {
   std::array<std::uint32_t, 2> found{kNone, kNone};
   std::uint64_t wanted = 0;
-  for (std::size_t which = 0; which < 2; ++which) {
-    if (need[which].bytes == 0) continue;
-    found[which] = find(need[which]);
-    if (found[which] == kNone) wanted += places_to_ask(need[which]);
-  }
+  const auto look = [&] {
+    wanted = 0;
+    for (std::size_t which = 0; which < 2; ++which) {
+      if (need[which].bytes == 0) continue;
+      found[which] = find(need[which]);
+      if (found[which] == kNone) wanted += places_to_ask(need[which]);
+    }
+  };
+  look();
   if (wanted > 0) {
     if (test && !room_.empty() && room_.front() != user) return false;
     if (!test && !room_.empty()) return false;
@@ -123,6 +128,7 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
       drop(state, last);
       state.state = State::kWaits;
       queue_changed_ = true;
+      if (drops_) look();  // it may have been the only one to hold what is needed
     }
   }
   UserState& state = users_[user];

@@ -25,6 +25,10 @@ namespace carousel::ringbus::cycle {
 /// does not find room waits, and holds nothing meanwhile; such users are served in the order in which they came, and
 /// whoever needs room waits behind them. So a user that holds something never waits for room, and nothing can block.
 ///
+/// With `memory.shape_stay: while_used` a span's places are free as soon as nobody holds it, so that only spans that
+/// another resource's request has brought, and that a packet on its way will use, are replaced (US 9633468: shapes
+/// have the room that packets ready for test need, and none is kept without any indication of when it is used next).
+///
 /// A strip that ends by its flag takes places for the longest strip of its kind, and those that it does not need are
 /// free again when it has come.
 ///
@@ -108,6 +112,8 @@ class ShapeBuffer {
   UserState& state_of(User user);
   bool grant(User user, const ShapeNeed& need, bool test, Cycle now);
   std::uint32_t find(const ShapeSpan& span) const;
+  void remove(std::uint32_t entry);
+  void keep(std::uint32_t entry);
   std::uint32_t allocate(const ShapeSpan& span, std::uint64_t places);
   void evict_oldest();
   void hold(std::uint32_t entry);
@@ -124,6 +130,7 @@ class ShapeBuffer {
 
   ShapePort port_;
   Channel<PushedShapes>* pushed_;
+  bool drops_;                                            // what nobody holds
   std::uint64_t places_, free_places_, idle_places_ = 0;  // idle: of spans that are here and nobody holds
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> buckets_;

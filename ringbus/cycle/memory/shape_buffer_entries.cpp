@@ -44,6 +44,12 @@ void ShapeBuffer::grow_buckets() {
 void ShapeBuffer::evict_oldest() {
   const std::uint32_t index = oldest_;
   hold(index);  // takes it from the list
+  remove(index);
+  ++counts_.evictions;
+}
+
+/// Frees the places of an entry that is on no list.
+void ShapeBuffer::remove(std::uint32_t index) {
   Entry& entry = entries_[index];
   std::uint32_t* at = &buckets_[bucket(entry.span)];
   while (*at != index) at = &entries_[*at].chain;
@@ -52,7 +58,6 @@ void ShapeBuffer::evict_oldest() {
   free_entry_ = index;
   free_places_ += entry.places;
   --used_;
-  ++counts_.evictions;
 }
 
 void ShapeBuffer::hold(std::uint32_t index) {
@@ -66,6 +71,13 @@ void ShapeBuffer::hold(std::uint32_t index) {
 void ShapeBuffer::let_go(std::uint32_t index) {
   Entry& entry = entries_[index];
   if (--entry.holders > 0 || !entry.here) return;
+  if (drops_) return remove(index);
+  keep(index);
+}
+
+/// Puts an entry that nobody holds at the end of those that may be replaced.
+void ShapeBuffer::keep(std::uint32_t index) {
+  Entry& entry = entries_[index];
   entry.older = newest_;
   entry.newer = kNone;
   (newest_ == kNone ? oldest_ : entries_[newest_].newer) = index;
@@ -86,8 +98,7 @@ void ShapeBuffer::take_pushed(Cycle now) {
     while (free_places_ < places(span)) evict_oldest();
     const std::uint32_t entry = allocate(span, places(span));
     entries_[entry].here = true;
-    entries_[entry].holders = 1;
-    let_go(entry);
+    keep(entry);
   }
 }
 

@@ -258,6 +258,7 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.l2_ray_ways", kTerrain, {"memory.path_state=memory", "memory.l2_kib=4"}, {"4"}},
       {"memory.l2_answer_bytes_per_cycle", kTerrain, {}, {"4"}},
       {"memory.shape_buffer_kib", kTerrain, {"memory.fetch=resource", "memory.shape_buffer_kib=64"}, {"1"}},
+      {"memory.shape_stay", kTerrain, {"memory.fetch=resource"}},
       {"shading.workers", kTerrain, {}, {"1"}},
       {"shading.effects", kLayers, {}, {"all", "[sky]"}},
       {"shading.idle_resources_shade", kTerrain, {"shading.cycles_per_shade=200"}},

@@ -171,6 +171,7 @@ std::vector<Factor> memory_and_shading() {
       {"bvh.leaves", all<BvhConfig::Leaves>(), timed},
       {"memory.fetch_ahead", {"0", "2"}, timed},
       {"memory.shape_buffer_kib", {"1", "4"}, timed},
+      {"memory.shape_stay", all<MemoryConfig::ShapeStay>(), timed},
       {"shading.workers", {"1", "2", "3"}},
       {"shading.idle_resources_shade", kSwitch, timed},
       {"shading.distribute", all<ShadingConfig::Distribute>(), timed},

@@ -39,6 +39,7 @@ class ShapeBuffer:
     def __init__(self, config, port):
         self.port = port
         self.free = config["memory"]["shape_buffer_kib"] * 1024 // PLACE
+        self.drops = config["memory"].get("shape_stay", "until_replaced") == "while_used"
         self.entries = {}    # by span
         self.idle = []       # entries that are here and nobody holds, the one given back longest ago first
         self.room = deque()  # users that wait for room
@@ -53,9 +54,10 @@ class ShapeBuffer:
         return False
 
     def grant(self, user, test, now):
-        found = [self.entries[span] for span in user.need if span in self.entries]
-        absent = [span for span in user.need if span not in self.entries]
-        wanted = sum(places_to_ask(span) for span in absent)
+        def look():
+            found = [self.entries[span] for span in user.need if span in self.entries]
+            return found, sum(places_to_ask(span) for span in user.need if span not in self.entries)
+        found, wanted = look()
         if wanted > 0:
             if self.room and not (test and self.room[0] is user):
                 return False
@@ -64,6 +66,7 @@ class ShapeBuffer:
                 if not test or not granted:
                     return False
                 self.let_go(granted[-1])
+                found, wanted = look()
         user.granted, user.missing, user.entries = True, 0, []
         for entry in found:
             self.hold(entry)
@@ -92,13 +95,20 @@ class ShapeBuffer:
         if entry in self.idle:
             self.idle.remove(entry)
 
+    def nobody_holds(self, entry):
+        if self.drops:
+            del self.entries[entry.span]
+            self.free += entry.places
+        else:
+            self.idle.append(entry)
+
     def let_go(self, user):
         for entry in user.entries:
             if not entry.here:
                 entry.waits.remove(user)
             entry.holders -= 1
             if entry.holders == 0 and entry.here:
-                self.idle.append(entry)
+                self.nobody_holds(entry)
         user.granted, user.entries, user.missing = False, [], 0
 
     def release(self, user, now):
@@ -148,7 +158,7 @@ class ShapeBuffer:
                     self.ready.append(user)
             entry.waits = []
             if entry.holders == 0:
-                self.idle.append(entry)
+                self.nobody_holds(entry)
                 given_up = True
         while self.port.pushed.ready(now):
             self.take_pushed(self.port.pushed.take())

@@ -13,13 +13,15 @@ using Users = std::vector<ShapeBuffer::User>;
 
 /// A buffer of some KiB whose cache is played by the test, and strips of 256 bytes.
 struct BufferBench {
-  explicit BufferBench(std::int64_t kib) {
+  explicit BufferBench(std::int64_t kib, MemoryConfig::ShapeStay stay = MemoryConfig::ShapeStay::kUntilReplaced) {
     MemoryConfig config;
+    config.shape_stay = stay;
     config.shape_buffer_kib = kib;
     config.l2_latency_cycles = 2;
     SidePorts ports;
     ports.fetch = &requests;
     ports.fetched = &answers;
+    ports.pushed = &pushed;
     buffer = std::make_unique<ShapeBuffer>(config, LinkConfig{}, ports);
   }
   static ShapeSpan strip(std::uint64_t i) { return {256 * i, 256}; }
@@ -46,6 +48,7 @@ struct BufferBench {
 
   Channel<FetchRequest> requests;
   Channel<FetchAnswer> answers;
+  Channel<PushedShapes> pushed;
   std::vector<std::uint32_t> waiting;
   std::unique_ptr<ShapeBuffer> buffer;
 };
@@ -128,6 +131,68 @@ TEST(ShapeBuffer, TheIssueQueueGivesWayToTests) {
   bench.buffer->clear_queue(50);
   EXPECT_FALSE(bench.buffer->take(2, bench.need(2), 51));
   EXPECT_EQ(bench.buffer->counts().room_waits, 0u);
+}
+
+constexpr MemoryConfig::ShapeStay kWhileUsed = MemoryConfig::ShapeStay::kWhileUsed;
+
+TEST(ShapesStayWhileUsed, TheLastHolderFreesThePlaces) {
+  BufferBench bench(1, kWhileUsed);
+  bench.buffer->take(0, bench.need(7), 0);
+  bench.buffer->take(1, bench.need(7), 0);
+  EXPECT_EQ(bench.answer(10), (Users{0, 1}));
+  bench.buffer->release(0, 20);
+  EXPECT_TRUE(bench.buffer->take(0, bench.need(7), 21));  // user 1 holds it
+  bench.buffer->release(0, 22);
+  bench.buffer->release(1, 23);
+  EXPECT_FALSE(bench.buffer->has(bench.strip(7)));
+  EXPECT_FALSE(bench.buffer->take(2, bench.need(7), 24));
+  EXPECT_EQ(bench.asked(), Asked{7});
+  bench.buffer->release(2, 25);  // gives it up on its way
+  EXPECT_EQ(bench.answer(30), Users{});
+  EXPECT_FALSE(bench.buffer->has(bench.strip(7)));
+  EXPECT_EQ(bench.buffer->counts().evictions, 0u);
+}
+
+// The last packet of the queue is the only one to hold what the test needs as well.
+TEST(ShapesStayWhileUsed, WhatTheIssueQueueGivesUpMayBeWhatATestNeeds) {
+  BufferBench bench(1, kWhileUsed);
+  for (const ShapeBuffer::User user : {10u, 11u, 12u, 13u}) bench.buffer->take_ahead(user, bench.need(user), 0);
+  for (int i = 0; i < 4; ++i) bench.answer(10);
+  EXPECT_FALSE(bench.buffer->take(0, {bench.strip(13), {256 * 20, 84}}, 20));
+  EXPECT_FALSE(bench.buffer->is_here(12));  // six places were needed when 13 had gone
+  EXPECT_TRUE(bench.buffer->is_here(11));
+  EXPECT_EQ(bench.asked(), (Asked{13, 20}));
+  EXPECT_EQ(bench.answer(30), Users{});
+  EXPECT_EQ(bench.answer(31), Users{0});
+}
+
+TEST(ShapesStayWhileUsed, ButWhatOthersAskedForWaitsForItsPacket) {
+  BufferBench bench(1, kWhileUsed);
+  bench.pushed.send(5, {256 * 3, 256});
+  bench.buffer->take_answers(5);
+  EXPECT_TRUE(bench.buffer->take(0, bench.need(3), 6));
+  bench.buffer->release(0, 7);
+  EXPECT_FALSE(bench.buffer->has(bench.strip(3)));
+}
+
+// One ray at a time: what is dropped is fetched again for each test, and what stays is fetched once.
+TEST(ShapesStayWhileUsed, ARayAloneFetchesForEachTest) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 40, 1);
+  const std::string machine =
+      "topology: {resources: 1}\nrays: {slots_per_resource: 1}\npackets: {rays: 1}\n"
+      "collections: {ready: 1, traversal: ordered}\n"
+      "shading: {workers: 1, cycles_per_shade: 1}\n"
+      "memory: {shape_buffer_kib: 4096, fetch_ahead: 0, l2_kib: 4096, l2_latency_cycles: 300}\n";
+  const auto run = [&](const char* stay) {
+    return *run_text(scene, machine, {std::string("memory.shape_stay=") + stay}).result.cycle;
+  };
+  const CycleResult kept = run("until_replaced"), dropped = run("while_used");
+  const ShapeBufferCounts a = kept.tiles[0].shapes, b = dropped.tiles[0].shapes;
+  EXPECT_GT(a.hits, a.misses);
+  EXPECT_EQ(b.misses, a.hits + a.misses);
+  EXPECT_EQ(b.hits, 0u);
+  EXPECT_EQ(a.merged + b.merged + a.evictions + b.evictions, 0u);
+  EXPECT_GE(dropped.cycles, kept.cycles + 300 * a.hits);
 }
 
 constexpr const char* kMachine =
