@@ -48,7 +48,7 @@ RankScope::RankScope(const Config& config, const std::string& program) {
   if (!started_as_rank())
     refuse("engine.transport",
            "mpirun has not started this program, as in mpirun -n 2 carousel run ...; expected local, found mpi");
-  transport_ = ringbus::MpiTransport::start();
+  transport_ = ringbus::MpiTransport::start([](const std::string& text) { spdlog::error("{}", text); });
   for (const auto& sink : spdlog::default_logger()->sinks())
     sink->set_pattern(fmt::format("rank {}: %^%l%$: %v", rank()));
   require_same("program", program);
@@ -97,8 +97,8 @@ void RankScope::require_room(const Config& config) const {
 }
 
 void RankScope::leave() {
-  left_ = true;
   transport_->leave();
+  left_ = true;
 }
 
 }  // namespace carousel::app

@@ -179,9 +179,9 @@ bool RankGate::receive() {
   }
   const Clock::time_point now = Clock::now();
   for (std::uint32_t r = 0; r < peers_.size(); ++r)
-    if (r != rank_ && !ended() && now - peers_[r]->heard > kSilence)
-      throw SimulationError(fmt::format("rank {} has said nothing for {} seconds; it hangs or has died", r,
-                                        std::chrono::duration_cast<std::chrono::seconds>(kSilence).count()));
+    if (r != rank_ && !ended() && now - peers_[r]->heard > kRankSilence)
+      throw SimulationError(
+          fmt::format("rank {} has said nothing for {} seconds; it hangs or has died", r, kRankSilence.count()));
   return moved;
 }
 

@@ -67,8 +67,9 @@ class RankGate final : public RemotePlacing {
 
  private:
   using Clock = std::chrono::steady_clock;
-  // A rank with nothing to say says so, and one from which nothing comes for long has died or hangs.
-  static constexpr std::chrono::milliseconds kSign{200}, kSilence{5000}, kParting{3000};
+  // A rank with nothing to say says so. This is not the transport's sign of life, which a process gives as long as any
+  // of its threads runs: it comes from the threads that trace.
+  static constexpr std::chrono::milliseconds kSign{200}, kParting{3000};
   // Things for a rank gather for so long, or until there are so many: a message costs more than all but its size.
   static constexpr std::chrono::microseconds kWindow{50};
   static constexpr std::size_t kFull = 256;

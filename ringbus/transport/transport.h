@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -7,6 +8,10 @@
 #include <vector>
 
 namespace carousel::ringbus {
+
+/// A rank from which nothing has come for so long has died or hangs. Far longer than a busy host keeps a thread waiting
+/// that wants to run a moment.
+inline constexpr std::chrono::seconds kRankSilence{5};
 
 /// Brings bytes from process to process. The processes of a run are its ranks, 0 to ranks() - 1. One thread at a time
 /// may call, not always the same.
@@ -26,7 +31,8 @@ class Transport {
   /// Takes a message that has come, if there is one: returns true, and writes its sender and its words.
   virtual bool receive(std::uint32_t& from, std::vector<std::uint64_t>& words) = 0;
 
-  // Calls that every rank makes, in the same order; they wait for one another.
+  // Calls that every rank makes, in the same order; they wait for one another, and throw a SimulationError where they
+  // would wait for a rank that has died or hangs.
 
   /// Returns everyone's bytes, by rank.
   virtual std::vector<std::string> gather(const std::string& bytes) = 0;

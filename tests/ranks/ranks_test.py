@@ -320,9 +320,9 @@ class Refusals(Ranks):
 
 
 class Failures(Ranks):
-    def begin(self):
-        """A run of three ranks that would last for minutes; returns it and the processes of its ranks, by rank."""
-        command = ["mpirun", "-n", "3", *self.command("ranks", ["engine.transport=mpi", *LONG])]
+    def begin(self, assignments=LONG, seconds=3, options=()):
+        """A run of three ranks that lasts long; returns it and the processes of its ranks, by rank, after `seconds`."""
+        command = ["mpirun", *options, "-n", "3", *self.command("ranks", ["engine.transport=mpi", *assignments])]
         run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         self.addCleanup(run.kill)
         ranks = {}
@@ -339,9 +339,9 @@ class Failures(Ranks):
                 for word in words:
                     if word.startswith(b"OMPI_COMM_WORLD_RANK="):
                         ranks[int(word.split(b"=")[1])] = int(process.name)
-            time.sleep(0.1)
+            time.sleep(0.02)
         self.assertEqual(len(ranks), 3)
-        time.sleep(3)  # the run has begun
+        time.sleep(seconds)  # the run has begun
         self.assertIsNone(run.poll())
         return run, ranks
 
@@ -364,6 +364,69 @@ class Failures(Ranks):
         text = self.ended(run, 45)
         self.assertEqual(run.returncode, 1, text)
         self.assertIn("rank 2 has said nothing", text)
+
+    def stopped(self, run, process, lost):
+        """The others end within seconds, and each of them names the rank."""
+        os.kill(process, signal.SIGSTOP)
+        text = self.ended(run, 30)
+        self.assertEqual(run.returncode, 1, text)
+        for rank in {0, 1, 2} - {lost}:
+            self.assertIn(f"rank {rank}: error: rank {lost} has said nothing", text)
+
+    def test_a_rank_that_hangs_before_rays_are_traced(self):
+        """The others read a file that does not end, and are not waiting for it."""
+        os.mkfifo(self.folder / "pipe.gltf")
+        for way in "self,vader", "self,tcp":
+            run, ranks = self.begin(["scene={file: pipe.gltf}"], 2, ("--mca", "btl", way))
+            self.stopped(run, ranks[1], 1)
+
+    def test_a_rank_that_hangs_before_it_has_joined(self):
+        run, ranks = self.begin(seconds=0)
+        os.kill(ranks[1], signal.SIGSTOP)
+        text = self.ended(run, 30)
+        self.assertEqual(run.returncode, 1, text)
+        self.assertRegex(text, "rank 1 (is stopped|has said nothing)")
+
+    def test_a_rank_that_hangs_while_files_are_written(self):
+        """Rank 0 writes them, into a hidden folder first; the others wait for it."""
+        large = ["image.width=400", "image.height=300", "image.samples=1", "image.max_depth=1", "engine.threads=1",
+                 "rays.slots_per_resource=4096", "topology.link.depth=256"]
+        run, ranks = self.begin(large, 0)
+        while not list(self.folder.glob(".ranks.*/config.resolved.yaml")) and run.poll() is None:
+            time.sleep(0.005)
+        os.kill(ranks[0], signal.SIGSTOP)
+        _, text = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 1, text)
+        self.assertRegex(text, "rank 0 (is stopped|has said nothing)")
+        if (self.folder / "ranks").exists():  # the last moment was gone, and they are whole
+            self.assertEqual(self.alone(large).returncode, 0)
+            self.assertEqual(self.digests("ranks"), self.digests("alone"))
+
+    def test_a_rank_that_is_only_slow(self):
+        """It reads a file for longer than a rank may be silent. Two hosts are two folders."""
+        write_patches(self.folder / "scene.gltf", 1, 8)
+        commands = []
+        for host in "one", "other":
+            (self.folder / host).mkdir()
+            shutil.copy(self.folder / "scene.bin", self.folder / host)
+            config = self.folder / host / "machine.yaml"
+            config.write_text(MACHINE.replace("builtin: terrain, triangles: 2000", "file: scene.gltf"))
+            commands.append([str(config) if word == str(self.config) else word
+                             for word in self.command("ranks", ["engine.transport=mpi"])])
+        shutil.copy(self.folder / "scene.gltf", self.folder / "one")
+        slow = self.folder / "other" / "scene.gltf"
+        os.mkfifo(slow)
+        run = subprocess.Popen(["mpirun", "-n", "1", *commands[0], ":", "-n", "1", *commands[1]], stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        self.addCleanup(run.kill)
+        with slow.open("wb") as pipe:  # rank 1 reads it from here on
+            time.sleep(8)
+            self.assertIsNone(run.poll())
+            content = (self.folder / "scene.gltf").read_bytes()
+            os.replace(self.folder / "scene.gltf", slow)
+            pipe.write(content)
+        _, text = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 0, text)
 
 
 if __name__ == "__main__":

@@ -3,140 +3,255 @@
 #ifdef CAROUSEL_MPI
 
 #include <algorithm>
-#include <deque>
-#include <limits>
+#include <cstdlib>
+#include <mutex>
 #include <thread>
+#include <utility>
 
-#define OMPI_SKIP_MPICXX 1  // the C++ bindings, which MPI 3 has dropped
-#include <mpi.h>
+#include <fmt/format.h>
 
 #include "core/system/error.h"
+#include "ringbus/transport/mpi/call_guard.h"
+#include "ringbus/transport/mpi/mailbox.h"
 
 namespace carousel::ringbus {
 
 namespace {
 
-constexpr int kTag = 1;
-// Counts of MPI 3 are ints.
-constexpr std::size_t kMost = std::size_t{1} << 28;
+using Clock = std::chrono::steady_clock;
 
-int count_of(std::size_t size) {
-  if (size > std::numeric_limits<int>::max()) throw SimulationError("a message between ranks is too long for MPI");
-  return static_cast<int>(size);
-}
+// Words of a sum that travel in one message.
+constexpr std::size_t kSumWords = std::size_t{1} << 17;
+constexpr std::chrono::milliseconds kLook{50}, kSign{200};
+// A thread that looked so late has not run meanwhile, and cannot blame others.
+constexpr std::chrono::milliseconds kLate{1000};
+// A rank that has not waited for others for so long is busy with its own, and ends without being asked; all have said
+// then who is missing, and wait so long for one another to say it.
+constexpr std::chrono::milliseconds kAway{1500}, kParting{3000};
 
-/// A call that fails ends the program by MPI's own handler, which names the call.
+/// A call that fails ends the program by MPI's own handler, which names the call. All calls are made under one mutex
+/// (MPI_THREAD_SERIALIZED), and none waits.
 class OpenMpi final : public MpiTransport {
  public:
-  OpenMpi() {
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-    MPI_Comm_size(MPI_COMM_WORLD, &ranks_);
-    MPI_Comm_dup(MPI_COMM_WORLD, &leaving_all_);
-    leaving_.resize(static_cast<std::size_t>(ranks_));
+  OpenMpi(int rank, int ranks, Say say)
+      : say_(std::move(say)),
+        rank_(rank),
+        ranks_(ranks),
+        mail_(static_cast<std::size_t>(ranks)),
+        peers_(static_cast<std::size_t>(ranks)) {
+    called_ = tended_ = Clock::now();
+    for (Peer& peer : peers_) peer.heard = tended_;
+    peers_[own()].parted = true;  // nothing is expected of this rank
+    if (ranks_ > 1) watch_ = std::jthread([this](const std::stop_token& ended) { watch(ended); });
   }
 
   std::uint32_t rank() const override { return static_cast<std::uint32_t>(rank_); }
   std::uint32_t ranks() const override { return static_cast<std::uint32_t>(ranks_); }
 
   void send(std::uint32_t to, std::span<const std::uint64_t> words) override {
-    Message message;
-    if (!spare_.empty()) {
-      message.words = std::move(spare_.back());
-      spare_.pop_back();
-    }
-    message.words.assign(words.begin(), words.end());
-    // Moving a vector leaves its words where they are, so MPI may read them until the request is done.
-    MPI_Isend(message.words.data(), count_of(message.words.size()), MPI_UINT64_T, static_cast<int>(to), kTag,
-              MPI_COMM_WORLD, &message.request);
-    leaving_[to].push_back(std::move(message));
+    const std::lock_guard lock(mutex_);
+    turn();
+    std::vector<std::uint64_t> copy = mail_.spare();
+    copy.assign(words.begin(), words.end());
+    mail_.post(to, kRun, std::move(copy));
   }
 
   std::size_t leaving(std::uint32_t to) override {
-    std::deque<Message>& messages = leaving_[to];
-    while (!messages.empty()) {
-      int done = 0;
-      MPI_Test(&messages.front().request, &done, MPI_STATUS_IGNORE);
-      if (done == 0) break;
-      if (spare_.size() < 16) spare_.push_back(std::move(messages.front().words));
-      messages.pop_front();
-    }
-    return messages.size();
+    const std::lock_guard lock(mutex_);
+    turn();
+    return mail_.leaving(to);
   }
 
   bool receive(std::uint32_t& from, std::vector<std::uint64_t>& words) override {
-    int found = 0;
-    MPI_Message message;
-    MPI_Status status;
-    MPI_Improbe(MPI_ANY_SOURCE, kTag, MPI_COMM_WORLD, &found, &message, &status);
-    if (found == 0) return false;
-    int count = 0;
-    MPI_Get_count(&status, MPI_UINT64_T, &count);
-    words.resize(static_cast<std::size_t>(count));
-    MPI_Mrecv(words.data(), count, MPI_UINT64_T, &message, MPI_STATUS_IGNORE);
-    from = static_cast<std::uint32_t>(status.MPI_SOURCE);
+    const std::lock_guard lock(mutex_);
+    turn();
+    if (mail_.coming == MPI_REQUEST_NULL &&
+        !mail_.begin_to_take(MPI_ANY_SOURCE, kRun, mail_.coming_words, MPI_UINT64_T))
+      return false;
+    if (!Mailbox::done(mail_.coming))
+      return false;  // a long one of a rank that has stopped in the midst of it never is
+    from = static_cast<std::uint32_t>(mail_.coming_from);
+    words.swap(mail_.coming_words);
     return true;
   }
 
   std::vector<std::string> gather(const std::string& bytes) override {
-    const int own = count_of(bytes.size());
-    std::vector<int> sizes(static_cast<std::size_t>(ranks_)), begins(sizes.size());
-    MPI_Allgather(&own, 1, MPI_INT, sizes.data(), 1, MPI_INT, MPI_COMM_WORLD);
-    std::size_t all = 0;
-    for (std::size_t r = 0; r < sizes.size(); ++r) {
-      begins[r] = count_of(all);
-      all += static_cast<std::size_t>(sizes[r]);
+    {
+      const std::lock_guard lock(mutex_);
+      for (std::uint32_t r = 0; r < ranks(); ++r)
+        if (r != rank()) mail_.post(r, kGather, std::vector<char>(bytes.begin(), bytes.end()));
     }
-    std::string joined(all, '\0');
-    count_of(all);
-    MPI_Allgatherv(bytes.data(), own, MPI_CHAR, joined.data(), sizes.data(), begins.data(), MPI_CHAR, MPI_COMM_WORLD);
-    std::vector<std::string> out;
-    for (std::size_t r = 0; r < sizes.size(); ++r)
-      out.push_back(joined.substr(static_cast<std::size_t>(begins[r]), static_cast<std::size_t>(sizes[r])));
+    std::vector<std::string> out(peers_.size(), bytes);
+    for (std::uint32_t r = 0; r < ranks(); ++r) {
+      if (r == rank()) continue;
+      take(r, kGather, mail_.coming_bytes, MPI_CHAR);
+      out[r].assign(mail_.coming_bytes.begin(), mail_.coming_bytes.end());
+    }
     return out;
   }
 
+  /// Along a binomial tree, so that rank 0 takes in as many films as there are digits in the number of ranks.
   void sum(std::span<std::uint64_t> numbers) override {
     while (!numbers.empty()) {
-      const std::span<std::uint64_t> some = numbers.first(std::min(numbers.size(), kMost));
-      // Modulo 2^64, as arithmetic of unsigned numbers is.
-      MPI_Reduce(rank_ == 0 ? MPI_IN_PLACE : some.data(), some.data(), count_of(some.size()), MPI_UINT64_T, MPI_SUM, 0,
-                 MPI_COMM_WORLD);
+      const std::span<std::uint64_t> some = numbers.first(std::min(numbers.size(), kSumWords));
+      std::vector<std::uint64_t> part(some.begin(), some.end());
+      for (std::uint32_t step = 1; step < ranks(); step *= 2) {
+        if ((rank() & step) != 0) {
+          const std::lock_guard lock(mutex_);
+          mail_.post(rank() - step, kSum, std::move(part));
+          break;
+        }
+        if (rank() + step >= ranks()) continue;
+        take(rank() + step, kSum, mail_.coming_words, MPI_UINT64_T);
+        for (std::size_t i = 0; i < part.size(); ++i) part[i] += mail_.coming_words.at(i);  // modulo 2^64
+      }
+      if (rank_ == 0) std::copy(part.begin(), part.end(), some.begin());
       numbers = numbers.subspan(some.size());
     }
   }
 
-  void leave() override { MPI_Finalize(); }
+  void leave() override {
+    say_bye();
+    wait([this] { return all_parted(); });
+    finalize();
+  }
+
   void leave_within(std::chrono::milliseconds time) override {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point until = Clock::now() + time;
-    MPI_Request request;
-    MPI_Ibarrier(leaving_all_, &request);
-    for (int done = 0; Clock::now() < until; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
-      MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-      if (done != 0) return leave();
-    }
+    if (part(time)) finalize();
   }
 
  private:
-  struct Message {
-    std::vector<std::uint64_t> words;
-    MPI_Request request = MPI_REQUEST_NULL;
+  struct Peer {
+    Clock::time_point heard;
+    MPI_Request sign = MPI_REQUEST_NULL;  // this rank's last one to it
+    bool parted = false, missing = false;
   };
 
-  int rank_ = 0, ranks_ = 1;
-  MPI_Comm leaving_all_ = MPI_COMM_NULL;      // for leave_within(), whatever others wait for
-  std::vector<std::deque<Message>> leaving_;  // by rank
-  std::vector<std::vector<std::uint64_t>> spare_;
+  std::size_t own() const { return static_cast<std::size_t>(rank_); }
+
+  // Under the mutex.
+
+  /// The caller's thread is at work with others.
+  void turn() { tend(called_ = Clock::now()); }
+
+  /// Gives and takes signs of life, when it is time.
+  void tend(Clock::time_point now) {
+    if (now - tended_ < kLook) return;
+    if (now - tended_ > kLate)
+      for (Peer& peer : peers_) peer.heard = now;
+    tended_ = now;
+    mail_.take_empty(kLife, [&](std::size_t r) { peers_[r].heard = now; });
+    mail_.take_empty(kBye, [&](std::size_t r) { peers_[r].parted = true; });
+    for (std::uint32_t r = 0; r < ranks(); ++r) {
+      Peer& peer = peers_[r];
+      if (peer.parted || peer.missing) continue;
+      if (now - signed_ >= kSign && Mailbox::done(peer.sign))
+        MPI_Isend(nullptr, 0, MPI_CHAR, static_cast<int>(r), kLife, MPI_COMM_WORLD, &peer.sign);
+      if (now - peer.heard <= kRankSilence) continue;
+      peer.missing = true;
+      if (missing_.empty()) missing_ = fmt::format("rank {}", r);
+      say_(fmt::format("rank {} has said nothing for {} seconds; it hangs or has died", r, kRankSilence.count()));
+    }
+    if (now - signed_ >= kSign) signed_ = now;
+  }
+
+  bool all_parted() const {
+    return std::all_of(peers_.begin(), peers_.end(), [](const Peer& peer) { return peer.parted; });
+  }
+
+  // Without the mutex.
+
+  template <class Done>
+  void wait(const Done& come) {
+    for (int polls = 0;; ++polls) {
+      {
+        const std::lock_guard lock(mutex_);
+        turn();
+        if (come()) return;
+        if (!missing_.empty()) throw SimulationError(fmt::format("the run ends, since {} is missing", missing_));
+      }
+      if (polls < 100)
+        std::this_thread::yield();
+      else
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  }
+
+  template <class Unit>
+  void take(std::uint32_t from, Tag tag, std::vector<Unit>& into, MPI_Datatype type) {
+    wait([&] { return mail_.begin_to_take(static_cast<int>(from), tag, into, type); });
+    wait([&] { return Mailbox::done(mail_.coming); });
+  }
+
+  void say_bye() {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(bye_said_, true)) return;
+    for (std::uint32_t r = 0; r < ranks(); ++r)
+      if (r != rank()) mail_.post(r, kBye, std::vector<char>());
+  }
+
+  /// Waits until all have parted that are not missing. Returns whether all are here.
+  bool part(std::chrono::milliseconds time) {
+    say_bye();
+    for (const Clock::time_point until = Clock::now() + time; Clock::now() < until;
+         std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+      const std::lock_guard lock(mutex_);
+      turn();
+      if (all_parted()) return true;
+      if (std::all_of(peers_.begin(), peers_.end(), [](const Peer& p) { return p.parted || p.missing; })) return false;
+    }
+    return false;
+  }
+
+  /// All have said their last word, and none watches another any more.
+  void finalize() {
+    watch_ = {};
+    const CallGuard guard("MPI_Finalize", say_);
+    for (std::uint32_t r = 0; r < ranks(); ++r)
+      while (mail_.leaving(r) > 0 || !Mailbox::done(peers_[r].sign)) std::this_thread::yield();
+    MPI_Finalize();
+  }
+
+  /// Gives signs of life while the other threads are busy with something else.
+  void watch(const std::stop_token& ended) {
+    for (; !ended.stop_requested(); std::this_thread::sleep_for(kLook)) {
+      {
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!lock) continue;  // who has it tends them
+        const Clock::time_point now = Clock::now();
+        tend(now);
+        if (missing_.empty() || now - called_ < kRankSilence + kAway) continue;
+      }
+      part(kParting);
+      std::_Exit(1);
+    }
+  }
+
+  Say say_;
+  int rank_, ranks_;
+  std::mutex mutex_;  // guards MPI and all below
+  Mailbox mail_;
+  std::vector<Peer> peers_;  // by rank
+  Clock::time_point called_, tended_, signed_;
+  std::string missing_;  // the first rank that was missed
+  bool bye_said_ = false;
+  std::jthread watch_;  // ends before the others
 };
 
 }  // namespace
 
-std::unique_ptr<MpiTransport> MpiTransport::start() {
-  // One thread of a run sends and receives, and another one before and after it.
+std::unique_ptr<MpiTransport> MpiTransport::start(const Say& say) {
+  // One thread of a run sends and receives, another one before and after it, and one gives signs of life.
   int level = MPI_THREAD_SINGLE;
-  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
+  {
+    const CallGuard guard("MPI_Init_thread", say);
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
+  }
   if (level < MPI_THREAD_SERIALIZED) throw FileError("this MPI was built without threads (MPI_THREAD_SERIALIZED)");
-  return std::make_unique<OpenMpi>();
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  return std::make_unique<OpenMpi>(rank, ranks, say);
 }
 
 bool MpiTransport::built() {
@@ -149,7 +264,7 @@ bool MpiTransport::built() {
 
 namespace carousel::ringbus {
 
-std::unique_ptr<MpiTransport> MpiTransport::start() {
+std::unique_ptr<MpiTransport> MpiTransport::start(const Say&) {
   return nullptr;
 }
 
