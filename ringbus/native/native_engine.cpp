@@ -48,8 +48,8 @@ class NativeRun {
   }
 
   RunResult run() {
+    if (recorder_) recorder_->start(other_ranks());
     start_ = Clock::now();
-    if (recorder_) recorder_->start(start_);
     if (machine_->gate) machine_->gate->start();
     for (;;) {
       run_threads();
@@ -67,6 +67,7 @@ class NativeRun {
     if (complete) check_drained();
     RunResult out = result(complete, wall.count());
     if (machine_->gate) gather_result(*options_.transport, machine_->shared.share, out);
+    if (recorder_) out.timeline = recorder_->timeline(other_ranks());
     return out;
   }
 
@@ -91,8 +92,9 @@ class NativeRun {
       if (share.here(ResourceId(r)))
         ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, settings, sinks_[r].get()));
     if (!recorder_ && (options_.timeline.most > 0 || options_.ray != nullptr))
-      recorder_ =
-          std::make_unique<NativeRecorder>(config_, machine_->shared.packets.size(), options_.timeline, options_.ray);
+      recorder_ = std::make_unique<NativeRecorder>(config_, share, machine_->shared.packets.size(), options_.timeline,
+                                                   options_.ray);
+    if (recorder_ && machine_->gate) machine_->gate->record(*recorder_);
     for (std::size_t r = 0; recorder_ && r < ports_.size(); ++r) ports_[r]->record(*recorder_);
     for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
     const auto slots = static_cast<std::int64_t>(machine_->shared.control.free_slots());  // that this rank fills
@@ -235,6 +237,8 @@ class NativeRun {
     }
   }
 
+  /// The way to them; null if there are none.
+  Transport* other_ranks() const { return machine_->gate ? options_.transport : nullptr; }
   void look() { series_.look(Clock::now() - start_, count_, machine_->shared.control, ports_); }
   std::string describe_stuck() const {
     std::string text =
@@ -286,9 +290,7 @@ class NativeRun {
                     peak_memory_bytes()};
     }
     if (series_.on()) out.series = series_.finish();
-    if (!recorder_) return out;
-    out.timeline = recorder_->timeline();
-    out.facts = recorder_->facts();
+    if (recorder_) out.facts = recorder_->facts();
     return out;
   }
 

@@ -31,6 +31,7 @@ std::unique_ptr<Link> RankGate::make_link(std::uint32_t wire, std::size_t depth)
       const std::lock_guard lock(peer.mutex);
       for (const PacketId id : packets) {
         peer.next.add(wire, id, machine_.packet(id));
+        if (recorder_ != nullptr) peer.next.trips.push_back(recorder_->trip(id));
         if (shapes_) shapes_->take_along(id, machine_.packet(id), at, peer.next);
       }
     };
@@ -140,6 +141,7 @@ bool RankGate::send(std::uint32_t rank) {
     sending_.rays.swap(peer.next.rays);
     sending_.results.swap(peer.next.results);
     sending_.packets.swap(peer.next.packets);
+    sending_.trips.swap(peer.next.trips);
     sending_.images.swap(peer.next.images);
     sending_.guests.swap(peer.next.guests);
     sending_.shapes.swap(peer.next.shapes);
@@ -153,6 +155,7 @@ bool RankGate::send(std::uint32_t rank) {
 
 void RankGate::send_now(std::uint32_t rank, RankMessage& message) {
   Peer& peer = *peers_[rank];
+  const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
   message.rays_taken = peer.rays_told = peer.rays_received;
   end_.sent(message.items());
   message.write(words_);
@@ -164,18 +167,34 @@ void RankGate::send_now(std::uint32_t rank, RankMessage& message) {
   peer.counts.shapes += message.guests.size();
   peer.counts.shape_bytes += message.shapes.size() * sizeof message.shapes[0];
   transport_.send(rank, words_);
+  if (recorder_ != nullptr)
+    recorder_->note_message({rank_, rank}, SliceKind::kSend, peer.counts.messages, message.packets.size(), begin);
   peer.said = Clock::now();
   message.clear();
+}
+
+bool RankGate::next_message(std::uint32_t& from) {
+  if (!transport_.receive(from, words_)) return false;
+  received_.read(words_);
+  ++peers_[from]->messages_received;
+  return true;
+}
+
+void RankGate::note_received(std::uint32_t from, std::uint64_t begin) {
+  if (recorder_ != nullptr)
+    recorder_->note_message({from, rank_}, SliceKind::kReceive, peers_[from]->messages_received,
+                            received_.packets.size(), begin);
 }
 
 bool RankGate::receive() {
   bool moved = false;
   std::uint32_t from = 0;
-  while (!ended() && transport_.receive(from, words_)) {
-    received_.read(words_);
+  while (!ended() && next_message(from)) {
+    const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
     peers_[from]->heard = Clock::now();
     moved |= received_.items() > 0;
     take(from, received_);
+    note_received(from, begin);
   }
   const Clock::time_point now = Clock::now();
   for (std::uint32_t r = 0; r < peers_.size(); ++r)
@@ -201,6 +220,7 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
   for (std::size_t i = 0; i < message.packets.size(); ++i) {
     const PacketOnWire& at = message.packets[i];
     message.restore_packet(i, machine_.packet(at.packet));
+    if (recorder_ != nullptr && !message.trips.empty()) recorder_->bring(at.packet, message.trips[i]);
     links_.at(at.wire)->arrive(at.packet);
   }
   if (message.token) end_.take(*message.token);
@@ -264,11 +284,11 @@ void RankGate::part(Farewell::Reason reason, const std::string& text) {
   };
   while (others_open() && Clock::now() < until) {
     std::uint32_t from = 0;
-    if (!transport_.receive(from, words_)) {
+    if (!next_message(from)) {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
       continue;
     }
-    received_.read(words_);
+    if (recorder_ != nullptr) note_received(from, recorder_->now());
     if (!received_.farewell) continue;
     peers_[from]->parted = true;
     stopped_ |= received_.farewell->reason != Farewell::Reason::kEnd;
