@@ -74,6 +74,7 @@ class NativeRun {
  private:
   struct alignas(128) Progress {
     std::atomic<std::uint64_t> steps{0};  // that moved something
+    std::chrono::nanoseconds waited{0};   // among ranks: without anything to do
   };
 
   using Clock = std::chrono::steady_clock;
@@ -170,6 +171,11 @@ class NativeRun {
       // thread that has slept comes first.
       const int patience = machine_->gate ? 16 : 256;
       int idle = 0;
+      Clock::time_point idle_since;
+      const auto end_wait = [&] {
+        if (idle > 0 && machine_->gate) progress_[thread].waited += Clock::now() - idle_since;
+        idle = 0;
+      };
       // Acquire: pairs with the release that asks everyone to end.
       while (!end_.load(std::memory_order_acquire)) {
         bool moved = false;
@@ -180,18 +186,22 @@ class NativeRun {
         for (std::size_t w = thread; w < workers_.size(); w += threads_) moved |= workers_[w]->step();
         if (machine_->gate && thread == 0) moved |= machine_->gate->step(at_rest());
         if (moved) {
-          idle = 0;
+          end_wait();
           // Relaxed: the watcher only wants to see it change.
           progress_[thread].steps.fetch_add(1, std::memory_order_relaxed);
         } else if (machine_->gate ? machine_->gate->ended() : at_rest()) {
           break;
-        } else if (++idle < patience) {
+        }
+        if (moved) continue;
+        if (idle == 0 && machine_->gate) idle_since = Clock::now();
+        if (++idle < patience) {
           // Two threads on one core must not wait out each other's time slices.
           std::this_thread::yield();
         } else {
           std::this_thread::sleep_for(std::chrono::microseconds(50));
         }
       }
+      end_wait();
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
@@ -285,6 +295,9 @@ class NativeRun {
       out.ranks.resize(machine_->shared.share.ranks());
       RankResult& own = out.ranks[machine_->shared.share.rank()];
       own.to = machine_->gate->counts();
+      std::chrono::duration<double> waited{0};
+      for (std::size_t t = 0; t < threads_; ++t) waited += progress_[t].waited;
+      own.waiting = std::min(1.0, waited.count() / (wall_seconds * static_cast<double>(threads_)));
       const ShapeTravel* const shapes = machine_->gate->shapes();
       own.memory = {options_.scene_bytes, accel_.size_bytes(), shapes != nullptr ? shapes->guest_bytes() : 0,
                     peak_memory_bytes()};

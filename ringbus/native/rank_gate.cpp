@@ -126,12 +126,16 @@ bool RankGate::send(std::uint32_t rank) {
   bool anything = items >= kFull || ((news || sign || items > 0) && now - peer.said >= kWindow);
   if (anything && transport_.leaving(rank) >= kLeaving) {
     ++peer.counts.holds;
+    if (!peer.held_since) peer.held_since = now;
     anything = false;
   }
   if (!anything) {
     sending_.clear();
     return false;
   }
+  if (peer.held_since)
+    peer.counts.hold_ns += static_cast<std::uint64_t>(std::chrono::nanoseconds(now - *peer.held_since).count());
+  peer.held_since.reset();
   for (const LinkCredit& credit : sending_.credits) {
     const auto at = std::find(peer.in_wires.begin(), peer.in_wires.end(), credit.wire);
     peer.credits_told[static_cast<std::size_t>(at - peer.in_wires.begin())] = credit.taken;

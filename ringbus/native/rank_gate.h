@@ -88,6 +88,7 @@ class RankGate final : public RemotePlacing {
     std::vector<std::uint32_t> in_wires;
     std::vector<std::uint64_t> credits_told;  // by in_wires
     Clock::time_point heard, said;
+    std::optional<Clock::time_point> held_since;  // something to send waits for earlier messages to leave
     std::uint64_t messages_received = 0;
     RankCounts counts;
   };

@@ -97,6 +97,11 @@ class Ranks(unittest.TestCase):
         owner = [rank["rank"] for rank in report["ranks"] for _ in range(rank["resources"])]
         between = sum(link["packets"] for link in report["links"] if owner[link["from"]] != owner[link["to"]])
         self.assertEqual(sum(link["packets"] for link in report["rank_links"]), between)
+        for way in report["rank_links"]:
+            links = [link for link in report["links"] if (owner[link["from"]], owner[link["to"]]) == (way["from"], way["to"])]
+            self.assertEqual(way["full"], sum(link["full_stalls"] for link in links))
+            self.assertAlmostEqual(way["packets_per_message"], way["packets"] / way["messages"])
+            self.assertAlmostEqual(way["held"], way["hold_ns"] * 1e-9 / report["host"]["wall_seconds"])
         sent, returned = (sum(link[key] for link in report["rank_links"]) for key in ("rays", "results"))
         self.assertEqual(sent, returned)
 
@@ -335,6 +340,25 @@ def read_trace(name):
         ends = (own, other) if event["name"] == "send" else (other, own)
         messages[event["name"]][*ends, event["args"]["message"]] = event["ts"]
     return trace, events, processes, messages
+
+
+class WhatRanksReport(Ranks):
+    def test_waiting_and_back_pressure(self):
+        """Ranks whose links hold one packet wait for one another."""
+        table = subprocess.run(["mpirun", "-n", "2", *(word for word in self.command("ranks", ["engine.transport=mpi",
+                                "topology.link.depth=1"]) if word != "--quiet")], capture_output=True, text=True,
+                               timeout=120, env=ENVIRONMENT)
+        self.assertEqual(table.returncode, 0, table.stderr)
+        self.counted(2)
+        report = self.report("ranks")
+        for rank in report["ranks"]:
+            self.assertGreater(rank["waiting"], 0.01)
+            self.assertLessEqual(rank["waiting"], 1)
+            self.assertRegex(table.stdout, rf"rank {rank['rank']}: resources {rank['first_resource']} to .* waited ")
+        for way in report["rank_links"]:
+            self.assertGreater(way["full"], 0)
+            self.assertRegex(table.stdout, rf"rank {way['from']} to {way['to']}: {way['messages']:,} messages .* "
+                             rf"{way['packets_per_message']:.1f} packets a message .* full {way['full']:,} times")
 
 
 class OneTimeline(Ranks):
