@@ -45,11 +45,12 @@ std::unique_ptr<Link> RankGate::make_link(std::uint32_t wire, std::size_t depth)
   return link;
 }
 
-void RankGate::load(ResourceId resource, RayId id, const RayRequest& request) {
+void RankGate::load(ResourceId resource, std::span<const RayId> ids, std::span<const RayRequest> rays) {
+  if (rays.empty()) return;
   Peer& peer = *peers_[machine_.share.rank_of(resource)];
   const std::lock_guard lock(peer.mutex);
-  peer.next.rays.push_back({id, request});
-  ++peer.rays_sent;
+  for (std::size_t i = 0; i < rays.size(); ++i) peer.next.rays.push_back({ids[i], rays[i]});
+  peer.rays_sent += rays.size();
   peer.held = true;
 }
 
@@ -66,6 +67,8 @@ void RankGate::hold(ResourceId issuer, RayGroup&& group) {
 
 void RankGate::send_results(ResourceId resource, HitBatch& done, std::vector<std::uint32_t>& slots) {
   std::size_t kept = 0;
+  std::unique_lock<std::mutex> lock;
+  std::uint32_t locked = rank_;  // the rank whose messages are, which takes a lock for rays in a row
   for (std::size_t i = 0; i < done.size(); ++i) {
     const std::uint32_t lessee = machine_.control.lessee(resource, slots[i]);
     if (lessee == rank_) {
@@ -73,7 +76,11 @@ void RankGate::send_results(ResourceId resource, HitBatch& done, std::vector<std
       slots[kept++] = slots[i];
       continue;
     }
-    const std::lock_guard lock(peers_[lessee]->mutex);
+    if (locked != lessee) {
+      if (lock.owns_lock()) lock.unlock();
+      lock = std::unique_lock(peers_[lessee]->mutex);
+      locked = lessee;
+    }
     peers_[lessee]->next.results.push_back({resource, slots[i], done[i]});
   }
   done.resize(kept);
@@ -241,10 +248,15 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
 void RankGate::take_results(const RankMessage& message) {
   if (message.results.empty()) return;
   HitBatch batch = completed_.fresh();
-  for (const ResultOnWire& result : message.results) {
-    machine_.stores.at(result.resource.value)->retire(result.slot);
-    machine_.control.free(result.resource, {&result.slot, 1});
-    batch.push_back(result.result);
+  for (std::size_t i = 0; i < message.results.size();) {
+    const ResourceId resource = message.results[i].resource;
+    slots_.clear();
+    for (; i < message.results.size() && message.results[i].resource == resource; ++i) {
+      machine_.stores.at(resource.value)->retire(message.results[i].slot);
+      slots_.push_back(message.results[i].slot);
+      batch.push_back(message.results[i].result);
+    }
+    machine_.control.free(resource, slots_);
   }
   completed_.push(std::move(batch));
 }

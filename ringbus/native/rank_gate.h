@@ -39,7 +39,7 @@ class RankGate final : public RemotePlacing {
   /// Whether both ends of a wire are here.
   bool here(const Topology::Wire& wire) const { return machine_.share.here(wire.from) && machine_.share.here(wire.to); }
 
-  void load(ResourceId resource, RayId id, const RayRequest& request) override;
+  void load(ResourceId resource, std::span<const RayId> ids, std::span<const RayRequest> rays) override;
   void hold(ResourceId issuer, RayGroup&& group) override;
   /// Sends those of the completed rays of `resource` away that other ranks shade, and returns the others in place.
   /// `slots` are the slots that they leave.
@@ -124,8 +124,9 @@ class RankGate final : public RemotePlacing {
   std::optional<EndToken> token_;  // to be sent to the next rank
   std::atomic<bool> ended_{false};
   bool stopped_ = false;
-  std::string cause_;               // another rank's, why the run has ended
-  RankMessage sending_, received_;  // scratch
+  std::string cause_;                 // another rank's, why the run has ended
+  RankMessage sending_, received_;    // scratch
+  std::vector<std::uint32_t> slots_;  // scratch
   std::vector<std::uint64_t> words_;
 };
 
