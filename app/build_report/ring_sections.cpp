@@ -61,15 +61,35 @@ void add_census(report::Report& r, const RayCensus& census, const accel::Accel& 
   if (r.tests && !accel.partition) r.tests->depth_first = census.depth_first(accel);  // no rank has it all
 }
 
+namespace {
+
+/// Sends for which the links from one rank to another had too few places.
+std::uint64_t full_between(const ringbus::RunResult& result, const ringbus::RankResult& from,
+                           const ringbus::RankResult& to) {
+  const auto plays = [](const ringbus::RankResult& rank, ResourceId id) {
+    return id.value >= rank.first_resource && id.value - rank.first_resource < rank.resources;
+  };
+  std::uint64_t full = 0;
+  for (const ringbus::LinkResult& link : result.links)
+    if (plays(from, link.from) && plays(to, link.to)) full += link.statistics.full_stalls;
+  return full;
+}
+
+}  // namespace
+
 void add_ranks(report::Report& r, const ringbus::RunResult& result) {
   if (result.ranks.empty()) return;
   r.ranks.emplace();
   r.rank_links.emplace();
   for (std::size_t from = 0; from < result.ranks.size(); ++from) {
     const ringbus::RankResult& rank = result.ranks[from];
-    r.ranks->push_back({from, rank.first_resource, rank.resources, rank.threads, rank.rays_completed, rank.memory});
+    r.ranks->push_back(
+        {from, rank.first_resource, rank.resources, rank.threads, rank.rays_completed, rank.waiting, rank.memory});
     for (std::size_t to = 0; to < rank.to.size(); ++to)
-      if (to != from) r.rank_links->push_back({from, to, rank.to[to]});
+      if (to != from)
+        r.rank_links->push_back({from, to, rank.to[to], ratio(rank.to[to].packets, rank.to[to].messages),
+                                 ratio(double(rank.to[to].hold_ns) * 1e-9, result.wall_seconds),
+                                 full_between(result, rank, result.ranks[to])});
   }
 }
 

@@ -103,7 +103,12 @@ void require_one_rank(const RunArguments& arguments) {
   };
   refuse(arguments.hits, "--hits");
   refuse(!arguments.dump_rays.empty(), "--dump-rays");
-  refuse(!arguments.trace.file.empty(), "--trace");
+}
+
+/// Tells what two ranks note for a timeline apart.
+std::string trace_text(const TraceArguments& trace) {
+  if (trace.file.empty()) return "none";
+  return fmt::format("window '{}', every {}, at most {} events", trace.window, trace.every, trace.events);
 }
 
 /// Only a simulated machine has a memory.
@@ -163,6 +168,7 @@ int run_command(const RunArguments& arguments) {
         if (config.engine.transport != EngineTransport::kLocal) {
           require_one_rank(arguments);
           ranks.emplace(config, program_identity());
+          ranks->require_same("--trace", trace_text(arguments.trace));
           ranks->require_files(
               [&] { return ContentDigests(std::filesystem::path(arguments.config).parent_path()).of(config); });
           if (ranks->rank() != 0) return;  // one writes the files
@@ -185,7 +191,8 @@ int run_command(const RunArguments& arguments) {
   std::optional<HitRecorder> recorder;
   if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(shader_workers(p.config()))));
   std::optional<TraceFile> trace;
-  if (!arguments.trace.file.empty()) trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative);
+  if (!arguments.trace.file.empty())
+    trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative, !ranks || ranks->rank() == 0);
   ringbus::MemoryLog memory;
   const bool quiet = arguments.quiet || (ranks && ranks->rank() != 0);
   report::Report report = run_rays(arguments, p, job, interrupt, quiet, trace ? &*trace : nullptr,

@@ -19,8 +19,12 @@ class ChromeTrace final : public TraceWriter {
   ChromeTrace(AtomicFile& file, const ringbus::Timeline& timeline, bool native)
       : file_(file), timeline_(timeline), native_(native) {
     file_.write("{\"displayTimeUnit\":\"ns\",\"otherData\":{\"time\":\"");
-    file_.write(native ? "time of the host since the start" : "1 us stands for 1 cycle");
-    file_.write("\"},\"traceEvents\":[\n");
+    file_.write(!native                   ? "1 us stands for 1 cycle"
+                : timeline.clocks.empty() ? "time of the host since the start"
+                                          : "time of the host of rank 0 since the start");
+    file_.write("\"");
+    write_clocks();
+    file_.write("},\"traceEvents\":[\n");
   }
 
   std::size_t events_of(const Slice& s) const override { return s.trip != 0 ? 2 : 1; }
@@ -53,18 +57,18 @@ class ChromeTrace final : public TraceWriter {
 
   void slice(const Slice& s, OnWay way) override {
     std::string packet;
-    if (s.kind != SliceKind::kUnits) packet = fmt::format(",\"args\":{{\"packet\":{},\"rays\":{}}}", s.packet, s.rays);
+    if (const SliceArguments names = arguments_of(s.kind); names.first != nullptr)
+      packet = fmt::format(",\"args\":{{\"{}\":{},\"{}\":{}}}", names.first, s.packet, names.second, s.rays);
     event(fmt::format("{{\"ph\":\"X\",\"pid\":{},\"tid\":{},\"ts\":{},\"dur\":{},\"cat\":\"{}\",\"name\":\"{}\"{}}}",
                       pids_[s.track], s.track + 1, time(static_cast<double>(s.begin)),
-                      time(static_cast<double>(s.end - s.begin)), s.kind == SliceKind::kUnits ? "units" : "packets",
-                      name_of(s.kind), packet));
+                      time(static_cast<double>(s.end - s.begin)), category_of(s.kind), name_of(s.kind), packet));
     if (way == OnWay::kNone) return;
     const char phase = way == OnWay::kFirst ? 's' : way == OnWay::kLast ? 'f' : 't';
     event(
-        fmt::format("{{\"ph\":\"{}\",\"pid\":{},\"tid\":{},\"ts\":{},\"cat\":\"packets\",\"name\":\"way of a "
-                    "packet\",\"id\":{}{}}}",
-                    phase, pids_[s.track], s.track + 1, time(static_cast<double>(s.begin)), s.trip,
-                    phase == 'f' ? ",\"bp\":\"e\"" : ""));
+        fmt::format("{{\"ph\":\"{}\",\"pid\":{},\"tid\":{},\"ts\":{},\"cat\":\"{}\",\"name\":\"way of a "
+                    "{}\",\"id\":{}{}}}",
+                    phase, pids_[s.track], s.track + 1, time(static_cast<double>(s.begin)), category_of(s.kind),
+                    arguments_of(s.kind).first, s.trip, phase == 'f' ? ",\"bp\":\"e\"" : ""));
   }
 
   std::size_t finish() override {
@@ -74,10 +78,25 @@ class ChromeTrace final : public TraceWriter {
   }
 
  private:
+  /// With ranks: how far each clock was ahead of rank 0's when the run began, which the times have been freed of, and
+  /// by how much this may be wrong.
+  void write_clocks() {
+    if (timeline_.clocks.empty()) return;
+    file_.write(",\"clocks\":[");
+    for (std::size_t rank = 0; rank < timeline_.clocks.size(); ++rank) {
+      const ringbus::RankClock& clock = timeline_.clocks[rank];
+      file_.write(fmt::format("{}{{\"rank\":{},\"ahead_us\":{:.3f},\"uncertainty_us\":{:.3f}}}", rank > 0 ? "," : "",
+                              rank, static_cast<double>(clock.ahead) * 1e-3,
+                              static_cast<double>(clock.uncertainty) * 1e-3));
+    }
+    file_.write("]");
+  }
   std::string time(double at) const { return native_ ? fmt::format("{:.3f}", at * 1e-3) : fmt::format("{:.0f}", at); }
   void process(std::uint32_t pid, const std::string& name) {
     metadata("process_name", pid, 0, fmt::format("\"name\":\"{}\"", name));
     metadata("process_sort_index", pid, 0, fmt::format("\"sort_index\":{}", pid));
+    const std::string clock = clock_text(timeline_, name);
+    if (!clock.empty()) metadata("process_labels", pid, 0, fmt::format("\"labels\":\"{}\"", clock));
   }
   void metadata(std::string_view kind, std::uint32_t pid, std::uint32_t tid, const std::string& arguments) {
     event(fmt::format("{{\"ph\":\"M\",\"pid\":{},\"tid\":{},\"ts\":0,\"name\":\"{}\",\"args\":{{{}}}}}", pid, tid, kind,

@@ -58,10 +58,11 @@ class PerfettoTrace final : public TraceWriter {
         event_at(static_cast<double>(s.begin), perfetto::TrackEvent::TYPE_SLICE_BEGIN, track_uuid(s.track));
     const std::string_view name = name_of(s.kind);
     begin.set_name(name.data(), name.size());
-    begin.add_categories(s.kind == SliceKind::kUnits ? "units" : "packets");
-    if (s.kind != SliceKind::kUnits) {
-      annotate(begin, "packet", static_cast<std::int64_t>(s.packet));
-      annotate(begin, "rays", static_cast<std::int64_t>(s.rays));
+    const std::string_view category = category_of(s.kind);
+    begin.add_categories(category.data(), category.size());
+    if (const SliceArguments names = arguments_of(s.kind); names.first != nullptr) {
+      annotate(begin, names.first, static_cast<std::int64_t>(s.packet));
+      annotate(begin, names.second, static_cast<std::int64_t>(s.rays));
     }
     if (way == OnWay::kLast)
       begin.add_terminating_flow_ids(s.trip);
@@ -91,6 +92,8 @@ class PerfettoTrace final : public TraceWriter {
       track.set_child_ordering(3);
       track.mutable_process()->set_pid(static_cast<std::int32_t>(found->second));
       track.mutable_process()->set_process_name(part);
+      if (std::string clock = clock_text(timeline_, part); !clock.empty())
+        track.mutable_process()->add_process_labels(std::move(clock));
       write();
     }
     return found->second;

@@ -70,13 +70,14 @@ bool is_perfetto(const std::string& file) {
 
 }  // namespace
 
-TraceFile::TraceFile(const TraceArguments& arguments, bool native)
+TraceFile::TraceFile(const TraceArguments& arguments, bool native, bool writes)
     : name_(arguments.file),
       perfetto_(is_perfetto(arguments.file)),
-      file_(arguments.file),
       wanted_(options_of(arguments, native)),
       most_(arguments.events),
-      native_(native) {}
+      native_(native) {
+  if (writes) file_.emplace(arguments.file);
+}
 
 ringbus::TimelineOptions TraceFile::wanted() const {
   return wanted_;
@@ -97,8 +98,8 @@ TraceFile::Written TraceFile::write(const ringbus::Timeline& timeline, const rin
       }
   if (counters.size() > most_ / 4) counters.resize(most_ / 4);
   const std::unique_ptr<TraceWriter> writer =
-      perfetto_ ? perfetto_trace(file_, timeline, native_) : chrome_trace(file_, timeline, native_);
-  const std::size_t names = 4 * timeline.tracks.size() + 2;
+      perfetto_ ? perfetto_trace(*file_, timeline, native_) : chrome_trace(*file_, timeline, native_);
+  const std::size_t names = 5 * timeline.tracks.size() + 2;
   std::size_t budget = most_ - std::min(most_, names + counters.size());
   std::size_t slices = 0;
   for (; slices < timeline.slices.size(); ++slices) {

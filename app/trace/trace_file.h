@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/system/atomic_file.h"
@@ -25,8 +26,8 @@ class TraceFile {
  public:
   /// Makes the file, so that nothing is simulated for a file that cannot be written. Throws FileError, and a
   /// ConfigError for a window that is none or a format that this build does not write. `native`: times are nanoseconds
-  /// of the host.
-  TraceFile(const TraceArguments& arguments, bool native);
+  /// of the host. `writes`: false at a rank that only records, for rank 0's file.
+  TraceFile(const TraceArguments& arguments, bool native, bool writes = true);
 
   const std::string& name() const { return name_; }
   /// For the engine.
@@ -36,13 +37,13 @@ class TraceFile {
     std::size_t events = 0;
     bool cut = false;  ///< events were left out, for there were too many
   };
-  /// `series` may be null. Occupancies become counters, packets flows from part to part.
+  /// Only where it writes. `series` may be null. Occupancies become counters, packets flows from part to part.
   Written write(const ringbus::Timeline& timeline, const ringbus::TimeSeries* series);
 
  private:
   std::string name_;
   bool perfetto_;
-  AtomicFile file_;
+  std::optional<AtomicFile> file_;
   ringbus::TimelineOptions wanted_;
   std::size_t most_;
   bool native_;

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "ringbus/results/slice_log.h"
 
 namespace carousel::app {
@@ -28,6 +30,35 @@ class TraceWriter {
   virtual std::size_t finish() = 0;
 };
 
+/// Numbers that tell more of a slice, with their names.
+struct SliceArguments {
+  const char* first = nullptr;  ///< the name of Slice::packet; null: there are none
+  const char* second = nullptr;
+};
+
+inline SliceArguments arguments_of(ringbus::SliceKind kind) {
+  using ringbus::SliceKind;
+  if (kind == SliceKind::kUnits) return {};
+  if (kind == SliceKind::kSend || kind == SliceKind::kReceive) return {"message", "packets"};
+  return {"packet", "rays"};
+}
+
+inline std::string_view category_of(ringbus::SliceKind kind) {
+  using ringbus::SliceKind;
+  if (kind == SliceKind::kUnits) return "units";
+  return kind == SliceKind::kSend || kind == SliceKind::kReceive ? "messages" : "packets";
+}
+
+/// Says what the times of a rank are worth; empty for a part that is none.
+inline std::string clock_text(const ringbus::Timeline& timeline, std::string_view part) {
+  for (std::size_t rank = 0; rank < timeline.clocks.size(); ++rank) {
+    if (part != fmt::format("rank {}", rank)) continue;
+    const double uncertainty = static_cast<double>(timeline.clocks[rank].uncertainty) * 1e-3;
+    return uncertainty > 0 ? fmt::format("clock within {:.3f} us of that of rank 0", uncertainty) : "clock of rank 0";
+  }
+  return {};
+}
+
 inline std::string_view name_of(ringbus::SliceKind kind) {
   using ringbus::SliceKind;
   switch (kind) {
@@ -43,6 +74,10 @@ inline std::string_view name_of(ringbus::SliceKind kind) {
       return "test";
     case SliceKind::kLink:
       return "packet";
+    case SliceKind::kSend:
+      return "send";
+    case SliceKind::kReceive:
+      return "receive";
     case SliceKind::kUnits:
       break;
   }

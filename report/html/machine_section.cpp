@@ -20,6 +20,36 @@ double use_of(const Json& resource, double cycles, double most_tested) {
   return cycles > 0 ? busy / cycles : 0;
 }
 
+/// The row of a list in which a number is greatest.
+const Json& greatest(const Json& rows, const char* key) {
+  return *std::max_element(rows.begin(), rows.end(),
+                           [&](const Json& a, const Json& b) { return number_at(a, key) < number_at(b, key); });
+}
+
+/// The rank and the way between ranks to look at first.
+std::string rank_words(const Json& report) {
+  const Json &rank = greatest(report.at("ranks"), "waiting"), &held = greatest(report.at("rank_links"), "held"),
+             &full = greatest(report.at("rank_links"), "full");
+  std::string out = fmt::format("<p>Of the ranks, {} waited most, for {} of its threads' time. ",
+                                rank.at("rank").dump(), share(number_at(rank, "waiting")).text);
+  out += fmt::format("Messages from rank {} to {} waited most for earlier ones to leave, for {} of the run. ",
+                     held.at("from").dump(), held.at("to").dump(), share(number_at(held, "held")).text);
+  if (number_at(full, "full") > 0)
+    out += fmt::format("Back-pressure was greatest from rank {} to {}, where links were full {} times.",
+                       full.at("from").dump(), full.at("to").dump(), value_text(full.at("full")));
+  return out + "</p>\n";
+}
+
+/// Without the columns that only some runs have, where they are zero; and without nanoseconds of which the share is
+/// there.
+std::string rank_table(const char* key, const char* title, const Json& report, const Json& schema) {
+  const Json& rows = report.at(key);
+  std::vector<std::string> left_out{"hold_ns"};
+  for (const char* rare : {"guest_bytes", "heartbeats", "shapes", "shape_bytes"})
+    if (number_at(greatest(rows, rare), rare) == 0) left_out.emplace_back(rare);
+  return table_of(key, title, rows, *find(schema, fmt::format("properties.{}.items", key)), left_out).html();
+}
+
 }  // namespace
 
 std::string machine_section(const Json& report, const Json& schema) {
@@ -51,9 +81,11 @@ std::string machine_section(const Json& report, const Json& schema) {
                        busiest.empty() ? "none" : busiest, share(most).text);
     tables += table.html();
   }
-  for (const auto& [key, title] : {std::pair{"ranks", "Ranks"}, std::pair{"rank_links", "Messages between ranks"}})
-    if (const Json* rows = find(report, key); rows && !rows->empty())
-      tables += table_of(key, title, *rows, *find(schema, fmt::format("properties.{}.items", key))).html();
+  if (report.contains("ranks")) {
+    out += rank_words(report);
+    tables += rank_table("ranks", "Ranks", report, schema);
+    tables += rank_table("rank_links", "Messages between ranks", report, schema);
+  }
   if (links && !links->empty()) {
     Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"), {"utilisation"});
     double carried = 0;

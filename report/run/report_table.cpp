@@ -56,6 +56,36 @@ void spread_line(Table& table, std::string_view name, const std::vector<Resource
              grouped(static_cast<std::uint64_t>(mean + 0.5)), grouped(most), ratio(double(most), mean));
 }
 
+// A table is read at a glance: more lines than these are left to the files.
+constexpr std::size_t kRankLines = 8, kRankLinkLines = 12;
+
+void rank_lines(Table& table, const std::vector<Rank>& ranks, std::vector<RankLink> links) {
+  RankCounts all;
+  for (const RankLink& link : links) all += link.sent;
+  std::uint64_t peak = 0, structure = 0;
+  for (const Rank& rank : ranks) {
+    peak = std::max(peak, rank.memory.peak_memory_bytes);
+    structure = std::max(structure, rank.memory.structure_bytes);
+  }
+  table.line("ranks", "{} ranks   {} messages   {} between them   {} memory at most, {} of it structure", ranks.size(),
+             grouped(all.messages), bytes_text(all.bytes), bytes_text(peak), bytes_text(structure));
+  for (std::size_t r = 0; r < std::min(kRankLines, ranks.size()); ++r)
+    table.line("", "rank {}: resources {} to {}   {} threads   {} rays shaded   waited {:.1f} %", ranks[r].rank,
+               ranks[r].first_resource, ranks[r].first_resource + ranks[r].resources - 1, ranks[r].threads,
+               grouped(ranks[r].rays_shaded), 100 * ranks[r].waiting);
+  // Those that carried most.
+  std::stable_sort(links.begin(), links.end(),
+                   [](const RankLink& a, const RankLink& b) { return a.sent.bytes > b.sent.bytes; });
+  for (std::size_t i = 0; i < std::min(kRankLinkLines, links.size()); ++i)
+    table.line("", "rank {} to {}: {} messages   {}   {:.1f} packets a message   held {:.1f} %   full {} times",
+               links[i].from, links[i].to, grouped(links[i].sent.messages), bytes_text(links[i].sent.bytes),
+               links[i].packets_per_message, 100 * links[i].held, grouped(links[i].full));
+  if (ranks.size() > kRankLines || links.size() > kRankLinkLines)
+    table.line("", "{} more ranks and {} more ways between ranks in report.json",
+               ranks.size() - std::min(kRankLines, ranks.size()),
+               links.size() - std::min(kRankLinkLines, links.size()));
+}
+
 void resource_lines(Table& table, const std::vector<Resource>& resources) {
   table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean", fmt::format("{} of them", resources.size()),
              "least", "mean", "most");
@@ -287,18 +317,7 @@ std::string report_table(const Report& report) {
                grouped(raster.triangles), grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
                seconds_text(report.host.raster_seconds.value_or(0)));
   }
-  if (report.ranks) {
-    RankCounts all;
-    for (const RankLink& link : *report.rank_links) all += link.sent;
-    std::uint64_t peak = 0, structure = 0;
-    for (const Rank& rank : *report.ranks) {
-      peak = std::max(peak, rank.memory.peak_memory_bytes);
-      structure = std::max(structure, rank.memory.structure_bytes);
-    }
-    table.line("ranks", "{} ranks   {} messages   {} between them   {} memory at most, {} of it structure",
-               report.ranks->size(), grouped(all.messages), bytes_text(all.bytes), bytes_text(peak),
-               bytes_text(structure));
-  }
+  if (report.ranks) rank_lines(table, *report.ranks, *report.rank_links);
   if (report.faults && report.faults->cycles_without)
     table.line(
         "faults", "cost {} cycles: {} without them{}", *report.faults->cycles_lost,

@@ -66,7 +66,17 @@ void ray_words(Words& w) {
       .item("N messages", "rank_links[].messages")
       .item("N between them", "rank_links[].bytes")
       .item("N memory at most, N of it structure", "ranks[].peak_memory_bytes",
-            "most memory of any rank, and the largest acceleration structure of any");
+            "most memory of any rank, and the largest acceleration structure of any")
+      .item("rank N: resources N to N", "ranks[].first_resource", "the arc of a rank; at most eight ranks have a line")
+      .item("N threads", "ranks[].threads")
+      .item("N rays shaded", "ranks[].rays_shaded")
+      .item("waited N %", "ranks[].waiting")
+      .item("rank N to N: N messages", "rank_links[].messages", "those ways between ranks that carried most bytes")
+      .item("N", "rank_links[].bytes")
+      .item("N packets a message", "rank_links[].packets_per_message")
+      .item("held N %", "rank_links[].held")
+      .item("full N times", "rank_links[].full")
+      .item("N more ranks and N more ways between ranks in report.json", "ranks");
   w.line("faults").item("cost N cycles: N without them, *", "faults.cycles_lost");
   w.line("throughput")
       .item("N rays/s", "host.rays_per_second",

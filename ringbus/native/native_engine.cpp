@@ -48,8 +48,8 @@ class NativeRun {
   }
 
   RunResult run() {
+    if (recorder_) recorder_->start(other_ranks());
     start_ = Clock::now();
-    if (recorder_) recorder_->start(start_);
     if (machine_->gate) machine_->gate->start();
     for (;;) {
       run_threads();
@@ -67,12 +67,14 @@ class NativeRun {
     if (complete) check_drained();
     RunResult out = result(complete, wall.count());
     if (machine_->gate) gather_result(*options_.transport, machine_->shared.share, out);
+    if (recorder_) out.timeline = recorder_->timeline(other_ranks());
     return out;
   }
 
  private:
   struct alignas(128) Progress {
     std::atomic<std::uint64_t> steps{0};  // that moved something
+    std::chrono::nanoseconds waited{0};   // among ranks: without anything to do
   };
 
   using Clock = std::chrono::steady_clock;
@@ -91,8 +93,9 @@ class NativeRun {
       if (share.here(ResourceId(r)))
         ports_.push_back(std::make_unique<NativePort>(ResourceId(r), *machine_, settings, sinks_[r].get()));
     if (!recorder_ && (options_.timeline.most > 0 || options_.ray != nullptr))
-      recorder_ =
-          std::make_unique<NativeRecorder>(config_, machine_->shared.packets.size(), options_.timeline, options_.ray);
+      recorder_ = std::make_unique<NativeRecorder>(config_, share, machine_->shared.packets.size(), options_.timeline,
+                                                   options_.ray);
+    if (recorder_ && machine_->gate) machine_->gate->record(*recorder_);
     for (std::size_t r = 0; recorder_ && r < ports_.size(); ++r) ports_[r]->record(*recorder_);
     for (const auto& link : machine_->links) link->count(options_.statistics && options_.link_statistics);
     const auto slots = static_cast<std::int64_t>(machine_->shared.control.free_slots());  // that this rank fills
@@ -168,6 +171,11 @@ class NativeRun {
       // thread that has slept comes first.
       const int patience = machine_->gate ? 16 : 256;
       int idle = 0;
+      Clock::time_point idle_since;
+      const auto end_wait = [&] {
+        if (idle > 0 && machine_->gate) progress_[thread].waited += Clock::now() - idle_since;
+        idle = 0;
+      };
       // Acquire: pairs with the release that asks everyone to end.
       while (!end_.load(std::memory_order_acquire)) {
         bool moved = false;
@@ -178,18 +186,22 @@ class NativeRun {
         for (std::size_t w = thread; w < workers_.size(); w += threads_) moved |= workers_[w]->step();
         if (machine_->gate && thread == 0) moved |= machine_->gate->step(at_rest());
         if (moved) {
-          idle = 0;
+          end_wait();
           // Relaxed: the watcher only wants to see it change.
           progress_[thread].steps.fetch_add(1, std::memory_order_relaxed);
         } else if (machine_->gate ? machine_->gate->ended() : at_rest()) {
           break;
-        } else if (++idle < patience) {
+        }
+        if (moved) continue;
+        if (idle == 0 && machine_->gate) idle_since = Clock::now();
+        if (++idle < patience) {
           // Two threads on one core must not wait out each other's time slices.
           std::this_thread::yield();
         } else {
           std::this_thread::sleep_for(std::chrono::microseconds(50));
         }
       }
+      end_wait();
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();
@@ -235,6 +247,8 @@ class NativeRun {
     }
   }
 
+  /// The way to them; null if there are none.
+  Transport* other_ranks() const { return machine_->gate ? options_.transport : nullptr; }
   void look() { series_.look(Clock::now() - start_, count_, machine_->shared.control, ports_); }
   std::string describe_stuck() const {
     std::string text =
@@ -281,14 +295,15 @@ class NativeRun {
       out.ranks.resize(machine_->shared.share.ranks());
       RankResult& own = out.ranks[machine_->shared.share.rank()];
       own.to = machine_->gate->counts();
+      std::chrono::duration<double> waited{0};
+      for (std::size_t t = 0; t < threads_; ++t) waited += progress_[t].waited;
+      own.waiting = std::min(1.0, waited.count() / (wall_seconds * static_cast<double>(threads_)));
       const ShapeTravel* const shapes = machine_->gate->shapes();
       own.memory = {options_.scene_bytes, accel_.size_bytes(), shapes != nullptr ? shapes->guest_bytes() : 0,
                     peak_memory_bytes()};
     }
     if (series_.on()) out.series = series_.finish();
-    if (!recorder_) return out;
-    out.timeline = recorder_->timeline();
-    out.facts = recorder_->facts();
+    if (recorder_) out.facts = recorder_->facts();
     return out;
   }
 

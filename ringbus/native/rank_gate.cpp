@@ -31,6 +31,7 @@ std::unique_ptr<Link> RankGate::make_link(std::uint32_t wire, std::size_t depth)
       const std::lock_guard lock(peer.mutex);
       for (const PacketId id : packets) {
         peer.next.add(wire, id, machine_.packet(id));
+        if (recorder_ != nullptr) peer.next.trips.push_back(recorder_->trip(id));
         if (shapes_) shapes_->take_along(id, machine_.packet(id), at, peer.next);
       }
     };
@@ -44,11 +45,12 @@ std::unique_ptr<Link> RankGate::make_link(std::uint32_t wire, std::size_t depth)
   return link;
 }
 
-void RankGate::load(ResourceId resource, RayId id, const RayRequest& request) {
+void RankGate::load(ResourceId resource, std::span<const RayId> ids, std::span<const RayRequest> rays) {
+  if (rays.empty()) return;
   Peer& peer = *peers_[machine_.share.rank_of(resource)];
   const std::lock_guard lock(peer.mutex);
-  peer.next.rays.push_back({id, request});
-  ++peer.rays_sent;
+  for (std::size_t i = 0; i < rays.size(); ++i) peer.next.rays.push_back({ids[i], rays[i]});
+  peer.rays_sent += rays.size();
   peer.held = true;
 }
 
@@ -65,6 +67,8 @@ void RankGate::hold(ResourceId issuer, RayGroup&& group) {
 
 void RankGate::send_results(ResourceId resource, HitBatch& done, std::vector<std::uint32_t>& slots) {
   std::size_t kept = 0;
+  std::unique_lock<std::mutex> lock;
+  std::uint32_t locked = rank_;  // the rank whose messages are, which takes a lock for rays in a row
   for (std::size_t i = 0; i < done.size(); ++i) {
     const std::uint32_t lessee = machine_.control.lessee(resource, slots[i]);
     if (lessee == rank_) {
@@ -72,7 +76,11 @@ void RankGate::send_results(ResourceId resource, HitBatch& done, std::vector<std
       slots[kept++] = slots[i];
       continue;
     }
-    const std::lock_guard lock(peers_[lessee]->mutex);
+    if (locked != lessee) {
+      if (lock.owns_lock()) lock.unlock();
+      lock = std::unique_lock(peers_[lessee]->mutex);
+      locked = lessee;
+    }
     peers_[lessee]->next.results.push_back({resource, slots[i], done[i]});
   }
   done.resize(kept);
@@ -125,12 +133,16 @@ bool RankGate::send(std::uint32_t rank) {
   bool anything = items >= kFull || ((news || sign || items > 0) && now - peer.said >= kWindow);
   if (anything && transport_.leaving(rank) >= kLeaving) {
     ++peer.counts.holds;
+    if (!peer.held_since) peer.held_since = now;
     anything = false;
   }
   if (!anything) {
     sending_.clear();
     return false;
   }
+  if (peer.held_since)
+    peer.counts.hold_ns += static_cast<std::uint64_t>(std::chrono::nanoseconds(now - *peer.held_since).count());
+  peer.held_since.reset();
   for (const LinkCredit& credit : sending_.credits) {
     const auto at = std::find(peer.in_wires.begin(), peer.in_wires.end(), credit.wire);
     peer.credits_told[static_cast<std::size_t>(at - peer.in_wires.begin())] = credit.taken;
@@ -140,6 +152,7 @@ bool RankGate::send(std::uint32_t rank) {
     sending_.rays.swap(peer.next.rays);
     sending_.results.swap(peer.next.results);
     sending_.packets.swap(peer.next.packets);
+    sending_.trips.swap(peer.next.trips);
     sending_.images.swap(peer.next.images);
     sending_.guests.swap(peer.next.guests);
     sending_.shapes.swap(peer.next.shapes);
@@ -153,6 +166,7 @@ bool RankGate::send(std::uint32_t rank) {
 
 void RankGate::send_now(std::uint32_t rank, RankMessage& message) {
   Peer& peer = *peers_[rank];
+  const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
   message.rays_taken = peer.rays_told = peer.rays_received;
   end_.sent(message.items());
   message.write(words_);
@@ -164,18 +178,34 @@ void RankGate::send_now(std::uint32_t rank, RankMessage& message) {
   peer.counts.shapes += message.guests.size();
   peer.counts.shape_bytes += message.shapes.size() * sizeof message.shapes[0];
   transport_.send(rank, words_);
+  if (recorder_ != nullptr)
+    recorder_->note_message({rank_, rank}, SliceKind::kSend, peer.counts.messages, message.packets.size(), begin);
   peer.said = Clock::now();
   message.clear();
+}
+
+bool RankGate::next_message(std::uint32_t& from) {
+  if (!transport_.receive(from, words_)) return false;
+  received_.read(words_);
+  ++peers_[from]->messages_received;
+  return true;
+}
+
+void RankGate::note_received(std::uint32_t from, std::uint64_t begin) {
+  if (recorder_ != nullptr)
+    recorder_->note_message({from, rank_}, SliceKind::kReceive, peers_[from]->messages_received,
+                            received_.packets.size(), begin);
 }
 
 bool RankGate::receive() {
   bool moved = false;
   std::uint32_t from = 0;
-  while (!ended() && transport_.receive(from, words_)) {
-    received_.read(words_);
+  while (!ended() && next_message(from)) {
+    const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
     peers_[from]->heard = Clock::now();
     moved |= received_.items() > 0;
     take(from, received_);
+    note_received(from, begin);
   }
   const Clock::time_point now = Clock::now();
   for (std::uint32_t r = 0; r < peers_.size(); ++r)
@@ -201,6 +231,7 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
   for (std::size_t i = 0; i < message.packets.size(); ++i) {
     const PacketOnWire& at = message.packets[i];
     message.restore_packet(i, machine_.packet(at.packet));
+    if (recorder_ != nullptr && !message.trips.empty()) recorder_->bring(at.packet, message.trips[i]);
     links_.at(at.wire)->arrive(at.packet);
   }
   if (message.token) end_.take(*message.token);
@@ -217,10 +248,15 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
 void RankGate::take_results(const RankMessage& message) {
   if (message.results.empty()) return;
   HitBatch batch = completed_.fresh();
-  for (const ResultOnWire& result : message.results) {
-    machine_.stores.at(result.resource.value)->retire(result.slot);
-    machine_.control.free(result.resource, {&result.slot, 1});
-    batch.push_back(result.result);
+  for (std::size_t i = 0; i < message.results.size();) {
+    const ResourceId resource = message.results[i].resource;
+    slots_.clear();
+    for (; i < message.results.size() && message.results[i].resource == resource; ++i) {
+      machine_.stores.at(resource.value)->retire(message.results[i].slot);
+      slots_.push_back(message.results[i].slot);
+      batch.push_back(message.results[i].result);
+    }
+    machine_.control.free(resource, slots_);
   }
   completed_.push(std::move(batch));
 }
@@ -264,11 +300,11 @@ void RankGate::part(Farewell::Reason reason, const std::string& text) {
   };
   while (others_open() && Clock::now() < until) {
     std::uint32_t from = 0;
-    if (!transport_.receive(from, words_)) {
+    if (!next_message(from)) {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
       continue;
     }
-    received_.read(words_);
+    if (recorder_ != nullptr) note_received(from, recorder_->now());
     if (!received_.farewell) continue;
     peers_[from]->parted = true;
     stopped_ |= received_.farewell->reason != Farewell::Reason::kEnd;

@@ -15,6 +15,7 @@
 
 #include "core/statistics/rank_counts.h"
 #include "ringbus/native/completed_queue.h"
+#include "ringbus/native/native_recorder.h"
 #include "ringbus/native/rank_link.h"
 #include "ringbus/native/shape_travel.h"
 #include "ringbus/protocol/machine.h"
@@ -38,7 +39,7 @@ class RankGate final : public RemotePlacing {
   /// Whether both ends of a wire are here.
   bool here(const Topology::Wire& wire) const { return machine_.share.here(wire.from) && machine_.share.here(wire.to); }
 
-  void load(ResourceId resource, RayId id, const RayRequest& request) override;
+  void load(ResourceId resource, std::span<const RayId> ids, std::span<const RayRequest> rays) override;
   void hold(ResourceId issuer, RayGroup&& group) override;
   /// Sends those of the completed rays of `resource` away that other ranks shade, and returns the others in place.
   /// `slots` are the slots that they leave.
@@ -47,6 +48,8 @@ class RankGate final : public RemotePlacing {
   /// The shapes that travel with packets; null where every rank has all.
   const ShapeTravel* shapes() const { return shapes_ ? &*shapes_ : nullptr; }
 
+  /// From now on its messages are noted. Before the first step.
+  void record(NativeRecorder& recorder) { recorder_ = &recorder; }
   /// Before the first step: the others live from now on.
   void start();
   /// Sends and receives. `at_rest`: this rank has no rays of its own and none of its packets is under way. Returns
@@ -86,6 +89,8 @@ class RankGate final : public RemotePlacing {
     std::vector<std::uint32_t> in_wires;
     std::vector<std::uint64_t> credits_told;  // by in_wires
     Clock::time_point heard, said;
+    std::optional<Clock::time_point> held_since;  // something to send waits for earlier messages to leave
+    std::uint64_t messages_received = 0;
     RankCounts counts;
   };
   /// A group whose rays' data are under way: it may be issued when each rank has taken so many rays.
@@ -97,6 +102,8 @@ class RankGate final : public RemotePlacing {
 
   bool send(std::uint32_t rank);
   bool receive();
+  bool next_message(std::uint32_t& from);
+  void note_received(std::uint32_t from, std::uint64_t begin);
   void take(std::uint32_t from, const RankMessage& message);
   void take_results(const RankMessage& message);
   bool deliver_held();
@@ -108,6 +115,7 @@ class RankGate final : public RemotePlacing {
   Machine& machine_;
   CompletedQueue& completed_;
   std::uint32_t rank_;
+  NativeRecorder* recorder_ = nullptr;
   std::optional<ShapeTravel> shapes_;
   std::vector<std::unique_ptr<Peer>> peers_;  // by rank; this one's own is not used
   std::vector<RankLink*> links_;              // by wire; null where both ends are here
@@ -117,8 +125,9 @@ class RankGate final : public RemotePlacing {
   std::optional<EndToken> token_;  // to be sent to the next rank
   std::atomic<bool> ended_{false};
   bool stopped_ = false;
-  std::string cause_;               // another rank's, why the run has ended
-  RankMessage sending_, received_;  // scratch
+  std::string cause_;                 // another rank's, why the run has ended
+  RankMessage sending_, received_;    // scratch
+  std::vector<std::uint32_t> slots_;  // scratch
   std::vector<std::uint64_t> words_;
 };
 

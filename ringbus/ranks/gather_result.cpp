@@ -48,6 +48,7 @@ std::string pack(const RankShare& share, const RunResult& result) {
   for (const LinkResult& link : result.links) writer.part(link.statistics);
   writer.part(result.ranks.at(share.rank()).memory);
   writer.part(result.ranks.at(share.rank()).to);
+  writer.part(result.ranks.at(share.rank()).waiting);
   return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]};
 }
 
@@ -87,6 +88,7 @@ void unpack(const std::string& bytes, std::uint32_t rank, const RankShare& share
   }
   reader.part(own.memory);
   reader.part(own.to);
+  reader.part(own.waiting);
   if (rank == share.rank()) return;
   result.complete &= sums.complete;
   result.rays_emitted += sums.rays_emitted;

@@ -21,7 +21,7 @@ void visit(Visitor& visitor, SomeMessage& message) {
 }
 
 /// Bits of the word that says which of the parts follow that most messages have not.
-constexpr std::uint64_t kHasToken = 1, kHasFarewell = 2;
+constexpr std::uint64_t kHasToken = 1, kHasFarewell = 2, kHasTrips = 4;
 
 }  // namespace
 
@@ -50,6 +50,7 @@ void RankMessage::clear() {
   rays.clear();
   results.clear();
   packets.clear();
+  trips.clear();
   images.clear();
   guests.clear();
   shapes.clear();
@@ -60,9 +61,10 @@ void RankMessage::clear() {
 void RankMessage::write(std::vector<std::uint64_t>& words) const {
   words.clear();
   WordWriter writer(words);
-  writer.part((token ? kHasToken : 0) | (farewell ? kHasFarewell : 0));
+  writer.part((token ? kHasToken : 0) | (farewell ? kHasFarewell : 0) | (trips.empty() ? 0 : kHasTrips));
   visit(writer, *this);
   if (token) writer.part(*token);
+  if (!trips.empty()) writer.part(trips);
   if (!farewell) return;
   writer.part(farewell->reason);
   writer.part(std::vector<char>(farewell->text.begin(), farewell->text.end()));
@@ -74,8 +76,13 @@ void RankMessage::read(std::span<const std::uint64_t> words) {
   reader.part(has);
   visit(reader, *this);
   token.reset();
+  trips.clear();
   farewell.reset();
   if ((has & kHasToken) != 0) reader.part(token.emplace());
+  if ((has & kHasTrips) != 0) {
+    reader.part(trips);
+    if (trips.size() != packets.size()) throw SimulationError("a message between ranks has other packets than trips");
+  }
   if ((has & kHasFarewell) != 0) {
     reader.part(farewell.emplace().reason);
     std::vector<char> text;

@@ -66,6 +66,7 @@ struct RankMessage {
   std::uint64_t rays_taken = 0;  ///< of the receiver's, since the start: their data are in their slots
   std::vector<ResultOnWire> results;
   std::vector<PacketOnWire> packets;
+  std::vector<std::uint64_t> trips;  ///< of `packets`, for a timeline; empty without one
   PacketImage images;
   std::vector<ShapesOnWire> guests;
   std::vector<std::uint64_t> shapes;  ///< as accel::pack_shapes() writes them

@@ -110,11 +110,11 @@ std::size_t RayControl::load_some(ResourceId resource, std::span<const RayReques
 /// Puts rays into slots of a resource that another rank plays. The resource's list is locked.
 void RayControl::lease_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids) {
   SlotList& list = slots_[resource.value];
-  for (const RayRequest& ray : rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
     ids.push_back(stores_[resource.value]->lease(list.free.back()));
     list.free.pop_back();
-    remote_->load(resource, ids.back(), ray);
   }
+  remote_->load(resource, std::span(ids).last(rays.size()), rays);
   list.count.store(list.free.size(), std::memory_order_relaxed);
   slots_used_.fetch_add(rays.size(), std::memory_order_relaxed);
 }

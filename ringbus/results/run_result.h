@@ -29,6 +29,7 @@ struct RankResult {
   std::uint32_t first_resource = 0, resources = 0;  ///< its arc
   std::uint64_t rays_completed = 0;                 ///< and shaded by it
   std::size_t threads = 1;
+  double waiting = 0;  ///< share of its threads' time in which they had nothing to do
   RankMemory memory{};
   std::vector<RankCounts> to;  ///< by rank; its own is empty
 };

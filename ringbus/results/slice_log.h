@@ -1,31 +1,35 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace carousel::ringbus {
 
 /// The work of a part of the machine during a slice of time.
 enum class SliceKind : std::uint8_t {
-  kIssue,   ///< dispatch reads a packet of its own, which then leaves or is tested
-  kVisit,   ///< dispatch reads a packet of another resource
-  kPass,    ///< likewise, of a packet without rays here
-  kRetire,  ///< dispatch takes a packet of its own back
-  kTest,    ///< a packet is in a test context
-  kLink,    ///< a packet occupies a link
-  kUnits,   ///< units of one kind are at work
+  kIssue,    ///< dispatch reads a packet of its own, which then leaves or is tested
+  kVisit,    ///< dispatch reads a packet of another resource
+  kPass,     ///< likewise, of a packet without rays here
+  kRetire,   ///< dispatch takes a packet of its own back
+  kTest,     ///< a packet is in a test context
+  kLink,     ///< a packet occupies a link
+  kUnits,    ///< units of one kind are at work
+  kSend,     ///< native: a message to another rank is written and given away
+  kReceive,  ///< native: one of another rank is taken apart
 };
 
 /// Times are cycles, or nanoseconds since the start in the native engine.
 struct Slice {
   std::uint64_t begin = 0, end = 0;
-  std::uint64_t trip = 0;   ///< the packet's way from its issue until it retires; 0: of no packet
+  std::uint64_t trip = 0;   ///< the way of a packet from its issue until it retires, or of a message; 0: of neither
   std::uint64_t at = 0;     ///< kTest: the beginning of its tests; kLink: its arrival at the far end
   std::uint32_t track = 0;  ///< a part of the machine that does one thing at a time
-  std::uint32_t packet = 0, rays = 0;
+  std::uint32_t packet = 0, rays = 0;  ///< of a message: its number among those to its rank, and its packets
   SliceKind kind = SliceKind::kUnits;
   friend bool operator==(const Slice&, const Slice&) = default;
 };
@@ -37,12 +41,27 @@ struct SliceTrack {
   friend bool operator==(const SliceTrack&, const SliceTrack&) = default;
 };
 
+/// In the order of a timeline.
+inline void sort_slices(std::vector<Slice>& slices) {
+  std::stable_sort(slices.begin(), slices.end(), [](const Slice& a, const Slice& b) {
+    return std::tie(a.begin, a.track) < std::tie(b.begin, b.track);
+  });
+}
+
+/// The clock of a rank beside rank 0's.
+struct RankClock {
+  std::int64_t ahead = 0;         ///< nanoseconds
+  std::uint64_t uncertainty = 0;  ///< nanoseconds by which `ahead` may be wrong; 0: it is rank 0's clock
+  friend bool operator==(const RankClock&, const RankClock&) = default;
+};
+
 /// Slices of a run, and where they come from.
 struct Timeline {
   std::vector<SliceTrack> tracks;
-  std::vector<Slice> slices;  ///< by begin, then track
-  std::uint64_t end = 0;      ///< of the run
-  bool cut = false;           ///< recording ended before the run did, for there were too many
+  std::vector<Slice> slices;        ///< by begin, then track
+  std::uint64_t end = 0;            ///< of the run
+  bool cut = false;                 ///< recording ended before the run did, for there were too many
+  std::vector<RankClock> clocks{};  ///< of the ranks whose slices are here, on rank 0's clock; empty: of one process
   friend bool operator==(const Timeline&, const Timeline&) = default;
 };
 
@@ -83,7 +102,7 @@ class SliceLog {
 };
 
 /// The trips of packets that are recorded: written by the packet's owner when it issues the packet, and read by those
-/// to whom the packet has been passed since.
+/// to whom the packet has been passed since. Each rank has its own.
 class TripTable {
  public:
   explicit TripTable(std::size_t packets) : trips_(packets) {}
@@ -92,6 +111,11 @@ class TripTable {
     Trip& trip = trips_[packet];
     ++trip.count;
     trip.recorded = recorded;
+  }
+  /// The packet has come from another rank, where its trip was `trip`.
+  void bring(std::uint32_t packet, std::uint64_t trip) {
+    trips_[packet].recorded = trip != 0;
+    if (trip != 0) trips_[packet].count = trip / trips_.size();
   }
   /// 0 if it is not recorded. Different for every trip of every packet.
   std::uint64_t of(std::uint32_t packet) const {

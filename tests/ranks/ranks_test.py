@@ -97,6 +97,11 @@ class Ranks(unittest.TestCase):
         owner = [rank["rank"] for rank in report["ranks"] for _ in range(rank["resources"])]
         between = sum(link["packets"] for link in report["links"] if owner[link["from"]] != owner[link["to"]])
         self.assertEqual(sum(link["packets"] for link in report["rank_links"]), between)
+        for way in report["rank_links"]:
+            links = [link for link in report["links"] if (owner[link["from"]], owner[link["to"]]) == (way["from"], way["to"])]
+            self.assertEqual(way["full"], sum(link["full_stalls"] for link in links))
+            self.assertAlmostEqual(way["packets_per_message"], way["packets"] / way["messages"])
+            self.assertAlmostEqual(way["held"], way["hold_ns"] * 1e-9 / report["host"]["wall_seconds"])
         sent, returned = (sum(link[key] for link in report["rank_links"]) for key in ("rays", "results"))
         self.assertEqual(sent, returned)
 
@@ -317,6 +322,107 @@ class Refusals(Ranks):
                                  text=True, timeout=60)
         self.assertEqual(refusal.returncode, 2)
         self.assertIn("--hits", refusal.stderr)
+
+
+def read_trace(name):
+    """Returns a trace, its events, the names of its processes, and when messages were sent and received, by
+    (from, to, number)."""
+    trace = json.loads(name.read_text())
+    events = trace["traceEvents"]
+    processes = {event["pid"]: event["args"]["name"] for event in events if event["name"] == "process_name"}
+    threads = {(event["pid"], event["tid"]): event["args"]["name"] for event in events if event["name"] == "thread_name"}
+    messages = {"send": {}, "receive": {}}
+    for event in events:
+        if event["ph"] != "X" or event["name"] not in messages:
+            continue
+        own = int(processes[event["pid"]].removeprefix("rank "))
+        other = int(threads[event["pid"], event["tid"]].split()[-1])
+        ends = (own, other) if event["name"] == "send" else (other, own)
+        messages[event["name"]][*ends, event["args"]["message"]] = event["ts"]
+    return trace, events, processes, messages
+
+
+class WhatRanksReport(Ranks):
+    def test_waiting_and_back_pressure(self):
+        """Ranks whose links hold one packet wait for one another."""
+        table = subprocess.run(["mpirun", "-n", "2", *(word for word in self.command("ranks", ["engine.transport=mpi",
+                                "topology.link.depth=1"]) if word != "--quiet")], capture_output=True, text=True,
+                               timeout=120, env=ENVIRONMENT)
+        self.assertEqual(table.returncode, 0, table.stderr)
+        self.counted(2)
+        report = self.report("ranks")
+        for rank in report["ranks"]:
+            self.assertGreater(rank["waiting"], 0.01)
+            self.assertLessEqual(rank["waiting"], 1)
+            self.assertRegex(table.stdout, rf"rank {rank['rank']}: resources {rank['first_resource']} to .* waited ")
+        for way in report["rank_links"]:
+            self.assertGreater(way["full"], 0)
+            self.assertRegex(table.stdout, rf"rank {way['from']} to {way['to']}: {way['messages']:,} messages .* "
+                             rf"{way['packets_per_message']:.1f} packets a message .* full {way['full']:,} times")
+
+
+class OneTimeline(Ranks):
+    def trace(self, ranks, before=lambda rank: []):
+        """Runs with a timeline, each rank's command behind words of its own."""
+        command = self.command("ranks", ["engine.transport=mpi"]) + ["--force", "--trace", str(self.folder / "trace.json")]
+        words = [word for rank in range(ranks) for word in (":", "-n", "1", *before(rank), *command)][1:]
+        return subprocess.run(["mpirun", *words], capture_output=True, text=True, timeout=120, env=ENVIRONMENT)
+
+    def check(self, ranks, before=lambda rank: []):
+        run = self.trace(ranks, before)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        trace, events, processes, messages = read_trace(self.folder / "trace.json")
+        self.assertEqual(sorted(processes.values()), [f"rank {rank}" for rank in range(ranks)])
+        kinds = {rank: set() for rank in processes.values()}
+        for event in events:
+            if event["ph"] == "X":
+                kinds[processes[event["pid"]]].add(event["name"])
+        for rank, found in kinds.items():
+            self.assertLessEqual({"issue", "visit", "retire", "packet", "send", "receive"}, found, rank)
+        clocks = trace["otherData"]["clocks"]
+        self.assertEqual([clock["rank"] for clock in clocks], list(range(ranks)))
+        unsure = [clock["uncertainty_us"] for clock in clocks]
+        self.assertEqual(messages["send"].keys(), messages["receive"].keys())
+        for message, begin in messages["send"].items():
+            self.assertGreaterEqual(messages["receive"][message], begin - unsure[message[0]] - unsure[message[1]] - 0.001)
+        report = self.report("ranks")
+        self.assertEqual(len(messages["send"]), sum(link["messages"] for link in report["rank_links"]))
+        # The ways of packets lead through ranks, and each has one beginning and one end.
+        ways = {}
+        for event in events:
+            if event["ph"] in "stf":
+                ways.setdefault((event["cat"], event["id"]), []).append((event["ph"], event["pid"]))
+        for way in ways.values():
+            self.assertEqual("".join(phase for phase, _ in way), "s" + (len(way) - 2) * "t" + "f")
+        packets = [way for (kind, _), way in ways.items() if kind == "packets"]
+        self.assertGreater(sum(len({pid for _, pid in way}) == ranks for way in packets), len(packets) / 2)
+        return clocks
+
+    def test_on_one_host(self):
+        for clock in self.check(3):
+            self.assertEqual((clock["ahead_us"], clock["uncertainty_us"]), (0, 0))
+
+    def test_with_a_clock_of_its_own(self):
+        """A time namespace plays a host that was started a day later."""
+        later = ["unshare", "--time", "--monotonic", "86400"]
+        try:
+            if subprocess.run([*later, "true"], capture_output=True, timeout=60).returncode != 0:
+                self.skipTest("this process may not make time namespaces")
+        except OSError:
+            self.skipTest("there is no unshare")
+        clocks = self.check(2, lambda rank: later if rank == 1 else [])
+        self.assertEqual((clocks[0]["ahead_us"], clocks[0]["uncertainty_us"]), (0, 0))
+        self.assertGreater(clocks[1]["uncertainty_us"], 0)
+        self.assertLess(clocks[1]["uncertainty_us"], 1e6)
+        self.assertLessEqual(abs(clocks[1]["ahead_us"] - 86400e6), clocks[1]["uncertainty_us"] + 0.001)
+
+    def test_ranks_that_note_different_things(self):
+        command = self.command("ranks", ["engine.transport=mpi"])
+        run = subprocess.run(["mpirun", "-n", "1", *command, ":", "-n", "1", *command, "--trace",
+                              str(self.folder / "trace.json")], capture_output=True, text=True, timeout=60, env=ENVIRONMENT)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("rank 1 has another --trace", run.stderr)
+        self.assertFalse((self.folder / "trace.json").exists())
 
 
 class Failures(Ranks):

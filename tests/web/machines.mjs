@@ -11,6 +11,8 @@ export const pages = {
     'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}', 'energy.profile=n45']),
     drawn: ['fig-energy', 'fig-area']},
   native: machine('bundle_tester', [...small, 'engine.kind=native', 'primary=raster']),
+  ranks: {...machine('demo', [...small, 'engine.kind=native', 'engine.threads=2', 'engine.transport=mpi', 'topology.resources=6']),
+    ranks: 3},
   traffic: machine('traffic', ['workload.traffic.packets=2000']),
   accuracy: {command: 'accuracy', config: 'demo', sets: [...small, 'image.width=8', 'image.height=8', 'scene.triangles=200'],
     options: ['--rays', '60', '--hard-rays', '30', '--repetitions', '1']},

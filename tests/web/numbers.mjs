@@ -29,6 +29,13 @@ export function wrongTables(tables, report) {
     check('links', i, 'packets', l.packets);
     if (l.utilisation !== undefined) check('links', i, 'use', l.utilisation);
   });
+  report.ranks?.forEach((r, i) => {
+    for (const key of ['rank', 'resources', 'rays_shaded', 'waiting']) check('ranks', i, key.replaceAll('_', ' '), r[key]);
+  });
+  report.rank_links?.forEach((l, i) => {
+    for (const key of ['from', 'to', 'messages', 'bytes', 'packets_per_message', 'held', 'full'])
+      check('rank_links', i, key.replaceAll('_', ' '), l[key]);
+  });
   const sent = (report.bytes ?? []).filter((b) => b.bytes > 0).sort((a, b) => b.bytes - a.bytes);
   sent.forEach((b, i) => {
     check('bytes-table', i, 'what', b.what);

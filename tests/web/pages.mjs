@@ -10,7 +10,7 @@ import {join, resolve} from 'node:path';
 
 import {all, pages} from './machines.mjs';
 import {wrongCharts, wrongTables} from './numbers.mjs';
-import {make} from './program.mjs';
+import {make, playsRanks} from './program.mjs';
 import {wrongStudy} from './study_numbers.mjs';
 
 const [program, sources] = process.argv.slice(2, 4).map((path) => resolve(path)), wanted = process.argv[4];
@@ -125,6 +125,10 @@ try {
   const list = wanted === 'all' ? all : wanted ? Object.fromEntries(wanted.split(',').map((n) => [n, all[n]])) : pages;
   const browser = await chromium.launch({executablePath: browser_path, args: ['--no-sandbox', '--disable-gpu', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync']});
+  if (Object.values(list).some((page) => page.ranks) && !(await playsRanks(program, sources))) {
+    console.log('no page of ranks: the program was built without MPI, or mpirun starts no processes');
+    for (const [name, page] of Object.entries(list)) if (page.ranks) delete list[name];
+  }
   let looked = Promise.resolve();  // at a page, while the next one is made
   for (const [name, page] of Object.entries(list)) {
     const [, made] = await Promise.allSettled([looked, make(program, sources, folder, name, page)]);

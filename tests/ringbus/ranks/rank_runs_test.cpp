@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -80,6 +82,7 @@ class RankRuns : public testing::Test {
     options.threads = static_cast<std::size_t>(*config_.engine.threads);
     options.transport = transport;
     options.stop = stop;
+    options.timeline.most = slices_;
     if (transport != nullptr) {
       share = shading::share_of_paths(24 * 16 * 2, transport->rank(), transport->ranks());
       tracer.set_sample(&*share);
@@ -118,6 +121,7 @@ class RankRuns : public testing::Test {
     return out;
   }
 
+  std::size_t slices_ = 0;  // of a timeline
   Config config_;
   scene::Scene scene_;
   accel::Accel accel_;
@@ -198,6 +202,43 @@ TEST_F(RankRuns, GiveThemWithAPartitionedScene) {
       EXPECT_GT(shapes, 0u);
     }
   }
+}
+
+TEST_F(RankRuns, HaveOneTimeline) {
+  load({"engine.threads=2"});
+  slices_ = 1'000'000;
+  const Ended run = over(3)[0];
+  ASSERT_EQ(run.fault, "");
+  ASSERT_TRUE(run.result.timeline);
+  const Timeline& timeline = *run.result.timeline;
+  EXPECT_EQ(timeline.clocks.size(), 3u);
+  EXPECT_FALSE(timeline.cut);
+  std::map<std::uint64_t, std::uint64_t> sent;
+  std::map<std::uint64_t, std::set<std::string>> parts;  // that a packet was at
+  std::size_t received = 0, travelled = 0;
+  for (const Slice& slice : timeline.slices)
+    if (slice.kind == SliceKind::kSend) {
+      EXPECT_TRUE(sent.emplace(slice.trip, slice.begin).second);
+    }
+  for (const Slice& slice : timeline.slices) {
+    if (slice.kind == SliceKind::kReceive) {
+      ++received;
+      ASSERT_TRUE(sent.contains(slice.trip));
+      EXPECT_GE(slice.begin, sent[slice.trip]);
+    } else if (slice.kind != SliceKind::kSend) {
+      ASSERT_NE(slice.trip, 0u);  // it has come along from the packet's owner
+      parts[slice.trip].insert(timeline.tracks[slice.track].part);
+    }
+  }
+  std::uint64_t messages = 0, packets = 0;
+  for (const RankResult& rank : run.result.ranks)
+    for (const RankCounts& to : rank.to) messages += to.messages;
+  for (const ResourceStatistics& resource : run.result.resources) packets += resource.packets_issued;
+  EXPECT_EQ(sent.size(), messages);
+  EXPECT_EQ(received, messages);
+  EXPECT_EQ(parts.size(), packets);
+  for (const auto& [trip, at] : parts) travelled += at.size() == 3 ? 1 : 0;
+  EXPECT_GT(travelled, packets / 2);
 }
 
 TEST_F(RankRuns, EndWithTheRankThatFails) {
