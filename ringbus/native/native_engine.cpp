@@ -184,6 +184,7 @@ class NativeRun {
           turns_.store(turns_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
         for (std::size_t r = thread; r < ports_.size(); r += threads_) moved |= ports_[r]->step();
         for (std::size_t w = thread; w < workers_.size(); w += threads_) moved |= workers_[w]->step();
+        if (machine_->gate && !moved) machine_->gate->found_nothing();
         if (machine_->gate && thread == 0) moved |= machine_->gate->step(at_rest());
         if (moved) {
           end_wait();

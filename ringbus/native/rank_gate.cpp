@@ -15,6 +15,7 @@ RankGate::RankGate(const Config& config, Transport& transport, Machine& machine,
       machine_(machine),
       completed_(completed),
       rank_(machine.share.rank()),
+      depth_(static_cast<std::size_t>(config.topology.link.depth)),
       links_(machine.topology.wires().size(), nullptr),
       end_(machine.share.rank(), machine.share.ranks()) {
   for (std::uint32_t r = 0; r < machine.share.ranks(); ++r) peers_.push_back(std::make_unique<Peer>());
@@ -96,8 +97,10 @@ bool RankGate::step(bool at_rest) {
   if (ended()) return moved;
   moved |= deliver_held();
   pass_token(at_rest);
+  const bool idle = idle_.load(std::memory_order_relaxed);
+  if (idle) idle_.store(false, std::memory_order_relaxed);
   for (std::uint32_t r = 0; r < peers_.size(); ++r)
-    if (r != rank_) moved |= send(r);
+    if (r != rank_) moved |= send(r, idle);
   return moved;
 }
 
@@ -113,13 +116,16 @@ void RankGate::pass_token(bool at_rest) {
 }
 
 /// Sends a rank what there is for it, unless earlier messages have not left yet.
-bool RankGate::send(std::uint32_t rank) {
+bool RankGate::send(std::uint32_t rank, bool idle) {
   Peer& peer = *peers_[rank];
   const bool has_token = token_ && rank == (rank_ + 1) % peers_.size();
-  bool news = has_token || peer.rays_received != peer.rays_told;
+  peer.idled |= idle;
+  bool news = has_token || peer.rays_received != peer.rays_told || (idle && !peer.told_hungry);
+  bool soon = idle || peer.hungry || has_token;
   for (std::size_t i = 0; i < peer.in_wires.size(); ++i) {
     const std::uint64_t taken = links_[peer.in_wires[i]]->taken();
     if (taken == peer.credits_told[i]) continue;
+    soon |= (taken - peer.credits_told[i]) * kDepthShare >= depth_;
     sending_.credits.push_back({peer.in_wires[i], taken});
     news = true;
   }
@@ -129,8 +135,9 @@ bool RankGate::send(std::uint32_t rank) {
   {
     const std::lock_guard lock(peer.mutex);
     items = peer.next.items();
+    soon |= peer.next.packets.size() * kDepthShare >= depth_;
   }
-  bool anything = items >= kFull || ((news || sign || items > 0) && now - peer.said >= kWindow);
+  bool anything = items >= kFull || ((news || sign || items > 0) && now - peer.said >= (soon ? kSoon : kWindow));
   if (anything && transport_.leaving(rank) >= kLeaving) {
     ++peer.counts.holds;
     if (!peer.held_since) peer.held_since = now;
@@ -168,6 +175,7 @@ void RankGate::send_now(std::uint32_t rank, RankMessage& message) {
   Peer& peer = *peers_[rank];
   const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
   message.rays_taken = peer.rays_told = peer.rays_received;
+  message.hungry = peer.told_hungry = std::exchange(peer.idled, false);
   end_.sent(message.items());
   message.write(words_);
   ++peer.counts.messages;
@@ -225,6 +233,7 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
   }
   peer.rays_received += message.rays.size();
   peer.rays_taken = message.rays_taken;
+  peer.hungry = message.hungry;
   take_results(message);
   for (std::size_t i = 0; i < message.guests.size(); ++i)
     if (shapes_) shapes_->enter(message.guests[i].packet, message.shapes_of(i));

@@ -52,6 +52,11 @@ class RankGate final : public RemotePlacing {
   void record(NativeRecorder& recorder) { recorder_ = &recorder; }
   /// Before the first step: the others live from now on.
   void start();
+  /// A thread has found nothing to do at its resources. Any thread may call.
+  // Relaxed: only a hint that messages should leave soon. Read first, so that threads that wait do not fight for it.
+  void found_nothing() {
+    if (!idle_.load(std::memory_order_relaxed)) idle_.store(true, std::memory_order_relaxed);
+  }
   /// Sends and receives. `at_rest`: this rank has no rays of its own and none of its packets is under way. Returns
   /// whether anything moved. Throws a SimulationError that names a rank which has ended the run or fallen silent.
   bool step(bool at_rest);
@@ -73,9 +78,11 @@ class RankGate final : public RemotePlacing {
   // A rank with nothing to say says so. This is not the transport's sign of life, which a process gives as long as any
   // of its threads runs: it comes from the threads that trace.
   static constexpr std::chrono::milliseconds kSign{200}, kParting{3000};
-  // Things for a rank gather for so long, or until there are so many: a message costs more than all but its size.
-  static constexpr std::chrono::microseconds kWindow{50};
-  static constexpr std::size_t kFull = 256;
+  // Things for a rank gather for so long, or until there are so many: a message costs more than all but its size. While
+  // one of the two ranks has nothing to do, they leave sooner; and also when a link has used up much of its depth,
+  // which the others then wait for.
+  static constexpr std::chrono::microseconds kWindow{400}, kSoon{50};
+  static constexpr std::size_t kFull = 4096, kDepthShare = 4;
   static constexpr std::size_t kLeaving = 2;  // messages to a rank that may be on their way out
 
   /// What concerns one other rank.
@@ -86,6 +93,8 @@ class RankGate final : public RemotePlacing {
     std::uint64_t rays_taken = 0, rays_received = 0, rays_told = 0;
     bool held = false;  // the group being placed has rays there
     bool parted = false;
+    bool hungry = false;                      // it has said so
+    bool idled = false, told_hungry = false;  // this rank since its last message, and in that
     std::vector<std::uint32_t> in_wires;
     std::vector<std::uint64_t> credits_told;  // by in_wires
     Clock::time_point heard, said;
@@ -100,7 +109,7 @@ class RankGate final : public RemotePlacing {
     std::vector<std::pair<std::uint32_t, std::uint64_t>> needs;
   };
 
-  bool send(std::uint32_t rank);
+  bool send(std::uint32_t rank, bool idle);
   bool receive();
   bool next_message(std::uint32_t& from);
   void note_received(std::uint32_t from, std::uint64_t begin);
@@ -115,6 +124,7 @@ class RankGate final : public RemotePlacing {
   Machine& machine_;
   CompletedQueue& completed_;
   std::uint32_t rank_;
+  std::size_t depth_;  // of each link
   NativeRecorder* recorder_ = nullptr;
   std::optional<ShapeTravel> shapes_;
   std::vector<std::unique_ptr<Peer>> peers_;  // by rank; this one's own is not used
@@ -123,7 +133,7 @@ class RankGate final : public RemotePlacing {
   std::deque<Held> held_;
   EndCount end_;
   std::optional<EndToken> token_;  // to be sent to the next rank
-  std::atomic<bool> ended_{false};
+  std::atomic<bool> ended_{false}, idle_{false};
   bool stopped_ = false;
   std::string cause_;                 // another rank's, why the run has ended
   RankMessage sending_, received_;    // scratch

@@ -21,7 +21,7 @@ void visit(Visitor& visitor, SomeMessage& message) {
 }
 
 /// Bits of the word that says which of the parts follow that most messages have not.
-constexpr std::uint64_t kHasToken = 1, kHasFarewell = 2, kHasTrips = 4;
+constexpr std::uint64_t kHasToken = 1, kHasFarewell = 2, kHasTrips = 4, kHungry = 8;
 
 }  // namespace
 
@@ -61,7 +61,8 @@ void RankMessage::clear() {
 void RankMessage::write(std::vector<std::uint64_t>& words) const {
   words.clear();
   WordWriter writer(words);
-  writer.part((token ? kHasToken : 0) | (farewell ? kHasFarewell : 0) | (trips.empty() ? 0 : kHasTrips));
+  writer.part((token ? kHasToken : 0) | (farewell ? kHasFarewell : 0) | (trips.empty() ? 0 : kHasTrips) |
+              (hungry ? kHungry : 0));
   visit(writer, *this);
   if (token) writer.part(*token);
   if (!trips.empty()) writer.part(trips);
@@ -75,6 +76,7 @@ void RankMessage::read(std::span<const std::uint64_t> words) {
   std::uint64_t has = 0;
   reader.part(has);
   visit(reader, *this);
+  hungry = (has & kHungry) != 0;
   token.reset();
   trips.clear();
   farewell.reset();

@@ -63,6 +63,7 @@ struct Farewell {
 struct RankMessage {
   std::vector<LinkCredit> credits;
   std::vector<RayOnWire> rays;
+  bool hungry = false;           ///< the sender had nothing to do at times since its last message
   std::uint64_t rays_taken = 0;  ///< of the receiver's, since the start: their data are in their slots
   std::vector<ResultOnWire> results;
   std::vector<PacketOnWire> packets;

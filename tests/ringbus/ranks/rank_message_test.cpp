@@ -22,6 +22,7 @@ TEST(RankMessage, ComesBackFromItsWords) {
   sent.rays.push_back({RayIdLayout(16).make(ResourceId(1), 2), {}});
   sent.rays[0].request.tag.path = 77;
   sent.rays_taken = 12;
+  sent.hungry = true;
   sent.results.push_back({ResourceId(1), 6, {}});
   sent.results[0].result.hit.t = 2.5f;
   sent.add(4, PacketId(20), Packet());
@@ -38,6 +39,7 @@ TEST(RankMessage, ComesBackFromItsWords) {
   EXPECT_EQ(got.credits[0].taken, 1'000'000'000'000u);
   EXPECT_EQ(got.rays.at(0).request.tag.path, 77u);
   EXPECT_EQ(got.rays_taken, 12u);
+  EXPECT_TRUE(got.hungry);
   EXPECT_EQ(got.results.at(0).slot, 6u);
   EXPECT_EQ(got.results.at(0).result.hit.t, 2.5f);
   EXPECT_EQ(got.token, sent.token);
