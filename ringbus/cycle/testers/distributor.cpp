@@ -95,6 +95,16 @@ void Distributor::test(Cycle at, std::span<const std::uint32_t> slots, const Int
   window_.take(older_done_ + latency_);
 }
 
+void Distributor::record(SliceLog& slices, std::uint32_t track) {
+  for (OneTester& tester : testers_)
+    for (const auto [kind, bank] : tester.units) bank.record(slices, track++);
+}
+
+void Distributor::close(Cycle end) {
+  for (OneTester& tester : testers_)
+    for (const auto [kind, bank] : tester.units) bank.close(end);
+}
+
 Cycle Distributor::Units::busy() const {
   Cycle sum = 0;
   for (const OneTester& tester : of_.testers_) sum += tester.units[kind_].busy();

@@ -41,6 +41,10 @@ class Distributor {
     counts_.results += rays;
   }
 
+  /// As UnitBank's. Tracks from `track` on: tester by tester one a kind of unit.
+  void record(SliceLog& slices, std::uint32_t track);
+  void close(Cycle end);
+
   const DistributorCounts& counts() const { return counts_; }
 
   /// The units of a kind in all testers: the mean of their busy cycles, as UnitBank says them.

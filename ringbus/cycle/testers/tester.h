@@ -138,13 +138,19 @@ class Tester {
   Cycle reads_before(Cycle at) { return store_.busy_before(at); }
   Cycle primitive_reads_before(Cycle at) { return primitive_store_.busy_before(at); }
 
-  /// Tracks from `track` on: one a kind of unit, and one each of the ray store's ports.
+  /// Tracks from `track` on: one a kind of unit, of each tester behind a distributor, and one each of the ray store's
+  /// ports.
   void record(SliceLog& slices, std::uint32_t track) {
+    if (distributor_) {
+      distributor_->record(slices, track);
+      return;  // its testers read records without ports that could be busy
+    }
     for (const auto [kind, bank] : banks_) bank.record(slices, track + static_cast<std::uint32_t>(unit_index(kind)));
     store_.record(slices, track + static_cast<std::uint32_t>(kUnitKinds.size()));
     primitive_store_.record(slices, track + static_cast<std::uint32_t>(kUnitKinds.size()) + 1);
   }
   void close(Cycle end) {
+    if (distributor_) distributor_->close(end);
     for (const auto [kind, bank] : banks_) bank.close(end);
     store_.close(end);
     primitive_store_.close(end);

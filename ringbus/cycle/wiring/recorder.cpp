@@ -26,7 +26,9 @@ Recorder::Recorder(const Config& config, const Machine& machine, const Observati
       options_(slices_wanted(observed)),
       ray_(observed.ray),
       contexts_(static_cast<std::uint32_t>(config.testers.contexts)),
-      per_resource_(1 + contexts_ + static_cast<std::uint32_t>(kUnitKinds.size()) + 2),
+      testers_(static_cast<std::uint32_t>(own_testers(config))),
+      per_resource_(1 + contexts_ + testers_ * static_cast<std::uint32_t>(kUnitKinds.size()) + 2),
+      has_distributor_(has_distributor(config)),
       trips_(machine.packets.size()) {
   const std::size_t nodes = topology_.resources() + topology_.hubs().size();
   for (std::size_t i = 0; i < nodes; ++i) slices_.emplace_back(options_);
@@ -63,7 +65,10 @@ Timeline Recorder::timeline(Cycle end) const {
     const std::string part = fmt::format("resource {}", r);
     out.tracks.push_back({part, "dispatch"});
     for (std::uint32_t c = 0; c < contexts_; ++c) out.tracks.push_back({part, fmt::format("test context {}", c)});
-    for (const UnitKindRow& unit : kUnitKinds) out.tracks.push_back({part, fmt::format("{} units", unit.name)});
+    for (std::uint32_t t = 0; t < testers_; ++t)
+      for (const UnitKindRow& unit : kUnitKinds)
+        out.tracks.push_back(
+            {part, fmt::format("{}{} units", has_distributor_ ? fmt::format("tester {}, ", t) : "", unit.name)});
     out.tracks.push_back({part, "ray reads"});
     out.tracks.push_back({part, "primitive ray reads"});
   }

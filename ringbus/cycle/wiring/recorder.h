@@ -35,7 +35,8 @@ class Recorder {
   const Topology& topology_;
   TimelineOptions options_;
   FollowedRay* ray_;
-  std::uint32_t contexts_, per_resource_;
+  std::uint32_t contexts_, testers_, per_resource_;
+  bool has_distributor_;
   TripTable trips_;
   std::deque<SliceLog> slices_;  // by node
   std::deque<RayLog> facts_;     // by node, and of shading

@@ -59,8 +59,15 @@ TEST(CycleTimeline, AddsUpToTheBusyCycles) {
     const cycle::CycleResult& c = *out.result.cycle;
     for (std::size_t r = 0; r < c.tiles.size(); ++r) {
       const std::string part = "resource " + std::to_string(r);
-      for (const auto [kind, use] : c.tiles[r].units)
-        EXPECT_EQ(times[part + ", " + unit_row(kind).name + " units"], use.busy) << part << ", " << unit_row(kind).name;
+      const bool distributed = has_distributor(cell.config);
+      const auto testers = static_cast<std::uint64_t>(own_testers(cell.config));
+      for (const auto [kind, use] : c.tiles[r].units) {
+        std::uint64_t busy = 0;
+        for (std::uint64_t t = 0; t < testers; ++t)
+          busy += times[fmt::format("{}, {}{} units", part, distributed ? fmt::format("tester {}, ", t) : "",
+                                    unit_row(kind).name)];
+        EXPECT_EQ(busy / testers, use.busy) << part << ", " << unit_row(kind).name;
+      }
       EXPECT_EQ(times[part + ", ray reads"], c.tiles[r].ray_reads.busy) << part;
       EXPECT_EQ(times[part + ", primitive ray reads"], c.tiles[r].primitive_ray_reads.busy) << part;
       EXPECT_EQ(times[part + ", dispatch"], c.tiles[r].dispatch.busy) << part;
