@@ -232,6 +232,15 @@ void cycle_lines(Table& table, const Report& report) {
   table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),
              part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle),
              sum.shading > 0 ? "   shading " + part(sum.shading) : "");
+  if (const std::optional<DistributorCounts>& d = report.resources->front().units->distributor) {
+    const auto at_once = [&](std::uint64_t tester_cycles) {
+      return fmt::format("{:.2f}", ratio(tester_cycles, cycles));
+    };
+    table.line("distributor",
+               "{} testers busy   {} held back   {} without a place for results   {} of rays ahead   waits {}",
+               at_once(d->tester_busy), at_once(d->held_back), at_once(d->results_full),
+               percent(ratio(d->ahead, d->ids)), part(d->queue_full));
+  }
 }
 
 void bottleneck_lines(Table& table, const Bottleneck& b) {

@@ -112,6 +112,17 @@ void cycle_words(Words& w) {
             "part of the cycles in which no ray waited, or collections waited to fill")
       .item("shading N", "resources[].units.box.shading",
             "part of the cycles in which resources helped the shader workers");
+  w.line("distributor")
+      .item("N testers busy", "resources[].units.distributor.tester_busy",
+            "testers that had a ray, in the mean of all cycles")
+      .item("N held back", "resources[].units.distributor.held_back",
+            "testers that waited for an older packet (testers.distributor.out_of_order), likewise")
+      .item("N without a place for results", "resources[].units.distributor.results_full",
+            "testers whose results waited for the decision point, likewise")
+      .item("N of rays ahead", "resources[].units.distributor.ahead",
+            "rays whose tests began while an older packet was in test")
+      .item("waits N", "resources[].units.distributor.queue_full",
+            "part of the cycles in which the distributor waited for a place in a tester's queue");
   w.line("bottleneck")
       .item("*", "bottleneck.verdict", "the class of parts that limits the machine, and the gain if it were relaxed")
       .item(
