@@ -28,9 +28,9 @@ struct PacketLoad {
 
 /// Bytes of a packet on a link, as hardware would lay it out:
 ///   header 16: node key 8, owner 2, home 2, count 2, depth 1, kind and lanes 1
-///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte), or with ordered traversal the next
-///   node 12 (key 8, entry 4)
-///   per shape of a strip of boxes: nearest entry 4, for policies that read them
+///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte; with `shapes: single` 1 bit), or with ordered
+///   traversal the next node 12 (key 8, entry 4)
+///   per shape of a strip of boxes: nearest entry 4, for policies that read them (with `shapes: single` of the one)
 ///   per new ray that looks for a slot: its record 64; with addressed placement its address 2
 ///   with `carry: data` the shapes that are tested (ShapeMemory::shapes()), and below an instance what is stored of its
 ///   transform
@@ -153,15 +153,20 @@ class PacketSize {
     if (ordered_)
       bytes += kNext * n;
     else if (has_boxes(packet, treelet))
-      bytes += n + entry_bytes() * accel::kMaxWidth;
+      bytes += box_results(packet, n);
     return bytes;
+  }
+  /// Of `rays` rays with the boxes of a strip, or with the one that the packet has in single-shape mode.
+  std::uint32_t box_results(const Packet& packet, std::uint32_t rays) const {
+    const bool one = std::popcount(packet.lanes) == 1;
+    return one ? (rays + 7) / 8 + entry_bytes() : rays + entry_bytes() * accel::kMaxWidth;
   }
   /// A packet in which results stand in the places of IDs.
   std::uint32_t in_order(const Packet& packet, std::uint32_t ids, std::uint32_t results, bool treelet) const {
     const bool boxes = !ordered_ && has_boxes(packet, treelet);
     return kHeader + kNumber + (ids + results + 7) / 8 + kId * ids +
            (ordered_ ? kNext * results
-            : boxes  ? results + entry_bytes() * accel::kMaxWidth
+            : boxes  ? box_results(packet, results)
                      : 0);
   }
   /// The hits in `answered` that the owner of the packet learns by messages: those of rays that it does not have.

@@ -106,10 +106,15 @@ class PacketSize:
             return size
         if self.ordered:
             return size + 12 * n
-        return size + (n + 8 * self.entry if self.inner(packet, treelet) else 0)
+        return size + self.box_results(packet, n, treelet)
 
     def in_order(self, packet, ids, results, treelet):
         size = 18 + ceil_div(ids + results, 8) + 4 * ids
         if self.ordered:
             return size + 12 * results
-        return size + (results + 8 * self.entry if self.inner(packet, treelet) else 0)
+        return size + self.box_results(packet, results, treelet)
+
+    def box_results(self, packet, results, treelet):
+        if not self.inner(packet, treelet):
+            return 0
+        return results + 8 * self.entry if packet.lane is None else ceil_div(results, 8) + self.entry
