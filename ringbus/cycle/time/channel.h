@@ -48,14 +48,10 @@ class Channel {
     if constexpr (kHasBytes) bytes_sent_ += thing.bytes();
     tail_block_->items[place] = {arrival, std::move(thing)};
     tail_.store(tail + 1, std::memory_order_release);  // publishes the item, and the block's link
-    if (arrival < *wake_) {
-      *wake_ = arrival;
-      if (arrival < *wake_block_) *wake_block_ = arrival;
-    }
+    if (arrival < *wake_) *wake_ = arrival;
   }
-  /// From now on `slot` keeps the earliest arrival that was sent since it was last cleared, and `block` the earliest of
-  /// several slots that are cleared together. The sender writes them.
-  void wakes(Cycle& slot, Cycle& block) { wake_ = &slot, wake_block_ = &block; }
+  /// From now on `slot` keeps the earliest arrival that was sent since it was last cleared. The sender writes it.
+  void wakes(Cycle& slot) { wake_ = &slot; }
 
   /// Arrival of the first thing; kNever when there is none.
   Cycle next() const {
@@ -161,7 +157,7 @@ class Channel {
   std::uint64_t bytes_sent_ = 0;
   Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds
   Cycle unconnected_ = kNever;
-  Cycle *wake_ = &unconnected_, *wake_block_ = &unconnected_;
+  Cycle* wake_ = &unconnected_;
   mutable std::atomic<Block*> spare_{nullptr};  // used by both, but only once a block
 };
 

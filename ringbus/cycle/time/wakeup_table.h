@@ -11,25 +11,17 @@
 namespace carousel::ringbus::cycle {
 
 /// Announcements of arrivals, so that no thread has to look into every channel before every window: for each pair of
-/// threads, the earliest arrival that the one has sent to each agent of the other, and to each block of agents, most of
-/// which have none. A row is written by its sending thread within a window, and read and cleared by its receiving
-/// thread between windows (windows.h); no two threads use it at the same time.
+/// threads, the earliest arrival that the one has sent to each agent of the other. A row is written by its sending
+/// thread within a window, and read and cleared by its receiving thread between windows (windows.h); no two threads
+/// use it at the same time.
 class WakeupTable {
  public:
-  /// Agents of a block.
-  static constexpr std::size_t kBlock = 16;
-  static constexpr std::size_t blocks_of(std::size_t agents) { return (agents + kBlock - 1) / kBlock; }
-
-  struct Row {
-    std::vector<Cycle> agents, blocks;
-  };
-
   /// Agents by thread, as run_windows() gets them.
   explicit WakeupTable(std::span<const std::vector<Agent*>> parts)
       : threads_(parts.size()), rows_(threads_ * threads_) {
     for (std::size_t t = 0; t < threads_; ++t) {
       for (std::size_t i = 0; i < parts[t].size(); ++i) places_[parts[t][i]] = {t, i};
-      for (std::size_t from = 0; from < threads_; ++from) row(t, from) = empty_row(parts[t].size());
+      for (std::size_t from = 0; from < threads_; ++from) row(t, from).assign(parts[t].size(), kNever);
     }
   }
 
@@ -38,22 +30,17 @@ class WakeupTable {
   template <class T>
   void connect(Channel<T>& channel, const Agent& from, const Agent& to) {
     const Place place = places_.at(&to);
-    Row& row = this->row(place.thread, places_.at(&from).thread);
-    channel.wakes(row.agents[place.index], row.blocks[place.index / kBlock]);
+    channel.wakes(row(place.thread, places_.at(&from).thread)[place.index]);
   }
   /// By agent of thread `to`.
-  Row& row(std::size_t to, std::size_t from) { return rows_[to * threads_ + from]; }
+  std::vector<Cycle>& row(std::size_t to, std::size_t from) { return rows_[to * threads_ + from]; }
 
  private:
-  static Row empty_row(std::size_t agents) {
-    return {std::vector<Cycle>(agents, kNever), std::vector<Cycle>(blocks_of(agents), kNever)};
-  }
-
   struct Place {
     std::size_t thread = 0, index = 0;
   };
   std::size_t threads_;
-  std::vector<Row> rows_;
+  std::vector<std::vector<Cycle>> rows_;
   std::unordered_map<const Agent*, Place> places_;
 };
 

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "ringbus/rays/ray_id.h"
@@ -135,74 +134,47 @@ class WindowRun {
     }
   }
 
-  /// Of the agents of a thread. Of a block of agents that have nothing to do in a window, only the block is looked at.
+  /// By agent of a thread: the time at which it is next to run, and whether it must be asked before every window.
   struct Schedule {
-    std::vector<Cycle> wake;           // by agent: the time at which it is next to run
-    std::vector<std::uint8_t> polled;  // by agent: it must be asked before every window
-    std::vector<Cycle> first;          // by block: the least of `wake`
-    std::vector<std::uint8_t> polls;   // by block: one of its agents is polled
+    std::vector<Cycle> wake;
+    std::vector<std::uint8_t> polled;
 
-    explicit Schedule(const std::vector<Agent*>& agents)
-        : first(WakeupTable::blocks_of(agents.size())), polls(first.size()) {
+    explicit Schedule(const std::vector<Agent*>& agents) {
       for (const Agent* agent : agents) {
         wake.push_back(agent->next());
         polled.push_back(agent->polled());
-      }
-      for (std::size_t block = 0; block < first.size(); ++block) sum_up(block);
-    }
-    std::size_t begin(std::size_t block) const { return block * WakeupTable::kBlock; }
-    std::size_t end(std::size_t block) const { return std::min(wake.size(), begin(block + 1)); }
-    void sum_up(std::size_t block) {
-      first[block] = kNever;
-      polls[block] = 0;
-      for (std::size_t i = begin(block); i < end(block); ++i) {
-        first[block] = std::min(first[block], wake[i]);
-        polls[block] |= polled[i];
       }
     }
   };
 
   /// Takes in the announcements, between windows. Returns the earliest time at which an agent of the thread has to run.
   Cycle look(std::size_t thread, Schedule& schedule) {
+    std::vector<Cycle>& wake = schedule.wake;
+    for (std::size_t from = 0; from < parts_.size(); ++from) {
+      std::vector<Cycle>& heard = wakeups_.row(thread, from);
+      for (std::size_t i = 0; i < wake.size(); ++i) {
+        wake[i] = std::min(wake[i], heard[i]);
+        heard[i] = kNever;
+      }
+    }
     Cycle first = kNever;
-    for (std::size_t block = 0; block < schedule.first.size(); ++block) {
-      for (std::size_t from = 0; from < parts_.size(); ++from) hear(wakeups_.row(thread, from), schedule, block);
-      if (schedule.polls[block]) poll(parts_[thread], schedule, block);
-      first = std::min(first, schedule.first[block]);
+    for (std::size_t i = 0; i < wake.size(); ++i) {
+      if (schedule.polled[i]) wake[i] = std::min(wake[i], parts_[thread][i]->unannounced());
+      first = std::min(first, wake[i]);
     }
     return first;
   }
 
-  static void hear(WakeupTable::Row& heard, Schedule& schedule, std::size_t block) {
-    if (heard.blocks[block] == kNever) return;
-    schedule.first[block] = std::min(schedule.first[block], std::exchange(heard.blocks[block], kNever));
-    for (std::size_t i = schedule.begin(block); i < schedule.end(block); ++i)
-      schedule.wake[i] = std::min(schedule.wake[i], std::exchange(heard.agents[i], kNever));
-  }
-
-  static void poll(const std::vector<Agent*>& agents, Schedule& schedule, std::size_t block) {
-    for (std::size_t i = schedule.begin(block); i < schedule.end(block); ++i) {
-      if (!schedule.polled[i]) continue;
-      schedule.wake[i] = std::min(schedule.wake[i], agents[i]->unannounced());
-      schedule.first[block] = std::min(schedule.first[block], schedule.wake[i]);
-    }
-  }
-
   void run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle end) {
     try {
-      for (std::size_t block = 0; block < schedule.first.size(); ++block) {
-        if (!kChecked && schedule.first[block] >= end) continue;
-        for (std::size_t i = schedule.begin(block); i < schedule.end(block); ++i) {
-          if (schedule.wake[i] >= end) {
-            if (kChecked && agents[i]->next() < end) throw std::logic_error("an agent was not woken");
-            continue;
-          }
-          if (kChecked && schedule.first[block] >= end) throw std::logic_error("a block of agents was not woken");
-          agents[i]->run(end);
-          schedule.wake[i] = agents[i]->next_after_run();
-          schedule.polled[i] = agents[i]->polled();
+      for (std::size_t i = 0; i < agents.size(); ++i) {
+        if (schedule.wake[i] >= end) {
+          if (kChecked && agents[i]->next() < end) throw std::logic_error("an agent was not woken");
+          continue;
         }
-        schedule.sum_up(block);
+        agents[i]->run(end);
+        schedule.wake[i] = agents[i]->next_after_run();
+        schedule.polled[i] = agents[i]->polled();
       }
     } catch (...) {
       const std::lock_guard lock(mutex_);

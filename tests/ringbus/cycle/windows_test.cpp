@@ -104,26 +104,5 @@ TEST(Windows, WhoIsNotAskedIsWokenInTime) {
   }
 }
 
-// A circle of agents, several blocks of them; in most windows most blocks have nothing to do.
-TEST(Windows, WhoIsAloneInItsBlockIsWokenInTime) {
-  constexpr std::size_t kAgents = 3 * WakeupTable::kBlock + 5, kStep = 7;  // prime to each other: each agent is reached
-  for (const std::size_t threads : {1, 2, 3}) {
-    std::vector<std::unique_ptr<Channel<int>>> wires;
-    std::vector<std::unique_ptr<Listener>> agents;
-    for (std::size_t i = 0; i < kAgents; ++i) wires.push_back(std::make_unique<Channel<int>>());
-    std::vector<std::vector<Agent*>> parts(threads);
-    for (std::size_t i = 0; i < kAgents; ++i) {
-      agents.push_back(std::make_unique<Listener>(*wires[i], *wires[(i + kStep) % kAgents], 5, i == 0));
-      parts[i * threads / kAgents].push_back(agents.back().get());
-    }
-    WakeupTable wakeups(parts);
-    for (std::size_t i = 0; i < kAgents; ++i)
-      wakeups.connect(*wires[(i + kStep) % kAgents], *agents[i], *agents[(i + kStep) % kAgents]);
-    run_windows(parts, wakeups, 5, [](Cycle) { return true; });
-    for (std::size_t i = 0; i <= 1000; ++i)
-      ASSERT_EQ(agents[i * kStep % kAgents]->heard().at(i / kAgents), 1 + 5 * i) << threads;
-  }
-}
-
 }  // namespace
 }  // namespace carousel::ringbus::cycle
