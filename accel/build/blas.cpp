@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "accel/build/reference_build.h"
+#include "accel/build/reinsertion.h"
 #include "accel/build/sah_build.h"
 #include "accel/structure/sphere.h"
 
@@ -93,7 +94,8 @@ Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bv
   SahSettings settings;
   settings.leaf_primitives = static_cast<std::uint32_t>(config.leaf_triangles);
   settings.block_primitives = std::min<std::uint32_t>(kBlockTriangles, settings.leaf_primitives);
-  const std::vector<BinaryNode> binary = build_both(primitives, triangles, config, settings, executor);
+  std::vector<BinaryNode> binary = build_both(primitives, triangles, config, settings, executor);
+  if (config.quality == BvhConfig::Quality::kHigh) reinsert(binary, executor);
   blas.box = binary[0].box;
 
   struct Fill {

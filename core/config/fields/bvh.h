@@ -18,6 +18,7 @@ struct BvhConfig {
   std::int64_t levels = 2;
   enum class Builder { kSah, kSpatial, kOctree, kKd } builder = Builder::kSah;
   double duplicates = 0.3;
+  enum class Quality { kFast, kHigh } quality = Quality::kFast;
 };
 
 template <>
@@ -42,6 +43,12 @@ template <>
 inline constexpr auto kEnumNames<BvhConfig::Builder> = [] {
   using enum BvhConfig::Builder;
   return names<BvhConfig::Builder>({{kSah, "sah"}, {kSpatial, "spatial"}, {kOctree, "octree"}, {kKd, "kd"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<BvhConfig::Quality> = [] {
+  using enum BvhConfig::Quality;
+  return names<BvhConfig::Quality>({{kFast, "fast"}, {kHigh, "high"}});
 }();
 
 namespace config {
@@ -79,6 +86,10 @@ void describe(V& v, BvhConfig& c) {
   v.field("duplicates", c.duplicates, RealRange{0, 16}, "references/triangle",
           "How often planes in space cut at most, for each triangle of a mesh; what then is left is divided by its "
           "triangles alone.");
+  v.choice(
+      "quality", c.quality,
+      "Meshes are divided once, from the top; or subtrees are then moved to where the areas of all boxes add up to "
+      "less, which takes several times as long to build, and less to traverse where triangles are long.");
 }
 
 }  // namespace config

@@ -19,6 +19,7 @@ class MemoryRules {
     quantised_nodes_fit();
     leaves_fit();
     builder_fits();
+    quality_fits();
     shared_caches_fit();
     travelling_rays_fit();
     caches_have_whole_sets();
@@ -75,6 +76,16 @@ class MemoryRules {
       breach_("cull_planes.count", fmt::format("cull planes are fitted to whole triangles, and bvh.builder: {} cuts "
                                                "their boxes; expected 0, or bvh.builder: sah; found {}",
                                                name, c.cull_planes.count));
+  }
+
+  void quality_fits() {
+    using enum BvhConfig::Builder;
+    if (c.bvh.quality == BvhConfig::Quality::kHigh && (c.bvh.builder == kOctree || c.bvh.builder == kKd))
+      breach_(
+          "bvh.quality",
+          fmt::format("the nodes of bvh.builder: {} stay where space is divided; expected fast, or bvh.builder: sah "
+                      "or spatial; found high",
+                      enum_name(c.bvh.builder)));
   }
 
   void master_copies_fit() {

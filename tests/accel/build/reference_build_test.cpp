@@ -203,6 +203,9 @@ TEST(ReferenceBuild, SparesTests) {
     return counts.box + counts.triangle;
   };
   EXPECT_LT(tests(cutting(BvhConfig::Builder::kSpatial)), tests({}));
+  BvhConfig moved;
+  moved.quality = BvhConfig::Quality::kHigh;
+  EXPECT_LT(tests(moved), tests({}));
 }
 
 }  // namespace

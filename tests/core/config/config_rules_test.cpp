@@ -90,6 +90,9 @@ INSTANTIATE_TEST_SUITE_P(
             "build"},
         BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\nengine: {kind: cycle}\n",
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
+        BadConfig{"CellsThatMove", SCENE "bvh: {builder: octree, quality: high}\n",
+                  "test.yaml:2:33: bvh.quality: the nodes of bvh.builder: octree stay where space is divided; expected "
+                  "fast, or bvh.builder: sah or spatial; found high"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
                   "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
         BadConfig{"CullPlaneOrder", SCENE "cull_planes: {order: planes}\n",
