@@ -13,15 +13,20 @@ namespace carousel::accel {
 namespace {
 
 /// Triangles, then spheres, with their boxes.
-std::vector<BuildPrimitive> boxes(const scene::Mesh& mesh, const MeshPiece* piece, Executor& executor) {
-  const std::size_t triangles = mesh.triangle_count();
-  std::vector<BuildPrimitive> out(piece != nullptr ? piece->size() : triangles + mesh.spheres.size());
+std::vector<BuildPrimitive> boxes(const BlasMeshes& meshes, const MeshPiece* piece, Executor& executor) {
+  const std::size_t triangles = meshes.triangles();
+  std::vector<BuildPrimitive> out(piece != nullptr ? piece->size() : meshes.size());
   executor.parallel_for(out.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t at = begin; at < end; ++at) {
       const std::size_t i = piece != nullptr ? (*piece)[at] : at;
       Aabb box;
-      for (std::size_t k = 0; k < 3 && i < triangles; ++k) box.extend(mesh.positions[mesh.indices[3 * i + k]]);
-      if (i >= triangles) box = sphere_box(mesh.spheres[i - triangles].center, mesh.spheres[i - triangles].radius);
+      if (i < triangles) {
+        const auto [mesh, index] = meshes.triangle(static_cast<std::uint32_t>(i));
+        for (std::size_t k = 0; k < 3; ++k) box.extend(mesh->positions[mesh->indices[3 * std::size_t{index} + k]]);
+      } else {
+        const scene::Sphere& sphere = meshes.front().spheres[i - triangles];
+        box = sphere_box(sphere.center, sphere.radius);
+      }
       out[at].lo = box.lo;
       out[at].hi = box.hi;
       out[at].index = static_cast<std::uint32_t>(i);
@@ -30,24 +35,25 @@ std::vector<BuildPrimitive> boxes(const scene::Mesh& mesh, const MeshPiece* piec
   return out;
 }
 
-void fill_block(const scene::Mesh& mesh, const scene::Opacity& opacity, const BuildPrimitive* primitives,
+void fill_block(const BlasMeshes& meshes, const scene::Opacity& opacity, const BuildPrimitive* primitives,
                 std::uint32_t count, TriangleBlock& block) {
   for (std::uint32_t lane = 0; lane < count; ++lane) {
-    const std::uint32_t index = primitives[lane].index;
+    const std::uint32_t number = primitives[lane].index;
     const auto set = [&](std::size_t vertex, const Vec3& p) {
       for (int axis = 0; axis < 3; ++axis) block.vertex[vertex][axis][lane] = p[axis];
     };
     bool calls_any_hit;
-    if (index >= mesh.triangle_count()) {
-      const scene::Sphere& sphere = mesh.spheres[index - mesh.triangle_count()];
+    if (number >= meshes.triangles()) {
+      const scene::Sphere& sphere = meshes.front().spheres[number - meshes.triangles()];
       set(0, sphere.center);
       block.vertex[1][0][lane] = sphere.radius;
       calls_any_hit = opacity.may_be_non_opaque(sphere);
     } else {
-      for (std::size_t k = 0; k < 3; ++k) set(k, mesh.positions[mesh.indices[3 * std::size_t{index} + k]]);
-      calls_any_hit = opacity.may_be_non_opaque(mesh, index);
+      const auto [mesh, index] = meshes.triangle(number);
+      for (std::size_t k = 0; k < 3; ++k) set(k, mesh->positions[mesh->indices[3 * std::size_t{index} + k]]);
+      calls_any_hit = opacity.may_be_non_opaque(*mesh, index);
     }
-    block.primitive[lane] = index | (calls_any_hit ? kNonOpaqueBit : 0);
+    block.primitive[lane] = number | (calls_any_hit ? kNonOpaqueBit : 0);
   }
 }
 
@@ -83,13 +89,13 @@ std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std:
 
 }  // namespace
 
-Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
+Blas build_blas(const BlasMeshes& meshes, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
                 const MeshPiece* piece) {
   Blas blas;
-  std::vector<BuildPrimitive> primitives = boxes(mesh, piece, executor);
+  std::vector<BuildPrimitive> primitives = boxes(meshes, piece, executor);
   if (primitives.empty()) return blas;
   const auto first_sphere = std::find_if(primitives.begin(), primitives.end(),
-                                         [&](const BuildPrimitive& p) { return p.index >= mesh.triangle_count(); });
+                                         [&](const BuildPrimitive& p) { return p.index >= meshes.triangles(); });
   const auto triangles = static_cast<std::size_t>(first_sphere - primitives.begin());
   SahSettings settings;
   settings.leaf_primitives = static_cast<std::uint32_t>(config.leaf_triangles);
@@ -107,7 +113,7 @@ Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bv
     const std::uint32_t first_block = static_cast<std::uint32_t>(fills.size());
     for (std::uint32_t i = 0; i < leaf.count; i += kBlockTriangles)
       fills.push_back({leaf.first + i, std::min<std::uint32_t>(kBlockTriangles, leaf.count - i)});
-    const bool procedural = primitives[leaf.first].index >= mesh.triangle_count();
+    const bool procedural = primitives[leaf.first].index >= meshes.triangles();
     return WideLeaf{procedural ? NodeRef::procedural(first_block, leaf.count) : NodeRef::leaf(first_block, leaf.count),
                     static_cast<std::uint8_t>(leaf.count), leaf.count};
   };
@@ -117,7 +123,7 @@ Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const Bv
   blas.blocks.resize(fills.size());
   executor.parallel_for(fills.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      fill_block(mesh, opacity, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
+      fill_block(meshes, opacity, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
   });
   for (const TriangleBlock& block : blas.blocks)
     for (const std::uint32_t primitive : block.primitive)

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "accel/build/blas_meshes.h"
 #include "accel/build/mesh_pieces.h"
 #include "accel/build/wide_collapse.h"
 #include "accel/structure/node.h"
@@ -13,7 +14,7 @@
 
 namespace carousel::accel {
 
-/// Bottom-level structure of one mesh, with references into its own arrays.
+/// Bottom-level structure of one mesh or of several, with references into its own arrays.
 struct Blas {
   NodeArray nodes;
   BlockArray blocks;
@@ -23,7 +24,7 @@ struct Blas {
 };
 
 /// Primitives that may be non-opaque get kNonOpaqueBit. With `piece` over these primitives alone.
-Blas build_blas(const scene::Mesh& mesh, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
+Blas build_blas(const BlasMeshes& meshes, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
                 const MeshPiece* piece = nullptr);
 
 }  // namespace carousel::accel

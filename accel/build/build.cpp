@@ -1,11 +1,13 @@
 #include "accel/build/build.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
 
+#include "accel/build/blas_meshes.h"
 #include "accel/build/bounding_spheres.h"
 #include "accel/build/group_levels.h"
 #include "accel/build/placed_blas.h"
@@ -57,19 +59,21 @@ class AccelBuilder {
   }
 
  private:
-  // Which BLAS each instance uses: its mesh's, or one of its own when it must be baked.
+  // Which BLAS each instance uses: its mesh's, the merged one, or one of its own when it must be baked.
   void place_instances() {
+    if (config_.merge == BvhConfig::Merge::kWorld) accel_.merged = merge_meshes(scene_, sources_);
     accel_.instances.resize(scene_.instances.size());
     blas_of_.resize(scene_.instances.size());
     std::vector<std::optional<std::uint32_t>> blas_of_mesh(scene_.meshes.size());
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
       const scene::Instance& instance = scene_.instances[i];
       const scene::Mesh& mesh = scene_.meshes[instance.mesh.value];
+      if (accel_.merged.holds(static_cast<std::uint32_t>(i))) continue;
       if (make_transform(instance.world_from_model, accel_.instances[i].transform, accel_.accuracy.transform)) {
         auto& shared = blas_of_mesh[instance.mesh.value];
         if (!shared) {
           shared = static_cast<std::uint32_t>(sources_.size());
-          sources_.push_back(&mesh);
+          sources_.emplace_back(mesh);
         }
         blas_of_[i] = *shared;
         accel_.promoted_instances += accel_.instances[i].transform.promoted;
@@ -78,9 +82,9 @@ class AccelBuilder {
           throw SceneError(scene_.name, "",
                            "instance " + std::to_string(i) + " flattens a sphere: its transform has no inverse");
         accel_.instances[i].transform = InstanceTransform{};
-        baked_.push_back(std::make_unique<scene::Mesh>(bake(mesh, instance.world_from_model)));
+        baked_.emplace(i, bake(mesh, instance.world_from_model));
         blas_of_[i] = static_cast<std::uint32_t>(sources_.size());
-        sources_.push_back(baked_.back().get());
+        sources_.emplace_back(baked_.at(i));
         ++accel_.baked_instances;
       }
     }
@@ -93,7 +97,7 @@ class AccelBuilder {
       for (std::size_t i = begin; i < end; ++i) {
         PlacedBlas& placed = blases_[i];
         if (here(i)) {
-          placed.blas = build_blas(*sources_[placed.source], opacity, config_, executor_,
+          placed.blas = build_blas(sources_[placed.source], opacity, config_, executor_,
                                    placed.piece.empty() ? nullptr : &placed.piece);
           placed.nodes = static_cast<std::uint32_t>(placed.blas.nodes.size());
           placed.blocks = static_cast<std::uint32_t>(placed.blas.blocks.size());
@@ -175,12 +179,12 @@ class AccelBuilder {
     }
   }
 
-  bool is_baked(std::size_t i) const { return sources_[blas_of_[i]] != &scene_.meshes[scene_.instances[i].mesh.value]; }
+  bool is_baked(std::size_t i) const { return baked_.contains(i); }
 
   void fill_instances() {
-    for (std::size_t i = 0; i < accel_.instances.size(); ++i) {
+    for (std::uint32_t i = 0; i < accel_.instances.size(); ++i) {
       const PlacedMesh& placed = meshes_[blas_of_[i]];
-      if (placed.tree.triangles == 0) continue;
+      if (placed.tree.triangles == 0 || (accel_.merged.holds(i) && i != accel_.merged.instance())) continue;
       InstanceNode& node = accel_.instances[i];
       node.root = placed.tree.root;
       node.strip_size = placed.tree.root_strip_size;
@@ -277,11 +281,11 @@ class AccelBuilder {
   const CullPlanesConfig& planes_;
   const BuildRanks* ranks_;  // null: the whole structure is built here
   Accel accel_;
-  std::vector<const scene::Mesh*> sources_;  // one a mesh, and those that are baked
-  std::vector<std::unique_ptr<scene::Mesh>> baked_;
-  std::vector<std::uint32_t> blas_of_;  // one an instance, in sources_
-  std::vector<std::uint32_t> home_;     // with ranks_: the rank of each BLAS
-  Partition partition_;                 // with ranks_
+  std::vector<BlasMeshes> sources_;           // the merged meshes, one a mesh, and those that are baked
+  std::map<std::size_t, scene::Mesh> baked_;  // by instance
+  std::vector<std::uint32_t> blas_of_;        // one an instance, in sources_
+  std::vector<std::uint32_t> home_;           // with ranks_: the rank of each BLAS
+  Partition partition_;                       // with ranks_
   int blas_depth_ = 0;
   std::size_t first_of_top_ = 0;    // node
   std::vector<PlacedBlas> blases_;  // in order of sources_

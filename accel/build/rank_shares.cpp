@@ -37,21 +37,20 @@ std::vector<std::uint32_t> share_meshes(std::span<const std::uint64_t> sizes, st
   return home;
 }
 
-void share_out(std::span<const scene::Mesh* const> meshes, const BuildRanks& ranks, std::vector<PlacedBlas>& pieces,
+void share_out(std::span<const BlasMeshes> meshes, const BuildRanks& ranks, std::vector<PlacedBlas>& pieces,
                std::vector<std::uint32_t>& home) {
   constexpr std::uint64_t kLeast = 64, kPieces = 8;
-  const auto size_of = [](const scene::Mesh& mesh) { return mesh.triangle_count() + mesh.spheres.size(); };
   std::uint64_t all = 0;
-  for (const scene::Mesh* mesh : meshes) all += size_of(*mesh);
+  for (const BlasMeshes& mesh : meshes) all += mesh.size();
   const std::uint64_t most = std::max(kLeast, all / (kPieces * ranks.ranks));
   std::vector<std::uint64_t> sizes;
   for (std::uint32_t i = 0; i < meshes.size(); ++i) {
-    if (size_of(*meshes[i]) <= most) {
+    if (meshes[i].size() <= most) {
       pieces.emplace_back().source = i;
-      sizes.push_back(size_of(*meshes[i]));
+      sizes.push_back(meshes[i].size());
       continue;
     }
-    for (MeshPiece& piece : divide_mesh(*meshes[i], most)) {
+    for (MeshPiece& piece : divide_mesh(meshes[i].front(), most)) {
       sizes.push_back(piece.size());
       PlacedBlas& placed = pieces.emplace_back();
       placed.source = i;

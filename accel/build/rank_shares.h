@@ -16,7 +16,7 @@ std::vector<std::uint32_t> share_meshes(std::span<const std::uint64_t> sizes, st
 
 /// Makes the pieces of the meshes that get a structure each, in order of the meshes, and the rank of each piece. No
 /// piece is larger than an eighth of a rank's share of all primitives, so the shares become about equal.
-void share_out(std::span<const scene::Mesh* const> meshes, const BuildRanks& ranks, std::vector<PlacedBlas>& pieces,
+void share_out(std::span<const BlasMeshes> meshes, const BuildRanks& ranks, std::vector<PlacedBlas>& pieces,
                std::vector<std::uint32_t>& home);
 
 /// Appends nodes above the pieces of a mesh, of which there are several, and returns the whole.

@@ -55,6 +55,11 @@ HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, int l, con
   found.t = ray.instance_entry > found.t ? ray.instance_entry : found.t;
   found.instance = ray.instance;
   found.primitive = block.primitive[l] & kPrimitiveMask;
+  if (HWY_UNLIKELY(ray.instance == accel.merged.instance())) {
+    const MergedMeshes::Name name = accel.merged.name(found.primitive);
+    found.instance = name.instance;
+    found.primitive = name.primitive;
+  }
   if (!closer(found.t, found.instance, found.primitive, hit)) return false;
   const std::uint32_t calls_any_hit = block.primitive[l] & kNonOpaqueBit;
   if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront | kRayAll))) != 0) &&

@@ -7,6 +7,7 @@
 #include "accel/structure/cull_plane.h"
 #include "accel/structure/group_placement.h"
 #include "accel/structure/guest_shapes.h"
+#include "accel/structure/merged_meshes.h"
 #include "accel/structure/node.h"
 #include "accel/structure/node_spheres.h"
 #include "accel/structure/partition.h"
@@ -46,6 +47,7 @@ struct Accel {
   std::vector<InstanceNode> instances;         ///< indexed as Scene::instances; behind these the placements of groups
   std::vector<GroupPlacement> groups;          ///< of the last of the instances; empty with two levels
   std::vector<std::uint32_t> members;          ///< of these placements: indices of instances
+  MergedMeshes merged;                         ///< meshes of several instances with one structure below the first
   NodeKey root;                                ///< as root_key()
   std::shared_ptr<const Partition> partition;  ///< null: all shapes are here
   std::shared_ptr<GuestShapes> guests;         ///< shapes of other ranks while packets bring them; with `partition`

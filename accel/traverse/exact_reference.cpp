@@ -171,7 +171,12 @@ class ExactReference::Search {
   void test(NodeKey leaf) {
     for (std::uint32_t b = 0; b < leaf.ref.blocks(); ++b)
       for (const std::uint32_t primitive : accel_.blocks[leaf.ref.first_block() + b].primitive)
-        if (primitive != kNoPrimitive) test(leaf.instance, primitive & kPrimitiveMask);
+        if (primitive != kNoPrimitive) test_named(leaf.instance, primitive & kPrimitiveMask);
+  }
+  void test_named(std::uint32_t instance, std::uint32_t primitive) {
+    if (instance != accel_.merged.instance()) return test(instance, primitive);
+    const MergedMeshes::Name name = accel_.merged.name(primitive);
+    test(name.instance, name.primitive);
   }
 
   void test(std::uint32_t instance, std::uint32_t primitive) {

@@ -16,6 +16,7 @@ std::map<std::string, std::string> Options::describe() const {
           {"collections.select", std::string(enum_name(ring.select))},
           {"bvh.treelet_triangles", std::to_string(ring.treelet_triangles)},
           {"bvh.leaf_triangles", std::to_string(bvh.leaf_triangles)},
+          {"bvh.merge", std::string(enum_name(bvh.merge))},
           {"bvh.quality", std::string(enum_name(bvh.quality))},
           {"bvh.width", std::to_string(bvh.width)},
           {"topology.link.depth", std::to_string(ring.link_depth)},
@@ -75,6 +76,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_status) {
   app.add_option("--link-depth", o.ring.link_depth, "topology.link.depth");
   app.add_option("--leaf", o.bvh.leaf_triangles, "bvh.leaf_triangles");
   app.add_option("--width", o.bvh.width, "bvh.width");
+  add_enum(app, "--merge", o.bvh.merge, "bvh.merge");
   add_enum(app, "--quality", o.bvh.quality, "bvh.quality");
   add_enum(app, "--policy", o.ring.policy, "collections.policy");
   add_enum(app, "--select", o.ring.select, "collections.select");

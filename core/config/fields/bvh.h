@@ -18,6 +18,7 @@ struct BvhConfig {
   std::int64_t levels = 2;
   enum class Builder { kSah, kSpatial, kOctree, kKd } builder = Builder::kSah;
   double duplicates = 0.3;
+  enum class Merge { kNone, kWorld } merge = Merge::kNone;
   enum class Quality { kFast, kHigh } quality = Quality::kFast;
 };
 
@@ -43,6 +44,12 @@ template <>
 inline constexpr auto kEnumNames<BvhConfig::Builder> = [] {
   using enum BvhConfig::Builder;
   return names<BvhConfig::Builder>({{kSah, "sah"}, {kSpatial, "spatial"}, {kOctree, "octree"}, {kKd, "kd"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<BvhConfig::Merge> = [] {
+  using enum BvhConfig::Merge;
+  return names<BvhConfig::Merge>({{kNone, "none"}, {kWorld, "world"}});
 }();
 
 template <>
@@ -86,6 +93,9 @@ void describe(V& v, BvhConfig& c) {
   v.field("duplicates", c.duplicates, RealRange{0, 16}, "references/triangle",
           "How often planes in space cut at most, for each triangle of a mesh; what then is left is divided by its "
           "triangles alone.");
+  v.choice("merge", c.merge,
+           "Each mesh has a structure of its own; or those that stand in the world once, without a transform, have one "
+           "together, so that a ray visits no node twice where they overlap.");
   v.choice(
       "quality", c.quality,
       "Meshes are divided once, from the top; or subtrees are then moved to where the areas of all boxes add up to "

@@ -109,6 +109,7 @@ inline std::vector<KeyRow> key_rows() {
       {"bvh.top_triangles", kInstances, {}, {"2"}},
       {"bvh.levels", kInstances, {"scene.levels=5"}, {"3", "8"}},
       {"bvh.builder", kCornell},
+      {"bvh.merge", kTerrain, {"scene.builtin=spheres"}},
       {"bvh.quality", kCornell},
       {"bvh.duplicates", kTerrain, {"bvh.builder=kd"}, {"2"}},
       {"accuracy.triangle", kInstances},

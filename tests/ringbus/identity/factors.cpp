@@ -54,6 +54,7 @@ std::vector<Factor> scene_and_engine() {
       {"bvh.levels", {"2", "3", "8"}},
       {"bvh.builder", all<BvhConfig::Builder>()},
       {"bvh.duplicates", {"0.2", "3"}},
+      {"bvh.merge", all<BvhConfig::Merge>()},
       {"bvh.quality", all<BvhConfig::Quality>(), {"bvh.builder!=octree", "bvh.builder!=kd"}},
   };
 }

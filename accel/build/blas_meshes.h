@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "accel/structure/merged_meshes.h"
+#include "scene/model/scene.h"
+
+namespace carousel::accel {
+
+/// The meshes that one structure is built over: one, or several of triangles alone, whose triangles are numbered
+/// through. Keeps pointers to them.
+class BlasMeshes {
+ public:
+  explicit BlasMeshes(const scene::Mesh& mesh) { add(mesh); }
+  void add(const scene::Mesh& mesh) {
+    meshes_.push_back(&mesh);
+    first_.push_back(static_cast<std::uint32_t>(triangles_));
+    triangles_ += mesh.triangle_count();
+  }
+
+  std::size_t triangles() const { return triangles_; }
+  /// With the spheres, which have the numbers behind the triangles.
+  std::size_t size() const { return triangles_ + (meshes_.size() == 1 ? meshes_.front()->spheres.size() : 0); }
+  const scene::Mesh& front() const { return *meshes_.front(); }
+
+  struct Triangle {
+    const scene::Mesh* mesh;
+    std::uint32_t index;
+  };
+  Triangle triangle(std::uint32_t number) const {
+    if (meshes_.size() == 1) return {meshes_.front(), number};
+    const auto at =
+        static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), number) - first_.begin() - 1);
+    return {meshes_[at], number - first_[at]};
+  }
+
+ private:
+  std::vector<const scene::Mesh*> meshes_;
+  std::vector<std::uint32_t> first_;  // number of each mesh's first triangle
+  std::size_t triangles_ = 0;
+};
+
+/// Finds the meshes of triangles that stand in the world once, without a transform and in no group, and if there are
+/// several, appends one source to `sources`, which must be empty. A triangle's own box lies in its mesh's, so the box
+/// of the mesh decides nothing for it, and hits stay what they are. Throws SceneError for more than 2^31 triangles.
+MergedMeshes merge_meshes(const scene::Scene& scene, std::vector<BlasMeshes>& sources);
+
+}  // namespace carousel::accel

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/types/ray.h"
+
+namespace carousel::accel {
+
+/// Meshes that have one structure together (`bvh.merge: world`). Their triangles are numbered through in it, mesh by
+/// mesh; a hit names a triangle's own instance and number. Immutable once built; any thread may read.
+class MergedMeshes {
+ public:
+  /// The instance that the structure hangs below: the first of the meshes'. No ray is in it if nothing is merged.
+  std::uint32_t instance() const { return instances_.empty() ? kNoInstance - 1 : instances_.front(); }
+  std::size_t count() const { return instances_.size(); }
+  bool holds(std::uint32_t instance) const {
+    return std::binary_search(instances_.begin(), instances_.end(), instance);
+  }
+
+  struct Name {
+    std::uint32_t instance, primitive;
+  };
+  /// Precondition: `primitive` is less than the sum of the triangles that were added.
+  Name name(std::uint32_t primitive) const {
+    const auto mesh = std::upper_bound(first_.begin(), first_.end(), primitive) - first_.begin() - 1;
+    return {instances_[static_cast<std::size_t>(mesh)], primitive - first_[static_cast<std::size_t>(mesh)]};
+  }
+
+  /// The mesh of another instance, whose triangles begin at number `first`. Both ascend.
+  void add(std::uint32_t instance, std::uint32_t first) {
+    instances_.push_back(instance);
+    first_.push_back(first);
+  }
+
+ private:
+  std::vector<std::uint32_t> instances_, first_;  // by mesh
+};
+
+}  // namespace carousel::accel

@@ -1,0 +1,146 @@
+// Meshes of the world that share one structure (`bvh.merge: world`): the same hits as of every primitive tested in
+// turn, with the same names.
+#include "accel/structure/merged_meshes.h"
+
+#include <gtest/gtest.h>
+
+#include "accel/traverse/exact_reference.h"
+#include "tests/accel/structure/passing_scenes.h"
+#include "tests/accel/traverse/brute_force_answers.h"
+#include "tests/accel/traverse/levels.h"
+#include "tests/support/random_runs.h"
+
+namespace carousel::accel::merged_meshes_test {
+namespace {
+
+Accel build_with(const scene::Scene& scene, const BvhConfig& config, const AccuracyConfig& accuracy = {}) {
+  return build(scene, config, *make_sequential_executor(), accuracy);
+}
+
+BvhConfig merging(std::int64_t width = 8) {
+  BvhConfig config;
+  config.merge = BvhConfig::Merge::kWorld;
+  config.width = width;
+  return config;
+}
+
+/// Meshes that stand in the world among instances with transforms and spheres. Each third triangle stands in two of the
+/// meshes, so that hits tie; the mesh in the middle stands there twice, and is not merged.
+scene::Scene overlapping(std::uint32_t meshes, std::uint64_t seed) {
+  scene::Scene scene = passing_scene(BuiltinScene::kInstances, 6, seed);
+  Random random(seed);
+  const Aabb bounds = small_builtin(BuiltinScene::kSpheres, 250).bounds();
+  std::vector<Vec3> before;
+  for (std::uint32_t i = 0; i < meshes; ++i) {
+    std::vector<Vec3> corners;
+    for (std::uint32_t k = 0; k < 20; ++k) {
+      const bool again = k % 3 == 0 && !before.empty();
+      for (std::uint32_t c = 0; c < 3; ++c)
+        corners.push_back(again ? before[3 * k + c] : random.in_box(bounds.lo, bounds.hi));
+    }
+    before = corners;
+    add_instance(scene, add_mesh(scene, soup(corners)));
+    if (i == meshes / 2) add_instance(scene, static_cast<std::uint32_t>(scene.meshes.size() - 1));
+  }
+  return scene;
+}
+
+TEST(MergedMeshes, NameTrianglesByTheirOwnMeshes) {
+  MergedMeshes merged;
+  EXPECT_FALSE(merged.holds(0));
+  EXPECT_NE(merged.instance(), kNoInstance);
+  merged.add(2, 0);
+  merged.add(5, 10);
+  merged.add(6, 11);
+  EXPECT_EQ(merged.instance(), 2u);
+  EXPECT_TRUE(merged.holds(5));
+  EXPECT_FALSE(merged.holds(3));
+  const auto expect = [&](std::uint32_t number, std::uint32_t instance, std::uint32_t primitive) {
+    EXPECT_EQ(merged.name(number).instance, instance) << number;
+    EXPECT_EQ(merged.name(number).primitive, primitive) << number;
+  };
+  expect(0, 2, 0);
+  expect(9, 2, 9);
+  expect(10, 5, 0);
+  expect(11, 6, 0);
+  expect(40, 6, 29);
+}
+
+TEST(MergedMeshes, AreThoseThatStandInTheWorldOnce) {
+  const scene::Scene scene = overlapping(7, run_seed());
+  const Accel accel = build_with(scene, merging());
+  std::vector<std::uint32_t> uses(scene.meshes.size());
+  for (const scene::Instance& instance : scene.instances) ++uses[instance.mesh.value];
+  std::size_t expected = 0, triangles = 0;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Instance& instance = scene.instances[i];
+    const scene::Mesh& mesh = scene.meshes[instance.mesh.value];
+    const scene::Affine& m = instance.world_from_model;
+    const bool stands = m.linear == Mat3(1.0f) && m.translation == Vec3(0.0f);
+    const bool merged = stands && uses[instance.mesh.value] == 1 && mesh.spheres.empty();
+    EXPECT_EQ(accel.merged.holds(i), merged) << i;
+    expected += merged;
+    if (merged) triangles += mesh.triangle_count();
+  }
+  EXPECT_GE(expected, 6u);
+  EXPECT_EQ(accel.merged.count(), expected);
+  EXPECT_EQ(accel.instances[accel.merged.instance()].triangles, triangles);
+  EXPECT_EQ(build_with(scene, {}).merged.count(), 0u);
+}
+
+TEST(MergedMeshes, GiveOneAnswer) {
+  const HashedStop stop(0.4);
+  const scene::Scene scene = overlapping(9, run_seed());
+  const BruteForceAnswers brute(scene, wishing_rays(scene, 500, run_seed() + 1), {}, &stop);
+  for (const auto elements : {BvhConfig::Elements::kBoxes, BvhConfig::Elements::kSpheres}) {
+    for (const std::int64_t direct : {0, 4}) {
+      for (const std::int64_t width : {2, 8}) {
+        BvhConfig config = merging(width);
+        config.elements = elements;
+        config.top_triangles = config.mixed_triangles = direct;
+        config.quality = width == 2 ? BvhConfig::Quality::kHigh : BvhConfig::Quality::kFast;
+        Accel accel = build_with(scene, config);
+        accel.any_hit = &stop;
+        EXPECT_EQ(brute.differences(accel), 0u) << enum_name(elements) << " direct " << direct << " width " << width;
+      }
+    }
+  }
+  EXPECT_GT(brute.hits(), 100u);
+}
+
+TEST(MergedMeshes, GiveOneAnswerAtEveryLevel) {
+  const scene::Scene scene = overlapping(6, run_seed());
+  const RayBatch rays = mixed_rays(scene, 50, run_seed());
+  for (const AccuracyConfig& accuracy : triangle_and_box_levels())
+    EXPECT_EQ(BruteForceAnswers(scene, rays, accuracy).differences(build_with(scene, merging(), accuracy)), 0u)
+        << text(accuracy);
+}
+
+TEST(MergedMeshes, AreTheSameToTheExactReference) {
+  const scene::Scene scene = overlapping(6, run_seed());
+  const Accel apart = build_with(scene, {}), merged = build_with(scene, merging());
+  const ExactReference of_apart(scene, apart), of_merged(scene, merged);
+  int hits = 0;
+  for (const RayRequest& ray : mixed_rays(scene, 200, run_seed())) {
+    const ExactHit a = of_apart.closest(ray.ray), b = of_merged.closest(ray.ray);
+    EXPECT_EQ(a.hit.instance, b.hit.instance);
+    EXPECT_EQ(a.hit.primitive, b.hit.primitive);
+    EXPECT_EQ(a.t, b.t);
+    hits += a.hit.valid() && merged.merged.holds(a.hit.instance);
+  }
+  EXPECT_GT(hits, 20);
+}
+
+// What it is for: meshes that overlap.
+TEST(MergedMeshes, SpareBoxes) {
+  const scene::Scene scene = overlapping(12, run_seed());
+  const RayBatch rays = mixed_rays(scene, 1000, run_seed());
+  IntersectionCounts apart, merged;
+  HitBatch hits;
+  trace_depth_first(build_with(scene, {}), rays, hits, apart);
+  trace_depth_first(build_with(scene, merging()), rays, hits, merged);
+  EXPECT_LT(merged.box, apart.box);
+}
+
+}  // namespace
+}  // namespace carousel::accel::merged_meshes_test
