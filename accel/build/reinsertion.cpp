@@ -153,7 +153,8 @@ class Reinsertion {
       const std::uint32_t touched[] = {m.from, sibling(m.from), parent, parent_[parent], m.to, parent_[m.to]};
       if (std::any_of(std::begin(touched), std::end(touched), [&](std::uint32_t at) { return taken[at] != 0; }))
         continue;
-      if (below(m.to, m.from)) continue;  // another move has put it there
+      // By exact areas no two subtrees are best off within each other: of each two the larger would stay outside.
+      if (below(m.to, m.from)) continue;
       for (const std::uint32_t at : touched) taken[at] = 1;
       move(m);
     }
