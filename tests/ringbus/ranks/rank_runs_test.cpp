@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <optional>
+#include <random>
 #include <set>
 #include <stop_token>
 #include <string>
@@ -8,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "accel/build/build.h"
@@ -19,7 +22,9 @@
 #include "scene/load_scene.h"
 #include "shading/effects/effects_plan.h"
 #include "shading/tracer/path_tracer.h"
+#include "tests/ringbus/identity/machine_space.h"
 #include "tests/ringbus/ranks/thread_transport.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::ringbus {
 namespace {
@@ -201,6 +206,47 @@ TEST_F(RankRuns, GiveThemWithAPartitionedScene) {
       EXPECT_GT(structure, accel_.size_bytes() / 2);
       EXPECT_GT(shapes, 0u);
     }
+  }
+}
+
+// Machines of the covering array's factors, those that ranks may share.
+TEST_F(RankRuns, RandomMachinesGiveOneAnswer) {
+  std::mt19937 random(4409 * run_seed());
+  MachineSpace& space = all_machines();
+  std::vector<std::string> with{"engine.kind=native", "bundles.size=0", "rays.placement!=first_taker"};
+  const Domains replicated = space.domains(with);
+  with.insert(with.end(), {"cull_planes.count=0", "bvh.elements=boxes", "bvh.levels=2", "bvh.top_triangles=0",
+                           "bvh.merge=none", "packets.shapes=strip", "collections.home=hash"});
+  const Domains partitioned = space.domains(with);
+  int refused = 0;
+  for (int left = cell_count(12); left > 0;) {
+    const bool parts = left % 2 == 0;
+    const std::optional<Row> row = space.draw(random, parts ? partitioned : replicated);
+    ASSERT_TRUE(row);
+    std::vector<std::string> sets{"engine.transport=mpi", "scene.triangles=600", "scene.instances=30"};
+    for (const std::string& set : space.assignments(*row))
+      if (!set.starts_with("test.")) sets.push_back(set);
+    if (parts) sets.push_back("scene.placement=partitioned");
+    SCOPED_TRACE(fmt::format("{}", fmt::join(sets, " ")));
+    try {
+      load(sets);
+    } catch (const ConfigError&) {
+      ASSERT_LT(++refused, 5000);
+      continue;
+    }
+    const std::uint32_t ranks = 2 + static_cast<std::uint32_t>(random() % 2);
+    if (config_.topology.resources < ranks || config_.rays.slots_per_resource < ranks)
+      continue;  // refused by RankScope
+    --left;
+    const Ended alone = trace(nullptr);
+    ASSERT_EQ(alone.fault, "");
+    const std::vector<Ended> ended = over(ranks);
+    for (const Ended& rank : ended) {
+      ASSERT_EQ(rank.fault, "");
+      EXPECT_EQ(rank.result.rays_completed, alone.result.rays_completed);
+    }
+    EXPECT_EQ(ended[0].hits, alone.hits);
+    EXPECT_EQ(ended[0].image, alone.image);
   }
 }
 
