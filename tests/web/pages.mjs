@@ -39,8 +39,11 @@ function shown() {
 
 async function drawn() {
   const charts = {};
-  const all = await window.carouselCharts();
-  await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  let all;
+  do {  // a change of size or colours draws them anew, also meanwhile
+    all = await window.carouselCharts();
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  } while (Object.values(all).some((chart) => chart?.isDisposed()));
   for (const [id, chart] of Object.entries(all)) {
     if (!chart) continue;
     const canvas = chart.getDom().querySelector('canvas');
