@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "accel/build/reference_build.h"
-#include "accel/build/reinsertion.h"
-#include "accel/build/sah_build.h"
+#include "accel/build/binary/reference_build.h"
+#include "accel/build/binary/reinsertion.h"
+#include "accel/build/binary/sah_build.h"
 #include "accel/structure/sphere.h"
 
 namespace carousel::accel {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "accel/structure/merged_meshes.h"
+#include "accel/structure/number_ranges.h"
 #include "scene/model/scene.h"
 
 namespace carousel::accel {
@@ -16,7 +16,7 @@ class BlasMeshes {
   explicit BlasMeshes(const scene::Mesh& mesh) { add(mesh); }
   void add(const scene::Mesh& mesh) {
     meshes_.push_back(&mesh);
-    first_.push_back(static_cast<std::uint32_t>(triangles_));
+    ranges_.add(static_cast<std::uint32_t>(triangles_));
     triangles_ += mesh.triangle_count();
   }
 
@@ -31,14 +31,13 @@ class BlasMeshes {
   };
   Triangle triangle(std::uint32_t number) const {
     if (meshes_.size() == 1) return {meshes_.front(), number};
-    const auto at =
-        static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), number) - first_.begin() - 1);
-    return {meshes_[at], number - first_[at]};
+    const NumberRanges::Place place = ranges_.place(number);
+    return {meshes_[place.range], place.index};
   }
 
  private:
   std::vector<const scene::Mesh*> meshes_;
-  std::vector<std::uint32_t> first_;  // number of each mesh's first triangle
+  NumberRanges ranges_;  // one a mesh
   std::size_t triangles_ = 0;
 };
 

@@ -7,13 +7,13 @@
 #include <optional>
 #include <string>
 
+#include "accel/build/binary/sah_build.h"
 #include "accel/build/blas_meshes.h"
 #include "accel/build/bounding_spheres.h"
 #include "accel/build/group_levels.h"
 #include "accel/build/placed_blas.h"
 #include "accel/build/quantised_boxes.h"
 #include "accel/build/rank_shares.h"
-#include "accel/build/sah_build.h"
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
 #include "scene/model/opacity.h"

@@ -8,8 +8,8 @@
 
 #include <glm/matrix.hpp>
 
+#include "accel/build/binary/sah_build.h"
 #include "accel/build/level_plan.h"
-#include "accel/build/sah_build.h"
 #include "accel/build/wide_collapse.h"
 #include "core/numeric/rounding.h"
 

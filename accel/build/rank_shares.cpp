@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "accel/build/sah_build.h"
+#include "accel/build/binary/sah_build.h"
 
 namespace carousel::accel {
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "accel/build/sah_build.h"
+#include "accel/build/binary/sah_build.h"
 #include "accel/structure/node.h"
 
 namespace carousel::accel {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "accel/structure/number_ranges.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -24,18 +25,19 @@ class MergedMeshes {
   };
   /// Precondition: `primitive` is less than the sum of the triangles that were added.
   Name name(std::uint32_t primitive) const {
-    const auto mesh = std::upper_bound(first_.begin(), first_.end(), primitive) - first_.begin() - 1;
-    return {instances_[static_cast<std::size_t>(mesh)], primitive - first_[static_cast<std::size_t>(mesh)]};
+    const NumberRanges::Place place = ranges_.place(primitive);
+    return {instances_[place.range], place.index};
   }
 
   /// The mesh of another instance, whose triangles begin at number `first`. Both ascend.
   void add(std::uint32_t instance, std::uint32_t first) {
     instances_.push_back(instance);
-    first_.push_back(first);
+    ranges_.add(first);
   }
 
  private:
-  std::vector<std::uint32_t> instances_, first_;  // by mesh
+  std::vector<std::uint32_t> instances_;  // one a mesh
+  NumberRanges ranges_;                   // likewise
 };
 
 }  // namespace carousel::accel

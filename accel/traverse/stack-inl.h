@@ -17,8 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/build/sah_build.cpp), above the instances and
-/// again below one that is entered in passing; a level leaves at most seven siblings behind.
+/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/build/binary/sah_build.cpp), above the
+/// instances and again below one that is entered in passing; a level leaves at most seven siblings behind.
 inline constexpr int kStackCapacity = 1024;
 
 /// Nodes that wait for their turn, a node's nearest child on top.

@@ -52,8 +52,15 @@ report::SceneSummary summary(const Prepared& p) {
 
 report::Structure structure(const Prepared& p) {
   const accel::StructureSize size = p.structure ? *p.structure : accel::structure_size(p.accel);
-  return {size.primitives,  size.references, size.references - size.primitives,
-          size.inner_nodes, size.leaves,     size.surface_cost};
+  report::Structure out;
+  out.primitives = size.primitives;
+  out.references = size.references;
+  out.duplicates = size.references - size.primitives;
+  out.inner_nodes = size.inner_nodes;
+  out.leaves = size.leaves;
+  out.merged_meshes = p.accel.merged.count();
+  out.surface_cost = size.surface_cost;
+  return out;
 }
 
 report::Host host(const Prepared& p, const ringbus::RunResult& result) {

@@ -303,6 +303,8 @@ std::string report_table(const Report& report) {
     table.line("structure", "{} references to {} triangles in {} leaves and {} inner nodes",
                grouped(report.structure->references), grouped(report.structure->primitives),
                grouped(report.structure->leaves), grouped(report.structure->inner_nodes));
+  if (report.structure && report.structure->merged_meshes > 0)
+    table.line("structure", "{} meshes of the world in one", grouped(report.structure->merged_meshes));
   const bool simulated = report.engine.cycles.has_value();
   table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
              simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);

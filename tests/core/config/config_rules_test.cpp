@@ -93,6 +93,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"CellsThatMove", SCENE "bvh: {builder: octree, quality: high}\n",
                   "test.yaml:2:33: bvh.quality: the nodes of bvh.builder: octree stay where space is divided; expected "
                   "fast, or bvh.builder: sah or spatial; found high"},
+        BadConfig{"MergedInParts",
+                  "scene: {builtin: cornell, placement: partitioned}\nengine: {transport: mpi}\nbvh: {merge: "
+                  "world}\ncollections: {home: hash, when_full: spill}\n",
+                  "test.yaml:3:14: bvh.merge: merged meshes are not partitioned yet; expected none, found world, or "
+                  "scene.placement: replicated"},
         BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
                   "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
         BadConfig{"CullPlaneOrder", SCENE "cull_planes: {order: planes}\n",

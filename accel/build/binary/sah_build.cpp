@@ -1,4 +1,4 @@
-#include "accel/build/sah_build.h"
+#include "accel/build/binary/sah_build.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "accel/build/reinsertion.h"
+#include "accel/build/binary/reinsertion.h"
 
 #include <algorithm>
 #include <cstdint>

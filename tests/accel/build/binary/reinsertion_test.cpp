@@ -1,5 +1,5 @@
 // Subtrees that are moved to better places (`bvh.quality: high`).
-#include "accel/build/reinsertion.h"
+#include "accel/build/binary/reinsertion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -161,20 +161,54 @@ TEST(Reinsertion, ComesNearTheSurfaceAreaHeuristicFromABadTree) {
   EXPECT_LT(walk(nodes).area, 1.5 * good);
 }
 
-// Boxes one within the other: the best tree is a chain of all of them.
+/// Boxes one within the other, of sizes so near that floats tell the least from the sum of all, in a chain of `length`
+/// inner nodes; two smaller ones hang together near its root, and are best off at its end, two levels further down than
+/// the last box.
+std::vector<BinaryNode> chain_and_a_pair(int length) {
+  std::vector<BinaryNode> out;
+  const auto leaf = [&](float size) {
+    out.push_back({{Vec3{-size}, Vec3{size}}, static_cast<std::uint32_t>(out.size()), 0, 1});
+    return static_cast<std::uint32_t>(out.size() - 1);
+  };
+  const std::function<std::uint32_t(int)> chain = [&](int at) {
+    const float size = std::exp2(-0.125f * static_cast<float>(at));
+    if (at == length) return leaf(size);
+    const auto node = static_cast<std::uint32_t>(out.size());
+    out.emplace_back();
+    std::uint32_t beside;
+    if (at == 1) {
+      beside = static_cast<std::uint32_t>(out.size());
+      out.emplace_back();
+      const float tiny = std::exp2(-10.0f);
+      const std::uint32_t left = leaf(tiny), right = leaf(tiny);
+      out[beside].first = left, out[beside].right = right;
+    } else {
+      beside = leaf(size);
+    }
+    const std::uint32_t rest = chain(at + 1);
+    out[node].first = beside, out[node].right = rest;
+    return node;
+  };
+  chain(0);
+  refit(out);
+  return out;
+}
+
 TEST(Reinsertion, GrowsNoDeeperThanATraversalStack) {
-  std::vector<Aabb> boxes;
-  for (int i = 0; i < 200; ++i) {
-    const float size = std::ldexp(1.0f, (i * 77) % 200 / 4);
-    boxes.push_back({Vec3{-size}, Vec3{size}});
+  for (const int length : {60, 71, 72}) {
+    std::vector<BinaryNode> nodes = chain_and_a_pair(length);
+    const Walked before = walk(nodes);
+    ASSERT_EQ(before.depth, length);
+    reinsert(nodes, *make_sequential_executor());
+    const Walked after = walk(nodes);
+    EXPECT_EQ(after.leaves, before.leaves);
+    if (length < 72) {
+      EXPECT_EQ(after.depth, length + 1);
+      EXPECT_LT(after.area, before.area);
+    } else {
+      EXPECT_EQ(after.depth, 72);
+    }
   }
-  std::vector<BinaryNode> nodes = by_halves(boxes);
-  const Walked before = walk(nodes);
-  reinsert(nodes, *make_sequential_executor());
-  const Walked after = walk(nodes);
-  EXPECT_LE(after.depth, 72);
-  EXPECT_GT(after.depth, 20);
-  EXPECT_LT(after.area, before.area / 2);
 }
 
 TEST(Reinsertion, IsTheSameForEveryExecutor) {

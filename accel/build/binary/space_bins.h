@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "accel/build/sah_build.h"
+#include "accel/build/binary/sah_build.h"
 
 namespace carousel::accel {
 

@@ -1,6 +1,6 @@
 // Structures that hold a triangle several times (`bvh.builder: spatial | kd | octree`): the answers of every triangle
 // tested in turn, and of the structure that holds each once, for any ray.
-#include "accel/build/reference_build.h"
+#include "accel/build/binary/reference_build.h"
 
 #include <array>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "accel/build/reference_build.h"
+#include "accel/build/binary/reference_build.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "accel/build/space_bins.h"
+#include "accel/build/binary/space_bins.h"
 
 namespace carousel::accel {
 

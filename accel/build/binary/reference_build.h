@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "accel/build/sah_build.h"
+#include "accel/build/binary/sah_build.h"
 #include "core/config/config.h"
 
 namespace carousel::accel {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "accel/build/sah_build.h"
+#include "accel/build/binary/sah_build.h"
 #include "core/system/executor.h"
 
 namespace carousel::accel {
