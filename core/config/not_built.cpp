@@ -26,6 +26,7 @@ constexpr auto kTable = std::to_array<NotBuilt>({
     {"topology.link.queue", "", kCycle, "real queues"},
     {"collections.partial", "after", kNative, "clock for collections that wait"},
     {"collections.sort_ids_per_cycle", "", kNative, "clock for the sorting of ray IDs"},
+    {"collections.key", "block", kNative, "simulated memory"},
     {"rays.banks", "", kNative, "simulated ray memory"},
     {"packets.carry", "data", kNative, "packets that carry data"},
     {"packets.results", "", kNative, "wire on which results could travel otherwise"},

@@ -11,7 +11,9 @@ struct NodeCounts {
   static constexpr auto counters() {
     using C = NodeCounts;
     return std::array{
-        Counter{"visits", &C::visits, "packets", "visits of packets with rays to test; idle visits are left out"},
+        Counter{"visits", &C::visits, "packets",
+                "visits of packets with rays to test, one a node where their rays are at several; idle visits are left "
+                "out"},
         Counter{"rays", &C::rays, "rays", "rays tested in these visits, those of bundles included"},
         Counter{"box_tests", &C::box, "tests", "tests of a ray against a box"},
         Counter{"triangle_tests", &C::triangle, "tests", "tests of a ray against a triangle"},
@@ -21,6 +23,11 @@ struct NodeCounts {
     };
   }
   friend bool operator==(const NodeCounts&, const NodeCounts&) = default;
+};
+
+struct NodeCountsAtDepth {
+  std::uint16_t depth = 0;  ///< in strips below the root
+  NodeCounts counts;
 };
 
 }  // namespace carousel

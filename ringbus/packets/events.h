@@ -8,6 +8,7 @@
 #include "core/statistics/bundle_counts.h"
 #include "core/statistics/cull_counts.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/statistics/node_counts.h"
 #include "core/statistics/stall_counts.h"
 #include "core/types/ids.h"
 #include "ringbus/packets/packet.h"
@@ -37,7 +38,8 @@ struct Event {
   std::uint32_t children = 0, misses = 0;  ///< kTest: as in TestOutcome
   std::uint16_t depth = 0;                 ///< kTest: of `key`
   IntersectionCounts tests{};
-  const BundleCounts* bundles = nullptr;  ///< kTest with bundles; valid during the call only
+  const BundleCounts* bundles = nullptr;      ///< kTest with bundles; valid during the call only
+  std::span<const NodeCountsAtDepth> runs{};  ///< kTest: as in TestOutcome; likewise
   StallReason reason = StallReason::kNone;
   std::span<const PacketMember> members{};  ///< valid during the call only
 };

@@ -34,16 +34,9 @@ void StatisticsSink::record(const Event& event) {
       s.seen_rays += event.members.size();
       s.tests += event.tests;
       s.reads += event.reads;
-      if (event.tested > 0) {
-        if (s.nodes.size() <= event.depth) s.nodes.resize(event.depth + std::size_t{1});
-        NodeCounts& nodes = s.nodes[event.depth];
-        ++nodes.visits;
-        nodes.rays += event.tested;
-        nodes.box += event.tests.box;
-        nodes.triangle += event.tests.triangle;
-        nodes.children += event.children;
-        nodes.misses += event.misses;
-      }
+      for (const NodeCountsAtDepth& run : event.runs) add(run);
+      if (event.runs.empty() && event.tested > 0)
+        add({event.depth, {1, event.tested, event.tests.box, event.tests.triangle, event.children, event.misses}});
       if (event.bundles != nullptr) {
         if (s.bundles.size() <= event.depth) s.bundles.resize(event.depth + std::size_t{1});
         s.bundles[event.depth] += *event.bundles;
@@ -66,6 +59,12 @@ void StatisticsSink::record(const Event& event) {
       ++s.stalls[event.reason];
       break;
   }
+}
+
+void StatisticsSink::add(const NodeCountsAtDepth& work) {
+  std::vector<NodeCounts>& nodes = statistics_.nodes;
+  if (nodes.size() <= work.depth) nodes.resize(work.depth + std::size_t{1});
+  nodes[work.depth] += work.counts;
 }
 
 }  // namespace carousel::ringbus

@@ -28,6 +28,8 @@ class StatisticsSink final : public EventSink {
   const ResourceStatistics& statistics() const { return statistics_; }
 
  private:
+  void add(const NodeCountsAtDepth& work);
+
   ResourceStatistics statistics_;
 };
 

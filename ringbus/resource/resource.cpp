@@ -43,7 +43,7 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
                    const ResourceHooks& hooks)
     : events_(hooks.events),
       store_(store),
-      root_(accel.root_key()),
+      root_(hooks.blocks != nullptr ? hooks.blocks->name(accel.root_key()) : accel.root_key()),
       packet_rays_(static_cast<std::size_t>(settings.packets.rays)),
       collections_(collection_settings(settings, accel, hooks.spills_take_time)),
       homes_(settings.collections.home, store.owner(), settings.resources, accel.partition.get()),
@@ -55,7 +55,7 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
       traversal_(make_traversal(
           traversal_settings(settings),
           {accel, store, completion_, any_hit_, hooks.events != nullptr ? hooks.events->cull_counts() : nullptr,
-           hooks.subtree_tracer, hooks.transforms})),
+           hooks.subtree_tracer, hooks.transforms, hooks.blocks})),
       offering_(store, collections_, storage_, homes_, *traversal_,
                 settings.resources == 1 || settings.collections.home == Home::kLocal, hooks.events) {}
 
@@ -95,6 +95,7 @@ TestOutcome Resource::test(Packet& packet) {
           .depth = packet.depth,
           .tests = outcome.counts,
           .bundles = outcome.bundles,
+          .runs = outcome.runs,
           .members = packet.members});
   return outcome;
 }

@@ -20,6 +20,13 @@ inline constexpr auto kEnumNames<ChildOrder> = [] {
   return names<ChildOrder>({{kNearest, "nearest"}, {kStored, "stored"}});
 }();
 
+enum class CollectionKey { kNode, kBlock };
+template <>
+inline constexpr auto kEnumNames<CollectionKey> = [] {
+  using enum CollectionKey;
+  return names<CollectionKey>({{kNode, "node"}, {kBlock, "block"}});
+}();
+
 enum class Policy { kFullest, kOldest, kNewest, kDeepest, kNearest };
 template <>
 inline constexpr auto kEnumNames<Policy> = [] {
@@ -60,6 +67,8 @@ struct CollectionsConfig {
   std::int64_t ready = 32;
   Traversal traversal = Traversal::kSpread;
   ChildOrder order = ChildOrder::kNearest;
+  CollectionKey key = CollectionKey::kNode;
+  std::int64_t block_bytes = 1024;
   Policy policy = Policy::kNearest;
   Select select = Select::kFullFirst;
   Partial partial = Partial::kAhead;
@@ -81,6 +90,12 @@ void describe(V& v, CollectionsConfig& c) {
   v.choice("order", c.order,
            "A ray that goes depth first, which is with traversal: ordered, in treelets and on independent resources, "
            "takes of the children that it hits the nearest one first, or the first one in the order of the node.");
+  v.choice("key", c.key,
+           "Rays gather at a node, or at a block of memory, with traversal: ordered: a packet then names the block, a "
+           "visit reads all of it, and each ray is tested with its own node there, which its owner keeps.");
+  v.field("block_bytes", c.block_bytes, IntRange{64, 1 << 20}, "bytes",
+          "The blocks of memory by which rays gather, with key: block. A node belongs to the block in which it "
+          "begins.");
   v.choice("policy", c.policy, "The rule that chooses the collection that is tested next.");
   v.choice("select", c.select, "Full collections are tested first, or the policy alone decides.");
   v.choice(

@@ -44,6 +44,7 @@ class NetworkRules {
     own_rays_come_last_where_packets_go_round();
     results_travel();
     children_are_single_shapes();
+    blocks_of_memory_gather_rays();
     windows_have_queues();
     faults_have_a_place();
   }
@@ -195,6 +196,26 @@ class NetworkRules {
       breach_("packets.results",
               "traversal: ordered has one result for a whole strip, the next node; expected mask, message or "
               "implied_order, found per_shape");
+  }
+
+  void blocks_of_memory_gather_rays() {
+    if (c.collections.key == CollectionKey::kNode) return;
+    const auto refuse = [&](bool wrong, const char* key, const std::string& message) {
+      if (wrong) breach_(key, message);
+    };
+    refuse(
+        !properties_of(c.topology.shape).has_packets, "collections.key",
+        fmt::format("topology.shape: {} has no collections; expected node, found block", enum_name(c.topology.shape)));
+    refuse(c.collections.traversal != Traversal::kOrdered, "collections.traversal",
+           fmt::format("a ray that is in several collections has no node of its own in a block; expected ordered, or "
+                       "collections.key: node; found {}",
+                       enum_name(c.collections.traversal)));
+    refuse(c.packets.carry == PacketCarry::kData, "packets.carry",
+           "blocks of memory are not carried; expected reference, or collections.key: node; found data");
+    refuse(c.bvh.levels > 2, "bvh.levels",
+           fmt::format("within groups of instances rays gather at nodes; expected 2, or collections.key: node; "
+                       "found {}",
+                       c.bvh.levels));
   }
 
   void children_are_single_shapes() {

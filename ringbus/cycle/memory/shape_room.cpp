@@ -1,20 +1,27 @@
 #include "ringbus/cycle/memory/shape_room.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "ringbus/cycle/memory/shape_blocks.h"
 #include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 
 namespace carousel::ringbus::cycle {
 
 std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh,
-                                    const MemoryConfig& config) {
+                                    const MemoryConfig& config, const CollectionsConfig& collections) {
   const ShapeMemory memory(accel, accuracy, bvh, config);
+  std::optional<ShapeBlocks> blocks;
+  if (collections.key == CollectionKey::kBlock)
+    blocks.emplace(accel, memory, static_cast<std::uint64_t>(collections.block_bytes));
   std::uint64_t strip = 0, transform = 0;
   const auto consider = [&](accel::NodeRef ref) {
-    if (!ref.is_instance()) strip = std::max(strip, ShapeBuffer::places_to_ask(memory.strip({kNoInstance, ref})));
+    if (ref.is_instance()) return;
+    const ShapeSpan span = blocks ? blocks->span(ref) : memory.strip({kNoInstance, ref});
+    strip = std::max(strip, ShapeBuffer::places_to_ask(span));
   };
   for (std::uint32_t i = 0; i < accel.nodes.size(); ++i) {
     consider(accel::NodeRef::inner(i));
@@ -29,14 +36,16 @@ std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyCon
 
 std::vector<ConfigIssue> check_shape_buffer(const Config& config, const accel::Accel& accel) {
   if (config.engine.kind != EngineKind::kCycle) return {};
-  const std::int64_t least = least_shape_buffer_kib(accel, config.accuracy, config.bvh, config.memory);
+  const std::int64_t least =
+      least_shape_buffer_kib(accel, config.accuracy, config.bvh, config.memory, config.collections);
   if (config.memory.shape_buffer_kib >= least) return {};
   ConfigIssue issue;
   issue.key_path = "memory.shape_buffer_kib";
   issue.message = fmt::format(
-      "a test needs a whole strip and its transform at once, and this scene's largest do not fit; expected at least "
+      "a test needs a whole {} and its transform at once, and this scene's largest do not fit; expected at least "
       "{}, found {}",
-      least, config.memory.shape_buffer_kib);
+      config.collections.key == CollectionKey::kBlock ? "block of memory" : "strip", least,
+      config.memory.shape_buffer_kib);
   return {issue};
 }
 

@@ -108,7 +108,7 @@ class Tile final : public ResourceAgent {
   void note_issued(PacketId id, Cycle now);
   void note_test(const Context& context, Cycle now);
   void note_admitted(std::span<const RayId> rays);
-  void note_tested(const Packet& packet, PacketId id, Cycle at);
+  void note_tested(const Packet& packet, PacketId id, Cycle at, const TestOutcome& outcome);
   Hit hit_of(RayId ray) const;
   void note_retired(const Packet& packet, PacketId id);
   void note_done(Cycle now);
@@ -219,6 +219,7 @@ class Tile final : public ResourceAgent {
 
   Machine& machine_;
   const ShapeMemory& memory_;
+  const ShapeBlocks* blocks_;
   ResourceId id_;
   StatisticsSink sink_;
   Trace trace_;

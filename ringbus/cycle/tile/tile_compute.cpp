@@ -14,7 +14,9 @@ Tile::Context* Tile::free_context() {
 
 /// The shapes of a packet's tests, and what is stored of their instance's transform.
 ShapeNeed Tile::shape_data(const Packet& packet, bool transform) const {
-  return {resource_.is_treelet(packet.key) ? memory_.strip(packet.key) : memory_.shapes(packet.key, packet.lanes),
+  return {blocks_ != nullptr                 ? blocks_->span(packet.key.ref)
+          : resource_.is_treelet(packet.key) ? memory_.strip(packet.key)
+                                             : memory_.shapes(packet.key, packet.lanes),
           transform || memory_.reads_record(packet.key) ? memory_.transform(packet.key.instance) : ShapeSpan{}};
 }
 
@@ -26,7 +28,7 @@ void Tile::begin_test(Context& context, PacketId id, Cycle at, bool has_data) {
   const TestOutcome outcome = resource_.test(tested);
   if (packet_size_.results_grow()) note_answered(tested, members);
   if (recording_.ray != nullptr) [[unlikely]]
-    note_tested(tested, id, at);
+    note_tested(tested, id, at, outcome);
   context.since = now_;
   context.packet = id;
   context.counts = outcome.counts;

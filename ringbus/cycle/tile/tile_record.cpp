@@ -1,4 +1,6 @@
 // Notes of a resource for the timeline and for the life of a ray, where one of them is asked for.
+#include <algorithm>
+
 #include "ringbus/cycle/tile/tile.h"
 
 namespace carousel::ringbus::cycle {
@@ -44,9 +46,16 @@ void Tile::note_admitted(std::span<const RayId> rays) {
           {.kind = RayFact::Kind::kAdmitted, .at = now_, .end = now_, .resource = id_.value});
 }
 
-void Tile::note_tested(const Packet& packet, PacketId id, Cycle at) {
+void Tile::note_tested(const Packet& packet, PacketId id, Cycle at, const TestOutcome& outcome) {
   const auto member = recording_.ray->ray->find(packet.members);
   if (!member || !machine_.stores[id_.value]->owns(packet.members[*member].ray)) return;
+  NextNode node{machine_.packet(id).key, 0, machine_.packet(id).depth, true};
+  if (!outcome.nodes.empty()) {
+    const std::uint32_t slot = resource_.rays().layout().slot(packet.members[*member].ray);  // it may have left it
+    node =
+        outcome
+            .nodes[static_cast<std::size_t>(std::ranges::find(resource_.tested(), slot) - resource_.tested().begin())];
+  }
   recording_.ray->facts.push_back({.kind = RayFact::Kind::kTested,
                                    .at = at,
                                    .end = at,
@@ -54,8 +63,8 @@ void Tile::note_tested(const Packet& packet, PacketId id, Cycle at) {
                                    .resource = id_.value,
                                    .packet = id.value,
                                    .rays = static_cast<std::uint32_t>(resource_.tested().size()),
-                                   .key = machine_.packet(id).key,
-                                   .depth = machine_.packet(id).depth,
+                                   .key = node.key,
+                                   .depth = node.depth,
                                    .mask = packet.members[*member].mask,
                                    .hit = hit_of(packet.members[*member].ray)});
 }

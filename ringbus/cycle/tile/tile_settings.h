@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/config/config.h"
+#include "ringbus/cycle/memory/shape_blocks.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/resource/settings.h"
 #include "ringbus/results/observation.h"
@@ -23,6 +24,7 @@ struct TileSettings {
   bool statistics = true;
   Observation observed;
   Recording recording{};
+  const ShapeBlocks* blocks = nullptr;  ///< by which collections are keyed; null: by nodes
 };
 
 inline TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
@@ -41,7 +43,8 @@ inline TileSettings tile_settings(const Config& config, ResourceId id, float sce
           config.faults.resource,
           statistics,
           observed,
-          {}};
+          {},
+          nullptr};
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -31,6 +31,10 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     : config_(config),
       shared_(config, accel, scene_size, local_packets(config)),
       shape_memory_(accel, config.accuracy, config.bvh, config.memory),
+      shape_blocks_(config.collections.key == CollectionKey::kBlock
+                        ? std::make_unique<const ShapeBlocks>(
+                              accel, shape_memory_, static_cast<std::uint64_t>(config.collections.block_bytes))
+                        : nullptr),
       network_(shared_, config.topology.link, config.faults, config.testers.contexts) {
   if (observed.timeline.most > 0 || observed.ray != nullptr)
     recorder_ = std::make_unique<Recorder>(config, shared_, observed);
@@ -43,6 +47,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     const SidePorts& side = sides.emplace_back(channels_.back()->ports());
     cache_clients.push_back({side.fetch, side.fetched, side.pushed});
     TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
+    settings.blocks = shape_blocks_.get();
     if (recorder_) settings.recording = recorder_->of_resource(id);
     if (shared_.topology.has_packets()) {
       Network::NodePorts links = network_.ports_at(id);

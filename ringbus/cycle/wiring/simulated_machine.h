@@ -7,6 +7,7 @@
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/types/workload.h"
+#include "ringbus/cycle/memory/shape_blocks.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/shading/shading_agent.h"
 #include "ringbus/cycle/tile/resource_agent.h"
@@ -78,6 +79,7 @@ class SimulatedMachine {
   const Config& config_;
   Machine shared_;
   ShapeMemory shape_memory_;
+  std::unique_ptr<const ShapeBlocks> shape_blocks_;  // null: collections are keyed by nodes
   Network network_;
   std::vector<std::unique_ptr<SideChannels>> channels_;     // by resource
   std::vector<std::unique_ptr<RayDataChannels>> ray_data_;  // by L2

@@ -6,6 +6,8 @@
 
 #include "core/statistics/bundle_counts.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/statistics/node_counts.h"
+#include "ringbus/packets/packet.h"
 
 namespace carousel::ringbus {
 
@@ -23,7 +25,7 @@ struct BundlePasses {
   std::uint32_t regrouped = 0;  ///< rays that the builder then puts into new bundles
 };
 
-/// The cost of testing a packet at one resource. The pointer and the span are valid until the resource's next test.
+/// The cost of testing a packet at one resource. The pointer and the spans are valid until the resource's next test.
 struct TestOutcome {
   IntersectionCounts counts;
   std::size_t rays = 0;        ///< tested one by one, not as members of a bundle
@@ -34,6 +36,9 @@ struct TestOutcome {
   const BundleCounts* bundles = nullptr;  ///< what became of bundles; null when there are none
   /// With ResourceHooks::hold_any_hit_rays: the rays that wait for Resource::release().
   std::span<const AnyHitCall> any_hit_calls;
+  /// Where rays of one packet are at several nodes: the node of each ray, and the work at each node. Otherwise empty.
+  std::span<const NextNode> nodes;
+  std::span<const NodeCountsAtDepth> runs;
 };
 
 }  // namespace carousel::ringbus

@@ -9,6 +9,7 @@
 #include "ringbus/rays/ray_store.h"
 #include "ringbus/resource/visit/any_hit_hold.h"
 #include "ringbus/resource/visit/completion.h"
+#include "ringbus/resource/visit/memory_blocks.h"
 #include "ringbus/resource/visit/subtree_tracer.h"
 #include "ringbus/resource/visit/transform_account.h"
 
@@ -23,6 +24,7 @@ struct VisitContext {
   CullCounts* culls;
   SubtreeTracer* subtree_tracer;
   TransformAccount* transforms;
+  const MemoryBlocks* blocks = nullptr;  ///< null: collections are keyed by nodes
 
   /// The rays of `slots`, as the kernels take them for one test.
   accel::RayMembers members(std::span<const std::uint32_t> slots) const {

@@ -89,6 +89,8 @@ inline std::vector<KeyRow> key_rows() {
       {"collections.order", kTerrain, {"collections.traversal=ordered"}},
       {"collections.order", kTerrain, {"collections.traversal=treelet"}},
       {"collections.order", kTerrain, {"topology.shape=independent"}},
+      {"collections.key", kTerrain, {"collections.traversal=ordered"}},
+      {"collections.block_bytes", kTerrain, {"collections.traversal=ordered", "collections.key=block"}, {"512"}},
       {"collections.policy", kTerrain},
       {"collections.select", kTerrain},
       {"collections.partial", kTerrain},

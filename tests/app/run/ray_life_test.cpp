@@ -100,6 +100,7 @@ TEST(RayLife, IsItsLatencyOnAnyMachine) {
       "topology: {resources: 2}\ncollections: {home: local}\n",
       "topology: {resources: 2, shape: independent}\n",
       "topology: {resources: 3}\nmemory: {fetch: resource}\n",
+      "topology: {resources: 3}\ncollections: {traversal: ordered, key: block}\n",
       "topology: {resources: 1}\n",
   };
   for (const std::string& machine : machines) {
@@ -128,6 +129,28 @@ TEST(RayLife, IsItsLatencyOnAnyMachine) {
         EXPECT_EQ(child.bounce, child.kind == RayKind::kShadow ? place.bounce : place.bounce + 1);
     }
   }
+}
+
+// A packet of a block of memory names none of the nodes that its rays are at.
+TEST(RayLife, HasTheRaysOwnNodesOfABlock) {
+  std::size_t tests = 0;
+  for (const RayPlace& place : {RayPlace{40, 1, RayKind::kCamera, 0, 0}, RayPlace{52, 0, RayKind::kBounce, 1, 0}}) {
+    const auto life = [&](const char* collections) {
+      return follow(
+                 frame("topology: {resources: 3}\ncollections: {traversal: ordered" + std::string(collections) + "}\n"),
+                 place)
+          .life;
+    };
+    const auto by_node = life(""), by_block = life(", key: block, block_bytes: 8192");
+    ASSERT_TRUE(by_node && by_block);
+    ASSERT_EQ(by_block->tests.size(), by_node->tests.size());
+    for (std::size_t i = 0; i < by_node->tests.size(); ++i) {
+      EXPECT_EQ(by_block->tests[i].key, by_node->tests[i].key);
+      EXPECT_EQ(by_block->tests[i].depth, by_node->tests[i].depth);
+    }
+    tests += by_node->tests.size();
+  }
+  EXPECT_GT(tests, 4u);
 }
 
 // The ray that is the child of another is made in the cycle in which its parent has been shaded.

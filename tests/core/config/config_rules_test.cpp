@@ -305,6 +305,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"OrderOfNativeTreelets", SCENE "collections: {traversal: treelet, order: stored}\n",
                   "test.yaml:2:42: collections.order: the native engine takes a ray through a treelet nearest first; "
                   "expected nearest, or engine.kind: cycle, found stored"},
+        BadConfig{"BlocksOfSpread", SCENE "collections: {key: block}\nengine: {kind: cycle}\n",
+                  "test.yaml:2:14: collections.traversal: a ray that is in several collections has no node of its own "
+                  "in a block; expected ordered, or collections.key: node; found spread"},
+        BadConfig{
+            "BlocksOfIndependent",
+            SCENE
+            "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\ntopology: {shape: independent}\n",
+            "test.yaml:2:40: collections.key: topology.shape: independent has no collections; expected node, found "
+            "block"},
+        BadConfig{"BlocksCarried",
+                  SCENE "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\npackets: {carry: "
+                        "data}\nmemory: {fetch: packet}\n",
+                  "test.yaml:4:18: packets.carry: blocks of memory are not carried; expected reference, or "
+                  "collections.key: node; found data"},
+        BadConfig{"BlocksInGroups",
+                  SCENE "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\nbvh: {levels: 3}\n",
+                  "test.yaml:4:15: bvh.levels: within groups of instances rays gather at nodes; expected 2, or "
+                  "collections.key: node; found 3"},
         BadConfig{"HashReserve", SCENE "collections: {home: hash}\n",
                   "test.yaml:2:14: collections.when_full: home: hash can fill one resource with another's "
                   "collections and "

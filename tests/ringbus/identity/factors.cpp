@@ -96,6 +96,8 @@ std::vector<Factor> traversal_and_units() {
       {"collections.sort_ids_per_cycle", {"0", "1"}, {"engine.kind=cycle"}},
       {"collections.traversal", all<Traversal>()},
       {"collections.order", all<ChildOrder>()},
+      {"collections.key", all<CollectionKey>(), {"engine.kind=cycle", "collections.traversal=ordered"}},
+      {"collections.block_bytes", {"64", "1000", "65536"}, {"collections.key=block"}},
       {"bvh.treelet_triangles", {"1", "64", "100000"}, {"collections.traversal=treelet"}},
       {"collections.policy", all<Policy>()},
       {"collections.select", all<Select>()},

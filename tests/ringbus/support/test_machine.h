@@ -52,7 +52,8 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   else
     c.collections.capacity = minimum_capacity(c, accel.width, accel.max_depth) * (cell.tight_storage ? 1 : 50);
   c.collections.capacity = std::max(c.collections.capacity, c.packets.rays);
-  c.memory.shape_buffer_kib = std::max(c.memory.shape_buffer_kib, cycle::least_shape_buffer_kib(accel, c.accuracy));
+  c.memory.shape_buffer_kib =
+      std::max(c.memory.shape_buffer_kib, cycle::least_shape_buffer_kib(accel, c.accuracy, {}, {}, c.collections));
   ScatterWorkload workload = scene.workload();
   RunOptions options;
   options.threads = cell.threads;
