@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 #include <vector>
@@ -24,6 +25,7 @@
 #include "core/system/error.h"
 #include "core/types/wrapped_workload.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/cycle/memory/shape_blocks.h"
 #include "ringbus/cycle/memory/shape_memory.h"
 
 namespace carousel {
@@ -41,6 +43,8 @@ class Tree {
  public:
   Tree(const accel::Accel& accel, const Config& config)
       : accel_(accel), memory_(accel, config.accuracy, config.bvh, config.memory) {
+    if (config.collections.key == CollectionKey::kBlock)
+      blocks_.emplace(accel, memory_, static_cast<std::uint64_t>(config.collections.block_bytes));
     add(accel.root_key());
   }
 
@@ -64,6 +68,10 @@ class Tree {
                       {"moves", transform.bytes > 0},
                       {"transposed", transform.bytes > 0 && accel_.instances[key.instance].transform.transposed},
                       {"promoted", transform.bytes > 0 && accel_.instances[key.instance].transform.promoted}});
+    if (blocks_) {
+      const auto span = blocks_->span(key.ref);
+      nodes_[number]["block"] = {span.address, span.bytes, blocks_->name(key).bits()};
+    }
     Json children = Json::array();
     if (key.ref.is_inner())
       for (int lane = 0; lane < accel_.nodes[key.ref.node()].count; ++lane)
@@ -74,6 +82,7 @@ class Tree {
 
   const accel::Accel& accel_;
   ringbus::cycle::ShapeMemory memory_;
+  std::optional<ringbus::cycle::ShapeBlocks> blocks_;
   Json nodes_ = Json::array();
   std::unordered_map<std::uint64_t, std::size_t> numbers_;
 };

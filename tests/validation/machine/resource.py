@@ -10,6 +10,7 @@ class Resource:
         self.number, self.nodes = number, nodes
         self.resources = config["topology"]["resources"]
         self.hash = config["collections"]["home"] == "hash"
+        self.by_block = config["collections"].get("key") == "block"
         self.local = self.resources == 1 or config["collections"]["home"] == "local"
         self.collections = Collections(config, facts)
         ordered = config["collections"]["traversal"] == "ordered"
@@ -26,7 +27,8 @@ class Resource:
     def home_of(self, node):
         if not self.hash:
             return self.number
-        return ((self.nodes[node].key * 0x9e3779b97f4a7c15 & (1 << 64) - 1) >> 33) % self.resources
+        key = self.nodes[node].block[2] if self.by_block else self.nodes[node].key
+        return ((key * 0x9e3779b97f4a7c15 & (1 << 64) - 1) >> 33) % self.resources
 
     def admit(self, rays, now):
         for first in range(0, len(rays), self.block):

@@ -123,4 +123,8 @@ def draw(seed, index):
                                              "mask" if config["collections"]["traversal"] == "ordered" else "per_shape"])
     if config["topology"]["shape"] == "independent" or config["collections"]["traversal"] != "spread":
         config["collections"]["order"] = pick(["nearest", "stored"])
+    if (config["collections"]["traversal"] == "ordered" and config["packets"]["carry"] == "reference" and
+            config["topology"]["shape"] != "independent" and r.random() < 0.6):
+        config["collections"].update(key="block", block_bytes=pick([64, 300, 512, 1024, 65536]))
+        memory["shape_buffer_kib"] = max(memory["shape_buffer_kib"], 32)
     return config

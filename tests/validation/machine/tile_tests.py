@@ -125,4 +125,5 @@ class Tests:
     def shape_data(self, packet, transform):
         """What the tests of a packet need: its shapes, and what is stored of their instance's transform."""
         node = self.nodes[packet.node]
-        return [node.shapes_of(packet.lane)] + ([node.transform] if transform else [])
+        shapes = tuple(node.block[:2]) if self.resource.by_block else node.shapes_of(packet.lane)
+        return [shapes] + ([node.transform] if transform else [])

@@ -130,6 +130,14 @@ class Ordered(Spread):
 
     ordered = True
 
+    def __init__(self, config, facts, nodes):
+        super().__init__(config, facts, nodes)
+        self.by_block = config["collections"].get("key") == "block"
+        self.first = {}  # number of the first node of the tree by its block: the one that is named for all of them
+        if self.by_block:
+            for number, node in enumerate(nodes):
+                self.first.setdefault(node.block[2], number)
+
     def blocks_needed(self, node, rays):
         return rays
 
@@ -137,14 +145,20 @@ class Ordered(Spread):
         node, counts = self.nodes[packet.node], Counts()
         rays = [packet.rays[i] for i in members]
         self.transforms.charge(rays, node, counts)
-        for i, ray in zip(members, rays):
+        places = list(zip(members, rays))
+        if self.by_block:
+            places.sort(key=lambda place: (place[1].at[1], self.nodes[place[1].at[0]].key))
+        for i, ray in places:
+            depth = packet.depth
+            if self.by_block:
+                node, depth = self.nodes[ray.at[0]], ray.at[1]
             if not ray.done and node.inner:
                 counts.box += node.shapes
                 hits = ray.meet_boxes(node, range(node.shapes))
                 for lane, entry in hits:
                     packet.nearest[lane] = min(packet.nearest[lane], entry)
                 for lane, entry in last_first(self.order, hits):
-                    ray.stack.append((node.children[lane], entry, packet.depth + 1))
+                    ray.stack.append((node.children[lane], entry, depth + 1))
             elif not ray.done:
                 if node.procedural:
                     counts.procedural += node.shapes
@@ -155,6 +169,10 @@ class Ordered(Spread):
             if packet.next[i] is None:
                 ray.pending -= 1
                 complete(ray)
+            elif self.by_block:
+                number, entry, below = packet.next[i]
+                ray.at = number, below
+                packet.next[i] = self.first[self.nodes[number].block[2]], entry, below
         return counts
 
     @staticmethod

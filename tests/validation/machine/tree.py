@@ -11,6 +11,7 @@ class Node:
         self.strip, self.transform = tuple(fact["strip"] + fact["longest"]), tuple(fact["transform"])
         self.moves, self.transposed, self.promoted = fact["moves"], fact["transposed"], fact["promoted"]
         self.instance = self.key >> 32  # the highest number above the instances
+        self.block = fact.get("block")  # [address, bytes, key] of the block of memory in which it begins
 
     def shapes_of(self, lane):
         """The span of its whole strip, or of one shape of it."""
@@ -35,6 +36,7 @@ class Ray:
         self.owner = self.slot = None
         self.kept = set()  # instances for which its copy in model space is kept
         self.stack = []    # ordered traversal
+        self.at = 0, 0     # ... by blocks of memory: its node and that one's depth
 
     def meet_boxes(self, node, lanes):
         """The children of `node` that it hits, with its entries: [(lane, entry)]."""
