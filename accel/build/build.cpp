@@ -14,6 +14,7 @@
 #include "accel/build/placed_blas.h"
 #include "accel/build/quantised_boxes.h"
 #include "accel/build/rank_shares.h"
+#include "accel/build/top_children.h"
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
 #include "scene/model/opacity.h"
@@ -210,28 +211,41 @@ class AccelBuilder {
     return top;
   }
 
-  void build_tlas(const TopMembers& top) {
-    std::vector<BuildPrimitive> primitives;
+  std::vector<TopChild> top_children(const TopMembers& top) const {
+    std::vector<TopChild> out;
+    const InstanceNode* merged = nullptr;
     for (const std::uint32_t i : top.instances) {
       const InstanceNode& node = accel_.instances[i];
+      if (i == accel_.merged.instance())
+        merged = &node;
+      else if (!accel_.merged.holds(i))
+        out.push_back({NodeRef::instance(i), node.world, node.strip_size, node.triangles});
+    }
+    if (merged != nullptr) hang_opened(*merged, accel_.nodes, out);
+    return out;
+  }
+
+  void build_tlas(const TopMembers& top) {
+    const std::vector<TopChild> children = top_children(top);
+    std::vector<BuildPrimitive> primitives;
+    for (const TopChild& child : children) {
       BuildPrimitive p;
-      p.lo = node.world.lo;
-      p.hi = node.world.hi;
-      p.index = i;
+      p.lo = child.box.lo;
+      p.hi = child.box.hi;
+      p.index = static_cast<std::uint32_t>(primitives.size());
       primitives.push_back(p);
     }
     int tlas_depth = 1;
     if (primitives.size() <= 1) {
       accel_.root = {kNoInstance, NodeRef::inner(static_cast<std::uint32_t>(accel_.nodes.size()))};
       accel_.nodes.emplace_back();
-      if (!primitives.empty()) add_only_child(accel_.nodes.back(), primitives[0].index);
+      if (!children.empty()) add_only_child(accel_.nodes.back(), children[0]);
     } else {
       const std::vector<BinaryNode> binary =
           build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor_);
       const auto make_leaf = [&](const BinaryNode& leaf) {
-        const std::uint32_t index = primitives[leaf.first].index;
-        const InstanceNode& node = accel_.instances[index];
-        return WideLeaf{NodeRef::instance(index), node.strip_size, node.triangles};
+        const TopChild& child = children[primitives[leaf.first].index];
+        return WideLeaf{child.ref, child.strip_size, child.triangles};
       };
       const WideTree tree = collapse(binary, accel_.width, make_leaf, accel_.nodes);
       accel_.root = {kNoInstance, tree.root};
@@ -254,24 +268,29 @@ class AccelBuilder {
   bool holds(NodeRef child, bool in_top) const {
     if (ranks_ != nullptr && !partition_.here(child)) return false;  // nodes above a mesh's pieces
     if (!child.is_instance()) return !child.is_inner() && child.triangles() <= config_.mixed_triangles;
-    if (!in_top) return false;  // a group's member, which has a frame of its own
+    // A group's member has a frame of its own; and merged meshes have that of the world, which no instance may take.
+    if (!in_top || accel_.merged.count() > 0) return false;
     const InstanceNode& instance = accel_.instances[child.instance_index()];
     return instance.transform.identity && !instance.root.is_inner() &&
            instance.root.triangles() <= config_.top_triangles;
   }
 
-  void add_only_child(Node& root, std::uint32_t instance) {
-    const InstanceNode& node = accel_.instances[instance];
+  void add_only_child(Node& root, const TopChild& child) {
     // Without a transform the world box is the union of the boxes below it: passing one of those implies it, no
     // earlier entered, so it decides nothing and rays may start below it. So does a group's, whatever its transform.
-    if (node.transform.identity || node.group) accel_.root = {instance, node.root};
+    if (!child.ref.is_instance()) {
+      accel_.root = {kNoInstance, child.ref};
+    } else {
+      const InstanceNode& node = accel_.instances[child.ref.instance_index()];
+      if (node.transform.identity || node.group) accel_.root = {child.ref.instance_index(), node.root};
+    }
     root.count = 1;
-    root.triangles = node.triangles;
-    root.child[0] = NodeRef::instance(instance);
-    root.strip_size[0] = node.strip_size;
+    root.triangles = child.triangles;
+    root.child[0] = child.ref;
+    root.strip_size[0] = child.strip_size;
     for (int axis = 0; axis < 3; ++axis) {
-      root.plane[axis][0] = node.world.lo[axis];
-      root.plane[axis + 3][0] = node.world.hi[axis];
+      root.plane[axis][0] = child.box.lo[axis];
+      root.plane[axis + 3][0] = child.box.hi[axis];
     }
   }
 

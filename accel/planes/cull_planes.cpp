@@ -228,7 +228,8 @@ class PlaneBuilder {
     for (const Node& node : accel_.nodes)
       for (int lane = 0; lane < node.count; ++lane)
         if (node.child[lane].is_inner())
-          accel_.nodes[node.child[lane].node()].depth = static_cast<std::uint8_t>(std::min(node.depth + 1, 255));
+          if (Node& child = accel_.nodes[node.child[lane].node()]; child.above_instances == node.above_instances)
+            child.depth = static_cast<std::uint8_t>(std::min(node.depth + 1, 255));
   }
 
   Accel& accel_;

@@ -55,7 +55,7 @@ HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, int l, con
   found.t = ray.instance_entry > found.t ? ray.instance_entry : found.t;
   found.instance = ray.instance;
   found.primitive = block.primitive[l] & kPrimitiveMask;
-  if (HWY_UNLIKELY(ray.instance == accel.merged.instance())) {
+  if (HWY_UNLIKELY(ray.instance == kNoInstance)) {
     const MergedMeshes::Name name = accel.merged.name(found.primitive);
     found.instance = name.instance;
     found.primitive = name.primitive;

@@ -47,7 +47,7 @@ struct Accel {
   std::vector<InstanceNode> instances;         ///< indexed as Scene::instances; behind these the placements of groups
   std::vector<GroupPlacement> groups;          ///< of the last of the instances; empty with two levels
   std::vector<std::uint32_t> members;          ///< of these placements: indices of instances
-  MergedMeshes merged;                         ///< meshes of several instances with one structure below the first
+  MergedMeshes merged;                         ///< meshes of several instances with one structure in the top level
   NodeKey root;                                ///< as root_key()
   std::shared_ptr<const Partition> partition;  ///< null: all shapes are here
   std::shared_ptr<GuestShapes> guests;         ///< shapes of other ranks while packets bring them; with `partition`

@@ -9,12 +9,13 @@
 
 namespace carousel::accel {
 
-/// Meshes that have one structure together (`bvh.merge: world`). Their triangles are numbered through in it, mesh by
-/// mesh; a hit names a triangle's own instance and number. Immutable once built; any thread may read.
+/// Meshes that have one structure together (`bvh.merge: world`), whose nodes hang in the top level: keys below it have
+/// no instance. Their triangles are numbered through in it, mesh by mesh; a hit names a triangle's own instance and
+/// number. Immutable once built; any thread may read.
 class MergedMeshes {
  public:
-  /// The instance that the structure hangs below: the first of the meshes'. No ray is in it if nothing is merged.
-  std::uint32_t instance() const { return instances_.empty() ? kNoInstance - 1 : instances_.front(); }
+  /// The instance that keeps the structure's root, the first of the meshes'; with kNoInstance nothing is merged.
+  std::uint32_t instance() const { return instances_.empty() ? kNoInstance : instances_.front(); }
   std::size_t count() const { return instances_.size(); }
   bool holds(std::uint32_t instance) const {
     return std::binary_search(instances_.begin(), instances_.end(), instance);

@@ -160,11 +160,11 @@ struct TraceStacks {
 };
 
 /// Goes on into an instance without a transform: true, and `ref` is its root. Not into a group, which has a frame of
-/// its own in any case.
+/// its own in any case, and not beside merged meshes, which are tested in the world's frame and are of no instance.
 template <class Slab>
 HWY_INLINE bool enter_instance(const Accel& accel, NodeRef& ref, LocalRay<Slab>& frame) {
   const InstanceNode& instance = accel.instances[ref.instance_index()];
-  if (!instance.transform.identity || instance.group) return false;
+  if (!instance.transform.identity || instance.group || accel.merged.count() > 0) return false;
   frame.instance = ref.instance_index();
   ref = instance.root;
   return true;

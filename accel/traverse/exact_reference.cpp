@@ -174,7 +174,7 @@ class ExactReference::Search {
         if (primitive != kNoPrimitive) test_named(leaf.instance, primitive & kPrimitiveMask);
   }
   void test_named(std::uint32_t instance, std::uint32_t primitive) {
-    if (instance != accel_.merged.instance()) return test(instance, primitive);
+    if (instance != kNoInstance) return test(instance, primitive);
     const MergedMeshes::Name name = accel_.merged.name(primitive);
     test(name.instance, name.primitive);
   }

@@ -17,6 +17,7 @@ class BoundRules {
     elements_fit();
     if (c.cull_planes.count > 0) planes_need_bounded_errors();
     if (c.bundles.size > 0) bundles_fit();
+    merged_meshes_fit();
     levels_fit();
   }
 
@@ -27,6 +28,16 @@ class BoundRules {
       if (c.cull_planes.count > 0) breach_("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
       if (c.bundles.size > 0) breach_("bvh.elements", fmt::format(what, "bundles", "bundles.size: 0"));
     }
+  }
+
+  // The top level's planes are fitted to instances.
+  void merged_meshes_fit() {
+    if (c.bvh.merge == BvhConfig::Merge::kNone || c.cull_planes.count == 0) return;
+    if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas)
+      breach_("cull_planes.levels",
+              fmt::format("merged meshes hang in the top level, whose planes bound instances; expected blas, or "
+                          "bvh.merge: none; found {}",
+                          enum_name(c.cull_planes.levels)));
   }
 
   // Nodes of a group are tested with a slack of each ray's own (accel/structure/group_placement.h).

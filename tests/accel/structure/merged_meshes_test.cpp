@@ -2,6 +2,10 @@
 // turn, with the same names.
 #include "accel/structure/merged_meshes.h"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "accel/traverse/exact_reference.h"
@@ -48,7 +52,7 @@ scene::Scene overlapping(std::uint32_t meshes, std::uint64_t seed) {
 TEST(MergedMeshes, NameTrianglesByTheirOwnMeshes) {
   MergedMeshes merged;
   EXPECT_FALSE(merged.holds(0));
-  EXPECT_NE(merged.instance(), kNoInstance);
+  EXPECT_EQ(merged.instance(), kNoInstance);
   merged.add(2, 0);
   merged.add(5, 10);
   merged.add(6, 11);
@@ -86,6 +90,93 @@ TEST(MergedMeshes, AreThoseThatStandInTheWorldOnce) {
   EXPECT_EQ(accel.merged.count(), expected);
   EXPECT_EQ(accel.instances[accel.merged.instance()].triangles, triangles);
   EXPECT_EQ(build_with(scene, {}).merged.count(), 0u);
+}
+
+/// The children of the top level: instances, and nodes or leaves of the merged meshes with the areas of their boxes.
+struct Top {
+  std::size_t instances = 0;
+  std::vector<std::pair<NodeRef, float>> hung;
+};
+Top top_of(const Accel& accel) {
+  Top out;
+  std::vector<NodeRef> open{accel.root_key().ref};
+  while (!open.empty()) {
+    const Node& node = accel.nodes[open.back().node()];
+    open.pop_back();
+    EXPECT_TRUE(node.above_instances);
+    for (int lane = 0; lane < node.count; ++lane) {
+      const NodeRef child = node.child[lane];
+      if (child.is_instance()) {
+        EXPECT_FALSE(accel.merged.holds(child.instance_index()));
+        ++out.instances;
+      } else if (child.is_inner() && accel.nodes[child.node()].above_instances) {
+        open.push_back(child);
+      } else {
+        Aabb box;
+        for (int axis = 0; axis < 3; ++axis)
+          box.lo[axis] = node.plane[axis][lane], box.hi[axis] = node.plane[axis + 3][lane];
+        out.hung.emplace_back(child, box.half_area());
+      }
+    }
+  }
+  return out;
+}
+
+// Nodes and leaves in the frame of the world stand beside instances in the top level (US 12394134, paragraph 8), as
+// many as divide it well.
+TEST(MergedMeshes, HangInTheTopLevelBesideInstances) {
+  const scene::Scene scene = overlapping(9, run_seed());
+  const Accel accel = build_with(scene, merging());
+  const Top top = top_of(accel);
+  EXPECT_GE(top.instances, 6u);
+  EXPECT_GE(top.hung.size(), 2 * top.instances);
+  EXPECT_LT(top.hung.size(), 2 * top.instances + kMaxWidth);
+  // Opened are the largest: none that hangs there is larger than all that were opened, one of which is the root.
+  std::size_t triangles = 0;
+  float largest = 0, all = 0;
+  for (const auto& [ref, area] : top.hung) {
+    triangles += ref.is_inner() ? accel.nodes[ref.node()].triangles : ref.triangles();
+    if (ref.is_inner()) largest = std::max(largest, area);
+    all = std::max(all, area);
+  }
+  EXPECT_EQ(triangles, accel.instances[accel.merged.instance()].triangles);
+  EXPECT_GT(all, 0.0f);
+  std::size_t larger = 0;  // inner nodes of the merged structure that would have been opened before it
+  std::vector<NodeRef> open{accel.instances[accel.merged.instance()].root};
+  while (!open.empty()) {
+    const NodeRef ref = open.back();
+    open.pop_back();
+    if (std::any_of(top.hung.begin(), top.hung.end(), [&](const auto& one) { return one.first == ref; })) continue;
+    ASSERT_TRUE(ref.is_inner());
+    const Node& node = accel.nodes[ref.node()];
+    Aabb box;
+    for (int lane = 0; lane < node.count; ++lane) {
+      for (int axis = 0; axis < 3; ++axis)
+        box.extend(Vec3{node.plane[0][lane], node.plane[1][lane], node.plane[2][lane]}),
+            box.extend(Vec3{node.plane[3][lane], node.plane[4][lane], node.plane[5][lane]});
+      open.push_back(node.child[lane]);
+    }
+    EXPECT_GE(box.half_area(), largest);
+    ++larger;
+  }
+  EXPECT_GE(larger, 2u);
+}
+
+// Alone in the world they are the structure, and rays begin at its root.
+TEST(MergedMeshes, AloneAreTheWholeStructure) {
+  scene::Scene scene = empty_scene();
+  Random random(run_seed());
+  for (int i = 0; i < 3; ++i) {
+    std::vector<Vec3> corners;
+    for (int k = 0; k < 60; ++k) corners.push_back(random.in_box(Vec3{-1}, Vec3{1}));
+    add_instance(scene, add_mesh(scene, soup(corners)));
+  }
+  const Accel accel = build_with(scene, merging());
+  EXPECT_EQ(accel.root_key(), (NodeKey{kNoInstance, accel.instances[0].root}));
+  EXPECT_FALSE(accel.nodes[accel.root_key().ref.node()].above_instances);
+  const BruteForceAnswers brute(scene, mixed_rays(scene, 300, run_seed()), {});
+  EXPECT_EQ(brute.differences(accel), 0u);
+  EXPECT_GT(brute.hits(), 50u);
 }
 
 TEST(MergedMeshes, GiveOneAnswer) {

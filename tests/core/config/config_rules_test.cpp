@@ -107,6 +107,9 @@ INSTANTIATE_TEST_SUITE_P(
             SCENE "cull_planes: {count: 2, levels: tlas}\naccuracy: {transform: inverse_matrix}\n",
             "test.yaml:3:23: accuracy.transform: cull planes above the instances could lose hits of inverse_matrix; "
             "expected two_step, two_step_double or transpose_if_rotation, or cull_planes.levels: blas"},
+        BadConfig{"TopPlanesOfMergedMeshes", SCENE "cull_planes: {count: 2, levels: tlas}\nbvh: {merge: world}\n",
+                  "test.yaml:2:33: cull_planes.levels: merged meshes hang in the top level, whose planes bound "
+                  "instances; expected blas, or bvh.merge: none; found tlas"},
         BadConfig{"BundlesInGroups", SCENE "bundles: {size: 8}\nbvh: {levels: 3}\n",
                   "test.yaml:3:15: bvh.levels: bundles are not tested within groups of instances; expected 2, or "
                   "bundles.size: 0; found 3"},
