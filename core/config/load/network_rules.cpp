@@ -216,6 +216,15 @@ class NetworkRules {
            fmt::format("within groups of instances rays gather at nodes; expected 2, or collections.key: node; "
                        "found {}",
                        c.bvh.levels));
+    const auto one_ray = [&](const std::string& key, std::int64_t lanes) {
+      refuse(lanes > 1, key.c_str(),
+             fmt::format("the rays of a vector meet one shape at a time, and those of a block are at several nodes; "
+                         "expected 1, or collections.key: node; found {}",
+                         lanes));
+    };
+    one_ray("testers.simd.lanes", c.testers.simd.lanes);
+    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i)
+      one_ray(fmt::format("topology.overrides.{}.testers.simd.lanes", i), c.topology.overrides[i].testers.simd.lanes);
   }
 
   void children_are_single_shapes() {

@@ -326,6 +326,17 @@ INSTANTIATE_TEST_SUITE_P(
                   SCENE "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\nbvh: {levels: 3}\n",
                   "test.yaml:4:15: bvh.levels: within groups of instances rays gather at nodes; expected 2, or "
                   "collections.key: node; found 3"},
+        BadConfig{"BlocksInVectors",
+                  SCENE
+                  "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\ntesters: {simd: {lanes: 4}}\n",
+                  "test.yaml:4:25: testers.simd.lanes: the rays of a vector meet one shape at a time, and those of a "
+                  "block are at several nodes; expected 1, or collections.key: node; found 4"},
+        BadConfig{"BlocksInVectorsOfOne",
+                  SCENE
+                  "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\ntopology: {resources: 2, "
+                  "overrides: [{resource: 1, testers: {simd: {lanes: 4}}}]}\n",
+                  "test.yaml:4:76: topology.overrides.0.testers.simd.lanes: the rays of a vector meet one shape at a "
+                  "time, and those of a block are at several nodes; expected 1, or collections.key: node; found 4"},
         BadConfig{"HashReserve", SCENE "collections: {home: hash}\n",
                   "test.yaml:2:14: collections.when_full: home: hash can fill one resource with another's "
                   "collections and "

@@ -124,7 +124,9 @@ def draw(seed, index):
     if config["topology"]["shape"] == "independent" or config["collections"]["traversal"] != "spread":
         config["collections"]["order"] = pick(["nearest", "stored"])
     if (config["collections"]["traversal"] == "ordered" and config["packets"]["carry"] == "reference" and
+            (config["topology"]["shape"] != "central" or "form" in config["topology"]) and
             config["topology"]["shape"] != "independent" and r.random() < 0.6):
         config["collections"].update(key="block", block_bytes=pick([64, 300, 512, 1024, 65536]))
-        memory["shape_buffer_kib"] = max(memory["shape_buffer_kib"], 32)
+        config["testers"]["simd"]["lanes"] = 1
+        memory["shape_buffer_kib"] = max(memory["shape_buffer_kib"], 64)
     return config
