@@ -140,6 +140,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
     add_links(r, result, config);
   }
   add_ranks(r, result);
+  add_ray_queues(r, result, config);
   r.shading.workers = static_cast<std::uint64_t>(shader_workers(config));
   r.shading.shaded = result.rays_completed;
   r.shading.saturated = job.saturated();

@@ -93,6 +93,20 @@ void add_ranks(report::Report& r, const ringbus::RunResult& result) {
   }
 }
 
+namespace {
+
+report::RayQueue ray_queue(const RayQueueConfig& config, const QueueUse& use) {
+  return {std::string(enum_name(config.kind)), use.places,      use.sent, ratio(use.rays, use.sent), use.refusals,
+          ratio(use.waiting_sum, use.sent),    use.waiting_most};
+}
+
+}  // namespace
+
+void add_ray_queues(report::Report& r, const ringbus::RunResult& result, const Config& config) {
+  if (config.engine.kind != EngineKind::kNative) return;
+  r.host.ray_queues = {ray_queue(config.shading.queue, result.completed), ray_queue(config.rays.queue, result.groups)};
+}
+
 void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
   for (const ringbus::LinkResult& link : result.links) {

@@ -21,5 +21,7 @@ void add_census(report::Report& report, const RayCensus& census, const accel::Ac
 
 /// Fills in the section of the links.
 void add_links(report::Report& report, const ringbus::RunResult& result, const Config& config);
+/// Of the native engine.
+void add_ray_queues(report::Report& report, const ringbus::RunResult& result, const Config& config);
 
 }  // namespace carousel::app

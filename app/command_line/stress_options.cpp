@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/command_line/command_options.h"
+#include "app/stress/ring_queues.h"
 #include "core/config/config.h"
 #include "ringbus/stress/pattern.h"
 
@@ -39,13 +40,19 @@ void add_stress_options(CLI::App& command, StressArguments& s) {
   command.add_option("--bytes", s.bytes, "Message sizes in bytes, of 8, 64 and 256 (default: chosen by the pattern)")
       ->delimiter(',')
       ->type_name("BYTES");
+  std::vector<std::string_view> places;
+  for (const RingPlace& place : ring_places()) places.push_back(place.key);
+  command.add_option("--in", s.in, "The queue of the configuration's ring to test designs and depths in, by its key")
+      ->check(one_of(places))
+      ->type_name("KEY")
+      ->capture_default_str();
   command
       .add_option("--depths", s.depths,
-                  "Link depths in packets to test in the configuration's ring (default: 1, its own depth, and four "
-                  "times that)")
+                  "Depths in packets, batches or groups to test in the configuration's ring (default: 1, its own "
+                  "depth, and four times that)")
       ->delimiter(',')
-      ->check(CLI::Range(1, 1'000'000))
-      ->type_name("PACKETS");
+      ->check(CLI::Range(1, 65536))
+      ->type_name("PLACES");
   command.add_option("--seconds", s.seconds, "Total time in seconds for tests of queues by themselves")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

@@ -92,6 +92,16 @@ report::StressRow row_of(const stress::StressRow& row, const stress::QueueUnderT
   return out;
 }
 
+[[noreturn]] void unknown_place(const std::string& found) {
+  std::vector<std::string> keys;
+  for (const RingPlace& place : ring_places()) keys.emplace_back(place.key);
+  const auto near = nearest_name(found, keys);
+  throw ConfigError({{{},
+                      "--in",
+                      fmt::format("expected one of {}, found {}{}", fmt::join(keys, ", "), found,
+                                  near ? "; did you mean " + *near + "?" : "")}});
+}
+
 void require_sizes(const std::vector<std::size_t>& sizes) {
   for (const std::size_t bytes : sizes)
     if (bytes != stress::kSmall && bytes != stress::kLine && bytes != stress::kPacket)
@@ -101,10 +111,11 @@ void require_sizes(const std::vector<std::size_t>& sizes) {
             fmt::format("expected {}, {} or {}, found {}", stress::kSmall, stress::kLine, stress::kPacket, bytes)}});
 }
 
-/// The link depths to test: shallow, as configured, and deep.
-std::vector<std::int64_t> depths_about(const TopologyConfig& topology) {
-  std::vector<std::int64_t> depths{topology.flow == Flow::kBubble ? 2 : 1, topology.link.depth,
-                                   4 * topology.link.depth};
+/// The depths to test: shallow, as configured, and deep.
+std::vector<std::int64_t> depths_about(const Config& config, const RingPlace& place) {
+  const bool link = place.key == ring_places().front().key;
+  const std::int64_t depth = place.depth(config);
+  std::vector<std::int64_t> depths{link && config.topology.flow == Flow::kBubble ? 2 : 1, depth, 4 * depth};
   std::sort(depths.begin(), depths.end());
   depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
   return depths;
@@ -117,6 +128,9 @@ int stress_command(const StressArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<QueueKind> kinds = chosen<QueueKind>(arguments.queues, "--queue", kEnumNames<QueueKind>);
   std::vector<stress::Pattern> patterns = chosen<stress::Pattern>(arguments.patterns, "--pattern", stress::kPatterns);
+  const auto place = std::find_if(ring_places().begin(), ring_places().end(),
+                                  [&](const RingPlace& p) { return p.key == arguments.in; });
+  if (place == ring_places().end()) unknown_place(arguments.in);
   require_sizes(arguments.bytes);
   std::vector<stress::QueueUnderTest> queues;
   for (const QueueKind kind : kinds) queues.push_back(stress::built_in_queue(kind));
@@ -167,8 +181,14 @@ int stress_command(const StressArguments& arguments) {
 
   if (prepared && !interrupt.interrupted()) {
     const std::vector<std::int64_t> depths =
-        arguments.depths.empty() ? depths_about(prepared->config().topology) : arguments.depths;
-    RingTrial trial{kinds, depths, arguments.repetitions, arguments.pairs, interrupt.token()};
+        arguments.depths.empty() ? depths_about(prepared->config(), *place) : arguments.depths;
+    RingTrial trial{*place, kinds, depths, arguments.repetitions, arguments.pairs, interrupt.token()};
+    // Of all kinds, those that serve as many threads as there may be.
+    if (arguments.queues.empty() && &*place != ring_places().data())
+      std::erase_if(trial.kinds, [](QueueKind kind) {
+        return !ringbus::queue_fits(kind, ringbus::Parties::kMany, ringbus::Parties::kMany);
+      });
+    out.ring_key = place->key;
     trial.progress = [&](double part) {
       if (line) line->update(0.5 + part / 2, ++trials, "trials", "ring");
     };

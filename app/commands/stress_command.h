@@ -12,6 +12,7 @@ struct StressArguments : ConfigArguments {  // without a configuration the queue
   std::vector<std::string> queues;          ///< names; empty: all
   std::vector<std::string> patterns;        ///< names; empty: all
   std::vector<std::size_t> bytes;           ///< 8, 64, 256; empty: each pattern's own sizes
+  std::string in = "topology.link.queue";   ///< the queue inside the ring, by the key of its design
   std::vector<std::int64_t> depths;         ///< inside the ring; empty: 1, the configuration's, and four times that
   double seconds = 30;
   std::uint64_t messages = 1'000'000;

@@ -1,6 +1,7 @@
 #include "app/stress/ring_queues.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ struct Cell {
   QueueKind kind;
   std::int64_t depth;
   std::vector<double> rates;
-  std::uint64_t packets = 0, refusals = 0, occupancy = 0, samples = 0;
+  QueueUse use{};
   bool same_digest = true;
 };
 
@@ -30,11 +31,42 @@ struct Digests {
   friend bool operator==(const Digests&, const Digests&) = default;
 };
 
-Digests run_cell(const Prepared& p, Cell& cell, const std::stop_token& stop) {
+QueueUse use_of_links(const ringbus::RunResult& result) {
+  QueueUse sum;
+  for (const ringbus::LinkResult& link : result.links) {
+    const ringbus::LinkStatistics& s = link.statistics;
+    sum += {link.depth, s.packets, 0, s.refusals, 0, s.occupancy_max};
+    // Links look at some of their sends only.
+    if (s.samples > 0) sum.waiting_sum += s.occupancy_sum * s.packets / s.samples;
+  }
+  return sum;
+}
+
+constexpr auto kRingPlaces = std::to_array<RingPlace>({
+    {"topology.link.queue", "topology.link.depth",
+     [](Config& c, QueueKind kind, std::int64_t depth) {
+       c.topology.link.queue = kind;
+       c.topology.link.depth = depth;
+     },
+     [](const Config& c) { return c.topology.link.depth; }, use_of_links},
+    {"shading.queue", "shading.queue_depth",
+     [](Config& c, QueueKind kind, std::int64_t depth) {
+       c.shading.queue = {kind, depth};
+     },
+     [](const Config& c) { return c.shading.queue.depth; },
+     [](const ringbus::RunResult& result) { return result.completed; }},
+    {"rays.queue", "rays.queue_depth",
+     [](Config& c, QueueKind kind, std::int64_t depth) {
+       c.rays.queue = {kind, depth};
+     },
+     [](const Config& c) { return c.rays.queue.depth; },
+     [](const ringbus::RunResult& result) { return result.groups; }},
+});
+
+Digests run_cell(const Prepared& p, const RingPlace& place, Cell& cell, const std::stop_token& stop) {
   Config config = p.config();
   config.engine.kind = EngineKind::kNative;
-  config.topology.link.queue = cell.kind;
-  config.topology.link.depth = cell.depth;
+  place.choose(config, cell.kind, cell.depth);
   RenderJob job(p, config);
   ringbus::RunOptions options;
   options.threads = p.threads;
@@ -42,12 +74,7 @@ Digests run_cell(const Prepared& p, Cell& cell, const std::stop_token& stop) {
   const ringbus::RunResult result = ringbus::run_native(config, p.accel, p.scene_size(), job.workload(), options);
   if (!result.complete) return {};
   cell.rates.push_back(report::ratio(result.rays_completed, result.wall_seconds));
-  for (const ringbus::LinkResult& link : result.links) {
-    cell.packets += link.statistics.packets;
-    cell.refusals += link.statistics.refusals;
-    cell.occupancy += link.statistics.occupancy_sum;
-    cell.samples += link.statistics.samples;
-  }
+  cell.use += place.use(result);
   return {job.hits_digest(), job.image_digest().value_or("")};
 }
 
@@ -102,8 +129,8 @@ class RingCells {
       row.rate_least = *std::min_element(cell.rates.begin(), cell.rates.end());
       row.rate_most = *std::max_element(cell.rates.begin(), cell.rates.end());
       row.relative = report::ratio(row.rate_median, best);
-      row.refused = report::ratio(cell.refusals, cell.packets + cell.refusals);
-      row.occupancy_mean = report::ratio(cell.occupancy, cell.samples);
+      row.refused = report::ratio(cell.use.refusals, cell.use.sent + cell.use.refusals);
+      row.occupancy_mean = report::ratio(cell.use.waiting_sum, cell.use.sent);
       row.same_digest = cell.same_digest;
     }
     return rows;
@@ -113,7 +140,7 @@ class RingCells {
   /// False if it was stopped.
   bool run(Cell& cell) {
     if (trial_.stop.stop_requested()) return false;
-    const Digests digests = run_cell(prepared_, cell, trial_.stop);
+    const Digests digests = run_cell(prepared_, trial_.place, cell, trial_.stop);
     if (trial_.stop.stop_requested()) return false;
     if (!expected_) expected_ = digests;
     cell.same_digest &= digests == *expected_;
@@ -147,6 +174,10 @@ class RingCells {
 };
 
 }  // namespace
+
+std::span<const RingPlace> ring_places() {
+  return kRingPlaces;
+}
 
 RingTrialResult try_in_ring(const Prepared& p, const RingTrial& trial) {
   RingCells cells(p, trial);

@@ -2,17 +2,33 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/run/prepare.h"
+#include "core/statistics/queue_use.h"
 #include "report/stress/stress.h"
+#include "ringbus/results/run_result.h"
 
 namespace carousel::app {
 
+/// A queue of a machine of the native engine whose design can be chosen.
+struct RingPlace {
+  std::string_view key;        ///< of its design
+  std::string_view depth_key;  ///< of the places of one
+  void (*choose)(Config& config, QueueKind kind, std::int64_t depth);
+  std::int64_t (*depth)(const Config& config);
+  /// What went through the queues of this place in a run.
+  QueueUse (*use)(const ringbus::RunResult& result);
+};
+std::span<const RingPlace> ring_places();
+
 /// How to try queues inside a ring.
 struct RingTrial {
+  const RingPlace& place;
   std::vector<QueueKind> kinds;
   std::vector<std::int64_t> depths;
   std::size_t repetitions = 3;  ///< of every kind and depth

@@ -119,6 +119,16 @@ void link_line(Table& table, const std::vector<Link>& links) {
              cycles ? "cycles stalled" : "refused");
 }
 
+void ray_queue_lines(Table& table, const RayQueues& queues) {
+  const auto line = [&](const char* name, const char* of, const char* pieces, const RayQueue& queue) {
+    table.line(name, "{} through {} of {}   {} {} of {:.1f} rays   {:.1f} waiting, {} most   {} refused", of,
+               queue.kind, queue.depth, grouped(queue.sent), pieces, queue.rays_at_once, queue.waiting_mean,
+               queue.waiting_max, grouped(queue.refused));
+  };
+  line("queues", "completed rays", "batches", queues.completed);
+  line("", "new rays", "groups", queues.created);
+}
+
 /// A line for each kind of message: its bytes, sender, receiver and wire. Kinds that were not sent are left out.
 void byte_lines(Table& table, const std::vector<Bytes>& rows, std::uint64_t rays) {
   std::string_view name = "bytes";
@@ -350,6 +360,7 @@ std::string report_table(const Report& report) {
   if (report.shading.proof) proof_line(table, *report.shading.proof);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);
+  if (report.host.ray_queues) ray_queue_lines(table, *report.host.ray_queues);
   if (report.bytes) byte_lines(table, *report.bytes, report.rays.completed);
   table.gap();
   if (simulated)

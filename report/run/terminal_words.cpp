@@ -229,6 +229,17 @@ void resource_words(Words& w) {
       .item("N refused", "links[].stalled", "sends that a full link refused")
       .item("N cycles stalled", "links[].stalled",
             "cycles in which a packet waited for a place in its link, all links together");
+  w.line("queues")
+      .item("completed rays through * of N", "host.ray_queues.completed.depth",
+            "design of the queue from the resources to the shader workers, and batches that it holds")
+      .item("N batches of N rays", "host.ray_queues.completed.sent")
+      .item("N waiting, N most", "host.ray_queues.completed.waiting_mean")
+      .item("N refused", "host.ray_queues.completed.refused")
+      .item("new rays through * of N", "host.ray_queues.created.depth",
+            "design of the queues from ray control to each resource, and groups that each of them holds")
+      .item("N groups of N rays", "host.ray_queues.created.sent")
+      .item("N waiting, N most", "host.ray_queues.created.waiting_mean")
+      .item("N refused", "host.ray_queues.created.refused");
 }
 
 void last_words(Words& w) {

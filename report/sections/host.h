@@ -1,5 +1,6 @@
 #pragma once
 
+#include "report/sections/ray_queue.h"
 #include "report/sections/time_series.h"
 #include "report/sections/visitor.h"
 
@@ -52,6 +53,7 @@ struct Host {
   Machine machine;
   std::optional<double> plane_seconds{}, raster_seconds{}, recovery_seconds{}, audit_seconds{}, draw_seconds{};
   std::optional<std::vector<HostLink>> links{};
+  std::optional<RayQueues> ray_queues{};
   std::optional<TimeSeries> time_series{};
 };
 
@@ -74,6 +76,7 @@ void describe(V& v, const Host& r) {
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "most resident memory of the process");
   v.field("simd", r.simd, "", "instruction set of the intersection kernels");
   v.section("links", r.links, "queues of the links over the time of the host, link by link as in links (native)");
+  v.section("ray_queues", r.ray_queues, "queues between resources and shader workers (native)");
   v.section("time_series", r.time_series,
             "quantities of the machine's parts over the time of the host, looked at 100 times a second (native)");
   v.section("machine", r.machine, "machine that ran the simulation");

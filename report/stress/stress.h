@@ -67,14 +67,14 @@ struct StressRingRow {
 template <class V>
 void describe(V& v, const StressRingRow& r) {
   v.field("queue", r.queue, "", "kind of queue");
-  v.field("depth", r.depth, "packets", "capacity of each link");
+  v.field("depth", r.depth, "pieces", "packets, batches or groups that each of the queues holds");
   v.field("rate_median", r.rate_median, "rays/s", "median rate of the repetitions");
   v.field("rate_least", r.rate_least, "rays/s", "rate of the slowest repetition");
   v.field("rate_most", r.rate_most, "rays/s", "rate of the fastest repetition");
   v.field("relative", r.relative, "fraction", "median rate over that of the best queue and depth");
-  v.field("refused", r.refused, "fraction", "fraction of the packets offered to links that were refused");
-  v.field("occupancy_mean", r.occupancy_mean, "packets",
-          "mean of the packets waiting in a link, sampled at every eighth send");
+  v.field("refused", r.refused, "fraction", "fraction of the packets, batches or groups offered that were refused");
+  v.field("occupancy_mean", r.occupancy_mean, "pieces",
+          "mean of those that wait in a queue when one comes; in links, at every eighth send");
   v.field("same_digest", r.same_digest, "", "true if hits and picture are those of the first row");
 }
 
@@ -87,7 +87,7 @@ struct StressRingChoice {
 template <class V>
 void describe(V& v, const StressRingChoice& r) {
   v.field("queue", r.queue, "", "kind of queue");
-  v.field("depth", r.depth, "packets", "capacity of each link");
+  v.field("depth", r.depth, "pieces", "packets, batches or groups that each of the queues holds");
 }
 
 /// Pairs of runs of the best and the worst choice by the medians.
@@ -119,6 +119,7 @@ struct Stress {
   std::uint64_t cores = 0, repetitions = 0;
   double seconds = 0;
   std::vector<StressRow> rows;
+  std::string ring_key;
   std::vector<StressRingRow> ring;
   std::optional<StressPairs> ring_pairs;
   std::string ring_verdict;
@@ -139,6 +140,7 @@ void describe(V& v, const Stress& r) {
   v.field("repetitions", r.repetitions, "", "repetitions of each row, in turn");
   v.field("seconds", r.seconds, "s", "time of the whole run");
   v.section("rows", r.rows, "queues by themselves");
+  v.field("ring_key", r.ring_key, "", "key of the queue in the ring that was tried; empty without a configuration");
   v.section("ring", r.ring, "queues inside the ring of the configuration");
   v.section("ring_pairs", r.ring_pairs, "the best choice of queue and depth against the worst, in pairs of runs");
   v.field("ring_verdict", r.ring_verdict, "", "the difference that the pairs show, in words; empty without pairs");

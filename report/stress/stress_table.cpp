@@ -44,8 +44,8 @@ void alone(const Stress& s, std::string& out) {
 
 void inside(const Stress& s, std::string& out) {
   if (s.ring.empty()) return;
-  out += fmt::format("\ninside the ring\n  {:<14}{:>6}{:>12}{:>18}{:>10}{:>10}{:>11}\n", "", "depth", "rays/s",
-                     "least-most", "of best", "refused", "occupancy");
+  out += fmt::format("\ninside the ring, {}\n  {:<14}{:>6}{:>12}{:>18}{:>10}{:>10}{:>11}\n", s.ring_key, "", "depth",
+                     "rays/s", "least-most", "of best", "refused", "occupancy");
   for (const StressRingRow& row : s.ring)
     out +=
         fmt::format("  {:<14}{:>6}{:>12}{:>18}{:>10}{:>10}{:>11.1f}{}\n", row.queue, row.depth, scaled(row.rate_median),

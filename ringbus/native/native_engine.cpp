@@ -42,8 +42,13 @@ class NativeRun {
       sinks_.push_back(options.statistics ? std::make_unique<StatisticsSink>() : nullptr);
     if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
       ledger_ = std::make_unique<OutstandingRays>();
+    const std::int64_t resources =
+        options.transport == nullptr
+            ? config.topology.resources
+            : RankShare(options.transport->rank(), options.transport->ranks(), config.topology.resources).arc_size();
+    threads_ = std::clamp<std::size_t>(options.threads, 1,
+                                       static_cast<std::size_t>(std::max(resources, shader_workers(config))));
     build();
-    threads_ = std::clamp<std::size_t>(options.threads, 1, std::max(ports_.size(), workers_.size()));
     progress_ = std::make_unique<Progress[]>(threads_);
   }
 
@@ -85,7 +90,7 @@ class NativeRun {
   void build() {
     ports_.clear();
     workers_.clear();
-    machine_ = std::make_unique<NativeMachine>(config_, accel_, scene_size_, own_links_, options_.transport);
+    machine_ = std::make_unique<NativeMachine>(config_, accel_, scene_size_, own_links_, options_.transport, threads_);
     const NativePortSettings settings{resource_settings(config_, scene_size_), config_.faults,
                                       config_.engine.clock_mhz};
     const RankShare& share = machine_->shared.share;
@@ -123,16 +128,20 @@ class NativeRun {
   /// forwarding.
   void restart() {
     std::vector<HitBatch> handed_over;
-    while (std::optional<HitBatch> batch = machine_->completed.pop()) handed_over.push_back(std::move(*batch));
+    while (HitBatch* const batch = machine_->completed.try_pop()) handed_over.push_back(std::move(*batch));
     for (const auto& port : ports_) packets_discarded_ += port->resource().packets_in_flight();
     series_.carry(ports_);
     carry_links();
+    completed_ += machine_->completed.use();
+    groups_ += machine_->shared.control.groups_sent();
     slots_used_ += machine_->shared.control.slots_used();
     slot_waits_ += machine_->shared.control.slot_waits();
     build();
     for (HitBatch& batch : handed_over) {
       ledger_->remove(batch);
-      machine_->completed.push(std::move(batch));
+      HitBatch* const place = machine_->completed.try_take();
+      place->swap(batch);
+      machine_->completed.push(place, place->size());
     }
     machine_->shared.control.exclude(*excluded_);
     for (const auto& port : ports_) port->exclude(*excluded_);
@@ -282,6 +291,8 @@ class NativeRun {
     out.threads = threads_;
     out.slots_used = slots_used_ + machine_->shared.control.slots_used();
     out.slot_waits = slot_waits_ + machine_->shared.control.slot_waits();
+    (out.completed = completed_) += machine_->completed.use();
+    (out.groups = groups_) += machine_->shared.control.groups_sent();
     for (const auto& sink : sinks_)
       if (sink) out.resources.push_back(sink->statistics());
     out.collections.resize(sinks_.size());
@@ -324,6 +335,7 @@ class NativeRun {
   bool given_up_ = false;               // and the others go on without it
   std::uint64_t rays_restarted_ = 0, paths_restarted_ = 0, packets_discarded_ = 0;
   std::uint64_t slots_used_ = 0, slot_waits_ = 0;  // before the machine was built anew
+  QueueUse completed_, groups_;                    // likewise
   std::vector<LinkFaultCounts> faults_before_;     // likewise, by link
   double recovery_seconds_ = 0;
   std::vector<std::unique_ptr<StatisticsSink>> sinks_;

@@ -287,6 +287,8 @@ void NativePort::flush_completed(bool all) {
   HitBatch& done = resource_.completed();
   const std::size_t enough = std::min<std::size_t>(kCompletedBatch, resource_.rays().slots() / 4 + 1);
   if (done.empty() || (!all && done.size() < enough)) return;
+  HitBatch* const batch = completed_.try_take();
+  if (batch == nullptr) return;  // more may complete meanwhile
   if (sink_ != nullptr)
     sink_->record(
         {.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
@@ -296,9 +298,8 @@ void NativePort::flush_completed(bool all) {
   if (gate_ != nullptr) gate_->send_results(resource_.id(), done, resource_.freed_slots());
   machine_.control.free(resource_.id(), resource_.freed_slots());
   resource_.freed_slots().clear();
-  HitBatch fresh = completed_.fresh();
-  done.swap(fresh);
-  completed_.push(std::move(fresh));
+  done.swap(*batch);
+  completed_.push(batch, batch->size());
 }
 
 }  // namespace carousel::ringbus

@@ -61,7 +61,7 @@ void RankGate::hold(ResourceId issuer, RayGroup&& group) {
     const std::lock_guard lock(peers_[r]->mutex);
     if (std::exchange(peers_[r]->held, false)) held.needs.emplace_back(r, peers_[r]->rays_sent);
   }
-  if (held.needs.empty()) return machine_.control.deliver(issuer, std::move(held.group));
+  if (held.needs.empty() && machine_.control.deliver(issuer, held.group)) return;
   const std::lock_guard lock(held_mutex_);
   held_.push_back(std::move(held));
 }
@@ -96,6 +96,7 @@ bool RankGate::step(bool at_rest) {
   bool moved = receive();
   if (ended()) return moved;
   moved |= deliver_held();
+  hand_over_results();
   pass_token(at_rest);
   const bool idle = idle_.load(std::memory_order_relaxed);
   if (idle) idle_.store(false, std::memory_order_relaxed);
@@ -256,18 +257,25 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
 
 void RankGate::take_results(const RankMessage& message) {
   if (message.results.empty()) return;
-  HitBatch batch = completed_.fresh();
   for (std::size_t i = 0; i < message.results.size();) {
     const ResourceId resource = message.results[i].resource;
     slots_.clear();
     for (; i < message.results.size() && message.results[i].resource == resource; ++i) {
       machine_.stores.at(resource.value)->retire(message.results[i].slot);
       slots_.push_back(message.results[i].slot);
-      batch.push_back(message.results[i].result);
+      results_.push_back(message.results[i].result);
     }
     machine_.control.free(resource, slots_);
   }
-  completed_.push(std::move(batch));
+}
+
+/// To the shader workers, unless their queue is full.
+void RankGate::hand_over_results() {
+  if (results_.empty()) return;
+  HitBatch* const batch = completed_.try_take();
+  if (batch == nullptr) return;
+  batch->swap(results_);
+  completed_.push(batch, batch->size());
 }
 
 bool RankGate::deliver_held() {
@@ -278,7 +286,7 @@ bool RankGate::deliver_held() {
                        [this](const auto& need) { return peers_[need.first]->rays_taken >= need.second; });
   };
   for (; !held_.empty() && ready(held_.front()); held_.pop_front(), any = true)
-    machine_.control.deliver(held_.front().issuer, std::move(held_.front().group));
+    if (!machine_.control.deliver(held_.front().issuer, held_.front().group)) break;
   return any;
 }
 

@@ -115,6 +115,7 @@ class RankGate final : public RemotePlacing {
   void note_received(std::uint32_t from, std::uint64_t begin);
   void take(std::uint32_t from, const RankMessage& message);
   void take_results(const RankMessage& message);
+  void hand_over_results();
   bool deliver_held();
   void pass_token(bool at_rest);
   void part(Farewell::Reason reason, const std::string& text);
@@ -123,6 +124,7 @@ class RankGate final : public RemotePlacing {
   Transport& transport_;
   Machine& machine_;
   CompletedQueue& completed_;
+  HitBatch results_;  // of rays that completed at other ranks, for the shader workers here
   std::uint32_t rank_;
   std::size_t depth_;  // of each link
   NativeRecorder* recorder_ = nullptr;

@@ -26,8 +26,8 @@ bool ShaderWorker::step() {
 }
 
 bool ShaderWorker::shade() {
-  std::optional<HitBatch> batch = completed_.pop();
-  if (!batch) return false;
+  HitBatch* const batch = completed_.try_pop();
+  if (batch == nullptr) return false;
   rays_.clear();
   workload_.shade(id_, *batch, rays_);
   const std::int64_t made = static_cast<std::int64_t>(rays_.size()), shaded = static_cast<std::int64_t>(batch->size());
@@ -41,7 +41,8 @@ bool ShaderWorker::shade() {
     ledger_->remove(*batch);
     ledger_->add(rays_);
   }
-  completed_.give_back(std::move(*batch));
+  batch->clear();
+  completed_.give_back(batch);
   if (made > 0) control_.submit(rays_);
   return true;
 }

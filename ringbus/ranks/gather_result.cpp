@@ -33,6 +33,8 @@ void visit_sums(Visitor& visitor, SomeResult& result) {
   visitor.part(result.rays_completed);
   visitor.part(result.slots_used);
   visitor.part(result.slot_waits);
+  visitor.part(result.completed);
+  visitor.part(result.groups);
 }
 
 std::string pack(const RankShare& share, const RunResult& result) {
@@ -95,6 +97,8 @@ void unpack(const std::string& bytes, std::uint32_t rank, const RankShare& share
   result.rays_completed += sums.rays_completed;
   result.slots_used += sums.slots_used;
   result.slot_waits += sums.slot_waits;
+  result.completed += sums.completed;
+  result.groups += sums.groups;
   result.threads += own.threads;
 }
 

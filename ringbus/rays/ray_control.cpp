@@ -58,8 +58,8 @@ void RayControl::discard() {
   free_all();
   for (std::uint32_t r = 0; r < resources_; ++r) {
     stores_[r]->discard();
-    inboxes_[r].groups.clear();
-    inboxes_[r].any = false;
+    std::vector<RayGroup> forgotten;
+    collect(ResourceId(r), forgotten);
   }
   waiting_.clear();
   waiting_bundles_.clear();
@@ -158,12 +158,41 @@ std::size_t RayControl::place_spread(std::span<const RayRequest> rays, std::vect
   return placed;
 }
 
+void RayControl::queue_groups(QueueKind kind, std::size_t places) {
+  for (std::uint32_t r = 0; r < resources_; ++r)
+    if (share_.here(ResourceId(r))) inboxes_[r].queue = std::make_unique<PooledQueue<RayGroup>>(kind, places);
+}
+
+/// Whether the next group may go to `resource`. Other ranks' data come before groups do, which are held for so long.
+bool RayControl::may_send(ResourceId resource) {
+  Inbox& inbox = inboxes_[resource.value];
+  if (inbox.queue && inbox.next == nullptr && remote_ == nullptr) inbox.next = inbox.queue->try_take();
+  return !inbox.queue || inbox.next != nullptr || remote_ != nullptr;
+}
+
 void RayControl::send(ResourceId resource, RayGroup&& group) {
   Inbox& inbox = inboxes_[resource.value];
-  const std::lock_guard lock(inbox.mutex);
-  inbox.groups.push_back(std::move(group));
-  // Relaxed: only a hint that the lock is worth taking; the mutex publishes the group.
-  inbox.any.store(true, std::memory_order_relaxed);
+  if (!inbox.queue) return inbox.groups.push_back(std::move(group));
+  const std::size_t rays = group.rays_in();
+  *inbox.next = std::move(group);
+  inbox.queue->push(std::exchange(inbox.next, nullptr), rays);
+}
+
+bool RayControl::deliver(ResourceId issuer, RayGroup& group) {
+  PooledQueue<RayGroup>& queue = *inboxes_[issuer.value].queue;
+  RayGroup* const place = queue.try_take();
+  if (place == nullptr) return false;
+  const std::size_t rays = group.rays_in();
+  *place = std::move(group);
+  queue.push(place, rays);
+  return true;
+}
+
+QueueUse RayControl::groups_sent() const {
+  QueueUse sum;
+  for (std::uint32_t r = 0; r < resources_; ++r)
+    if (inboxes_[r].queue) sum += inboxes_[r].queue->use();
+  return sum;
 }
 
 /// Places groups from the front of `rays` while there is room; returns how many rays were placed.
@@ -177,6 +206,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
     std::size_t placed = next.size();
     ResourceId issuer = next_issuer();
     if (rays_travel_) {
+      if (!may_send(issuer)) break;
       group.rays.assign(next.begin(), next.end());
       for (std::size_t i = 0; placement_ == Placement::kAddressed && i < next.size(); ++i) {
         const std::size_t step = local_ ? 0 : i * resources_ / next.size();
@@ -192,6 +222,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
         if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= enough_slots_) continue;
         break;
       }
+      if (!may_send(issuer)) break;
       group.ids.reserve(next.size());
       placed = local_ ? load_some(issuer, next, group.ids) : place_spread(next, group.ids);
     }
@@ -237,11 +268,13 @@ bool RayControl::place_all_waiting() {
 
 void RayControl::collect(ResourceId resource, std::vector<RayGroup>& out) {
   Inbox& inbox = inboxes_[resource.value];
-  if (!inbox.any.load(std::memory_order_relaxed)) return;
-  const std::lock_guard lock(inbox.mutex);
   std::move(inbox.groups.begin(), inbox.groups.end(), std::back_inserter(out));
   inbox.groups.clear();
-  inbox.any.store(false, std::memory_order_relaxed);
+  if (!inbox.queue) return;
+  while (RayGroup* const group = inbox.queue->try_pop()) {
+    out.push_back(std::exchange(*group, {}));
+    inbox.queue->give_back(group);
+  }
 }
 
 }  // namespace carousel::ringbus

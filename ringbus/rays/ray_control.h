@@ -12,6 +12,7 @@
 #include "core/config/config.h"
 #include "core/types/ids.h"
 #include "core/types/workload.h"
+#include "ringbus/queues/pooled_queue.h"
 #include "ringbus/rays/bundle_builder.h"
 #include "ringbus/rays/rank_share.h"
 #include "ringbus/rays/ray_group.h"
@@ -48,8 +49,12 @@ class RayControl {
 
   /// Rays for resources of other ranks go to `remote`. Before the first submit(); needed with several ranks.
   void place_by(RemotePlacing& remote) { remote_ = &remote; }
-  /// Hands a group to its issuer, for RemotePlacing.
-  void deliver(ResourceId issuer, RayGroup&& group) { send(issuer, std::move(group)); }
+  /// Groups go to each resource through a queue of this design with so many places. Needed where resources and those
+  /// who submit are on several threads; before the first submit(). Those who submit take turns, so that the queue has
+  /// one producer at a time, but with several ranks it has as many as call deliver().
+  void queue_groups(QueueKind kind, std::size_t places);
+  /// Hands a group to its issuer, for RemotePlacing. False: its queue is full, and the group is as it was.
+  bool deliver(ResourceId issuer, RayGroup& group);
 
   /// From now on `resource` gets no rays. To be called before the first submit(), or after discard().
   void exclude(ResourceId resource);
@@ -89,6 +94,8 @@ class RayControl {
   std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
   /// Rays that travel wait where they are sent from.
   void count_slot_wait() { slot_waits_.fetch_add(1, std::memory_order_relaxed); }
+  /// What went through the queues to the resources, all together; while no other thread calls.
+  QueueUse groups_sent() const;
   /// How often a slot was handed out.
   std::uint64_t slots_used() const { return slots_used_.load(std::memory_order_relaxed); }
 
@@ -100,9 +107,9 @@ class RayControl {
     std::atomic<std::size_t> count{0};
   };
   struct alignas(128) Inbox {
-    std::mutex mutex;
-    std::vector<RayGroup> groups;
-    std::atomic<bool> any{false};
+    std::vector<RayGroup> groups;  // without a queue
+    std::unique_ptr<PooledQueue<RayGroup>> queue;
+    RayGroup* next = nullptr;  // empty, for the next group
   };
 
   void free_all();
@@ -116,6 +123,7 @@ class RayControl {
   std::size_t load_bundle(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  bool may_send(ResourceId resource);
   void send(ResourceId resource, RayGroup&& group);
   ResourceId next_resource() {
     if (excluded_ == ResourceId(turn_ % resources_)) ++turn_;

@@ -54,6 +54,10 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
       turn_ = turn;  // a group that has to wait costs no resource its turn
       break;
     }
+    if (!may_send(issuer)) {
+      turn_ = turn;
+      break;
+    }
     RayGroup group;
     while (group.ids.size() < group_rays_ && bundle < waiting_bundles_.size()) {
       const std::size_t size = waiting_bundles_[bundle];

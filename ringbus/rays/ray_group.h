@@ -14,6 +14,9 @@ struct RayGroup {
   std::vector<RayId> ids;
   RayBatch rays;
   std::vector<ResourceId> addresses;  ///< addressed placement: one a ray; otherwise empty
+
+  /// A bundle counts as one.
+  std::size_t rays_in() const { return ids.size() + rays.size(); }
 };
 
 }  // namespace carousel::ringbus

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/statistics/link_fault_counts.h"
+#include "core/statistics/queue_use.h"
 #include "core/statistics/rank_counts.h"
 #include "core/statistics/rank_memory.h"
 #include "core/types/ids.h"
@@ -72,6 +73,8 @@ struct RunResult {
   std::chrono::steady_clock::time_point start{};  ///< native: the origin of the links' series
   std::uint64_t slots_used = 0;                   ///< times a slot was assigned
   std::uint64_t slot_waits = 0;                   ///< times new rays had to wait for free slots
+  QueueUse completed{};                           ///< native: the queue of completed rays
+  QueueUse groups{};                              ///< native: the queues of new rays to all resources
   std::vector<ResourceStatistics> resources;      ///< empty without statistics
   std::vector<CollectionStore::Statistics> collections;
   std::vector<LinkResult> links;

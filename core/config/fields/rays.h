@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/config/fields/field.h"
+#include "core/config/fields/queue_kind.h"
 
 namespace carousel {
 
@@ -27,6 +28,7 @@ struct RaysConfig {
   std::int64_t reads_per_cycle = 0, banks = 0;
   Query query = Query::kClosest;
   std::int64_t hits_per_ray = 1024;
+  RayQueueConfig queue{QueueKind::kMpmcRing, 256};
 };
 
 namespace config {
@@ -46,6 +48,10 @@ void describe(V& v, RaysConfig& c) {
   v.choice("query", c.query, "The hits of a file's rays that are looked for: the closest, any one, or all.");
   v.field("hits_per_ray", c.hits_per_ray, IntRange{1, 1 << 24}, "hits",
           "The largest number of hits of a ray with query: all. A ray with more ends the run with an error.");
+  v.choice("queue", c.queue.kind,
+           "The queues that bring groups of new rays to the resources that issue them in the native engine.");
+  v.field("queue_depth", c.queue.depth, IntRange{1, 65536}, "groups",
+          "The number of groups of new rays, of packets.rays each, that one of these queues holds.");
 }
 
 }  // namespace config

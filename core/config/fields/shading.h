@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config/fields/field.h"
+#include "core/config/fields/queue_kind.h"
 
 namespace carousel {
 
@@ -28,6 +29,7 @@ struct ShadingConfig {
   std::int64_t lanes = 1, sort_rays_per_cycle = 4;
   enum class Sort { kNone, kShader } sort = Sort::kNone;
   RayFlags camera_rays{}, bounce_rays{}, shadow_rays{};
+  RayQueueConfig queue{QueueKind::kMpmcRing, 16};
 };
 
 template <>
@@ -87,6 +89,10 @@ void describe(V& v, ShadingConfig& c) {
   v.section("bounce_rays", c.bounce_rays, "The flags of bounce rays.");
   v.section("shadow_rays", c.shadow_rays, "The flags of shadow rays.");
   v.choice("distribute", c.distribute, "The rule that chooses the worker of a completed ray.");
+  v.choice("queue", c.queue.kind,
+           "The queue that brings completed rays from the resources to the shader workers in the native engine.");
+  v.field("queue_depth", c.queue.depth, IntRange{1, 65536}, "batches",
+          "The number of batches of completed rays, of some hundred each, that this queue holds.");
 }
 
 }  // namespace config

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/config/fields/field.h"
+#include "core/config/fields/queue_kind.h"
 #include "core/config/fields/testers.h"
 
 namespace carousel {
@@ -75,19 +76,6 @@ template <>
 inline constexpr auto kEnumNames<Flow> = [] {
   using enum Flow;
   return names<Flow>({{kCredits, "credits"}, {kBubble, "bubble"}, {kNone, "none"}});
-}();
-
-enum class QueueKind { kSpscRing, kMpmcRing, kTbbBounded, kMoodycamel, kAtomicQueue, kBoostSpsc, kMutex };
-template <>
-inline constexpr auto kEnumNames<QueueKind> = [] {
-  using enum QueueKind;
-  return names<QueueKind>({{kSpscRing, "spsc_ring"},
-                           {kMpmcRing, "mpmc_ring"},
-                           {kTbbBounded, "tbb_bounded"},
-                           {kMoodycamel, "moodycamel"},
-                           {kAtomicQueue, "atomic_queue"},
-                           {kBoostSpsc, "boost_spsc"},
-                           {kMutex, "mutex"}});
 }();
 
 struct LinkConfig {

@@ -61,6 +61,34 @@ TEST(StressCommand, TriesQueuesInsideTheRing) {
   EXPECT_THAT(verdict, HasSubstr("; fewer than 8 pairs show nothing"));
 }
 
+TEST(StressCommand, TriesTheQueuesThatHandRaysOver) {
+  const Program program;
+  program.write("a.yaml",
+                "scene: {builtin: cornell}\nimage: {width: 32, height: 32, samples: 1}\ntopology: {resources: 3}\n"
+                "engine: {threads: 2}\nrays: {slots_per_resource: 64}\npackets: {rays: 4}\n");
+  for (const std::string key : {"shading.queue", "rays.queue"}) {
+    SCOPED_TRACE(key);
+    const Outcome outcome =
+        program.run({"stress", "a.yaml", "--in", key, "--seconds", "0.05", "--messages", "100", "--repetitions", "1",
+                     "--pattern", "stream", "--depths", "1,64", "--pairs", "0", "--json", "--force"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json json = Json::parse(outcome.out);
+    EXPECT_EQ(json["ring_key"], key);
+    ASSERT_EQ(json["ring"].size(), 5u * 2);  // the kinds that serve several threads
+    for (const Json& row : json["ring"]) {
+      EXPECT_EQ(row["same_digest"], true);
+      EXPECT_GE(row["occupancy_mean"].get<double>(), 1.0);
+      EXPECT_LE(row["occupancy_mean"].get<double>(), row["depth"].get<double>());
+    }
+    EXPECT_GT(json["ring"][0]["refused"].get<double>(), 0);  // of depth 1
+    // A design for one thread on each side is refused by name.
+    const Outcome refused = program.run({"stress", "a.yaml", "--in", key, "--queue", "spsc_ring", "--seconds", "0.05",
+                                         "--messages", "100", "--pattern", "stream", "--force"});
+    EXPECT_EQ(refused.status, key == "shading.queue" ? 2 : 0) << refused.err;
+    if (key == "shading.queue") EXPECT_THAT(refused.err, HasSubstr("shading.queue: spsc_ring is made for one"));
+  }
+}
+
 TEST(StressCommand, ClaimsADifferenceInsideTheRingOnlyWithAnInterval) {
   report::StressPairs pairs;
   pairs.first = {"spsc_ring", 16};
@@ -93,6 +121,7 @@ TEST(StressCommand, RefusesWhatThereIsNot) {
   };
   EXPECT_THAT(error_of({"stress", "--queue", "spsc"}), HasSubstr("found spsc"));
   EXPECT_THAT(error_of({"stress", "--pattern", "streem"}), HasSubstr("did you mean stream?"));
+  EXPECT_THAT(error_of({"stress", "--in", "shading.quue"}), HasSubstr("did you mean shading.queue?"));
   EXPECT_THAT(error_of({"stress", "--bytes", "9"}), HasSubstr("expected 8, 64 or 256, found 9"));
   EXPECT_THAT(error_of({"stress", "--queue", "boost_spsc", "--pattern", "many_to_many"}),
               HasSubstr("boost_spsc is made for one producer at a time"));

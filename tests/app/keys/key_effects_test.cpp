@@ -28,7 +28,7 @@ struct KeyOutcome {
 
 /// The report without the configuration, without values that repeat it, and without times of the host.
 std::string result_of(Json report) {
-  const Json host = report["host"];
+  Json host = report["host"];
   report.erase("config");
   report.erase("host");
   if (report.contains("shading")) report["shading"].erase("workers");
@@ -36,7 +36,10 @@ std::string result_of(Json report) {
     for (Json& link : report["links"]) link.erase("depth");
   if (report.contains("bytes"))
     for (Json& row : report["bytes"]) row.erase("width_bytes_per_cycle");
-  return report.dump() + host.value("simd", "") + host.value("threads", Json()).dump();
+  if (host.contains("ray_queues"))
+    for (Json& queue : host["ray_queues"]) queue.erase("depth");
+  return report.dump() + host.value("simd", "") + host.value("threads", Json()).dump() +
+         host.value("ray_queues", Json()).dump();
 }
 
 class KeyEffects : public testing::Test {

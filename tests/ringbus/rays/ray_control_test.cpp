@@ -164,12 +164,42 @@ TEST(RayControl, AGroupThatWaitsCostsNoTurn) {
   EXPECT_EQ(second[0].first, 1u);
 }
 
+TEST(RayControl, AFullQueueHoldsNewRaysBack) {
+  Bench bench(Placement::kRoundRobin, Home::kIssuer, 2, 64, 8);
+  bench.control->queue_groups(QueueKind::kSpscRing, 2);
+  bench.control->submit(rays(56));  // seven groups for two queues of two
+  EXPECT_EQ(bench.control->free_slots(), 128u - 32);
+  RayGroup more;
+  more.ids.push_back(RayId(0));
+  EXPECT_FALSE(bench.control->deliver(ResourceId(1), more));
+  EXPECT_EQ(more.ids.size(), 1u);  // as it was
+  std::vector<std::uint32_t> order;
+  for (const std::size_t groups : {4, 3, 0}) {
+    const auto found = bench.collect_all();
+    ASSERT_EQ(found.size(), groups);
+    for (const auto& [issuer, group] : found)
+      for (const RayId id : group.ids) order.push_back(bench.path(id));
+    EXPECT_EQ(bench.control->place_waiting(), groups == 4);
+  }
+  std::sort(order.begin(), order.end());
+  ASSERT_EQ(order.size(), 56u);
+  for (std::uint32_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i);
+  const QueueUse use = bench.control->groups_sent();
+  EXPECT_EQ(use.sent, 7u);
+  EXPECT_EQ(use.rays, 56u);
+  EXPECT_EQ(use.places, 2u);
+  EXPECT_EQ(use.waiting_most, 2u);
+  EXPECT_EQ(bench.control->slot_waits(), 0u);  // there were slots
+}
+
 TEST(RayControl, LosesAndDoublesNothingUnderRandomCalls) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     std::minstd_rand random(seed);
     Bench bench(static_cast<Placement>(seed % 2), static_cast<Home>(seed / 2 % 3), 1 + random() % 6, 1 + random() % 20,
                 1 + random() % 9);
+    if (const std::uint32_t places = random() % 4; places > 0)
+      bench.control->queue_groups(QueueKind::kMpmcRing, places);
     std::uint32_t submitted = 0;
     std::set<std::uint32_t> seen;
     std::set<std::pair<std::uint32_t, std::uint32_t>> in_use;
