@@ -92,6 +92,8 @@ std::vector<RayCase> ray_cases() {
           ray_case(64, Traversal::kSpread, 1),
           ray_case(64, Traversal::kTreelet, 1),
           ray_case(64, Traversal::kSpread, 2),
+          ray_case(8, Traversal::kTreelet, 1),
+          ray_case(256, Traversal::kTreelet, 1),
           ray_case(16, Traversal::kSpread, 1, DramConfig::Preset::kGddr6),
           ray_case(16, Traversal::kTreelet, 1, DramConfig::Preset::kGddr6)};
 }
