@@ -5,10 +5,10 @@
 
 #include <glm/geometric.hpp>
 
-#include "accel/planes/plane_candidates.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/cull_plane.h"
-#include "accel/structure/sphere.h"
+#include "accel/structure/primitive_boxes.h"
+#include "core/numeric/rounding.h"
 
 namespace carousel::accel {
 
@@ -33,18 +33,8 @@ void raise(const Accel& accel, const Node& node, int lane, const DVec3& centre, 
     most = std::max(most, farthest_corner2(centre, box));
     return;
   }
-  for (std::uint32_t i = 0; i < child.triangles(); ++i) {
-    const TriangleBlock& block = accel.blocks[child.first_block() + i / kBlockTriangles];
-    Aabb primitive;
-    if (child.is_procedural()) {
-      const BlockSphere sphere = sphere_in(block, i % kBlockTriangles);
-      primitive = sphere_box(sphere.centre, sphere.radius);
-    } else {
-      for (const auto& v : block.vertex)
-        primitive.extend(Vec3{v[0][i % kBlockTriangles], v[1][i % kBlockTriangles], v[2][i % kBlockTriangles]});
-    }
-    most = std::max(most, farthest_corner2(centre, primitive));
-  }
+  for (std::uint32_t i = 0; i < child.triangles(); ++i)
+    most = std::max(most, farthest_corner2(centre, primitive_box(accel, child, i)));
 }
 
 }  // namespace

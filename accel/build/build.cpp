@@ -9,6 +9,7 @@
 
 #include "accel/build/binary/sah_build.h"
 #include "accel/build/blas_meshes.h"
+#include "accel/build/bounding_oriented_boxes.h"
 #include "accel/build/bounding_spheres.h"
 #include "accel/build/group_levels.h"
 #include "accel/build/placed_blas.h"
@@ -49,7 +50,10 @@ class AccelBuilder {
     for (const scene::Instance& instance : scene_.instances)
       accel_.procedural_primitives |= !scene_.meshes[instance.mesh.value].spheres.empty();
     mix_nodes();
-    if (config_.elements == BvhConfig::Elements::kSpheres) accel_.spheres = bounding_spheres(accel_, executor_);
+    if (config_.elements == BvhConfig::Elements::kSpheres)
+      accel_.elements.spheres = bounding_spheres(accel_, executor_);
+    if (config_.elements == BvhConfig::Elements::kOrientedBoxes)
+      accel_.elements.oriented_boxes = bounding_oriented_boxes(accel_, executor_);
     add_cull_planes(accel_, scene_, planes_, executor_);
     if (ranks_ != nullptr) {
       partition_.above_end = static_cast<std::uint32_t>(accel_.nodes.size());

@@ -4,21 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numeric/rounding.h"
+
 namespace carousel::accel {
 
 namespace {
 
 constexpr int kSteps = 255;  // the greatest number of 8 bits
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// The float that is not above `value`.
-float rounded_down(double value) {
-  const float near = static_cast<float>(value);
-  return static_cast<double>(near) > value ? std::nextafter(near, -kInfinity) : near;
-}
-float rounded_up(double value) {
-  return -rounded_down(-value);
-}
 
 /// Planes of one axis: `lo` and `hi` of `count` children. In doubles the products and sums are exact but for planes
 /// that lie farther from the origin than 2^29 steps' bits, and these are rounded outwards as well.

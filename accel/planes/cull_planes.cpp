@@ -255,12 +255,12 @@ Accel plain_copy(const Accel& accel) {
   }
   plain.planes.clear();
   plain.plane_bytes = 0;
-  plain.spheres.clear();
+  plain.elements = {};
   return plain;
 }
 
 bool is_plain(const Accel& accel) {
-  return accel.planes.empty() && accel.spheres.empty() &&
+  return accel.planes.empty() && accel.elements.empty() &&
          std::none_of(accel.nodes.begin(), accel.nodes.end(), [](const Node& node) { return node.direct != 0; });
 }
 

@@ -55,7 +55,7 @@ void OrientedBoxChoice::offer_triangles(const std::vector<Vec3>& points) {
 
 std::vector<CullPlane> OrientedBoxChoice::best() const {
   if (!(area_ > 0) || !(area_ < (1 - kLeastGain) * child_.box.half_area())) return {};
-  return {best_.begin(), best_.end()};
+  return smallest();
 }
 
 }  // namespace carousel::accel

@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/rounding.h"
+
 namespace carousel::accel {
 
 namespace {
@@ -26,11 +28,6 @@ bool set_normal(const DVec3& direction, CullPlane& plane) {
   if (!(sum > 0) || !std::isfinite(sum)) return false;
   for (int axis = 0; axis < 3; ++axis) plane.normal[axis] = static_cast<float>(direction[axis] / sum * (1 - 0x1p-22));
   return true;
-}
-
-float rounded_up(double x) {
-  const float nearest = static_cast<float>(x);
-  return nearest < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
 }
 
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points) {

@@ -20,9 +20,6 @@ struct BoxedShape {
 /// direction has no length.
 bool set_normal(const DVec3& direction, CullPlane& plane);
 
-/// The least float that is not below `x`.
-float rounded_up(double x);
-
 /// Distance of the farthest of the points along `n`, from a box's plane_centre(), rounded up, so that a plane at this
 /// distance cuts off no point. Infinite if there is no such float.
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points);

@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 
 #include "accel/planes/farthest_point.h"
+#include "core/numeric/rounding.h"
 
 namespace carousel::accel {
 

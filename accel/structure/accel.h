@@ -4,12 +4,12 @@
 #include <memory>
 #include <vector>
 
+#include "accel/structure/bounding_elements.h"
 #include "accel/structure/cull_plane.h"
 #include "accel/structure/group_placement.h"
 #include "accel/structure/guest_shapes.h"
 #include "accel/structure/merged_meshes.h"
 #include "accel/structure/node.h"
-#include "accel/structure/node_spheres.h"
 #include "accel/structure/partition.h"
 #include "accel/transform/transform.h"
 #include "core/config/config.h"
@@ -40,7 +40,7 @@ struct Accel {
   BlockArray blocks;
   NodeArray full_nodes;                        ///< with bvh.storage: quantised the nodes as they were; else empty
   std::vector<CullPlane> planes;               ///< in order of the nodes; empty without cull_planes
-  std::vector<NodeSpheres> spheres;            ///< by node, tested instead of its boxes; empty with bvh.elements: boxes
+  BoundingElements elements;                   ///< tested instead of nodes' boxes; empty with bvh.elements: boxes
   bool shared_normals = false;                 ///< of siblings; `planes` repeats them
   bool planes_first = false;                   ///< a child's planes are tested before its box
   std::uint64_t plane_bytes = 0;               ///< of the planes, normals that are shared counted once
@@ -65,8 +65,8 @@ struct Accel {
   bool calls_any_hit() const { return (has_non_opaque && any_hit != nullptr) || all_hits != nullptr; }
   /// Of what is here.
   std::size_t size_bytes() const {
-    return nodes.here() * sizeof(Node) + blocks.here() * sizeof(TriangleBlock) + spheres.size() * sizeof(NodeSpheres) +
-           plane_bytes + instances.size() * sizeof(InstanceNode) + groups.size() * sizeof(GroupPlacement) +
+    return nodes.here() * sizeof(Node) + blocks.here() * sizeof(TriangleBlock) + elements.size_bytes() + plane_bytes +
+           instances.size() * sizeof(InstanceNode) + groups.size() * sizeof(GroupPlacement) +
            members.size() * sizeof(std::uint32_t);
   }
   /// The node at which every ray starts: the top level's root, or the root of the only instance.

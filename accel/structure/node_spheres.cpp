@@ -4,17 +4,14 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/rounding.h"
+
 namespace carousel::accel {
 
 namespace {
 
 constexpr double kSlack = 0x1p-18;   // of the distance, see the header
 constexpr double kLeast = 0x1p-120;  // where reciprocals overflow
-
-float rounded_down(double x) {
-  const float near = static_cast<float>(x);
-  return double{near} > x ? std::nextafter(near, -kInfinity) : near;
-}
 
 }  // namespace
 

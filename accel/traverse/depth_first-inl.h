@@ -45,14 +45,14 @@ HWY_INLINE void count_leaf(NodeRef leaf, IntersectionCounts& counts) {
   (HWY_UNLIKELY(leaf.is_procedural()) ? counts.procedural : counts.triangle) += leaf.triangles();
 }
 
-/// The children whose spheres the ray meets, with entries. A hit has to lie in its instance's world box, so the box is
-/// tested after its sphere, and counted.
+/// The children whose bounding elements the ray meets, with entries. A hit has to lie in its instance's world box, so
+/// the box is tested after its element, and counted.
 template <class Registers>
-HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Vec3& origin, const Vec3& direction,
-                                       const Registers& ray, float tmin, float tmax, float* entry,
-                                       std::uint64_t& tested) {
+HWY_NOINLINE std::uint32_t met_elements(const Accel& accel, NodeRef ref, const Vec3& origin, const Vec3& direction,
+                                        const Registers& ray, float tmin, float tmax, float* entry,
+                                        std::uint64_t& tested) {
   const Node& node = accel.nodes[ref.node()];
-  std::uint32_t met = intersect_spheres(accel.spheres[ref.node()], node.count, origin, direction, tmin, tmax, entry);
+  std::uint32_t met = accel.elements.intersect(ref.node(), node.count, origin, direction, tmin, tmax, entry);
   if (!node.above_instances || met == 0) return met;
   std::uint32_t instances = 0;
   for (int lane = 0; lane < node.count; ++lane) instances |= std::uint32_t{node.child[lane].is_instance()} << lane;
@@ -67,11 +67,11 @@ HWY_NOINLINE std::uint32_t met_spheres(const Accel& accel, NodeRef ref, const Ve
 /// for contents that are not there would take the plain loop's registers.
 enum class Nodes : std::uint8_t {
   kPlain,  ///< boxes alone, or with leaves of their own
-  kOther,  ///< spheres, cull planes, or the boxes before quantisation
+  kOther,  ///< other elements, cull planes, or the boxes before quantisation
 };
 
 inline Nodes nodes_of(const Accel& accel) {
-  return accel.spheres.empty() && accel.planes.empty() && accel.full_nodes.empty() ? Nodes::kPlain : Nodes::kOther;
+  return accel.elements.empty() && accel.planes.empty() && accel.full_nodes.empty() ? Nodes::kPlain : Nodes::kOther;
 }
 
 /// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node
@@ -84,10 +84,10 @@ HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const Loc
   tested += node.count;
   if (HWY_UNLIKELY(direct != 0)) tested -= static_cast<std::uint64_t>(std::popcount(direct));
   if constexpr (kNodes == Nodes::kOther)
-    if (!accel.spheres.empty()) {
+    if (!accel.elements.empty()) {
       std::uint64_t more = 0;  // a counter whose address is known elsewhere would not stay in a register
       const std::uint32_t met =
-          met_spheres(accel, ref, frame.origin, frame.direction, ray, frame.slab.tmin, tmax, entry, more);
+          met_elements(accel, ref, frame.origin, frame.direction, ray, frame.slab.tmin, tmax, entry, more);
       tested += more;
       return met & ~direct;
     }

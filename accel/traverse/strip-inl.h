@@ -81,12 +81,12 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
     counts.box += boxes;
     alignas(64) float entry[kMaxWidth];
     std::uint32_t mask;
-    if (HWY_LIKELY(node.plane_counts == 0 && accel.spheres.empty())) {
+    if (HWY_LIKELY(node.plane_counts == 0 && accel.elements.empty())) {
       mask = slab_node(node, in_registers(ray), record.hit.t, entry, nearest) & lanes & held;
     } else {
-      mask = accel.spheres.empty() ? slab_node(node, in_registers(ray), record.hit.t, entry)
-                                   : met_spheres(accel, key.ref, model.origin, model.direction, in_registers(ray),
-                                                 model.tmin, record.hit.t, entry, counts.box);
+      mask = accel.elements.empty() ? slab_node(node, in_registers(ray), record.hit.t, entry)
+                                    : met_elements(accel, key.ref, model.origin, model.direction, in_registers(ray),
+                                                   model.tmin, record.hit.t, entry, counts.box);
       mask &= lanes & held;
       mask = cull(accel, node, ray, model.direction, lanes, mask, counts, members.culls);
       for (int lane = 0; lane < kMaxWidth; ++lane)

@@ -6,12 +6,10 @@
 
 namespace carousel {
 
-/// The number of a row for this machine: the configuration's own, or the profile's. Without a profile the number is
-/// zero.
-inline CostValue cost_value(const Config& config, Cost cost) {
+namespace cost_detail {
+
+inline CostValue profile_value(const Config& config, Cost cost) {
   const CostRow& row = kCostTable[cost_index(cost)];
-  const OwnCosts& own = row.section == "energy" ? config.energy.own : config.area.own;
-  if (own[cost_index(cost)]) return {*own[cost_index(cost)], Basis::kPublished, "the configuration"};
   switch (config.energy.profile) {
     case CostProfile::kN45:
       return row.n45;
@@ -21,6 +19,24 @@ inline CostValue cost_value(const Config& config, Cost cost) {
       break;
   }
   return {0, Basis::kAssumed, ""};
+}
+
+}  // namespace cost_detail
+
+/// The number of a row for this machine: the configuration's own, or the profile's. Without a profile the number is
+/// zero. A ray that meets an oriented box is first brought into its frame, as into an instance's.
+inline CostValue cost_value(const Config& config, Cost cost) {
+  const CostRow& row = kCostTable[cost_index(cost)];
+  const OwnCosts& own = row.section == "energy" ? config.energy.own : config.area.own;
+  if (own[cost_index(cost)]) return {*own[cost_index(cost)], Basis::kPublished, "the configuration"};
+  CostValue value = cost_detail::profile_value(config, cost);
+  const bool turned = config.bvh.elements == BvhConfig::Elements::kOrientedBoxes;
+  if (turned && (cost == Cost::kBoxTest || cost == Cost::kBoxUnit)) {
+    const Cost transform = cost == Cost::kBoxTest ? Cost::kTransform : Cost::kTransformUnit;
+    value = {value.value + cost_detail::profile_value(config, transform).value, Basis::kAssumed,
+             "a box and a transform, since boxes are oriented"};
+  }
+  return value;
 }
 
 inline double cost(const Config& config, Cost cost) {

@@ -10,7 +10,7 @@ struct BvhConfig {
   std::int64_t width = 8;
   std::int64_t leaf_triangles = 4;
   std::int64_t treelet_triangles = 2048;
-  enum class Elements { kBoxes, kSpheres } elements = Elements::kBoxes;
+  enum class Elements { kBoxes, kSpheres, kOrientedBoxes } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
   enum class Storage { kFull, kQuantised } storage = Storage::kFull;
   enum class Leaves { kTriangles, kStrips } leaves = Leaves::kTriangles;
@@ -25,7 +25,7 @@ struct BvhConfig {
 template <>
 inline constexpr auto kEnumNames<BvhConfig::Elements> = [] {
   using enum BvhConfig::Elements;
-  return names<BvhConfig::Elements>({{kBoxes, "boxes"}, {kSpheres, "spheres"}});
+  return names<BvhConfig::Elements>({{kBoxes, "boxes"}, {kSpheres, "spheres"}, {kOrientedBoxes, "oriented_boxes"}});
 }();
 
 template <>
@@ -67,7 +67,8 @@ void describe(V& v, BvhConfig& c) {
           "The largest number of triangles of a leaf.");
   v.field("treelet_triangles", c.treelet_triangles, IntRange{1, 1 << 24}, "triangles",
           "The largest size of the subtrees that traversal: treelet crosses in one visit.");
-  v.choice("elements", c.elements, "The children of a node are bounded by boxes or by spheres.");
+  v.choice("elements", c.elements,
+           "The children of a node are bounded by boxes along the axes, by spheres, or by boxes that are turned.");
   v.field(
       "mixed_triangles", c.mixed_triangles, IntRange{0, 16}, "triangles",
       "Leaves of at most this size have no box; their triangles are tested with the other children of their parent. "

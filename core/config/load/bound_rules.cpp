@@ -23,11 +23,14 @@ class BoundRules {
 
  private:
   void elements_fit() {
-    if (c.bvh.elements == BvhConfig::Elements::kSpheres) {
-      constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found spheres";
-      if (c.cull_planes.count > 0) breach_("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0"));
-      if (c.bundles.size > 0) breach_("bvh.elements", fmt::format(what, "bundles", "bundles.size: 0"));
-    }
+    if (c.bvh.elements == BvhConfig::Elements::kBoxes) return;
+    if (c.bvh.elements == BvhConfig::Elements::kOrientedBoxes)
+      need_bounded_errors("oriented boxes", "bvh.elements: boxes");
+    constexpr std::string_view what = "{} need boxes to be tested with; expected boxes, or {}; found {}";
+    const std::string_view found = enum_name(c.bvh.elements);
+    if (c.cull_planes.count > 0)
+      breach_("bvh.elements", fmt::format(what, "cull planes", "cull_planes.count: 0", found));
+    if (c.bundles.size > 0) breach_("bvh.elements", fmt::format(what, "bundles", "bundles.size: 0", found));
   }
 
   // The top level's planes are fitted to instances.
@@ -45,8 +48,9 @@ class BoundRules {
     if (c.bvh.levels == 2) return;
     constexpr std::string_view what = "{} not tested within groups of instances; expected 2, or {}; found {}";
     if (c.bundles.size > 0) breach_("bvh.levels", fmt::format(what, "bundles are", "bundles.size: 0", c.bvh.levels));
-    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
-      breach_("bvh.levels", fmt::format(what, "spheres are", "bvh.elements: boxes", c.bvh.levels));
+    if (c.bvh.elements != BvhConfig::Elements::kBoxes)
+      breach_("bvh.levels",
+              fmt::format(what, fmt::format("{} are", enum_name(c.bvh.elements)), "bvh.elements: boxes", c.bvh.levels));
     if (c.cull_planes.count > 0 && c.cull_planes.levels != CullPlanesConfig::Levels::kBlas)
       breach_("bvh.levels",
               fmt::format(what, "cull planes above the instances are", "cull_planes.levels: blas", c.bvh.levels));
@@ -90,16 +94,18 @@ class BoundRules {
                           c.rays.slots_per_resource, without));
   }
 
-  // The slack of the plane test covers the rounding of these kernels. For the others there is no bound.
-  void planes_need_bounded_errors() {
+  // The slack of their tests covers the rounding of these kernels. For the others there is no bound.
+  void need_bounded_errors(std::string_view objects, std::string_view without) {
     if (c.accuracy.triangle != TriangleLevel::kWatertight && c.accuracy.triangle != TriangleLevel::kExact)
-      breach_("accuracy.triangle", fmt::format("cull planes could lose hits of {}; expected watertight or exact, or "
-                                               "cull_planes.count: 0",
-                                               enum_name(c.accuracy.triangle)));
+      breach_("accuracy.triangle", fmt::format("{} could lose hits of {}; expected watertight or exact, or {}", objects,
+                                               enum_name(c.accuracy.triangle), without));
     if (c.accuracy.box != BoxLevel::kConservative)
-      breach_("accuracy.box", fmt::format("cull planes go with conservative boxes; expected conservative, found {}, or "
-                                          "cull_planes.count: 0",
-                                          enum_name(c.accuracy.box)));
+      breach_("accuracy.box", fmt::format("{} go with conservative boxes; expected conservative, found {}, or {}",
+                                          objects, enum_name(c.accuracy.box), without));
+  }
+
+  void planes_need_bounded_errors() {
+    need_bounded_errors("cull planes", "cull_planes.count: 0");
     if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas &&
         c.accuracy.transform == TransformLevel::kInverseMatrix)
       breach_("accuracy.transform",

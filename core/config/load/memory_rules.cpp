@@ -41,8 +41,9 @@ class MemoryRules {
   void quantised_nodes_fit() {
     if (c.bvh.storage != BvhConfig::Storage::kQuantised) return;
     constexpr std::string_view without = ", or bvh.storage: full";
-    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
-      breach_("bvh.elements", fmt::format("quantised nodes hold boxes; expected boxes{}; found spheres", without));
+    if (c.bvh.elements != BvhConfig::Elements::kBoxes)
+      breach_("bvh.elements", fmt::format("quantised nodes hold boxes; expected boxes{}; found {}", without,
+                                          enum_name(c.bvh.elements)));
     if (c.bvh.mixed_triangles > 0)
       breach_("bvh.mixed_triangles",
               fmt::format("quantised nodes hold no triangles; expected 0{}; found {}", without, c.bvh.mixed_triangles));
@@ -65,13 +66,14 @@ class MemoryRules {
               "a strip of triangles is decoded as a whole; expected strip, or bvh.leaves: triangles; found single");
   }
 
-  // Spheres and cull planes are fitted to whole primitives, and their margins to hits in the primitives' own boxes.
+  // Elements other than boxes, and cull planes, are fitted to whole primitives, and their margins to hits in the
+  // primitives' own boxes.
   void builder_fits() {
     if (c.bvh.builder == BvhConfig::Builder::kSah) return;
     const std::string_view name = enum_name(c.bvh.builder);
-    if (c.bvh.elements == BvhConfig::Elements::kSpheres)
-      breach_("bvh.elements",
-              fmt::format("bvh.builder: {} cuts boxes; expected boxes, or bvh.builder: sah; found spheres", name));
+    if (c.bvh.elements != BvhConfig::Elements::kBoxes)
+      breach_("bvh.elements", fmt::format("bvh.builder: {} cuts boxes; expected boxes, or bvh.builder: sah; found {}",
+                                          name, enum_name(c.bvh.elements)));
     if (c.cull_planes.count > 0)
       breach_("cull_planes.count", fmt::format("cull planes are fitted to whole triangles, and bvh.builder: {} cuts "
                                                "their boxes; expected 0, or bvh.builder: sah; found {}",

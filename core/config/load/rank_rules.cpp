@@ -27,7 +27,7 @@ void check_placement(const Config& config, const RuleBreach& breach) {
   refuse(config.cull_planes.count > 0, "cull_planes.count",
          fmt::format("cull planes are not partitioned yet; expected 0, found {}", config.cull_planes.count));
   refuse(config.bvh.elements != BvhConfig::Elements::kBoxes, "bvh.elements",
-         fmt::format("spheres are not partitioned yet; expected boxes, found {}", enum_name(config.bvh.elements)));
+         fmt::format("{0} are not partitioned yet; expected boxes, found {0}", enum_name(config.bvh.elements)));
   refuse(
       config.bvh.storage != BvhConfig::Storage::kFull, "bvh.storage",
       fmt::format("pieces of boxes are not partitioned yet; expected full, found {}", enum_name(config.bvh.storage)));

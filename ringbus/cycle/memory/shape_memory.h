@@ -159,7 +159,8 @@ class ShapeMemory {
   static std::uint32_t bytes_of_node(const accel::Accel& accel, const BvhConfig& bvh) {
     if (bvh.storage == BvhConfig::Storage::kQuantised)
       return bvh.width <= kSmallWidth ? kSmallNodeBytes : kLargeNodeBytes;
-    return sizeof(accel::Node) - (accel.spheres.empty() ? 0 : sizeof(accel::Node::plane) - sizeof(accel::NodeSpheres));
+    if (accel.elements.empty()) return sizeof(accel::Node);
+    return static_cast<std::uint32_t>(sizeof(accel::Node) - sizeof(accel::Node::plane) + accel.elements.node_bytes());
   }
   /// Fills in primitives_before_ where each primitive has a leaf's bytes for itself; the bytes in all.
   std::uint64_t bytes_of_leaves() {

@@ -172,6 +172,15 @@ TEST_F(EnergyRun, TheCostsStandInTheReportWithTheirSources) {
   }
 }
 
+// A ray is turned into each oriented box's frame: 29 + 80.1 pJ a test, and a transform unit's place beside each of
+// four.
+TEST_F(EnergyRun, AnOrientedBoxCostsATransformAsWell) {
+  const Json r = run("ring", {"bvh.elements=oriented_boxes"});
+  EXPECT_NEAR(r["energy"]["parts"]["box_tests"]["pj_each"].get<double>(), 109.1, 1e-3);
+  EXPECT_NEAR(r["area"]["parts"]["test_units"]["mm2"].get<double>(),
+              8 * (4 * (0.126 + 0.0928) + 0.193 + 0.0928 + 0.126), 1e-4);
+}
+
 TEST(MachinesPage, HasEveryNumberWithItsSource) {
   std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/machines.md");
   const std::string page(std::istreambuf_iterator<char>(file), {});

@@ -116,6 +116,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"SpheresInGroups", SCENE "bvh: {levels: 3, elements: spheres}\n",
                   "test.yaml:2:15: bvh.levels: spheres are not tested within groups of instances; expected 2, or "
                   "bvh.elements: boxes; found 3"},
+        BadConfig{"OrientedBoxesOfFastTriangles", SCENE "bvh: {elements: oriented_boxes}\naccuracy: {triangle: fast}\n",
+                  "test.yaml:3:22: accuracy.triangle: oriented boxes could lose hits of fast; expected watertight or "
+                  "exact, or bvh.elements: boxes"},
+        BadConfig{"OrientedBoxesWithPlanes", SCENE "cull_planes: {count: 2}\nbvh: {elements: oriented_boxes}\n",
+                  "test.yaml:3:17: bvh.elements: cull planes need boxes to be tested with; expected boxes, or "
+                  "cull_planes.count: 0; found oriented_boxes"},
         BadConfig{"TopPlanesAboveGroups", SCENE "cull_planes: {count: 2, levels: all}\nbvh: {levels: 8}\n",
                   "test.yaml:3:15: bvh.levels: cull planes above the instances are not tested within groups of "
                   "instances; expected 2, or cull_planes.levels: blas; found 8"},
