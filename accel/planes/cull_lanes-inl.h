@@ -26,6 +26,7 @@
 #include "accel/planes/cull_plane_clip.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/cull_plane.h"
+#include "core/numeric/rounding.h"
 #include "core/statistics/cull_counts.h"
 #include "core/statistics/intersection_counts.h"
 
@@ -90,6 +91,12 @@ struct PlaneLanes {
   }
 };
 
+HWY_INLINE std::uint32_t bits_of(hn::Mask<PlaneLanes::Tag> mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(PlaneLanes::Tag(), mask, bits);
+  return bits[0];
+}
+
 /// The part of a ray's line that planes and box leave, for some children.
 class CutLines {
  public:
@@ -144,6 +151,37 @@ class CutLines {
     exit_ = hn::IfThenElse(beside, hn::Set(d, -kInfinity), hn::IfThenElse(out, at, exit_));
   }
 
+  /// By a sphere of each lane in `lanes`; `sphere(lane)` is that of a lane. In double, whose rounding is nothing beside
+  /// the margin: a point of the line that is within 11 u of the reach of the sphere (6 u along each axis, see
+  /// cull_plane_clip.h) is within a sphere whose radius is larger by 32 u.
+  template <class At>
+  HWY_INLINE void cut_by_sphere(M lanes, const At& sphere, const Vec3& direction) {
+    const Tag d;
+    alignas(32) float margin[kMaxWidth], entry[kMaxWidth], exit[kMaxWidth];
+    hn::Store(margin_, d, margin);
+    hn::Store(entry_, d, entry);
+    hn::Store(exit_, d, exit);
+    const DVec3 by(direction);
+    const double length2 = by.x * by.x + by.y * by.y + by.z * by.z;
+    for (std::uint32_t left = bits_of(lanes); left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      const CullPlane& s = sphere(lane);
+      const double radius = double{s.distance} + double{margin[lane]};
+      const DVec3 from(double{ray_.origin[0]} - double{s.normal[0]}, double{ray_.origin[1]} - double{s.normal[1]},
+                       double{ray_.origin[2]} - double{s.normal[2]});
+      const double middle = -(from.x * by.x + from.y * by.y + from.z * by.z) / length2;
+      const DVec3 off(from.x + middle * by.x, from.y + middle * by.y, from.z + middle * by.z);
+      const double half2 = radius * radius - (off.x * off.x + off.y * off.y + off.z * off.z);
+      if (half2 < 0) entry[lane] = kInfinity;
+      if (!(half2 >= 0)) continue;
+      const double half = std::sqrt(half2 / length2);
+      entry[lane] = std::fmax(rounded_down(middle - half), entry[lane]);
+      exit[lane] = std::fmin(rounded_up(middle + half), exit[lane]);
+    }
+    entry_ = hn::Load(d, entry);
+    exit_ = hn::Load(d, exit);
+  }
+
   /// Lanes in which the line misses everything that stands in the child.
   HWY_INLINE M empty() const { return hn::Gt(entry_, exit_); }
 
@@ -186,10 +224,15 @@ HWY_INLINE std::uint64_t cut_by_planes(CutLines& lines, const LanePlaneCounts& c
   return tested;
 }
 
-HWY_INLINE std::uint32_t bits_of(CutLines::M mask) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(CutLines::Tag(), mask, bits);
-  return bits[0];
+/// Cuts the lines of `lanes`, from `first` on, by the sphere of each. Returns the spheres looked at.
+HWY_INLINE std::uint64_t cut_by_spheres(CutLines& lines, const LanePlaneCounts& counts, std::size_t first,
+                                        const CullPlane* spheres, CutLines::M lanes, const Vec3& direction) {
+  const CutLines::M active = hn::AndNot(lines.empty(), lanes);
+  lines.cut_by_sphere(
+      active,
+      [&](int lane) -> const CullPlane& { return spheres[counts.before[first + static_cast<std::size_t>(lane)]]; },
+      direction);
+  return hn::CountTrue(CutLines::Tag(), active);
 }
 
 HWY_INLINE CutLines::M mask_of(std::uint32_t bits) {
@@ -216,7 +259,8 @@ HWY_NOINLINE std::uint32_t cull_lanes(const Accel& accel, const Node& node, cons
     if (here == 0) continue;
     CutLines lines(node, first, ray, margins);
     if (!accel.planes_first) lines.cut_by_box();
-    level.plane_tests += cut_by_planes(lines, planes, first, first_plane, mask_of(here), direction);
+    level.plane_tests += (accel.second_spheres ? cut_by_spheres : cut_by_planes)(lines, planes, first, first_plane,
+                                                                                 mask_of(here), direction);
     if (accel.planes_first) {
       level.boxes += hn::CountTrue(CutLines::Tag(), hn::And(lines.empty(), mask_of(here)));
       lines.cut_by_box();

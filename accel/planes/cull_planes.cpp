@@ -6,6 +6,7 @@
 
 #include "accel/planes/oriented_box.h"
 #include "accel/planes/plane_candidates.h"
+#include "accel/planes/second_sphere.h"
 #include "accel/planes/top_planes.h"
 #include "accel/structure/sphere.h"
 
@@ -29,6 +30,10 @@ class PlaneBuilder {
         std::find_if(accel_.nodes.begin(), accel_.nodes.end(), [](const Node& n) { return n.above_instances; });
     set_depths();
     const std::size_t below = static_cast<std::size_t>(first_of_top - accel_.nodes.begin());
+    if (spheres()) {
+      each(0, below, [&](std::size_t i) { sphere_lanes(i); });
+      return store();
+    }
     if (config_.levels != Levels::kTlas) find(0, below);
     if (config_.levels != Levels::kBlas) {
       top_.emplace(accel_, scene_, config_.fit, found_);
@@ -100,6 +105,7 @@ class PlaneBuilder {
     }
     return choice.best();
   }
+  bool spheres() const { return config_.object == CullPlanesConfig::Object::kSphere; }
   bool oriented_boxes() const { return config_.object == CullPlanesConfig::Object::kOrientedBox; }
   static void offer_triangles(const std::vector<Vec3>& points, PlaneChoice& choice) {
     for (std::size_t i = 0; i < points.size(); i += 3) {
@@ -132,15 +138,30 @@ class PlaneBuilder {
     }
   }
 
+  void sphere_lanes(std::size_t index) {
+    const Node& node = accel_.nodes[index];
+    for (int lane = 0; lane < node.count; ++lane) {
+      if (!wanted(node, lane)) continue;
+      const Corners corners = corners_below(node.child[lane]);
+      if (const auto sphere = second_sphere(corners.points, corners.spheres, child_box(node, lane)))
+        found_[index][static_cast<std::size_t>(lane)] = {*sphere};
+    }
+  }
+
+  Corners corners_below(NodeRef child) const {
+    Corners corners;
+    if (child.is_inner() && config_.fit == CullPlanesConfig::Fit::kBoxes)
+      append_box_corners(accel_.nodes[child.node()], corners.points);
+    else
+      append_corners(child, corners);
+    return corners;
+  }
+
   /// The points that a lane's planes are fitted to.
   BoxedShape below(const Node& node, int lane) const {
     if (node.above_instances) return top_->shape(node, lane);
     const Aabb box = child_box(node, lane);
-    Corners corners;
-    if (node.child[lane].is_inner() && config_.fit == CullPlanesConfig::Fit::kBoxes)
-      append_box_corners(accel_.nodes[node.child[lane].node()], corners.points);
-    else
-      append_corners(node.child[lane], corners);
+    Corners corners = corners_below(node.child[lane]);
     return {box, [box, all = std::move(corners)](const CullPlane& plane) { return all.distance_along(plane, box); }};
   }
 
@@ -219,6 +240,7 @@ class PlaneBuilder {
     }
     accel_.planes.shrink_to_fit();
     accel_.shared_normals = config_.shared_normals;
+    accel_.second_spheres = spheres();
     accel_.planes_first = config_.order == CullPlanesConfig::Order::kPlanesFirst;
     for (const Node& node : accel_.nodes) accel_.plane_bytes += plane_bytes(node, accel_.shared_normals);
   }

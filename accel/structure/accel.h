@@ -42,6 +42,7 @@ struct Accel {
   std::vector<CullPlane> planes;               ///< in order of the nodes; empty without cull_planes
   BoundingElements elements;                   ///< tested instead of nodes' boxes; empty with bvh.elements: boxes
   bool shared_normals = false;                 ///< of siblings; `planes` repeats them
+  bool second_spheres = false;                 ///< in place of planes, see CullPlane
   bool planes_first = false;                   ///< a child's planes are tested before its box
   std::uint64_t plane_bytes = 0;               ///< of the planes, normals that are shared counted once
   std::vector<InstanceNode> instances;         ///< indexed as Scene::instances; behind these the placements of groups

@@ -10,6 +10,9 @@ namespace carousel::accel {
 /// A plane beyond which part of a child's box is empty (US 20250259373): all that stands below the child has
 /// n . (x - c) <= distance, exactly, with c = plane_centre() of its box and |n.x| + |n.y| + |n.z| <= 1. With normals
 /// of that length a point that is off by e along each axis is off by no more than e along n.
+///
+/// With Accel::second_spheres a sphere stands in its place, which holds all that stands below the child: `normal` is
+/// its centre, `distance` its radius.
 struct CullPlane {
   float normal[3];
   float distance;

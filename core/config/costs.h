@@ -24,18 +24,22 @@ inline CostValue profile_value(const Config& config, Cost cost) {
 }  // namespace cost_detail
 
 /// The number of a row for this machine: the configuration's own, or the profile's. Without a profile the number is
-/// zero. A ray that meets an oriented box is first brought into its frame, as into an instance's.
+/// zero. Where spheres stand in place of boxes or planes, the numbers are those of primitives that are spheres; a ray
+/// that meets an oriented box is first brought into its frame, as into an instance's.
 inline CostValue cost_value(const Config& config, Cost cost) {
-  const CostRow& row = kCostTable[cost_index(cost)];
-  const OwnCosts& own = row.section == "energy" ? config.energy.own : config.area.own;
+  const bool energy = kCostTable[cost_index(cost)].section == "energy";
+  const OwnCosts& own = energy ? config.energy.own : config.area.own;
   if (own[cost_index(cost)]) return {*own[cost_index(cost)], Basis::kPublished, "the configuration"};
-  CostValue value = cost_detail::profile_value(config, cost);
-  const bool turned = config.bvh.elements == BvhConfig::Elements::kOrientedBoxes;
-  if (turned && (cost == Cost::kBoxTest || cost == Cost::kBoxUnit)) {
-    const Cost transform = cost == Cost::kBoxTest ? Cost::kTransform : Cost::kTransformUnit;
-    value = {value.value + cost_detail::profile_value(config, transform).value, Basis::kAssumed,
-             "a box and a transform, since boxes are oriented"};
-  }
+  const CostValue value = cost_detail::profile_value(config, cost);
+  const auto row = [&](UnitKind kind) { return energy ? energy_of(kind) : area_of(kind); };
+  const auto value_of = [&](UnitKind kind) { return cost_detail::profile_value(config, row(kind)).value; };
+  const bool box = cost == row(UnitKind::kBox), plane = cost == row(UnitKind::kPlane);
+  using Elements = BvhConfig::Elements;
+  if ((box && config.bvh.elements == Elements::kSpheres) ||
+      (plane && config.cull_planes.object == CullPlanesConfig::Object::kSphere))
+    return {value_of(UnitKind::kProcedural), Basis::kAssumed, "a sphere, as a procedural primitive"};
+  if (box && config.bvh.elements == Elements::kOrientedBoxes)
+    return {value.value + value_of(UnitKind::kTransform), Basis::kAssumed, "a box and a transform: boxes are oriented"};
   return value;
 }
 

@@ -8,7 +8,7 @@ namespace carousel {
 
 struct CullPlanesConfig {
   std::int64_t count = 0;
-  enum class Object { kPlanes, kOrientedBox } object = Object::kPlanes;
+  enum class Object { kPlanes, kOrientedBox, kSphere } object = Object::kPlanes;
   enum class Nodes { kLeaves, kInner, kAll } nodes = Nodes::kLeaves;
   bool shared_normals = false;
   enum class Fit { kVertices, kBoxes } fit = Fit::kVertices;
@@ -22,7 +22,7 @@ struct CullPlanesConfig {
 template <>
 inline constexpr auto kEnumNames<CullPlanesConfig::Object> = [] {
   using enum CullPlanesConfig::Object;
-  return names<CullPlanesConfig::Object>({{kPlanes, "planes"}, {kOrientedBox, "oriented_box"}});
+  return names<CullPlanesConfig::Object>({{kPlanes, "planes"}, {kOrientedBox, "oriented_box"}, {kSphere, "sphere"}});
 }();
 
 template <>
@@ -62,7 +62,8 @@ void describe(V& v, CullPlanesConfig& c) {
   v.field("count", c.count, IntRange{0, 8}, "planes per child",
           "The largest number of cull planes of a child. With 0 there are none.");
   v.choice("object", c.object,
-           "The planes are chosen singly, or are the six faces of a box that is turned against the axes.");
+           "The planes are chosen singly, or are the six faces of a box that is turned against the axes; or a sphere "
+           "stands in place of a plane.");
   v.choice("nodes", c.nodes, "The children that have planes.");
   v.field("shared_normals", c.shared_normals, "", "Siblings share the normals of their planes.");
   v.choice("fit", c.fit,

@@ -122,6 +122,15 @@ class BoundRules {
         breach_("cull_planes.shared_normals",
                 "each oriented box has axes of its own; expected false, found true, or cull_planes.object: planes");
     }
+    if (c.cull_planes.object == CullPlanesConfig::Object::kSphere) {
+      constexpr std::string_view without = ", or cull_planes.object: planes";
+      if (c.cull_planes.shared_normals)
+        breach_("cull_planes.shared_normals",
+                fmt::format("a sphere has no normal; expected false, found true{}", without));
+      if (c.cull_planes.levels != CullPlanesConfig::Levels::kBlas)
+        breach_("cull_planes.levels", fmt::format("spheres stand below the instances; expected blas, found {}{}",
+                                                  enum_name(c.cull_planes.levels), without));
+    }
     if (c.cull_planes.depth.first > c.cull_planes.depth.last)
       breach_("cull_planes.depth.first",
               fmt::format("no node has such a depth; expected at most cull_planes.depth.last = {}, found {}",

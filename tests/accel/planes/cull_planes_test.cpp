@@ -7,6 +7,7 @@
 
 #include "accel/exact/dyadic.h"
 #include "accel/planes/cull_plane_clip.h"
+#include "accel/structure/primitive_boxes.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/planes/plane_rays.h"
 #include "tests/accel/structure/test_scenes.h"
@@ -168,6 +169,28 @@ std::size_t cut_off(const Accel& accel, std::size_t& planes) {
   return outside;
 }
 
+/// How many vertices stand outside of a sphere around them, in exact arithmetic.
+std::size_t outside_spheres(const Accel& accel) {
+  std::size_t outside = 0;
+  for (const Node& node : accel.nodes) {
+    const CullPlane* sphere = accel.planes.data() + node.first_plane;
+    for (int lane = 0; lane < node.count; sphere += plane_count(node, lane++)) {
+      if (plane_count(node, lane) == 0) continue;
+      std::vector<Vec3> corners;
+      corners_below(accel, node.child[lane], corners);
+      for (const Vec3& p : corners) {
+        Dyadic beyond = -(Dyadic(sphere->distance) * Dyadic(sphere->distance));
+        for (int axis = 0; axis < 3; ++axis) {
+          const Dyadic along = Dyadic(p[axis]) - Dyadic(sphere->normal[axis]);
+          beyond = beyond + along * along;
+        }
+        outside += beyond.sign() > 0;
+      }
+    }
+  }
+  return outside;
+}
+
 TEST(CullPlanes, CutOffNoVertexExactly) {
   std::size_t planes = 0;
   for (const HardMesh& mesh : hard_meshes())
@@ -251,6 +274,60 @@ TEST(CullPlanes, MayBeTheFacesOfAnOrientedBox) {
     for (std::size_t i = 0; i < rays.size(); ++i) lost += !same_bits(without[i].hit, with[i].hit);
   }
   EXPECT_GT(planes, 5000u);
+  EXPECT_GT(counts.culled, 1000u);
+  EXPECT_EQ(lost, 0u);
+}
+
+/// Rays that touch the sphere of a leaf beside a vertex of its triangles, from afar.
+RayBatch rays_beside_spheres(const Accel& accel, std::size_t count, std::uint64_t seed) {
+  Random random(seed);
+  RayBatch rays;
+  while (rays.size() < count) {
+    const Node& node = accel.nodes[random.below(static_cast<std::uint32_t>(accel.nodes.size()))];
+    const CullPlane* sphere = accel.planes.data() + node.first_plane;
+    for (int lane = 0; lane < node.count; sphere += plane_count(node, lane++)) {
+      if (plane_count(node, lane) == 0 || node.child[lane].is_inner()) continue;
+      for (const Vec3& corner : triangle_corners(accel, node.child[lane], random.below(node.child[lane].triangles()))) {
+        const DVec3 out = DVec3(corner) - DVec3(sphere->normal[0], sphere->normal[1], sphere->normal[2]);
+        const DVec3 along = glm::normalize(glm::cross(out, DVec3(random.in_box(Vec3(-1), Vec3(1)))));
+        const double away = glm::length(out) * std::exp2(random.uniform(0, 12));
+        const Vec3 from(DVec3(corner) - away * along);
+        rays.push_back(ray_to(from, corner - from));
+      }
+    }
+  }
+  return rays;
+}
+
+// A sphere holds every vertex below, exactly, and no ray that touches it loses its hit.
+TEST(CullPlanes, MayBeASphere) {
+  CullPlanesConfig config;
+  config.count = 1;
+  config.nodes = Nodes::kAll;
+  config.object = CullPlanesConfig::Object::kSphere;
+  std::size_t spheres = 0, lost = 0, hit = 0;
+  IntersectionCounts counts;
+  for (const HardMesh& mesh : hard_meshes()) {
+    BvhConfig bvh;
+    bvh.leaf_triangles = 2;
+    const Accel plain = build_sequential(mesh.scene, 8, 2),
+                accel = build(mesh.scene, bvh, *make_sequential_executor(), {}, config);
+    spheres += accel.planes.size();
+    EXPECT_EQ(outside_spheres(accel), 0u) << mesh.name;
+    if (accel.planes.empty()) continue;
+    RayBatch rays = plane_grazing_rays(mesh.scene, 5000, run_seed());
+    for (const RayRequest& ray : rays_beside_spheres(accel, 20000, run_seed())) rays.push_back(ray);
+    HitBatch without, with;
+    IntersectionCounts of_plain;
+    trace_depth_first(plain, rays, without, of_plain);
+    trace_depth_first(accel, rays, with, counts);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      lost += !same_bits(without[i].hit, with[i].hit);
+      hit += without[i].hit.valid();
+    }
+  }
+  std::cout << fmt::format("{} spheres, {} culled, {} hits, {} lost\n", spheres, counts.culled, hit, lost);
+  EXPECT_GT(spheres, 1000u);
   EXPECT_GT(counts.culled, 1000u);
   EXPECT_EQ(lost, 0u);
 }

@@ -135,7 +135,7 @@ inline std::vector<KeyRow> key_rows() {
       {"cull_planes.fit", kPlanes},
       {"cull_planes.order", kPlanes},
       {"cull_planes.levels", kPlanes},
-      {"cull_planes.object", kPlanes, {"cull_planes.count=6"}},
+      {"cull_planes.object", kPlanes, {"cull_planes.count=6", "cull_planes.levels=blas"}},
       {"cull_planes.depth.first", kPlanes, {}, {"1"}},
       {"cull_planes.depth.last", kPlanes, {}, {"0"}},
       {"bundles.size", kBundles, {}, {"0", "4"}},

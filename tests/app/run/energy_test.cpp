@@ -172,13 +172,20 @@ TEST_F(EnergyRun, TheCostsStandInTheReportWithTheirSources) {
   }
 }
 
-// A ray is turned into each oriented box's frame: 29 + 80.1 pJ a test, and a transform unit's place beside each of
-// four.
-TEST_F(EnergyRun, AnOrientedBoxCostsATransformAsWell) {
-  const Json r = run("ring", {"bvh.elements=oriented_boxes"});
-  EXPECT_NEAR(r["energy"]["parts"]["box_tests"]["pj_each"].get<double>(), 109.1, 1e-3);
-  EXPECT_NEAR(r["area"]["parts"]["test_units"]["mm2"].get<double>(),
-              8 * (4 * (0.126 + 0.0928) + 0.193 + 0.0928 + 0.126), 1e-4);
+// A ray is turned into each oriented box's frame, 29 + 80.1 pJ, and a sphere costs what a primitive that is one does.
+TEST_F(EnergyRun, OtherBoundsCostWhatTheirTestsTake) {
+  const auto box = [&](const std::string& set) {
+    const Json r = run("ring", {set});
+    const double units = r["area"]["parts"]["test_units"]["mm2"].get<double>() / 8 - (0.193 + 0.0928 + 0.126);
+    return std::pair(r["energy"]["parts"]["box_tests"]["pj_each"].get<double>(), units / 4);
+  };
+  const auto turned = box("bvh.elements=oriented_boxes"), round = box("bvh.elements=spheres");
+  EXPECT_NEAR(turned.first, 29 + 80.1, 1e-3);
+  EXPECT_NEAR(turned.second, 0.126 + 0.0928, 1e-5);
+  EXPECT_NEAR(round.first, 98, 1e-3);
+  EXPECT_NEAR(round.second, 0.193, 1e-5);
+  const Json r = run("ring", {"cull_planes={count: 1, object: sphere}"});
+  EXPECT_NEAR(r["energy"]["parts"]["plane_tests"]["pj_each"].get<double>(), 98, 1e-3);
 }
 
 TEST(MachinesPage, HasEveryNumberWithItsSource) {

@@ -122,6 +122,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"OrientedBoxesWithPlanes", SCENE "cull_planes: {count: 2}\nbvh: {elements: oriented_boxes}\n",
                   "test.yaml:3:17: bvh.elements: cull planes need boxes to be tested with; expected boxes, or "
                   "cull_planes.count: 0; found oriented_boxes"},
+        BadConfig{"SharedNormalsOfSpheres", SCENE "cull_planes: {count: 1, object: sphere, shared_normals: true}\n",
+                  "test.yaml:2:57: cull_planes.shared_normals: a sphere has no normal; expected false, found true, or "
+                  "cull_planes.object: planes"},
+        BadConfig{"SpheresAroundInstances", SCENE "cull_planes: {count: 1, object: sphere, levels: all}\n",
+                  "test.yaml:2:49: cull_planes.levels: spheres stand below the instances; expected blas, found all, or "
+                  "cull_planes.object: planes"},
         BadConfig{"TopPlanesAboveGroups", SCENE "cull_planes: {count: 2, levels: all}\nbvh: {levels: 8}\n",
                   "test.yaml:3:15: bvh.levels: cull planes above the instances are not tested within groups of "
                   "instances; expected 2, or cull_planes.levels: blas; found 8"},
