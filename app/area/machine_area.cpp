@@ -77,6 +77,8 @@ report::Area machine_area(const Config& c) {
   for (std::int64_t r = 0; r < c.topology.resources; ++r) add_units(parts[AreaPart::kUnits], c, testers_of(c, r));
   const double slots = n * static_cast<double>(c.rays.slots_per_resource);
   store(AreaPart::kRayStores, slots * kRecordBytes / kKiB);
+  if (c.rays.banks > 0)  // of which each has two ports
+    parts[AreaPart::kRayStores].mm2 += parts[AreaPart::kRayStores].size * cost(c, Cost::kPortArea);
   if (topology.has_packets())
     store(AreaPart::kCollections, n * static_cast<double>(c.collections.capacity) * kIdBytes / kKiB);
   else

@@ -48,6 +48,7 @@ enum class Cost : std::uint8_t {
   kAnyHitUnit,
   // Areas of other parts.
   kSramArea,
+  kPortArea,
   kShaderArea,
   kWirePitch,
 };
@@ -252,6 +253,13 @@ inline constexpr auto kCostTable = [] {
        "Storage on the chip.",
        {0.00456f, kDerived, "0.609 mm² for 64 KB at 65 nm: SimTRaX's table of CACTI; scaled by (45/65)²"},
        {0.00034f, kAssumed, "bit cells of 0.027 µm² (Chang et al., ISSCC 2017), of which 65 % of the area consists"}},
+      {Cost::kPortArea,
+       kA,
+       "port",
+       "mm2/KiB",
+       "What a second port adds to storage on the chip.",
+       {0.00456f, kAssumed, "as much as the storage: a cell with two ports has twice the wires along each side"},
+       {0.00034f, kAssumed, "as much as the storage: a cell with two ports has twice the wires along each side"}},
       {Cost::kShaderArea,
        kA,
        "shader",

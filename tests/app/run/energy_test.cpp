@@ -139,6 +139,16 @@ TEST_F(EnergyRun, AreaIsOfTheConfiguredParts) {
   EXPECT_NEAR(both["area"]["parts"]["wires"]["mm2"].get<double>(), 2 * wires, 1e-9) << "twice a ring's wires";
 }
 
+// Each bank of a ray store has a port to the box units and one to the units for primitives.
+TEST_F(EnergyRun, ASecondPortTakesItsPlace) {
+  const auto stores = [&](const std::string& banks) {
+    const Json r = run("ring", {"rays.banks=" + banks, "rays.reads_per_cycle=0"});
+    return r["area"]["parts"]["ray_stores"]["mm2"].get<double>();
+  };
+  EXPECT_NEAR(stores("0"), 8 * 32 * 0.00456, 1e-4);
+  EXPECT_NEAR(stores("4"), 2 * 8 * 32 * 0.00456, 1e-4);
+}
+
 // A packet of 32 IDs has 144 bytes; with a packet for each of eight boxes there are eight, and with messages one of 20
 // bytes for each ray and box.
 TEST_F(EnergyRun, PlacesOfQueuesHoldWhatGoesAlongWithAPacket) {
