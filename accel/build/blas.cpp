@@ -1,6 +1,7 @@
 #include "accel/build/blas.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "accel/build/binary/reference_build.h"
@@ -13,9 +14,9 @@ namespace carousel::accel {
 namespace {
 
 /// Triangles, then spheres, with their boxes.
-std::vector<BuildPrimitive> boxes(const BlasMeshes& meshes, const MeshPiece* piece, Executor& executor) {
+BuildPrimitives boxes(const BlasMeshes& meshes, const MeshPiece* piece, Executor& executor) {
   const std::size_t triangles = meshes.triangles();
-  std::vector<BuildPrimitive> out(piece != nullptr ? piece->size() : meshes.size());
+  BuildPrimitives out(piece != nullptr ? piece->size() : meshes.size());
   executor.parallel_for(out.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t at = begin; at < end; ++at) {
       const std::size_t i = piece != nullptr ? (*piece)[at] : at;
@@ -35,10 +36,21 @@ std::vector<BuildPrimitive> boxes(const BlasMeshes& meshes, const MeshPiece* pie
   return out;
 }
 
-void fill_block(const BlasMeshes& meshes, const scene::Opacity& opacity, const BuildPrimitive* primitives,
+/// Their numbers; the primitives' memory is given back, since what is built next needs as much.
+std::vector<std::uint32_t> order_of(BuildPrimitives primitives, Executor& executor) {
+  std::vector<std::uint32_t> order(primitives.size());
+  executor.parallel_for(order.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) order[i] = primitives[i].index;
+  });
+  return order;
+}
+
+/// True if some of the primitives may be non-opaque.
+bool fill_block(const BlasMeshes& meshes, const scene::Opacity& opacity, const std::uint32_t* primitives,
                 std::uint32_t count, TriangleBlock& block) {
+  bool some = false;
   for (std::uint32_t lane = 0; lane < count; ++lane) {
-    const std::uint32_t number = primitives[lane].index;
+    const std::uint32_t number = primitives[lane];
     const auto set = [&](std::size_t vertex, const Vec3& p) {
       for (int axis = 0; axis < 3; ++axis) block.vertex[vertex][axis][lane] = p[axis];
     };
@@ -54,33 +66,47 @@ void fill_block(const BlasMeshes& meshes, const scene::Opacity& opacity, const B
       calls_any_hit = opacity.may_be_non_opaque(*mesh, index);
     }
     block.primitive[lane] = number | (calls_any_hit ? kNonOpaqueBit : 0);
+    some |= calls_any_hit;
   }
+  return some;
 }
 
-std::vector<BinaryNode> build_tree(std::vector<BuildPrimitive>& primitives, const BvhConfig& config,
-                                   const SahSettings& settings, Executor& executor) {
+BinaryTree build_tree(BuildPrimitives& primitives, const BvhConfig& config, const SahSettings& settings,
+                      Executor& executor) {
   return config.builder == BvhConfig::Builder::kSah
              ? build_sah(primitives, settings, executor)
              : build_references(primitives, settings, config.builder, config.duplicates);
 }
 
+/// Appends a tree, over primitives of which the first has the place `first` now.
+void append(const BinaryTree& tree, std::uint32_t first, BinaryTree& out) {
+  const auto at = static_cast<std::uint32_t>(out.size());
+  out.resize(at + tree.size());
+  std::vector<std::uint32_t> open{0};
+  while (!open.empty()) {
+    const std::uint32_t place = open.back();
+    open.pop_back();
+    BinaryNode node = tree[place];
+    if (node.count == 0) open.insert(open.end(), {node.first, node.right});
+    node.first += node.count == 0 ? at : first;
+    node.right += at;
+    out[at + place] = node;
+  }
+}
+
 /// One tree over triangles and spheres, whose leaves hold either the ones or the others.
-std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std::size_t triangles,
-                                   const BvhConfig& config, const SahSettings& settings, Executor& executor) {
+BinaryTree build_both(BuildPrimitives& primitives, std::size_t triangles, const BvhConfig& config,
+                      const SahSettings& settings, Executor& executor) {
   if (triangles == 0 || triangles == primitives.size()) return build_tree(primitives, config, settings, executor);
-  std::vector<BinaryNode> joint(1);
+  BinaryTree joint(1, BinaryNode{});
   const auto middle = primitives.begin() + static_cast<std::ptrdiff_t>(triangles);
-  std::vector<BuildPrimitive> parts[2] = {{primitives.begin(), middle}, {middle, primitives.end()}};
+  BuildPrimitives parts[2] = {{primitives.begin(), middle}, {middle, primitives.end()}};
   primitives.clear();
-  for (std::vector<BuildPrimitive>& part : parts) {
+  for (BuildPrimitives& part : parts) {
     const std::uint32_t at = static_cast<std::uint32_t>(joint.size());
     const std::uint32_t first = static_cast<std::uint32_t>(primitives.size());
     (primitives.empty() ? joint[0].first : joint[0].right) = at;
-    for (BinaryNode node : build_tree(part, config, settings, executor)) {
-      node.first += node.count == 0 ? at : first;
-      node.right += at;
-      joint.push_back(node);
-    }
+    append(build_tree(part, config, settings, executor), first, joint);
     primitives.insert(primitives.end(), part.begin(), part.end());
     joint[0].box.extend(joint[at].box);
   }
@@ -92,7 +118,7 @@ std::vector<BinaryNode> build_both(std::vector<BuildPrimitive>& primitives, std:
 Blas build_blas(const BlasMeshes& meshes, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
                 const MeshPiece* piece) {
   Blas blas;
-  std::vector<BuildPrimitive> primitives = boxes(meshes, piece, executor);
+  BuildPrimitives primitives = boxes(meshes, piece, executor);
   if (primitives.empty()) return blas;
   const auto first_sphere = std::find_if(primitives.begin(), primitives.end(),
                                          [&](const BuildPrimitive& p) { return p.index >= meshes.triangles(); });
@@ -100,34 +126,36 @@ Blas build_blas(const BlasMeshes& meshes, const scene::Opacity& opacity, const B
   SahSettings settings;
   settings.leaf_primitives = static_cast<std::uint32_t>(config.leaf_triangles);
   settings.block_primitives = std::min<std::uint32_t>(kBlockTriangles, settings.leaf_primitives);
-  std::vector<BinaryNode> binary = build_both(primitives, triangles, config, settings, executor);
+  BinaryTree binary = build_both(primitives, triangles, config, settings, executor);
   if (config.quality == BvhConfig::Quality::kHigh) reinsert(binary, executor);
   blas.box = binary[0].box;
 
-  struct Fill {
-    std::uint32_t first, count;
-  };
-  std::vector<Fill> fills;  // one a block
-  fills.reserve(primitives.size() / 2);
-  const auto make_leaf = [&](const BinaryNode& leaf) {
-    const std::uint32_t first_block = static_cast<std::uint32_t>(fills.size());
-    for (std::uint32_t i = 0; i < leaf.count; i += kBlockTriangles)
-      fills.push_back({leaf.first + i, std::min<std::uint32_t>(kBlockTriangles, leaf.count - i)});
-    const bool procedural = primitives[leaf.first].index >= meshes.triangles();
+  const std::vector<std::uint32_t> order = order_of(std::move(primitives), executor);
+  const auto make_leaf = [&](const BinaryNode& leaf, std::uint32_t first_block) {
+    const bool procedural = order[leaf.first] >= meshes.triangles();
     return WideLeaf{procedural ? NodeRef::procedural(first_block, leaf.count) : NodeRef::leaf(first_block, leaf.count),
                     static_cast<std::uint8_t>(leaf.count), leaf.count};
   };
-  blas.nodes.reserve(primitives.size() / 8 + 1);
-  blas.tree = collapse(binary, static_cast<int>(config.width), make_leaf, blas.nodes);
-  blas.nodes.shrink_to_fit();
-  blas.blocks.resize(fills.size());
-  executor.parallel_for(fills.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      fill_block(meshes, opacity, primitives.data() + fills[i].first, fills[i].count, blas.blocks[i]);
+  std::vector<BlockRun> runs;
+  blas.tree = collapse(binary, static_cast<int>(config.width), make_leaf, executor, blas.nodes, &runs);
+  BinaryTree().swap(binary);  // before blocks take memory
+  std::size_t blocks = 0;
+  for (const BlockRun& run : runs) blocks += run.blocks.size();
+  blas.blocks.grow(blocks);
+  std::atomic<bool> has_non_opaque = false;
+  executor.parallel_for(runs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    bool some = false;
+    for (std::size_t i = begin; i < end; ++i) {
+      TriangleBlock* out = blas.blocks.data() + runs[i].first_block;
+      for (const BlockPrimitives& of : runs[i].blocks) {
+        TriangleBlock block;
+        some |= fill_block(meshes, opacity, order.data() + of.first, of.count, block);
+        *out++ = block;
+      }
+    }
+    if (some) has_non_opaque = true;
   });
-  for (const TriangleBlock& block : blas.blocks)
-    for (const std::uint32_t primitive : block.primitive)
-      blas.has_non_opaque |= primitive != kNoPrimitive && (primitive & kNonOpaqueBit) != 0;
+  blas.has_non_opaque = has_non_opaque;
   return blas;
 }
 

@@ -231,7 +231,7 @@ class AccelBuilder {
 
   void build_tlas(const TopMembers& top) {
     const std::vector<TopChild> children = top_children(top);
-    std::vector<BuildPrimitive> primitives;
+    BuildPrimitives primitives;
     for (const TopChild& child : children) {
       BuildPrimitive p;
       p.lo = child.box.lo;
@@ -245,13 +245,12 @@ class AccelBuilder {
       accel_.nodes.emplace_back();
       if (!children.empty()) add_only_child(accel_.nodes.back(), children[0]);
     } else {
-      const std::vector<BinaryNode> binary =
-          build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor_);
-      const auto make_leaf = [&](const BinaryNode& leaf) {
+      const BinaryTree binary = build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor_);
+      const auto make_leaf = [&](const BinaryNode& leaf, std::uint32_t) {
         const TopChild& child = children[primitives[leaf.first].index];
         return WideLeaf{child.ref, child.strip_size, child.triangles};
       };
-      const WideTree tree = collapse(binary, accel_.width, make_leaf, accel_.nodes);
+      const WideTree tree = collapse(binary, accel_.width, make_leaf, executor_, accel_.nodes);
       accel_.root = {kNoInstance, tree.root};
       tlas_depth = tree.depth;
     }

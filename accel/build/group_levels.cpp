@@ -132,7 +132,7 @@ class GroupLevels {
   }
 
   void build(Structure& structure) {
-    std::vector<BuildPrimitive> primitives(structure.count);
+    BuildPrimitives primitives(structure.count);
     std::vector<Aabb> boxes(structure.count);
     // Composed transforms are rounded: a member stands not quite in the same place in all placements.
     for (const std::size_t k : structure.placements) {
@@ -149,14 +149,13 @@ class GroupLevels {
       primitives[m].index = static_cast<std::uint32_t>(m);
     }
     const std::uint32_t* const any_members = &accel_.members[accel_.groups[structure.placements.front()].first_member];
-    const std::vector<BinaryNode> binary =
-        build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor_);
-    const auto make_leaf = [&](const BinaryNode& leaf) {
+    const BinaryTree binary = build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor_);
+    const auto make_leaf = [&](const BinaryNode& leaf, std::uint32_t) {
       const std::uint32_t m = primitives[leaf.first].index;
       const InstanceNode& node = accel_.instances[any_members[m]];
       return WideLeaf{NodeRef::instance(m), node.strip_size, node.triangles};
     };
-    const WideTree tree = collapse(binary, accel_.width, make_leaf, accel_.nodes);
+    const WideTree tree = collapse(binary, accel_.width, make_leaf, executor_, accel_.nodes);
     for (std::size_t m = 0; m < structure.count; ++m)
       if (is_group(any_members[m])) structure.depth = std::max(structure.depth, structure_of(any_members[m]).depth);
     structure.depth += tree.depth;

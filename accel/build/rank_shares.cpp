@@ -61,7 +61,7 @@ void share_out(std::span<const BlasMeshes> meshes, const BuildRanks& ranks, std:
 }
 
 PlacedMesh join_at_top(std::span<const PlacedBlas> pieces, int width, Executor& executor, NodeArray& nodes) {
-  std::vector<BuildPrimitive> primitives;
+  BuildPrimitives primitives;
   PlacedMesh out;
   int depth = 0;
   for (const PlacedBlas& piece : pieces) {
@@ -72,13 +72,13 @@ PlacedMesh join_at_top(std::span<const PlacedBlas> pieces, int width, Executor& 
     out.box.extend(piece.blas.box);
     depth = std::max(depth, piece.blas.tree.depth);
   }
-  const std::vector<BinaryNode> binary = build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor);
-  const auto make_leaf = [&](const BinaryNode& leaf) {
+  const BinaryTree binary = build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, executor);
+  const auto make_leaf = [&](const BinaryNode& leaf, std::uint32_t) {
     const PlacedBlas& piece = pieces[primitives[leaf.first].index];
     const WideTree& tree = piece.blas.tree;
     return WideLeaf{piece.place(tree.root), tree.root_strip_size, tree.triangles};
   };
-  out.tree = collapse(binary, width, make_leaf, nodes);
+  out.tree = collapse(binary, width, make_leaf, executor, nodes);
   out.tree.depth += depth;
   return out;
 }

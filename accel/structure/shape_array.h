@@ -9,6 +9,7 @@
 
 #include "core/system/huge_pages.h"
 #include "core/system/sparse_memory.h"
+#include "core/system/uninitialised.h"
 
 namespace carousel::accel {
 
@@ -68,8 +69,20 @@ class ShapeArray {
     sync();
   }
   void resize(std::size_t size) {
-    dense_.resize(size);
+    dense_.resize(size, T());
     sync();
+  }
+  /// To a larger size. The new elements have no value, and wait for any threads to write them. Where they are the
+  /// first, some more may follow without a move.
+  void grow(std::size_t size) {
+    if (sparse_.bytes() == 0) {
+      if (dense_.capacity() == 0) dense_.reserve(size + size / 64 + 8);
+      dense_.resize(size);
+      sync();
+    } else {
+      fill_to(size);
+      size_ = size;
+    }
   }
   void shrink_to_fit() {
     dense_.shrink_to_fit();
@@ -78,7 +91,7 @@ class ShapeArray {
   void push_back(const T& value) { emplace_back() = value; }
   T& emplace_back() {
     if (sparse_.bytes() == 0) {
-      dense_.emplace_back();
+      dense_.push_back(T());
       sync();
     } else {
       fill_to(size_ + 1);
@@ -135,7 +148,7 @@ class ShapeArray {
     filled_ = to;
   }
 
-  std::vector<T, HugePageAllocator<T>> dense_;
+  std::vector<T, UninitialisedAllocator<T, HugePageAllocator<T>>> dense_;
   SparseMemory sparse_;
   std::vector<Part> gaps_;
   T* data_ = nullptr;

@@ -10,7 +10,7 @@ namespace carousel::accel {
 
 namespace {
 
-using References = std::vector<BuildPrimitive>;
+using References = BuildPrimitives;
 
 constexpr int kLeastCell = 3 * 20;  // divisions of an octree's cube in a row that separate nothing
 // Boxes of siblings that overlap by no more than this part of the root's area are not worth a plane (Stich 2009, 4.5).
@@ -33,7 +33,7 @@ class ReferenceBuilder {
 
   ReferenceBuilder(const SahSettings& settings, Kind builder) : settings_(settings), builder_(builder) {}
 
-  std::vector<BinaryNode> run(References& primitives, double duplicates) {
+  BinaryTree run(References& primitives, double duplicates) {
     const double cuts = std::floor(duplicates * static_cast<double>(primitives.size()));
     root_area_ = bounds_of(primitives).half_area();
     Cell cell{bounds_of(primitives), 0};
@@ -173,7 +173,7 @@ class ReferenceBuilder {
   std::uint32_t build(References references, Cell cell, std::size_t cuts, int depth) {
     const auto at = static_cast<std::uint32_t>(nodes_.size());
     const std::size_t count = references.size();
-    nodes_.emplace_back().box = bounds_of(references);
+    nodes_.emplace_back(BinaryNode{}).box = bounds_of(references);
     const Aabb box = nodes_[at].box;
     if (count == 1 || (count <= settings_.leaf_primitives && count <= settings_.block_primitives))
       return leaf(std::move(references), at);
@@ -219,14 +219,14 @@ class ReferenceBuilder {
   const SahSettings& settings_;
   const Kind builder_;
   float root_area_ = 0;
-  std::vector<BinaryNode> nodes_;
+  BinaryTree nodes_;
   References leaves_;
 };
 
 }  // namespace
 
-std::vector<BinaryNode> build_references(std::vector<BuildPrimitive>& primitives, const SahSettings& settings,
-                                         BvhConfig::Builder builder, double duplicates) {
+BinaryTree build_references(BuildPrimitives& primitives, const SahSettings& settings, BvhConfig::Builder builder,
+                            double duplicates) {
   return ReferenceBuilder(settings, builder).run(primitives, duplicates);
 }
 

@@ -31,7 +31,7 @@ namespace carousel::accel {
 /// is passed and entered no later than the box; by induction so is one of the references, and every node around it. The
 /// part of a triangle in a cell has a smaller box than that, but to fit it would need a margin that grows with the
 /// distance of the ray's origin, and for triangles seen edge-on, whose t' rounding decides, none would do.
-std::vector<BinaryNode> build_references(std::vector<BuildPrimitive>& primitives, const SahSettings& settings,
-                                         BvhConfig::Builder builder, double duplicates);
+BinaryTree build_references(BuildPrimitives& primitives, const SahSettings& settings, BvhConfig::Builder builder,
+                            double duplicates);
 
 }  // namespace carousel::accel

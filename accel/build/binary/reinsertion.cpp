@@ -20,7 +20,7 @@ Aabb joined(Aabb a, const Aabb& b) {
 
 class Reinsertion {
  public:
-  Reinsertion(std::vector<BinaryNode>& nodes, Executor& executor)
+  Reinsertion(BinaryTree& nodes, Executor& executor)
       : nodes_(nodes), executor_(executor), parent_(nodes.size(), kNone) {
     walk();
   }
@@ -31,7 +31,7 @@ class Reinsertion {
     const int deepest = std::max(kDeepest, depth_);
     double area = sum();
     for (int i = 0; i < kRounds; ++i) {
-      const std::vector<BinaryNode> before = nodes_;
+      const BinaryTree before = nodes_;
       const std::vector<Move> moves = best_moves();
       if (moves.empty()) return;
       make(moves);
@@ -187,7 +187,7 @@ class Reinsertion {
     }
   }
 
-  std::vector<BinaryNode>& nodes_;
+  BinaryTree& nodes_;
   Executor& executor_;
   std::vector<std::uint32_t> parent_, used_;
   int depth_ = 0;
@@ -195,7 +195,7 @@ class Reinsertion {
 
 }  // namespace
 
-void reinsert(std::vector<BinaryNode>& nodes, Executor& executor) {
+void reinsert(BinaryTree& nodes, Executor& executor) {
   if (nodes.size() > 4) Reinsertion(nodes, executor).run();
 }
 

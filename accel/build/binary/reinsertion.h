@@ -12,6 +12,6 @@ namespace carousel::accel {
 /// "Parallel reinsertion for bounding volume hierarchy optimization"). Leaves stay as they are; node 0 stays the root.
 /// The tree is the same for any executor. It becomes no deeper than the
 /// deepest that build_sah() makes, or than it was.
-void reinsert(std::vector<BinaryNode>& nodes, Executor& executor);
+void reinsert(BinaryTree& nodes, Executor& executor);
 
 }  // namespace carousel::accel

@@ -16,6 +16,7 @@ constexpr std::size_t kBinningChunk = 1 << 15;
 
 // x, y, z in one register. The fourth lane carries bits of an index and is never read as a number.
 using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 Float4 load4(const BuildPrimitive& p, int offset) {
   Float4 out;
@@ -66,7 +67,7 @@ struct Bounds {
   }
 };
 
-/// Maps a doubled centroid to its bin on all axes at once.
+/// Maps a doubled centroid to its bins.
 struct Binning {
   Float4 origin, scale;
   explicit Binning(const Box4& centroids) : origin(centroids.lo) {
@@ -80,7 +81,14 @@ struct Binning {
   }
   int bin(Float4 centroid, int axis) const {
     const float b = (centroid[axis] - origin[axis]) * scale[axis];
-    return b > 0 ? (b < kBins ? static_cast<int>(b) : kBins - 1) : 0;  // NaN (sums that overflowed): bin 0
+    return b > 0 ? (b < kBins ? static_cast<int>(b) : kBins - 1) : 0;
+  }
+  /// On all axes at once. NaN, of sums that overflowed, goes to bin 0.
+  Int4 bins(Float4 centroid) const {
+    // Without the bits of an index, which are a denormal number and would take the product longer.
+    const Float4 xyz = reinterpret_cast<Float4>(reinterpret_cast<Int4>(centroid - origin) & Int4{-1, -1, -1, 0});
+    const Float4 b = max4(xyz * scale, Float4{});
+    return __builtin_convertvector(min4(b, splat(kBins - 1)), Int4);
   }
 };
 
@@ -90,9 +98,10 @@ struct Bins {
 
   void add(std::span<const BuildPrimitive> primitives, const Binning& binning) {
     for (const BuildPrimitive& p : primitives) {
-      const Float4 lo = low(p), hi = high(p), c = lo + hi;
+      const Float4 lo = low(p), hi = high(p);
+      const Int4 bins = binning.bins(lo + hi);
       for (int a = 0; a < 3; ++a) {
-        const int b = binning.bin(c, a);
+        const auto b = static_cast<std::size_t>(bins[a]);
         box[a][b].extend(lo, hi);
         ++count[a][b];
       }
@@ -115,17 +124,19 @@ struct Split {
 
 class Builder {
  public:
-  Builder(std::vector<BuildPrimitive>& primitives, const SahSettings& settings, Executor& executor)
+  Builder(BuildPrimitives& primitives, const SahSettings& settings, Executor& executor)
       : primitives_(primitives), settings_(settings), executor_(executor), nodes_(2 * primitives.size() - 1) {}
 
-  std::vector<BinaryNode> run() {
-    build(0, 0, primitives_.size(), bounds_of(0, primitives_.size()), 0);
+  BinaryTree run() {
+    std::size_t free = 1;
+    build(0, 0, primitives_.size(), bounds_of(0, primitives_.size()), 0, free);
     return std::move(nodes_);
   }
 
  private:
-  float blocks(std::size_t n) const {
-    return static_cast<float>((n + settings_.block_primitives - 1) / settings_.block_primitives);
+  float blocks(std::uint32_t n) const {
+    const std::uint32_t most = n + settings_.block_primitives - 1;
+    return static_cast<float>(settings_.block_primitives == 4 ? most / 4 : most / settings_.block_primitives);
   }
 
   std::span<const BuildPrimitive> range(std::size_t begin, std::size_t end) const {
@@ -165,23 +176,25 @@ class Builder {
   Split best_split(const Bins& bins) const {
     Split best;
     for (int axis = 0; axis < 3; ++axis) {
+      const auto& box = bins.box[static_cast<std::size_t>(axis)];
+      const auto& counts = bins.count[static_cast<std::size_t>(axis)];
       std::array<float, kBins> right_cost{};
-      Box4 box;
-      std::size_t count = 0;
-      for (int b = kBins - 1; b > 0; --b) {
-        box.extend(bins.box[axis][b]);
-        count += bins.count[axis][b];
-        right_cost[b] = count ? half_area(box.lo, box.hi) * blocks(count) : 0.0f;
+      Box4 side;
+      std::uint32_t count = 0;
+      for (std::size_t b = kBins - 1; b > 0; --b) {
+        side.extend(box[b]);
+        count += counts[b];
+        right_cost[b] = count ? half_area(side.lo, side.hi) * blocks(count) : 0.0f;
       }
-      const std::size_t total = count + bins.count[axis][0];
-      box = Box4{};
+      const std::uint32_t total = count + counts[0];
+      side = Box4{};
       count = 0;
-      for (int b = 1; b < kBins; ++b) {
-        box.extend(bins.box[axis][b - 1]);
-        count += bins.count[axis][b - 1];
+      for (std::size_t b = 1; b < kBins; ++b) {
+        side.extend(box[b - 1]);
+        count += counts[b - 1];
         if (count == 0 || count == total) continue;
-        const float cost = half_area(box.lo, box.hi) * blocks(count) + right_cost[b];
-        if (cost < best.cost) best = {cost, axis, b};
+        const float cost = half_area(side.lo, side.hi) * blocks(count) + right_cost[b];
+        if (cost < best.cost) best = {cost, axis, static_cast<int>(b)};
       }
     }
     return best;
@@ -189,10 +202,31 @@ class Builder {
 
   void make_leaf(std::size_t node, std::size_t begin, std::size_t end) {
     nodes_[node].first = static_cast<std::uint32_t>(begin);
+    nodes_[node].right = 0;
     nodes_[node].count = static_cast<std::uint32_t>(end - begin);
   }
 
-  void build(std::size_t node, std::size_t begin, std::size_t end, const Bounds& bounds, int depth) {
+  /// Two sides of a node and the bounds of each.
+  struct Halves {
+    std::size_t middle;
+    Bounds left, right;
+  };
+
+  Halves halves(std::size_t begin, std::size_t end, const Binning& binning, const Split& split) {
+    std::size_t middle = begin + (end - begin) / 2;
+    if (split.axis >= 0) {
+      BuildPrimitive* const first = primitives_.data();
+      middle = static_cast<std::size_t>(std::partition(first + begin, first + end,
+                                                       [&](const BuildPrimitive& p) {
+                                                         return binning.bin(low(p) + high(p), split.axis) < split.bin;
+                                                       }) -
+                                        first);
+    }
+    return {middle, bounds_of(begin, middle), bounds_of(middle, end)};
+  }
+
+  /// `free` is the next place for nodes of a subtree that one thread builds.
+  void build(std::size_t node, std::size_t begin, std::size_t end, const Bounds& bounds, int depth, std::size_t& free) {
     const std::size_t count = end - begin;
     nodes_[node].box = bounds.box.aabb();
     if (count == 1 || (count <= settings_.leaf_primitives && count <= settings_.block_primitives)) {
@@ -201,24 +235,27 @@ class Builder {
     const Binning binning(bounds.centroids);
     const Split split = depth < kSahDepth ? best_split(bins_of(begin, end, binning)) : Split{};
     const float area = half_area(bounds.box.lo, bounds.box.hi);
-    if (count <= settings_.leaf_primitives && !(split.cost + settings_.traversal_cost * area < area * blocks(count))) {
+    if (count <= settings_.leaf_primitives &&
+        !(split.cost + settings_.traversal_cost * area < area * blocks(static_cast<std::uint32_t>(count)))) {
       return make_leaf(node, begin, end);
     }
-    std::size_t middle = begin + count / 2;
-    if (split.axis >= 0) {
-      const auto it = std::partition(
-          primitives_.begin() + static_cast<std::ptrdiff_t>(begin),
-          primitives_.begin() + static_cast<std::ptrdiff_t>(end),
-          [&](const BuildPrimitive& p) { return binning.bin(low(p) + high(p), split.axis) < split.bin; });
-      middle = static_cast<std::size_t>(it - primitives_.begin());
-    }
-    // A subtree over n primitives takes at most 2n - 1 places: the left one starts right behind its parent.
-    const std::size_t left = node + 1, right = node + 2 * (middle - begin);
+    const Halves parts = halves(begin, end, binning, split);
+    // A subtree over n primitives takes at most 2n - 1 places. Those of one thread are filled from the first on, so
+    // that the others take no memory; elsewhere the left one starts right behind its parent.
+    const bool parallel = count >= kParallelNode;
+    const std::size_t left = parallel ? node + 1 : free,
+                      right = parallel ? node + 2 * (parts.middle - begin) : free + 1;
+    if (!parallel) free += 2;
     nodes_[node].first = static_cast<std::uint32_t>(left);
     nodes_[node].right = static_cast<std::uint32_t>(right);
-    const auto build_left = [&] { build(left, begin, middle, bounds_of(begin, middle), depth + 1); };
-    const auto build_right = [&] { build(right, middle, end, bounds_of(middle, end), depth + 1); };
-    if (count >= kParallelNode) {
+    nodes_[node].count = 0;
+    const auto build_side = [&](std::size_t at, std::size_t from, std::size_t to, const Bounds& of) {
+      std::size_t own = at + 1;
+      build(at, from, to, of, depth + 1, parallel ? own : free);
+    };
+    const auto build_left = [&] { build_side(left, begin, parts.middle, parts.left); };
+    const auto build_right = [&] { build_side(right, parts.middle, end, parts.right); };
+    if (parallel) {
       executor_.invoke(build_left, build_right);
     } else {
       build_left();
@@ -226,16 +263,15 @@ class Builder {
     }
   }
 
-  std::vector<BuildPrimitive>& primitives_;
+  BuildPrimitives& primitives_;
   const SahSettings& settings_;
   Executor& executor_;
-  std::vector<BinaryNode> nodes_;
+  BinaryTree nodes_;
 };
 
 }  // namespace
 
-std::vector<BinaryNode> build_sah(std::vector<BuildPrimitive>& primitives, const SahSettings& settings,
-                                  Executor& executor) {
+BinaryTree build_sah(BuildPrimitives& primitives, const SahSettings& settings, Executor& executor) {
   return Builder(primitives, settings, executor).run();
 }
 

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "core/system/executor.h"
+#include "core/system/huge_pages.h"
+#include "core/system/uninitialised.h"
 #include "core/types/aabb.h"
 
 namespace carousel::accel {
@@ -25,6 +27,12 @@ struct BinaryNode {
   std::uint32_t count = 0;
 };
 
+// Elements made without a value have none.
+using BuildPrimitives =
+    std::vector<BuildPrimitive, UninitialisedAllocator<BuildPrimitive, HugePageAllocator<BuildPrimitive>>>;
+/// Node 0 is the root. Not every place holds a node.
+using BinaryTree = std::vector<BinaryNode, UninitialisedAllocator<BinaryNode>>;
+
 /// A stack entry is spent per level and the traversal stack is fixed; below this depth splits are by halves.
 inline constexpr int kSahDepth = 40;
 
@@ -35,9 +43,8 @@ struct SahSettings {
 };
 
 /// Binned surface-area heuristic (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies").
-/// Reorders `primitives` so that leaves are ranges. Node 0 is the root; the places of nodes depend on the
-/// counts alone, so the tree is the same for any executor. `primitives` must not be empty. Boxes are finite.
-std::vector<BinaryNode> build_sah(std::vector<BuildPrimitive>& primitives, const SahSettings& settings,
-                                  Executor& executor);
+/// Reorders `primitives` so that leaves are ranges, in the order of the tree. The places of nodes depend on the counts
+/// alone, so the tree is the same for any executor. `primitives` must not be empty. Boxes are finite.
+BinaryTree build_sah(BuildPrimitives& primitives, const SahSettings& settings, Executor& executor);
 
 }  // namespace carousel::accel

@@ -114,8 +114,35 @@ TEST(Structure, MaxDepthBoundsEveryPathOnAdversarialInput) {
   }
 }
 
-TEST(Structure, IsTheSameForEveryExecutor) {
-  const scene::Scene scene = small_builtin(BuiltinScene::kInstances, 100, 300);
+/// Visits what is below `ref`, whose nodes and blocks are to have the next numbers.
+void expect_depth_first(const Accel& accel, NodeRef ref, std::uint32_t& node, std::uint32_t& block) {
+  if (!ref.is_inner()) {
+    ASSERT_EQ(ref.first_block(), block);
+    block += ref.blocks();
+    return;
+  }
+  ASSERT_EQ(ref.node(), node++);
+  const Node& of = accel.nodes[ref.node()];
+  for (int lane = 0; lane < of.count; ++lane) expect_depth_first(accel, of.child[lane], node, block);
+}
+
+// Of sizes that one thread and that several threads turn into nodes.
+TEST(Structure, NumbersNodesAndBlocksDepthFirst) {
+  for (const std::int64_t triangles : {3, 2000, 40000}) {
+    const Accel accel = build(small_builtin(BuiltinScene::kTerrain, triangles), BvhConfig{}, *make_jthread_executor(3));
+    std::uint32_t node = 0, block = 0;
+    expect_depth_first(accel, accel.root_key().ref, node, block);
+    EXPECT_EQ(block, accel.blocks.size());
+  }
+}
+
+class StructureOf : public testing::TestWithParam<std::pair<BuiltinScene, std::int64_t>> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, StructureOf,
+                         testing::Values(std::pair(BuiltinScene::kInstances, std::int64_t{100}),
+                                         std::pair(BuiltinScene::kTerrain, std::int64_t{40000})));
+
+TEST_P(StructureOf, IsTheSameForEveryExecutor) {
+  const scene::Scene scene = small_builtin(GetParam().first, GetParam().second, 300);
   const Accel expected = build_sequential(scene);
   std::vector<std::unique_ptr<Executor>> executors;
   executors.push_back(make_jthread_executor(3));

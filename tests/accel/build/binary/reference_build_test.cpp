@@ -146,8 +146,8 @@ TEST(ReferenceBuild, GivesOneAnswerInScenesOfAllKinds) {
   }
 }
 
-std::vector<BuildPrimitive> whole(const scene::Scene& scene) {
-  std::vector<BuildPrimitive> out;
+BuildPrimitives whole(const scene::Scene& scene) {
+  BuildPrimitives out;
   const auto& p = scene.meshes[0].positions;
   for (std::uint32_t i = 0; i < p.size() / 3; ++i) {
     Aabb box;
@@ -165,11 +165,11 @@ double volume(const Aabb& box) {
 // The pieces of a box make up the whole of it and overlap nowhere; no leaf holds two of them; no more are cut than may.
 TEST(ReferenceBuild, CutsBoxesWithoutRemainder) {
   const scene::Scene scene = long_and_small(600, run_seed(), false);
-  const std::vector<BuildPrimitive> primitives = whole(scene);
+  const BuildPrimitives primitives = whole(scene);
   for (const BvhConfig::Builder builder : kCutting) {
     for (const double duplicates : {0.0, 0.25, 3.0}) {
-      std::vector<BuildPrimitive> references = primitives;
-      const std::vector<BinaryNode> tree = build_references(references, {}, builder, duplicates);
+      BuildPrimitives references = primitives;
+      const BinaryTree tree = build_references(references, {}, builder, duplicates);
       EXPECT_LE(references.size(), static_cast<std::size_t>((1 + duplicates) * 600));
       if (duplicates > 0) {
         EXPECT_GT(references.size(), 620u) << enum_name(builder);

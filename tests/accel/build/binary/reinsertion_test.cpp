@@ -34,11 +34,11 @@ std::vector<Aabb> random_boxes(std::size_t count, std::uint64_t seed) {
 }
 
 /// A tree over the boxes in the order in which they stand, by halves; each is a leaf.
-std::vector<BinaryNode> by_halves(const std::vector<Aabb>& boxes) {
-  std::vector<BinaryNode> out;
+BinaryTree by_halves(const std::vector<Aabb>& boxes) {
+  BinaryTree out;
   const std::function<std::uint32_t(std::uint32_t, std::uint32_t)> build = [&](std::uint32_t begin, std::uint32_t end) {
     const auto at = static_cast<std::uint32_t>(out.size());
-    out.emplace_back();
+    out.emplace_back(BinaryNode{});
     if (end - begin == 1) {
       out[at] = {boxes[begin], begin, 0, 1};
       return at;
@@ -58,7 +58,7 @@ struct Walked {
   int depth = 0;                                  // levels below the root
   std::map<std::uint32_t, std::uint32_t> leaves;  // counts by first primitive
 };
-Walked walk(const std::vector<BinaryNode>& nodes) {
+Walked walk(const BinaryTree& nodes) {
   Walked out;
   const std::function<Aabb(std::uint32_t, int)> visit = [&](std::uint32_t at, int depth) {
     const BinaryNode& node = nodes.at(at);
@@ -78,7 +78,7 @@ Walked walk(const std::vector<BinaryNode>& nodes) {
   return out;
 }
 
-void refit(std::vector<BinaryNode>& nodes, std::uint32_t at = 0) {
+void refit(BinaryTree& nodes, std::uint32_t at = 0) {
   if (nodes[at].count > 0) return;
   refit(nodes, nodes[at].first);
   refit(nodes, nodes[at].right);
@@ -86,7 +86,7 @@ void refit(std::vector<BinaryNode>& nodes, std::uint32_t at = 0) {
   nodes[at].box.extend(nodes[nodes[at].right].box);
 }
 
-std::uint32_t& link_to(std::vector<BinaryNode>& nodes, std::uint32_t at) {
+std::uint32_t& link_to(BinaryTree& nodes, std::uint32_t at) {
   for (BinaryNode& node : nodes)
     if (node.count == 0) {
       if (node.first == at) return node.first;
@@ -94,18 +94,18 @@ std::uint32_t& link_to(std::vector<BinaryNode>& nodes, std::uint32_t at) {
     }
   throw std::logic_error("no parent");
 }
-std::uint32_t parent_of(const std::vector<BinaryNode>& nodes, std::uint32_t at) {
+std::uint32_t parent_of(const BinaryTree& nodes, std::uint32_t at) {
   for (std::uint32_t i = 0; i < nodes.size(); ++i)
     if (nodes[i].count == 0 && (nodes[i].first == at || nodes[i].right == at)) return i;
   return 0;
 }
-bool below(const std::vector<BinaryNode>& nodes, std::uint32_t at, std::uint32_t top) {
+bool below(const BinaryTree& nodes, std::uint32_t at, std::uint32_t top) {
   while (at != 0 && at != top) at = parent_of(nodes, at);
   return at == top;
 }
 
 /// The least area after a single move of any subtree to any other place, by trying all of them.
-double best_after_a_move(const std::vector<BinaryNode>& nodes) {
+double best_after_a_move(const BinaryTree& nodes) {
   double best = walk(nodes).area;
   for (std::uint32_t from = 1; from < nodes.size(); ++from) {
     const std::uint32_t parent = parent_of(nodes, from);
@@ -113,7 +113,7 @@ double best_after_a_move(const std::vector<BinaryNode>& nodes) {
     const std::uint32_t other = nodes[parent].first == from ? nodes[parent].right : nodes[parent].first;
     for (std::uint32_t to = 1; to < nodes.size(); ++to) {
       if (to == parent || to == other || below(nodes, to, from)) continue;
-      std::vector<BinaryNode> moved = nodes;
+      BinaryTree moved = nodes;
       link_to(moved, parent) = other;
       link_to(moved, to) = parent;
       moved[parent].first = to;
@@ -128,7 +128,7 @@ double best_after_a_move(const std::vector<BinaryNode>& nodes) {
 // It stops where a round gains little; begun again until nothing is moved, it leaves nothing to gain.
 TEST(Reinsertion, LeavesNoMoveThatGains) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    std::vector<BinaryNode> nodes = by_halves(random_boxes(3 + seed % 12, run_seed() + seed));
+    BinaryTree nodes = by_halves(random_boxes(3 + seed % 12, run_seed() + seed));
     const Walked before = walk(nodes);
     Walked after = before;
     double area;
@@ -150,12 +150,12 @@ TEST(Reinsertion, ComesNearTheSurfaceAreaHeuristicFromABadTree) {
   for (int i = 0; i < 2000; ++i)
     centers.push_back(random.in_box(Vec3{-1}, Vec3{1}) + Vec3{i % 2 == 0 ? 20.0f : 0.0f, 0, 0});
   const std::vector<Aabb> boxes = boxes_around(centers, run_seed());
-  std::vector<BuildPrimitive> primitives(boxes.size());
+  BuildPrimitives primitives(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i)
     primitives[i].lo = boxes[i].lo, primitives[i].hi = boxes[i].hi, primitives[i].index = static_cast<std::uint32_t>(i);
   const auto executor = make_sequential_executor();
   const double good = walk(build_sah(primitives, {.leaf_primitives = 1, .block_primitives = 1}, *executor)).area;
-  std::vector<BinaryNode> nodes = by_halves(boxes);
+  BinaryTree nodes = by_halves(boxes);
   ASSERT_GT(walk(nodes).area, 5 * good);
   for (int i = 0; i < 8; ++i) reinsert(nodes, *executor);
   EXPECT_LT(walk(nodes).area, 1.5 * good);
@@ -164,8 +164,8 @@ TEST(Reinsertion, ComesNearTheSurfaceAreaHeuristicFromABadTree) {
 /// Boxes one within the other, of sizes so near that floats tell the least from the sum of all, in a chain of `length`
 /// inner nodes; two smaller ones hang together near its root, and are best off at its end, two levels further down than
 /// the last box.
-std::vector<BinaryNode> chain_and_a_pair(int length) {
-  std::vector<BinaryNode> out;
+BinaryTree chain_and_a_pair(int length) {
+  BinaryTree out;
   const auto leaf = [&](float size) {
     out.push_back({{Vec3{-size}, Vec3{size}}, static_cast<std::uint32_t>(out.size()), 0, 1});
     return static_cast<std::uint32_t>(out.size() - 1);
@@ -174,11 +174,11 @@ std::vector<BinaryNode> chain_and_a_pair(int length) {
     const float size = std::exp2(-0.125f * static_cast<float>(at));
     if (at == length) return leaf(size);
     const auto node = static_cast<std::uint32_t>(out.size());
-    out.emplace_back();
+    out.emplace_back(BinaryNode{});
     std::uint32_t beside;
     if (at == 1) {
       beside = static_cast<std::uint32_t>(out.size());
-      out.emplace_back();
+      out.emplace_back(BinaryNode{});
       const float tiny = std::exp2(-10.0f);
       const std::uint32_t left = leaf(tiny), right = leaf(tiny);
       out[beside].first = left, out[beside].right = right;
@@ -196,7 +196,7 @@ std::vector<BinaryNode> chain_and_a_pair(int length) {
 
 TEST(Reinsertion, GrowsNoDeeperThanATraversalStack) {
   for (const int length : {60, 71, 72}) {
-    std::vector<BinaryNode> nodes = chain_and_a_pair(length);
+    BinaryTree nodes = chain_and_a_pair(length);
     const Walked before = walk(nodes);
     ASSERT_EQ(before.depth, length);
     reinsert(nodes, *make_sequential_executor());
@@ -212,8 +212,8 @@ TEST(Reinsertion, GrowsNoDeeperThanATraversalStack) {
 }
 
 TEST(Reinsertion, IsTheSameForEveryExecutor) {
-  const std::vector<BinaryNode> nodes = by_halves(random_boxes(5000, run_seed()));
-  std::vector<BinaryNode> one = nodes, several = nodes;
+  const BinaryTree nodes = by_halves(random_boxes(5000, run_seed()));
+  BinaryTree one = nodes, several = nodes;
   reinsert(one, *make_sequential_executor());
   reinsert(several, *make_jthread_executor(4));
   ASSERT_EQ(one.size(), several.size());
@@ -227,7 +227,7 @@ TEST(Reinsertion, IsTheSameForEveryExecutor) {
 
 TEST(Reinsertion, TakesTreesOfFewLeavesAndSumsThatOverflow) {
   for (const std::size_t count : {1, 2, 3, 4}) {
-    std::vector<BinaryNode> nodes = by_halves(random_boxes(count, run_seed()));
+    BinaryTree nodes = by_halves(random_boxes(count, run_seed()));
     reinsert(nodes, *make_sequential_executor());
     EXPECT_EQ(walk(nodes).leaves.size(), count);
   }
@@ -236,7 +236,7 @@ TEST(Reinsertion, TakesTreesOfFewLeavesAndSumsThatOverflow) {
     const float x = 3e38f * (static_cast<float>(i * 7 % 50) / 25 - 1);
     boxes.push_back({Vec3{x}, Vec3{x + 1e37f}});
   }
-  std::vector<BinaryNode> nodes = by_halves(boxes);
+  BinaryTree nodes = by_halves(boxes);
   reinsert(nodes, *make_sequential_executor());
   EXPECT_EQ(walk(nodes).leaves.size(), boxes.size());
 }

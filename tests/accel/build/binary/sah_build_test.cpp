@@ -11,8 +11,8 @@
 namespace carousel::accel {
 namespace {
 
-std::vector<BuildPrimitive> primitives_of(const std::vector<Aabb>& boxes) {
-  std::vector<BuildPrimitive> out(boxes.size());
+BuildPrimitives primitives_of(const std::vector<Aabb>& boxes) {
+  BuildPrimitives out(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     out[i].lo = boxes[i].lo;
     out[i].hi = boxes[i].hi;
@@ -44,7 +44,7 @@ struct Checked {
 };
 
 /// Walks the tree: every primitive in exactly one leaf, leaves within the limit, boxes around their contents.
-Checked check(const std::vector<BinaryNode>& nodes, const std::vector<BuildPrimitive>& primitives, std::uint32_t leaf) {
+Checked check(const BinaryTree& nodes, const BuildPrimitives& primitives, std::uint32_t leaf) {
   Checked out;
   std::vector<int> seen(primitives.size(), 0);
   struct Item {
@@ -81,7 +81,7 @@ Checked check(const std::vector<BinaryNode>& nodes, const std::vector<BuildPrimi
 }
 
 Checked build_and_check(const std::vector<Aabb>& boxes, std::uint32_t leaf) {
-  std::vector<BuildPrimitive> primitives = primitives_of(boxes);
+  BuildPrimitives primitives = primitives_of(boxes);
   const SahSettings settings{.leaf_primitives = leaf, .block_primitives = std::min(4u, leaf)};
   const auto nodes = build_sah(primitives, settings, *make_sequential_executor());
   return check(nodes, primitives, leaf);
@@ -126,7 +126,7 @@ TEST(SahBuild, SurvivesBoxesWhoseSumsOverflow) {
 TEST(SahBuild, SeparatesTwoClusters) {
   std::vector<Aabb> boxes = random_boxes(64, 5);
   for (std::size_t i = 0; i < 64; i += 2) boxes[i].lo.x += 1000, boxes[i].hi.x += 1000;
-  std::vector<BuildPrimitive> primitives = primitives_of(boxes);
+  BuildPrimitives primitives = primitives_of(boxes);
   const auto nodes = build_sah(primitives, {}, *make_sequential_executor());
   EXPECT_LT(nodes[nodes[0].first].box.hi.x, nodes[nodes[0].right].box.lo.x);
 }
@@ -141,10 +141,10 @@ TEST(SahBuild, IsTheSameForEveryExecutor) {
   executors.push_back(make_tbb_executor(2));
   executors.push_back(make_tbb_executor(4));
 #endif
-  std::vector<BinaryNode> first;
-  std::vector<BuildPrimitive> first_order;
+  BinaryTree first;
+  BuildPrimitives first_order;
   for (const auto& executor : executors) {
-    std::vector<BuildPrimitive> primitives = primitives_of(boxes);
+    BuildPrimitives primitives = primitives_of(boxes);
     const auto nodes = build_sah(primitives, {}, *executor);
     if (first.empty()) {
       check(nodes, primitives, 4);
@@ -153,7 +153,11 @@ TEST(SahBuild, IsTheSameForEveryExecutor) {
       continue;
     }
     ASSERT_EQ(nodes.size(), first.size());
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
+    std::vector<std::uint32_t> open{0};  // not every place holds a node
+    while (!open.empty()) {
+      const std::uint32_t i = open.back();
+      open.pop_back();
+      if (nodes[i].count == 0) open.insert(open.end(), {nodes[i].first, nodes[i].right});
       ASSERT_EQ(nodes[i].box.lo, first[i].box.lo) << i;
       ASSERT_EQ(nodes[i].box.hi, first[i].box.hi) << i;
       ASSERT_EQ(nodes[i].first, first[i].first) << i;
