@@ -15,7 +15,7 @@ namespace carousel::accel {
 
 namespace {
 
-/// What stands below a child: the vertices of triangles, and the boxes of triangles and of all else.
+/// The primitives below a child: the vertices of triangles, and the boxes of triangles and of all others.
 struct Below {
   std::vector<Vec3> corners;
   std::vector<Aabb> triangles, others;

@@ -136,15 +136,11 @@ class Collapse {
     return {made.ref, made.strip_size, made.triangles, made.ref.is_instance() ? 0 : 1};
   }
 
-  /// The binary nodes below a wide node.
-  Children children_of(std::uint32_t at) const {
-    Children children;
-    open(at, width_, shares_[at][0], children);
-    return children;
-  }
+  /// Visits the binary nodes that become the children of a wide node.
   template <class Visit>
   void each_child(std::uint32_t at, const Visit& visit) const {
-    const Children children = children_of(at);
+    Children children;
+    open(at, width_, shares_[at][0], children);
     for (int lane = 0; lane < children.count; ++lane) visit(children.nodes[static_cast<std::size_t>(lane)]);
   }
 
@@ -202,7 +198,7 @@ class Collapse {
     });
   }
 
-  /// The numbers of the tasks' nodes and blocks.
+  /// Gives the tasks' nodes and blocks their numbers, in the order in which emit_above() passes them.
   void number(std::uint32_t at, int depth) {
     if (binary_[at].count > 0) {
       next_block_ += blocks_of(at);
@@ -221,7 +217,7 @@ class Collapse {
     next_block_ += task.block_count;
   }
 
-  /// What stands above the tasks.
+  /// Makes the nodes above the tasks.
   WideTree emit_above(std::uint32_t at, int depth) {
     if (binary_[at].count > 0) {
       BlockRun run{next_block_, {}};

@@ -26,7 +26,7 @@ class OrientedBoxChoice {
   void offer_triangles(const std::vector<Vec3>& points);
   /// Six planes; none if the best box has hardly less surface than the child's own.
   std::vector<CullPlane> best() const;
-  /// Those of the box with the least surface of all that have been offered.
+  /// The six planes of the box with the least surface of all that have been offered.
   std::vector<CullPlane> smallest() const { return {best_.begin(), best_.end()}; }
 
  private:

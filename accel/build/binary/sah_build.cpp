@@ -79,6 +79,7 @@ struct Binning {
     }
     scale[3] = 0;
   }
+  /// On one axis, as bins() says: faster where no other is wanted.
   int bin(Float4 centroid, int axis) const {
     const float b = (centroid[axis] - origin[axis]) * scale[axis];
     return b > 0 ? (b < kBins ? static_cast<int>(b) : kBins - 1) : 0;
@@ -240,8 +241,8 @@ class Builder {
       return make_leaf(node, begin, end);
     }
     const Halves parts = halves(begin, end, binning, split);
-    // A subtree over n primitives takes at most 2n - 1 places. Those of one thread are filled from the first on, so
-    // that the others take no memory; elsewhere the left one starts right behind its parent.
+    // A subtree over n primitives takes at most 2n - 1 places. One thread fills the places of its subtree from the
+    // first on, so that those left over take no memory. Above, the left subtree starts right behind its parent.
     const bool parallel = count >= kParallelNode;
     const std::size_t left = parallel ? node + 1 : free,
                       right = parallel ? node + 2 * (parts.middle - begin) : free + 1;
