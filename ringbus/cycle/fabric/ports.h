@@ -92,15 +92,10 @@ class OutPortOf {
   }
   /// Sends one packet if it may. Returns whether it did.
   bool send(Cycle now) {
-    if (queue_.empty() || free_at_ > now || queue_.front().ready > now) return false;
-    if (credits_ == 0) {
-      if (blocked_since_ == kNever) blocked_since_ = now;
-      return false;
-    }
-    if (blocked_since_ != kNever) {
-      stalled_ += now - blocked_since_;
-      blocked_since_ = kNever;
-    }
+    if (credits_ == 0 || queue_.empty()) return false;
+    const Cycle wanted = wants_to_start();
+    if (wanted > now) return false;
+    stalled_ += now - wanted;  // it would have gone at once if there had been a credit
     start(queue_.front(), now);
     queue_.pop_front();
     return true;
@@ -127,7 +122,7 @@ class OutPortOf {
   Cycle next(bool want_credit) const {
     const Cycle credit = want_credit || (credits_ == 0 && !queue_.empty()) ? next_credit() : kNever;
     if (queue_.empty() || credits_ == 0) return credit;
-    return std::min(credit, std::max(free_at_, queue_.front().ready));
+    return std::min(credit, wants_to_start());
   }
 
   /// Nothing can be sent until a credit comes.
@@ -137,8 +132,8 @@ class OutPortOf {
   std::size_t egress() const { return queue_.size(); }
   PacketId front() const { return queue_.front().token.packet; }  ///< of Tokens
   const T& first() const { return queue_.front().token; }
-  /// A packet waits for a credit.
-  bool blocked() const { return blocked_since_ != kNever; }
+  /// The time from which the first packet waits for a credit, if none comes before; kNever if it need not wait.
+  Cycle blocked_from() const { return awaits_credit() ? wants_to_start() : kNever; }
   /// Cycles before `end` in which the link moved something; not before the last packet was sent.
   Cycle busy(Cycle end = kNever) const { return free_at_ <= end ? busy_ : busy_ - std::min(busy_, free_at_ - end); }
   Cycle stalled() const { return stalled_; }  ///< cycles in which a packet waited for a credit
@@ -153,6 +148,7 @@ class OutPortOf {
     bool cut_through = false;
   };
 
+  Cycle wants_to_start() const { return std::max(free_at_, queue_.front().ready); }
   Cycle next_credit() const {
     return faults_ ? std::min(wire_->credits.next(), faults_->next()) : wire_->credits.next();
   }
@@ -160,11 +156,11 @@ class OutPortOf {
   /// as waiting.
   void recover_credits(Cycle now) {
     const LinkFaultTimer::Recovered made = faults_->recovered(now);
+    if (const Cycle blocked = blocked_from(); made.busy > 0 && blocked < now) stalled_ += now - blocked;
     credits_ += made.places;
     if (made.busy == 0) return;
     free_at_ = std::max(free_at_, now) + made.busy;
     busy_ += made.busy;
-    if (blocked_since_ != kNever) blocked_since_ += made.busy;
   }
   void start(const Entry& entry, Cycle now) {
     const Cycle cycles = entry.token.link_cycles;
@@ -196,7 +192,7 @@ class OutPortOf {
   std::uint32_t credits_;
   std::size_t places_, reserved_ = 0;
   Fifo<Entry> queue_;
-  Cycle free_at_ = 0, busy_ = 0, stalled_ = 0, blocked_since_ = kNever;
+  Cycle free_at_ = 0, busy_ = 0, stalled_ = 0;
   std::uint64_t packets_ = 0;
   Cycle last_arrival_ = 0;
   std::optional<LinkFaultTimer> faults_;

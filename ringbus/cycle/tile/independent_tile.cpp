@@ -35,7 +35,7 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
   const Cycle answered = ports_.answers == nullptr ? kNever : ports_.answers->next();
-  return std::min({tested, answered, ports_.new_rays->next(), shapes_.next(), help_.next()});
+  return std::min({tested, answered, ports_.new_rays->next(), shapes_.next(), help_.ends(), help_.next_job()});
 }
 
 void IndependentTile::run(Cycle end) {

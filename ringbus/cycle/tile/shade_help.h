@@ -57,7 +57,8 @@ class ShadeHelp {
   /// There is a job, so no test may begin.
   bool holds() const { return waiting_ || shading(); }
   bool shading() const { return done_ != kNever; }
-  Cycle next() const { return jobs_ == nullptr ? kNever : std::min(done_, jobs_->next()); }
+  Cycle ends() const { return done_; }  ///< of the job
+  Cycle next_job() const { return jobs_ == nullptr ? kNever : jobs_->next(); }
 
  private:
   Channel<ShadeJob>* jobs_;  // null: the resource does not help

@@ -1,6 +1,7 @@
 #include "ringbus/cycle/tile/tile.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -46,6 +47,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
       window_(static_cast<std::size_t>(settings.testers.window)),
+      links_alone_(window_ == 1 && partial_ != Partial::kIdle),
       passed_over_(ports_.in.size()),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       phases_(contexts_.size()),
@@ -69,7 +71,12 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
 // ---- time
 
 Cycle Tile::next() const {
-  return std::min({next_arrival(), next_beside_ring(), visits_.next()});
+  return std::min({next_on_links(), next_on_side(), next_here_, visits_.next()});
+}
+
+Cycle Tile::next_on_links() const {
+  const Cycle arrival = next_arrival();
+  return may_send_ ? std::min(arrival, next_credit()) : arrival;
 }
 
 // An arrival that is not later than the last step was dealt with in it, or waits for another event.
@@ -80,25 +87,17 @@ Cycle Tile::next_arrival() const {
   return first;
 }
 
-Cycle Tile::next_beside_ring() const {
-  Cycle first = next_here_;
-  const auto consider = [&](Cycle at) {
-    if (at > now_ && at < first) first = at;
-  };
-  consider(ports_.new_rays->next());
-  consider(shapes_.next());
-  consider(help_.next());
-  consider(travelling_.next());
-  if (ports_.answers != nullptr) consider(ports_.answers->next());
-  return may_send_ ? std::min(first, next_credit()) : first;
+// A step takes in all that has arrived.
+Cycle Tile::next_on_side() const {
+  return std::min({ports_.new_rays->next(), shapes_.next(), help_.next_job(),
+                   ports_.answers == nullptr ? kNever : ports_.answers->next()});
 }
 
 // The time at which a packet can leave, as far as that is known, or at which a credit comes that is waited for.
 Cycle Tile::next_credit() const {
-  const bool wanted = wants_credit();
   Cycle first = kNever;
   for (const OutPort& out : ports_.out)
-    if (const Cycle at = out.next(wanted); at > now_ && at < first) first = at;
+    if (const Cycle at = out.next(wants_credit_); at > now_ && at < first) first = at;
   return first;
 }
 
@@ -113,6 +112,8 @@ Cycle Tile::next_egress() const {
     if (at > now_ && at < first) first = at;
   };
   consider(next_partial_);
+  consider(help_.ends());
+  consider(travelling_.next());
   if (dispatch_free_ > now_ && dispatch_free_ < first && dispatch_wanted()) first = dispatch_free_;
   return first;
 }
@@ -121,13 +122,14 @@ bool Tile::dispatch_wanted() const {
   // Collections that are not full are issued when the dispatch stage has nothing else to do.
   if (travelling_.waiting()) return true;
   if (issue_.empty() ? !resource_.idle() : is_ready(issue_.front())) return true;
-  return std::any_of(ports_.in.begin(), ports_.in.end(), [&](const InPort& in) { return in.next() <= now_; });
+  return std::any_of(ports_.in.begin(), ports_.in.end(),
+                     [&](const InPort& in) { return in.next() <= now_ && stops_here(in.front()); });
 }
 
 void Tile::run(Cycle end) {
-  Cycle rest = next_beside_ring();  // packets that pass by do not change it
   for (;;) {
-    Cycle now = std::min(next_arrival(), rest);
+    const Cycle rest = std::min(next_here_, side_arrival_);
+    Cycle now = std::min(next_on_links(), rest);
     if (const Cycle event = visits_.run_before(std::min(now, end)); event != kNever) {
       now = event;
     } else {
@@ -137,33 +139,81 @@ void Tile::run(Cycle end) {
       }
       if (samples_.due(now)) [[unlikely]]
         sample(now);
-      // Not with the bubble rule, under which a packet that waits to be injected must see every credit. Where a ray's
-      // test ends in this cycle, it comes first, as in every step.
-      if (now < rest && now < visits_.next() && !machine_.flow.bubble() && cut_through(now, true)) continue;
+      // Where a ray's test ends in this cycle, it comes first, as in every step.
+      if (now < rest && now < visits_.next() && pass_on(now)) continue;
     }
     step(now);
-    rest = next_beside_ring();
   }
+}
+
+/// At a time at which only links have something to do: lets packets pass by the resource and leave, as a step would do
+/// it, without a look at the other parts. Returns false if a packet has come that needs dispatch, or if one waits for a
+/// place; then a step has to go on from here.
+bool Tile::pass_on(Cycle now) {
+  if (!links_alone_ || waits_for_place_ || stops_ || pauses_) return false;
+  note_blocked(now);
+  for (OutPort& out : ports_.out) out.take_credits(now);
+  do {
+    cut_through(now);
+    for (const InPort& in : ports_.in) {
+      if (in.next() > now || !stops_here(in.front())) continue;
+      if (dispatch_free_ <= now) return false;
+      next_here_ = std::min(next_here_, dispatch_free_);
+    }
+  } while (send(now));
+  now_ = now;
+  look_at_links();
+  note_state(now);
+  return true;
+}
+
+/// Notes what the links wait for.
+void Tile::look_at_links() {
+  may_send_ = awaits_credit_ = wants_credit_;
+  blocked_from_ = kNever;
+  for (const OutPort& out : ports_.out) {
+    may_send_ |= !out.empty();
+    awaits_credit_ |= out.awaits_credit();
+    blocked_from_ = std::min(blocked_from_, out.blocked_from());
+  }
+}
+
+/// The state at the end of an event. It stays until the next one, unless a link becomes blocked before.
+void Tile::note_state(Cycle now) {
+  const TileState state = classify(blocked_from_ <= now);
+  ledger_.enter(state, now);
+  if (state == TileState::kLink || blocked_from_ == kNever || classify(true) != TileState::kLink) blocked_from_ = kNever;
+}
+
+/// Before anything changes at `now`.
+void Tile::note_blocked(Cycle now) {
+  if (blocked_from_ < now) ledger_.enter(TileState::kLink, blocked_from_);
 }
 
 void Tile::step(Cycle now) {
   sample(now);
+  note_blocked(now);
   now_ = now;
   census_.until(now, resource_.collections().memberships());
   for (OutPort& out : ports_.out) out.take_credits(now);
   resource_.ripen(now);
   if (stops_ && fault_is_due()) stop(now);
-  shapes_.take_answers(now);
-  take_spilled();
+  const bool side = side_arrival_ <= now;
+  if (side) {
+    shapes_.take_answers(now);
+    take_spilled();
+  }
   serve(now);
   if (starts_later_) start_tests(now);
-  take_opacities(now);
-  take_new_rays(now);
+  if (side) {
+    take_opacities(now);
+    take_new_rays(now);
+  }
   served_ = true;
   for (bool again = true; again;) {
     again = finish_tests(now);
     again |= help_.step(now, testers_free());
-    again |= cut_through(now, false);
+    again |= cut_through(now);
     again |= handle(now);
     again |= admit();
     // The issue queue takes no more than before if only packets have been sent since.
@@ -172,6 +222,7 @@ void Tile::step(Cycle now) {
     again |= send(now);
   }
   hand_over(now);
+  if (side) side_arrival_ = next_on_side();
   if (logic_.draining() && !told_drained_ && drained()) {
     told_drained_ = true;
     completed_port_.notify(CompletedRays::Note::kDrained, now);
@@ -181,28 +232,23 @@ void Tile::step(Cycle now) {
     dispatch_free_ = std::max(dispatch_free_, now) + static_cast<Cycle>(fault_.cycles);
     pauses_ = false;
   }
-  const TileState state = classify();
-  ledger_.enter(state, now);
-  help_.notify(now, state != TileState::kTesting && state != TileState::kMemory);
+  help_.notify(now, testers_free() && (issue_.empty() || is_ready(issue_.front())));
   if (partial_ == Partial::kAfter && issue_.size() < issue_places_)
     next_partial_ = std::min(next_partial_, resource_.next_ripe().value_or(kNever));
   next_here_ = next_egress();
-  may_send_ = awaits_credit_ = wants_credit();
-  for (const OutPort& out : ports_.out) {
-    may_send_ |= !out.empty();
-    awaits_credit_ |= out.awaits_credit();
-  }
+  wants_credit_ = wants_credit();
+  look_at_links();
+  note_state(now);
 }
 
-TileState Tile::classify() const {
+TileState Tile::classify(bool blocked) const {
   if (help_.shading()) return TileState::kShading;
   using enum ContextPhase;
   const bool walking = phases_.in(kWalking) != 0;
   if ((phases_.in(kComputing) | phases_.in(kStarting)) != 0 || (walking && visits_.testing()))
     return TileState::kTesting;
   if (walking || phases_.in(kFetching) != 0) return TileState::kMemory;
-  for (const OutPort& out : ports_.out)
-    if (out.blocked()) return TileState::kLink;
+  if (blocked) return TileState::kLink;
   if (!issue_.empty()) return is_ready(issue_.front()) ? TileState::kLink : TileState::kMemory;
   if (storage_full_) return TileState::kStorage;
   if (!resource_.idle() && resource_.packets_in_flight() > 0 && logic_.free.none()) return TileState::kCredits;
@@ -284,7 +330,7 @@ std::string Tile::describe() const {
 }
 
 std::string Tile::blocked(std::size_t port) const {
-  return ports_.out[port].blocked() ? logic_.describe(ports_.out[port].front()) : "";
+  return ports_.out[port].awaits_credit() ? logic_.describe(ports_.out[port].front()) : "";
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -60,6 +60,7 @@ class Tile final : public ResourceAgent {
   Cycle next() const override;
   bool polled() const override { return awaits_credit_; }  // no wakeup tells of credits
   Cycle unannounced() const override { return next_credit(); }
+  void hear(Cycle at) override { side_arrival_ = std::min(side_arrival_, at); }
   void run(Cycle end) override;
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
@@ -117,20 +118,24 @@ class Tile final : public ResourceAgent {
   void sample(Cycle now);
   void read(Cycle at, std::span<std::uint64_t> row);
   Cycle next_arrival() const;
-  Cycle next_beside_ring() const;
+  Cycle next_on_links() const;
+  Cycle next_on_side() const;
   Cycle next_credit() const;
   Cycle next_egress() const;
   bool wants_credit() const;
   bool at_rest() const;
   void step(Cycle now);
+  bool pass_on(Cycle now);
+  void look_at_links();
+  void note_state(Cycle now);
+  void note_blocked(Cycle now);
   void serve(Cycle now);
   void start_tests(Cycle now);
   void take_new_rays(Cycle now);
   void take_opacities(Cycle now);
   bool admit();
   bool finish_tests(Cycle now);
-  /// `at_once`: only packets that find their link free; otherwise they join the egress queue.
-  bool cut_through(Cycle now, bool at_once);
+  bool cut_through(Cycle now);
   bool handle(Cycle now);
   bool handle_arrival(std::size_t d, Cycle now);
   bool pass_through_dispatch(std::size_t d, Cycle now);
@@ -213,9 +218,12 @@ class Tile final : public ResourceAgent {
   void hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
   void sort_ids(std::size_t joined, std::size_t entries, PacketId packet);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
-  bool may_inject(const Packet& packet) const;
+  bool may_inject(const Packet& packet);
+  bool has_place(const OutPort& out) { return out.has_place() || !(waits_for_place_ = true); }
   bool dispatch_wanted() const;
-  TileState classify() const;
+  /// A packet that has arrived needs dispatch.
+  bool stops_here(const Token& token) const { return token.skip == 0 || !cuts_through_; }
+  TileState classify(bool blocked) const;
 
   Machine& machine_;
   const ShapeMemory& memory_;
@@ -250,13 +258,17 @@ class Tile final : public ResourceAgent {
   Cycle now_ = 0;
   Cycle next_ = 0;            // next(), at the end of the last run()
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
+  Cycle side_arrival_ = kNever;  // the next one on a channel beside the links, as far as it has been announced
   bool served_ = false;       // a test has begun since the issue queue was filled
   bool may_send_ = false;     // likewise: a packet waits to leave, or for credits
-  bool awaits_credit_ = false;
+  bool awaits_credit_ = false, wants_credit_ = false;
+  Cycle blocked_from_ = kNever;    // a packet waits for a credit, and the resource for nothing else
+  bool waits_for_place_ = false;  // what dispatch would take up waits for a place in an egress queue, or for a credit
   Cycle dispatch_free_ = 0;                                           // later than dispatch_ends_ when it pauses
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::size_t window_;                    // packets at the front of an input queue among which it chooses
+  bool links_alone_;                      // what passes by matters to nothing else here
   std::vector<std::size_t> passed_over_;  // by port: how often the first one has been
   std::deque<Issue> issue_;
   Cycle next_partial_ = kNever;  // a collection that is not ready may go then

@@ -6,9 +6,11 @@
 
 namespace carousel::ringbus::cycle {
 
-bool Tile::may_inject(const Packet& packet) const {
-  const OutPort& out = ports_.out[logic_.out_port(packet)];
-  return machine_.flow.may_inject(out.has_place(), [&] { return out.spare_places(); });
+bool Tile::may_inject(const Packet& packet) {
+  const OutPort& out = out_for(packet);
+  const bool may = machine_.flow.may_inject(out.has_place(), [&] { return out.spare_places(); });
+  waits_for_place_ |= !may;
+  return may;
 }
 
 bool Tile::handle_issue(Cycle now) {

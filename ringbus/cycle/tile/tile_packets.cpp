@@ -122,20 +122,16 @@ void Tile::hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kin
     note_dispatch(start, ids, kind, packet, has_trip);
 }
 
-bool Tile::cut_through(Cycle now, bool at_once) {
+bool Tile::cut_through(Cycle now) {
   if (!cuts_through_) return false;
   bool moved = false;
   for (std::size_t d = 0; d < ports_.in.size(); ++d) {
     InPort& in = ports_.in[d];
     OutPort& out = ports_.out[d];
-    while (in.next() <= now && (at_once ? out.open(now, 1) : out.has_place()) &&
-           (window_ > 1 ? choose_to_cut(d, now) : in.front().skip > 0)) {
+    while (in.next() <= now && out.has_place() && (window_ > 1 ? choose_to_cut(d, now) : in.front().skip > 0)) {
       Token token = in.take(now);
       --token.skip;
-      if (at_once)
-        out.launch(token, now, token.skip > 0);
-      else
-        out.push(token, now, token.skip > 0);
+      out.push(token, now, token.skip > 0);
       moved = true;
     }
   }
@@ -143,6 +139,7 @@ bool Tile::cut_through(Cycle now, bool at_once) {
 }
 
 bool Tile::handle(Cycle now) {
+  waits_for_place_ = false;
   if (dispatch_free_ > now) return false;
   for (std::size_t i = 0; i < ports_.in.size(); ++i) {
     const std::size_t d = next_in_ + i < ports_.in.size() ? next_in_ + i : next_in_ + i - ports_.in.size();
@@ -154,7 +151,7 @@ bool Tile::handle(Cycle now) {
 }
 
 bool Tile::pass_through_dispatch(std::size_t d, Cycle now) {
-  if (!visit_all_ || !ports_.out[d].has_place()) return false;
+  if (!visit_all_ || !has_place(ports_.out[d])) return false;
   Token token = ports_.in[d].take(now);
   --token.skip;
   ++passed_;
@@ -200,7 +197,7 @@ bool Tile::handle_arrival(std::size_t d, Cycle now) {
     return true;
   }
   OutPort& out = out_for(packet);
-  if (!out.has_place()) return false;
+  if (!has_place(out)) return false;
   if (fate == PacketFate::kTakeRays) {
     visit_with_rays(d, now);
     return true;

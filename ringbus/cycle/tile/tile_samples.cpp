@@ -29,6 +29,7 @@ void Tile::read(Cycle at, std::span<std::uint64_t> row) {
 
 void Tile::close(Cycle end) {
   samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
+  note_blocked(end);
   ledger_.close(end);
   census_.until(end, resource_.collections().memberships());
   tester_.close(end);

@@ -14,14 +14,20 @@ namespace carousel::ringbus::cycle {
 /// threads, the earliest arrival that the one has sent to each agent of the other. A row is written by its sending
 /// thread within a window, and read and cleared by its receiving thread between windows (windows.h); no two threads
 /// use it at the same time.
+///
+/// An agent with many channels may have some of them connected beside the others: it hears of their arrivals apart
+/// (Agent::hear), and need not look into them while it has heard nothing.
 class WakeupTable {
  public:
   /// Agents by thread, as run_windows() gets them.
   explicit WakeupTable(std::span<const std::vector<Agent*>> parts)
-      : threads_(parts.size()), rows_(threads_ * threads_) {
+      : threads_(parts.size()), rows_(threads_ * threads_), beside_(threads_ * threads_) {
     for (std::size_t t = 0; t < threads_; ++t) {
       for (std::size_t i = 0; i < parts[t].size(); ++i) places_[parts[t][i]] = {t, i};
-      for (std::size_t from = 0; from < threads_; ++from) row(t, from).assign(parts[t].size(), kNever);
+      for (std::size_t from = 0; from < threads_; ++from) {
+        row(t, from).assign(parts[t].size(), kNever);
+        row_beside(t, from).assign(parts[t].size(), kNever);
+      }
     }
   }
 
@@ -32,15 +38,22 @@ class WakeupTable {
     const Place place = places_.at(&to);
     channel.wakes(row(place.thread, places_.at(&from).thread)[place.index]);
   }
+  /// The same for a channel of which `to` hears apart.
+  template <class T>
+  void connect_beside(Channel<T>& channel, const Agent& from, const Agent& to) {
+    const Place place = places_.at(&to);
+    channel.wakes(row_beside(place.thread, places_.at(&from).thread)[place.index]);
+  }
   /// By agent of thread `to`.
   std::vector<Cycle>& row(std::size_t to, std::size_t from) { return rows_[to * threads_ + from]; }
+  std::vector<Cycle>& row_beside(std::size_t to, std::size_t from) { return beside_[to * threads_ + from]; }
 
  private:
   struct Place {
     std::size_t thread = 0, index = 0;
   };
   std::size_t threads_;
-  std::vector<std::vector<Cycle>> rows_;
+  std::vector<std::vector<Cycle>> rows_, beside_;
   std::unordered_map<const Agent*, Place> places_;
 };
 

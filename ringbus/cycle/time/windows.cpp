@@ -152,9 +152,14 @@ class WindowRun {
     std::vector<Cycle>& wake = schedule.wake;
     for (std::size_t from = 0; from < parts_.size(); ++from) {
       std::vector<Cycle>& heard = wakeups_.row(thread, from);
+      std::vector<Cycle>& beside = wakeups_.row_beside(thread, from);
       for (std::size_t i = 0; i < wake.size(); ++i) {
         wake[i] = std::min(wake[i], heard[i]);
         heard[i] = kNever;
+        if (beside[i] == kNever) continue;
+        parts_[thread][i]->hear(beside[i]);
+        wake[i] = std::min(wake[i], beside[i]);
+        beside[i] = kNever;
       }
     }
     Cycle first = kNever;

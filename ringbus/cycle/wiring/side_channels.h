@@ -35,17 +35,17 @@ class SideChannels {
 
   /// Announces arrivals to the agents at either end.
   void connect(WakeupTable& wakeups, const Agent& resource, const Agent& shading, const Agent& cache) {
-    wakeups.connect(new_rays_, shading, resource);
+    wakeups.connect_beside(new_rays_, shading, resource);
     wakeups.connect(completed_, resource, shading);
     wakeups.connect(fetch_, resource, cache);
-    wakeups.connect(fetched_, cache, resource);
-    if (pushed_) wakeups.connect(*pushed_, cache, resource);
+    wakeups.connect_beside(fetched_, cache, resource);
+    if (pushed_) wakeups.connect_beside(*pushed_, cache, resource);
     if (any_hit_) {
       wakeups.connect(any_hit_->questions, resource, shading);
-      wakeups.connect(any_hit_->answers, shading, resource);
+      wakeups.connect_beside(any_hit_->answers, shading, resource);
     }
     if (!help_) return;
-    wakeups.connect(help_->jobs, shading, resource);
+    wakeups.connect_beside(help_->jobs, shading, resource);
     wakeups.connect(help_->notes, resource, shading);
   }
 
