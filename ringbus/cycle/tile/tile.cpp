@@ -89,8 +89,12 @@ Cycle Tile::next_arrival() const {
 
 // A step takes in all that has arrived.
 Cycle Tile::next_on_side() const {
-  return std::min({ports_.new_rays->next(), shapes_.next(), help_.next_job(),
-                   ports_.answers == nullptr ? kNever : ports_.answers->next()});
+  return std::min(shapes_.next(), next_but_shapes());
+}
+
+Cycle Tile::next_but_shapes() const {
+  const Cycle first = std::min(ports_.new_rays->next(), help_.next_job());
+  return ports_.answers == nullptr ? first : std::min(first, ports_.answers->next());
 }
 
 // The time at which a packet can leave, as far as that is known, or at which a credit comes that is waited for.
@@ -119,11 +123,11 @@ Cycle Tile::next_egress() const {
 }
 
 bool Tile::dispatch_wanted() const {
-  // Collections that are not full are issued when the dispatch stage has nothing else to do.
-  if (travelling_.waiting()) return true;
-  if (issue_.empty() ? !resource_.idle() : is_ready(issue_.front())) return true;
+  if (travelling_.waiting() || (!issue_.empty() && is_ready(issue_.front()))) return true;
+  // Collections that are not full may go when the dispatch stage has nothing else to do.
+  if (partial_ == Partial::kIdle && issue_.empty() && !resource_.idle()) return true;
   return std::any_of(ports_.in.begin(), ports_.in.end(),
-                     [&](const InPort& in) { return in.next() <= now_ && stops_here(in.front()); });
+                     [&](const InPort& in) { return in.next() <= now_ && stops_here(in); });
 }
 
 void Tile::run(Cycle end) {
@@ -140,7 +144,7 @@ void Tile::run(Cycle end) {
       if (samples_.due(now)) [[unlikely]]
         sample(now);
       // Where a ray's test ends in this cycle, it comes first, as in every step.
-      if (now < rest && now < visits_.next() && pass_on(now)) continue;
+      if (now < visits_.next() && now < next_here_ && (now < rest ? pass_on(now) : take_shapes(now))) continue;
     }
     step(now);
   }
@@ -156,7 +160,7 @@ bool Tile::pass_on(Cycle now) {
   do {
     cut_through(now);
     for (const InPort& in : ports_.in) {
-      if (in.next() > now || !stops_here(in.front())) continue;
+      if (in.next() > now || !stops_here(in)) continue;
       if (dispatch_free_ <= now) return false;
       next_here_ = std::min(next_here_, dispatch_free_);
     }
@@ -164,6 +168,21 @@ bool Tile::pass_on(Cycle now) {
   now_ = now;
   look_at_links();
   note_state(now);
+  return true;
+}
+
+/// At a time at which only things beside the links have come: takes in shapes for rays in subtrees, as a step would do
+/// it. Returns false if there is more to do; then a step has to go on from here.
+bool Tile::take_shapes(Cycle now) {
+  if (stops_ || pauses_ || next_on_links() <= now || next_but_shapes() <= now) return false;
+  const bool tested = visits_.testing();
+  shapes_.queue_changed();
+  shapes_.take_answers(now);
+  visits_.serve(now);
+  if (tested != visits_.testing() || !visits_.others().empty() || shapes_.queue_changed() ||
+      !shapes_.spill_answers().empty())
+    return false;
+  side_arrival_ = next_on_side();
   return true;
 }
 

@@ -120,12 +120,14 @@ class Tile final : public ResourceAgent {
   Cycle next_arrival() const;
   Cycle next_on_links() const;
   Cycle next_on_side() const;
+  Cycle next_but_shapes() const;
   Cycle next_credit() const;
   Cycle next_egress() const;
   bool wants_credit() const;
   bool at_rest() const;
   void step(Cycle now);
   bool pass_on(Cycle now);
+  bool take_shapes(Cycle now);
   void look_at_links();
   void note_state(Cycle now);
   void note_blocked(Cycle now);
@@ -221,8 +223,8 @@ class Tile final : public ResourceAgent {
   bool may_inject(const Packet& packet);
   bool has_place(const OutPort& out) { return out.has_place() || !(waits_for_place_ = true); }
   bool dispatch_wanted() const;
-  /// A packet that has arrived needs dispatch.
-  bool stops_here(const Token& token) const { return token.skip == 0 || !cuts_through_; }
+  /// A packet that is at the front, or may be brought there, needs dispatch.
+  bool stops_here(const InPort& in) const { return window_ > 1 || !cuts_through_ || in.front().skip == 0; }
   TileState classify(bool blocked) const;
 
   Machine& machine_;
