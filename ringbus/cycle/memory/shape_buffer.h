@@ -79,8 +79,9 @@ class ShapeBuffer {
   std::vector<std::uint32_t>& spill_answers() { return spill_answers_; }
   /// Users who waited and need wait no longer, in the order in which their data was complete. The caller empties it.
   std::vector<User>& ready() { return ready_; }
-  /// Tells whether anything changed for the issue queue since the last call.
-  bool queue_changed() { return std::exchange(queue_changed_, false); }
+  /// Tells whether anything has changed for the issue queue since forget_changes().
+  bool queue_has_changed() const { return queue_changed_; }
+  void forget_changes() { queue_changed_ = false; }
 
   std::size_t fetches() const { return fetches_; }  ///< on their way
   const ShapeBufferCounts& counts() const { return counts_; }

@@ -47,7 +47,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
       starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
       window_(static_cast<std::size_t>(settings.testers.window)),
-      links_alone_(window_ == 1 && partial_ != Partial::kIdle),
+      steps_always_(window_ > 1 || partial_ == Partial::kIdle),
       passed_over_(ports_.in.size()),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       phases_(contexts_.size()),
@@ -66,12 +66,13 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
   using Kind = FaultsConfig::Resource::Kind;
   pauses_ = fault_.kind == Kind::kPause && fault_.number == id.value;
   stops_ = fault_.kind == Kind::kStop && fault_.number == id.value;
+  steps_always_ |= pauses_ || stops_;
 }
 
 // ---- time
 
 Cycle Tile::next() const {
-  return std::min({next_on_links(), next_on_side(), next_here_, visits_.next()});
+  return std::min({next_on_links(), next_on_side(), next_here_, next_start_, visits_.next()});
 }
 
 Cycle Tile::next_on_links() const {
@@ -110,8 +111,7 @@ bool Tile::wants_credit() const {
 }
 
 Cycle Tile::next_egress() const {
-  Cycle first =
-      phases_.first_end_after(now_, phases_.in(ContextPhase::kComputing) | phases_.in(ContextPhase::kStarting));
+  Cycle first = phases_.first_end_after(now_, phases_.in(ContextPhase::kComputing));
   const auto consider = [&](Cycle at) {
     if (at > now_ && at < first) first = at;
   };
@@ -132,29 +132,65 @@ bool Tile::dispatch_wanted() const {
 
 void Tile::run(Cycle end) {
   for (;;) {
-    const Cycle rest = std::min(next_here_, side_arrival_);
-    Cycle now = std::min(next_on_links(), rest);
+    const Cycle links = next_on_links(), now = std::min({links, next_here_, next_start_, side_arrival_});
+    visits_.forget_news();
     if (const Cycle event = visits_.run_before(std::min(now, end)); event != kNever) {
-      now = event;
-    } else {
-      if (now >= end) {
-        next_ = std::min(now, visits_.next());
-        return;
+      if (visits_.has_news()) {
+        step(event);
+        continue;
       }
-      if (samples_.due(now)) [[unlikely]]
-        sample(now);
-      // Where a ray's test ends in this cycle, it comes first, as in every step.
-      if (now < visits_.next() && now < next_here_ && (now < rest ? pass_on(now) : take_shapes(now))) continue;
+      if (samples_.due(event)) [[unlikely]]
+        sample(event);
+      note_blocked(event);
+      note_state(event);
+      continue;
     }
+    if (now >= end) {
+      next_ = std::min(now, visits_.next());
+      return;
+    }
+    if (samples_.due(now)) [[unlikely]]
+      sample(now);
+    // Where a ray's test ends in this cycle, it comes first, as in every step.
+    if (!steps_always_ && now < std::min(next_here_, visits_.next()) && (side_arrival_ > now || take_shapes(now)) &&
+        (next_start_ > now || start_alone(now)) && (links > now || pass_on(now)))
+      continue;
     step(now);
   }
 }
 
-/// At a time at which only links have something to do: lets packets pass by the resource and leave, as a step would do
-/// it, without a look at the other parts. Returns false if a packet has come that needs dispatch, or if one waits for a
-/// place; then a step has to go on from here.
+// What happens at a time at which nothing ends or is due but what their names say. They do it as a step would, without
+// a look at the other parts, and return false if there is more to do; then a step has to go on from there.
+
+/// Takes in shapes for rays in subtrees.
+bool Tile::take_shapes(Cycle now) {
+  if (next_but_shapes() <= now) return false;
+  note_blocked(now);
+  const bool tested = visits_.testing();
+  shapes_.take_answers(now);
+  visits_.serve(now);
+  if (visits_.has_news() || !shapes_.spill_answers().empty()) return false;
+  side_arrival_ = next_on_side();
+  if (tested != visits_.testing()) note_state(now);
+  return true;
+}
+
+/// Begins tests of packets that dispatch has read.
+bool Tile::start_alone(Cycle now) {
+  note_blocked(now);
+  start_tests(now);
+  const ContextPhases::Set computing = phases_.in(ContextPhase::kComputing);
+  const Cycle ends = phases_.first_end_after(0, computing);
+  if (visits_.has_news() || ends <= now) return false;
+  next_start_ = phases_.first_end_after(now, phases_.in(ContextPhase::kStarting));
+  next_here_ = std::min(next_here_, ends);
+  note_state(now);
+  return true;
+}
+
+/// Lets packets pass by the resource and leave.
 bool Tile::pass_on(Cycle now) {
-  if (!links_alone_ || waits_for_place_ || stops_ || pauses_) return false;
+  if (waits_for_place_) return false;
   note_blocked(now);
   for (OutPort& out : ports_.out) out.take_credits(now);
   do {
@@ -168,21 +204,6 @@ bool Tile::pass_on(Cycle now) {
   now_ = now;
   look_at_links();
   note_state(now);
-  return true;
-}
-
-/// At a time at which only things beside the links have come: takes in shapes for rays in subtrees, as a step would do
-/// it. Returns false if there is more to do; then a step has to go on from here.
-bool Tile::take_shapes(Cycle now) {
-  if (stops_ || pauses_ || next_on_links() <= now || next_but_shapes() <= now) return false;
-  const bool tested = visits_.testing();
-  shapes_.queue_changed();
-  shapes_.take_answers(now);
-  visits_.serve(now);
-  if (tested != visits_.testing() || !visits_.others().empty() || shapes_.queue_changed() ||
-      !shapes_.spill_answers().empty())
-    return false;
-  side_arrival_ = next_on_side();
   return true;
 }
 
@@ -254,6 +275,7 @@ void Tile::step(Cycle now) {
   help_.notify(now, testers_free() && (issue_.empty() || is_ready(issue_.front())));
   if (partial_ == Partial::kAfter && issue_.size() < issue_places_)
     next_partial_ = std::min(next_partial_, resource_.next_ripe().value_or(kNever));
+  next_start_ = phases_.first_end_after(now, phases_.in(ContextPhase::kStarting));
   next_here_ = next_egress();
   wants_credit_ = wants_credit();
   look_at_links();

@@ -126,8 +126,9 @@ class Tile final : public ResourceAgent {
   bool wants_credit() const;
   bool at_rest() const;
   void step(Cycle now);
-  bool pass_on(Cycle now);
   bool take_shapes(Cycle now);
+  bool start_alone(Cycle now);
+  bool pass_on(Cycle now);
   void look_at_links();
   void note_state(Cycle now);
   void note_blocked(Cycle now);
@@ -260,6 +261,7 @@ class Tile final : public ResourceAgent {
   Cycle now_ = 0;
   Cycle next_ = 0;            // next(), at the end of the last run()
   Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
+  Cycle next_start_ = kNever;  // the beginning of tests of packets that dispatch reads
   Cycle side_arrival_ = kNever;  // the next one on a channel beside the links, as far as it has been announced
   bool served_ = false;       // a test has begun since the issue queue was filled
   bool may_send_ = false;     // likewise: a packet waits to leave, or for credits
@@ -270,7 +272,7 @@ class Tile final : public ResourceAgent {
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::size_t window_;                    // packets at the front of an input queue among which it chooses
-  bool links_alone_;                      // what passes by matters to nothing else here
+  bool steps_always_;                     // any event may matter to all parts
   std::vector<std::size_t> passed_over_;  // by port: how often the first one has been
   std::deque<Issue> issue_;
   Cycle next_partial_ = kNever;  // a collection that is not ready may go then

@@ -95,13 +95,11 @@ void SubtreeVisits::run(Cycle now) {
 }
 
 Cycle SubtreeVisits::run_before(Cycle limit) {
-  visit_ended_ = false;
-  shapes_.queue_changed();
   while (events_.next() < limit) {
     const Cycle now = events_.next();
     const bool tested = testing();
     run(now);
-    if (visit_ended_ || tested != testing() || !others_.empty() || shapes_.queue_changed()) return now;
+    if (tested != testing() || has_news()) return now;
   }
   return kNever;
 }

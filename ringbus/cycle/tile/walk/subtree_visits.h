@@ -34,9 +34,16 @@ class SubtreeVisits {
   Cycle next() const { return events_.next(); }
   /// Lets rays go on at `now`.
   void run(Cycle now);
-  /// Lets rays go on before `limit`, up to the first time at which the resource has something to do, which it returns;
-  /// kNever if there was none.
+  /// Lets rays go on before `limit`, up to the first time at which testing() changes or there is something for the
+  /// resource to do, which it returns; kNever if there was none.
   Cycle run_before(Cycle limit);
+  /// Tells whether a visit has ended, data has come for others(), or anything has changed for the issue queue, since
+  /// forget_news().
+  bool has_news() const { return visit_ended_ || !others_.empty() || shapes_.queue_has_changed(); }
+  void forget_news() {
+    visit_ended_ = false;
+    shapes_.forget_changes();
+  }
   /// Starts the tests of rays whose data has come. The other users for whom ShapeBuffer::ready() waits go to `others`.
   void serve(Cycle now);
   std::vector<ShapeBuffer::User>& others() { return others_; }
