@@ -45,7 +45,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                                    std::stop_token stop, bool quiet) {
   if (!run.complete) return report::judge_gains({.complete = false});
   ringbus::RunOptions options;
-  options.threads = prepared.threads;
+  options.threads = prepared.threads_beside;
   options.stop = std::move(stop);
   options.statistics = false;
   std::optional<report::ProgressLine> line;

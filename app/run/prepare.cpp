@@ -197,6 +197,7 @@ void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport 
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
+  p.threads_beside = static_cast<std::size_t>(p.config().engine.threads.value_or(cores));
   spdlog::debug("threads: {}{}", p.threads, p.config().engine.threads ? "" : ", chosen");
   limit_memory(p);
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene

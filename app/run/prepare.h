@@ -28,7 +28,8 @@ struct ConfigArguments {
 struct Prepared {
   LocatedConfig located;
   std::filesystem::path config_folder;
-  std::size_t threads = 1;  ///< engine.threads, or the machine's cores
+  std::size_t threads = 1;         ///< engine.threads, or as many as make one simulation faster
+  std::size_t threads_beside = 1;  ///< engine.threads, or the machine's cores: for simulations beside each other
   std::unique_ptr<scene::Scene> scene_storage = std::make_unique<scene::Scene>();
   scene::Scene& scene = *scene_storage;  ///< keeps its address when the object is moved, since others refer to it
   std::vector<std::string> warnings;     ///< of the import

@@ -34,7 +34,7 @@ std::optional<PointError> run_point(const SweepSetup& setup, Prepared& prepared,
     const auto start = std::chrono::steady_clock::now();
     const InterruptScope interrupt;
     set_machine(prepared, load_config(setup.source, point.sets));
-    prepared.threads = point_threads(prepared.config());
+    prepared.threads = prepared.threads_beside = point_threads(prepared.config());
     report::Report report;
     if (prepared.has_rays()) {
       RenderJob job(prepared);
