@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <type_traits>
 
 #include "ringbus/cycle/fabric/link_recorder.h"
@@ -65,7 +65,7 @@ class OutPortOf {
   OutPortOf(WireOf<T>& wire, Cycle latency, std::uint32_t depth, std::size_t places)
       : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
   /// From now on the link has faults.
-  void fail(const LinkFaultTimer& faults) { faults_ = faults; }
+  void fail(const LinkFaultTimer& faults) { faults_ = std::make_unique<LinkFaultTimer>(faults); }
   /// From now on the packets that it sends are noted.
   void record(const LinkRecorder& recorder) { recorder_ = recorder; }
 
@@ -195,7 +195,7 @@ class OutPortOf {
   Cycle free_at_ = 0, busy_ = 0, stalled_ = 0;
   std::uint64_t packets_ = 0;
   Cycle last_arrival_ = 0;
-  std::optional<LinkFaultTimer> faults_;
+  std::unique_ptr<LinkFaultTimer> faults_;  // null: it has none
   LinkRecorder recorder_;
 };
 

@@ -48,21 +48,44 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
 }
 
 Cycle ShadingAgent::next() const {
+  Cycle first = next_but_completed();
+  for (const SidePorts& client : clients_)
+    if (!done()) first = std::min(first, client.completed->next());
+  return first;
+}
+
+Cycle ShadingAgent::next_but_completed() const {
   if (!started_) return 0;
   Cycle first = ends_.empty() ? kNever : ends_.top().done;
   // When all is done nothing of importance comes, and a resource that stops then is not waited for.
   if (!done()) first = std::min(first, give_up_at_);
-  for (const SidePorts& client : clients_) {
-    if (!done()) first = std::min(first, client.completed->next());
-    if (client.questions != nullptr) first = std::min(first, client.questions->next());
-  }
+  for (std::uint32_t r = 0; r < clients_.size() && clients_[r].questions != nullptr; ++r)
+    first = std::min(first, clients_[r].questions->next());
   if (data_) first = std::min(first, data_->next());
   if (sorter_) first = std::min(first, sorter_->next());
   return std::min(first, helpers_.next());
 }
 
 void ShadingAgent::run(Cycle end) {
-  while ((next_ = next()) < end) step(next_);
+  window_end_ = end;
+  if (next_completed_ < end) {
+    next_completed_ = kNever;
+    for (std::uint32_t r = 0; r < clients_.size(); ++r) look_for(r);
+  }
+  const auto next_known = [&] {
+    const Cycle completed = due_.empty() ? next_completed_ : due_.top().at;
+    return std::min(next_but_completed(), done() ? kNever : completed);
+  };
+  while ((next_ = next_known()) < end) step(next_);
+}
+
+/// What a resource has sent, once a window: most have sent nothing.
+void ShadingAgent::look_for(std::uint32_t client) {
+  const Cycle at = clients_[client].completed->next();
+  if (at < window_end_)
+    due_.push({at, client});
+  else
+    next_completed_ = std::min(next_completed_, at);
 }
 
 void ShadingAgent::step(Cycle now) {
@@ -86,7 +109,9 @@ void ShadingAgent::step(Cycle now) {
 }
 
 void ShadingAgent::take_completed(Cycle now) {
-  for (std::uint32_t r = 0; r < clients_.size(); ++r) {
+  for (; !due_.empty() && due_.top().at <= now;) {
+    const std::uint32_t r = due_.top().from;
+    due_.pop();
     while (clients_[r].completed->next() <= now) {
       const CompletedRays done = clients_[r].completed->take();
       if (done.note != CompletedRays::Note::kDone) {
@@ -110,6 +135,7 @@ void ShadingAgent::take_completed(Cycle now) {
       for (const RayResult& ray : done.rays)
         if (!data_ || !data_->fetch_state(ray, now)) to_be_shaded(ray, now);
     }
+    look_for(r);
   }
 }
 

@@ -60,6 +60,7 @@ class ShadingAgent final : public Agent {
 
   Cycle next() const override;
   bool polled() const override { return false; }
+  void hear(Cycle at) override { next_completed_ = std::min(next_completed_, at); }
   void run(Cycle end) override;
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
@@ -112,6 +113,15 @@ class ShadingAgent final : public Agent {
     bool operator>(const JobEnd& o) const { return done != o.done ? done > o.done : worker > o.worker; }
   };
 
+  /// Completed rays of a resource that arrive in the present window.
+  struct Due {
+    Cycle at = 0;
+    std::uint32_t from = 0;
+    bool operator>(const Due& o) const { return at != o.at ? at > o.at : from > o.from; }
+  };
+
+  Cycle next_but_completed() const;
+  void look_for(std::uint32_t client);
   void step(Cycle now);
   void sample(Cycle now);
   // With a recording (shading_record.cpp).
@@ -206,6 +216,8 @@ class ShadingAgent final : public Agent {
   std::vector<std::vector<Cycle>> placed_at_;  // by resource and slot of a ray
   Log2Histogram residence_;
   Cycle next_ = 0;  // next(), at the end of the last run()
+  std::priority_queue<Due, std::vector<Due>, std::greater<>> due_;
+  Cycle window_end_ = 0, next_completed_ = kNever;  // completed rays that arrive after the window, as far as known
 };
 
 }  // namespace carousel::ringbus::cycle

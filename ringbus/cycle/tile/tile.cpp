@@ -203,7 +203,7 @@ bool Tile::pass_on(Cycle now) {
   } while (send(now));
   now_ = now;
   look_at_links();
-  note_state(now);
+  if (blocked_from_ != kNever || ledger_.state() == TileState::kLink) note_state(now);  // else it has not changed
   return true;
 }
 

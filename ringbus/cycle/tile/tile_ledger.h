@@ -19,6 +19,7 @@ class TileLedger {
     if (state != clock_.state() || now - tester_.accounted() >= 4096) tester_.account(clock_.state(), now);
     clock_.enter(state, now);
   }
+  TileState state() const { return clock_.state(); }
   /// The run is over.
   void close(Cycle end) {
     tester_.account(clock_.state(), end);

@@ -120,7 +120,7 @@ class Channel {
   static constexpr std::size_t kBlock = 8;
   struct Item {
     Cycle arrival = 0;
-    T thing{};
+    [[no_unique_address]] T thing{};
   };
   struct Block {
     std::array<Item, kBlock> items;

@@ -150,22 +150,23 @@ class WindowRun {
   /// Takes in the announcements, between windows. Returns the earliest time at which an agent of the thread has to run.
   Cycle look(std::size_t thread, Schedule& schedule) {
     std::vector<Cycle>& wake = schedule.wake;
+    Cycle first = kNever;
     for (std::size_t from = 0; from < parts_.size(); ++from) {
       std::vector<Cycle>& heard = wakeups_.row(thread, from);
       std::vector<Cycle>& beside = wakeups_.row_beside(thread, from);
+      const bool last = from + 1 == parts_.size();
       for (std::size_t i = 0; i < wake.size(); ++i) {
-        wake[i] = std::min(wake[i], heard[i]);
+        Cycle at = std::min(wake[i], heard[i]);
         heard[i] = kNever;
-        if (beside[i] == kNever) continue;
-        parts_[thread][i]->hear(beside[i]);
-        wake[i] = std::min(wake[i], beside[i]);
-        beside[i] = kNever;
+        if (beside[i] != kNever) {
+          parts_[thread][i]->hear(beside[i]);
+          at = std::min(at, beside[i]);
+          beside[i] = kNever;
+        }
+        if (last && schedule.polled[i]) at = std::min(at, parts_[thread][i]->unannounced());
+        wake[i] = at;
+        first = std::min(first, at);
       }
-    }
-    Cycle first = kNever;
-    for (std::size_t i = 0; i < wake.size(); ++i) {
-      if (schedule.polled[i]) wake[i] = std::min(wake[i], parts_[thread][i]->unannounced());
-      first = std::min(first, wake[i]);
     }
     return first;
   }

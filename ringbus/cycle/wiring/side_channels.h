@@ -36,7 +36,7 @@ class SideChannels {
   /// Announces arrivals to the agents at either end.
   void connect(WakeupTable& wakeups, const Agent& resource, const Agent& shading, const Agent& cache) {
     wakeups.connect_beside(new_rays_, shading, resource);
-    wakeups.connect(completed_, resource, shading);
+    wakeups.connect_beside(completed_, resource, shading);
     wakeups.connect(fetch_, resource, cache);
     wakeups.connect_beside(fetched_, cache, resource);
     if (pushed_) wakeups.connect_beside(*pushed_, cache, resource);
