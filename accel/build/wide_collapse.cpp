@@ -62,7 +62,7 @@ class Collapse {
 
   /// A subtree that one thread turns into nodes, whose numbers and blocks' numbers are consecutive.
   struct Task {
-    std::uint32_t root;
+    std::uint32_t root = 0;
     std::uint32_t node_count = 0, block_count = 0;
     std::uint32_t first_node = 0, first_block = 0;
     std::vector<BlockPrimitives> blocks;
@@ -187,7 +187,7 @@ class Collapse {
   void find_tasks(std::uint32_t at, int depth) {
     if (binary_[at].count > 0) return;
     if (is_task(depth))
-      tasks_.push_back({.root = at});
+      tasks_.emplace_back().root = at;
     else
       each_child(at, [&](std::uint32_t below) { find_tasks(below, depth + 1); });
   }

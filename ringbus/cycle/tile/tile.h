@@ -259,16 +259,17 @@ class Tile final : public ResourceAgent {
   bool starts_later_;  // tests begin, and take units, when dispatch has read the packet; otherwise that is known before
 
   Cycle now_ = 0;
-  Cycle next_ = 0;            // next(), at the end of the last run()
-  Cycle next_here_ = kNever;  // next event of tests and dispatch, as of the last step
-  Cycle next_start_ = kNever;  // the beginning of tests of packets that dispatch reads
+  Cycle next_ = 0;               // next(), at the end of the last run()
+  Cycle next_here_ = kNever;     // next event of tests and dispatch, as of the last step
+  Cycle next_start_ = kNever;    // the beginning of tests of packets that dispatch reads
   Cycle side_arrival_ = kNever;  // the next one on a channel beside the links, as far as it has been announced
-  bool served_ = false;       // a test has begun since the issue queue was filled
-  bool may_send_ = false;     // likewise: a packet waits to leave, or for credits
+  bool served_ = false;          // a test has begun since the issue queue was filled
+  bool may_send_ = false;        // likewise: a packet waits to leave, or for credits
   bool awaits_credit_ = false, wants_credit_ = false;
-  Cycle blocked_from_ = kNever;    // a packet waits for a credit, and the resource for nothing else
-  bool waits_for_place_ = false;  // what dispatch would take up waits for a place in an egress queue, or for a credit
-  Cycle dispatch_free_ = 0;                                           // later than dispatch_ends_ when it pauses
+  Cycle link_state_from_ = kNever;  // the resource will be in that state unless something else happens before
+  Cycle blocked_from_ = kNever;     // a packet waits for a credit, or will then
+  bool waits_for_place_ = false;    // what dispatch would take up waits for a place in an egress queue, or for a credit
+  Cycle dispatch_free_ = 0;         // later than dispatch_ends_ when it pauses
   Cycle dispatch_since_ = 0, dispatch_ends_ = 0, dispatch_busy_ = 0;  // from the first to the last cycle of its work
   std::size_t next_in_ = 0;
   std::size_t window_;                    // packets at the front of an input queue among which it chooses

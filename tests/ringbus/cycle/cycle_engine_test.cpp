@@ -39,6 +39,25 @@ TEST(CycleEngine, TakesTheSameCyclesOnAnyNumberOfThreads) {
   }
 }
 
+// A resource deals with most events by a part of a step (tile.cpp). One that is to pause after more rays than there are
+// takes a whole step at every event, and nothing may come of that.
+TEST(CycleEngine, PartsOfAStepDoAsMuchAsTheWhole) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 300, 3);
+  const auto count = static_cast<std::uint32_t>(cell_count(40));
+  for (std::uint32_t seed = run_seed(); seed < run_seed() + count; ++seed) {
+    Cell cell = random_cell(seed + 2000, seed % 2 == 0);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
+    const Outcome parts = run_cell(scene, cell);
+    ASSERT_EQ(parts.fault, "");
+    cell.config.faults.resource = {FaultsConfig::Resource::Kind::kPause, seed % cell.config.topology.resources,
+                                   1'000'000'000, 1, 4};
+    const Outcome whole = run_cell(scene, cell);
+    ASSERT_EQ(whole.fault, "");
+    EXPECT_TRUE(*whole.result.cycle == *parts.result.cycle);
+    EXPECT_TRUE(whole.result.resources == parts.result.resources);
+  }
+}
+
 TEST(CycleEngine, LedgersAddUp) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
   std::uint64_t transforms = 0, jobs = 0, waited = 0;

@@ -266,7 +266,7 @@ TEST(Ports, ACreditNeedsTheLinksLatencyToGetBack) {
   EXPECT_TRUE(out.send(0));
   EXPECT_EQ(in.next(), 4u);
   EXPECT_FALSE(out.send(1));
-  EXPECT_TRUE(out.blocked());
+  EXPECT_EQ(out.blocked_from(), 1u);
   in.take(6);  // held for two cycles
   EXPECT_EQ(out.next(false), 10u);
   out.take_credits(9);
@@ -274,7 +274,7 @@ TEST(Ports, ACreditNeedsTheLinksLatencyToGetBack) {
   out.take_credits(10);
   EXPECT_TRUE(out.send(10));
   EXPECT_EQ(out.stalled(), 9u);
-  EXPECT_FALSE(out.blocked());
+  EXPECT_EQ(out.blocked_from(), kNever);
 }
 
 // The ledger of a link's queue against counting, cycle by cycle, what has come and not been taken.

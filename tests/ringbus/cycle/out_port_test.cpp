@@ -20,5 +20,26 @@ TEST(OutPort, TellsOfACreditBeforeThePacketInItsQueueMayLeave) {
   EXPECT_EQ(out.next(false), 20u);
 }
 
+// A packet waits for a credit from the cycle in which it could have gone, whether or not anybody looked then.
+TEST(OutPort, CountsTheWaitForACreditFromTheCycleInWhichThePacketCouldHaveGone) {
+  for (const bool looks : {false, true}) {
+    Wire wire;
+    OutPort out(wire, 1, 1, 4);
+    Token token;
+    token.link_cycles = 4;
+    out.push(token, 0, false);
+    ASSERT_TRUE(out.send(0));  // the link is free in cycle 4
+    EXPECT_EQ(out.blocked_from(), kNever);
+    out.push(token, 7, false);
+    EXPECT_EQ(out.blocked_from(), 7u);
+    if (looks)
+      for (Cycle now = 5; now < 30; now += 3) EXPECT_FALSE(out.send(now));
+    wire.credits.send(30, {});
+    out.take_credits(30);
+    ASSERT_TRUE(out.send(30));
+    EXPECT_EQ(out.stalled(), 23u);
+  }
+}
+
 }  // namespace
 }  // namespace carousel::ringbus::cycle

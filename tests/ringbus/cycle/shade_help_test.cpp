@@ -50,7 +50,7 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   EXPECT_EQ(wires.notes.next(), kNever);
 
   wires.jobs.send(10, {kShade});
-  EXPECT_EQ(help.next(), 10u);
+  EXPECT_EQ(help.next_job(), 10u);
   EXPECT_TRUE(help.step(10, false));  // a test is under way
   EXPECT_TRUE(help.holds());
   EXPECT_FALSE(help.shading());
@@ -59,13 +59,13 @@ TEST(ShadeHelp, DoesAJobBetweenTests) {
   EXPECT_EQ(wires.notes.next(), kNever);  // no note while it has a job
   EXPECT_TRUE(help.step(15, true));
   EXPECT_TRUE(help.shading());
-  EXPECT_EQ(help.next(), 15 + kShade);
+  EXPECT_EQ(help.ends(), 15 + kShade);
   EXPECT_FALSE(help.step(20, true));
   EXPECT_TRUE(help.step(15 + kShade, true));
   EXPECT_FALSE(help.holds());
   help.notify(15 + kShade, true);
   expect_note(wires, 15 + kShade + kLatency + 2, true, true);  // 68 bytes over a wire of 32
-  EXPECT_EQ(help.next(), kNever);
+  EXPECT_EQ(help.ends(), kNever);
 }
 
 TEST(ShadeHelp, DoesNothingUnlessAsked) {
@@ -74,7 +74,7 @@ TEST(ShadeHelp, DoesNothingUnlessAsked) {
   EXPECT_FALSE(help.step(5, true));
   help.notify(5, false);
   EXPECT_FALSE(help.holds());
-  EXPECT_EQ(help.next(), kNever);
+  EXPECT_EQ(help.ends(), kNever);
 }
 
 RayResult ray(std::uint32_t path) {
