@@ -60,9 +60,8 @@ void describe(V& v, CullPlanesConfig::Depth& c) {
 template <class V>
 void describe(V& v, CullPlanesConfig& c) {
   v.field("count", c.count, IntRange{0, 8}, "planes per child",
-          "The largest number of cull planes of a child; an oriented box has six, and there is one sphere. With 0 "
-          "there are "
-          "none.");
+          "The largest number of cull planes of a child; an oriented box has six, and there is one sphere. "
+          "With 0 there are none.");
   v.choice("object", c.object,
            "The planes are chosen singly, or are the six faces of a box that is turned against the axes; or a sphere "
            "stands in place of a plane.");

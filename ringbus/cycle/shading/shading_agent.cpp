@@ -79,7 +79,8 @@ void ShadingAgent::run(Cycle end) {
   while ((next_ = next_known()) < end) step(next_);
 }
 
-/// What a resource has sent, once a window: most have sent nothing.
+/// Notes when the next completed rays of a resource arrive. A run asks all resources at most once, as most have sent
+/// nothing.
 void ShadingAgent::look_for(std::uint32_t client) {
   const Cycle at = clients_[client].completed->next();
   if (at < window_end_)

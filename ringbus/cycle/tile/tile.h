@@ -222,7 +222,11 @@ class Tile final : public ResourceAgent {
   void sort_ids(std::size_t joined, std::size_t entries, PacketId packet);
   OutPort& out_for(const Packet& packet) { return ports_.out[logic_.out_port(packet)]; }
   bool may_inject(const Packet& packet);
-  bool has_place(const OutPort& out) { return out.has_place() || !(waits_for_place_ = true); }
+  /// Notes it if there is none.
+  bool has_place(const OutPort& out) {
+    waits_for_place_ |= !out.has_place();
+    return out.has_place();
+  }
   bool dispatch_wanted() const;
   /// A packet that is at the front, or may be brought there, needs dispatch.
   bool stops_here(const InPort& in) const { return window_ > 1 || !cuts_through_ || in.front().skip == 0; }

@@ -135,7 +135,6 @@ void TrafficNode::pass(std::size_t d, Cycle now) {
       out.launch(token, now, token.skip > 0);
     } else {
       out.push(token, now, token.skip > 0);
-      out.send(now);  // sends nothing, but counts the wait
       ++egress_count_;
     }
   }
