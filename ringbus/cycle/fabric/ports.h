@@ -77,18 +77,9 @@ class OutPortOf {
   void push(const T& token, Cycle ready, bool cut_through) { queue_.push_back({token, ready, cut_through}); }
 
   void take_credits(Cycle now) {
-    while (wire_->credits.next() <= now) {
-      const Cycle at = wire_->credits.next();
-      wire_->credits.take();
-      if (!faults_) [[likely]] {
-        ++credits_;
-        continue;
-      }
-      recover_credits(at);
-      credits_ += faults_->acknowledge(at);
-    }
     if (faults_) [[unlikely]]
-      recover_credits(now);
+      return take_uncertain_credits(now);
+    if (wire_->credits.next() <= now) credits_ += static_cast<std::uint32_t>(wire_->credits.take_until(now));
   }
   /// Sends one packet if it may. Returns whether it did.
   bool send(Cycle now) {
@@ -96,7 +87,7 @@ class OutPortOf {
     const Cycle wanted = wants_to_start();
     if (wanted > now) return false;
     stalled_ += now - wanted;  // it would have gone at once if there had been a credit
-    start(queue_.front(), now);
+    start(queue_.front().token, now, queue_.front().cut_through);
     queue_.pop_front();
     return true;
   }
@@ -111,7 +102,7 @@ class OutPortOf {
     return queue_.empty() && free_at_ <= now && credits_ >= places;
   }
   /// Sends a packet past the egress queue.
-  void launch(const T& token, Cycle now, bool cut_through) { start({token, now, cut_through}, now); }
+  void launch(const T& token, Cycle now, bool cut_through) { start(token, now, cut_through); }
   /// The time at which it will be open(), as far as is known and if nothing else is sent before.
   Cycle opens(std::uint32_t places) const {
     if (!queue_.empty()) return kNever;
@@ -125,6 +116,8 @@ class OutPortOf {
     return std::min(credit, wants_to_start());
   }
 
+  /// launch() may not send a packet for want of credits only.
+  bool lacks_credits(std::uint32_t places) const { return queue_.empty() && credits_ < places; }
   /// Nothing can be sent until a credit comes.
   bool awaits_credit() const { return credits_ == 0 && !queue_.empty(); }
 
@@ -152,6 +145,15 @@ class OutPortOf {
   Cycle next_credit() const {
     return faults_ ? std::min(wire_->credits.next(), faults_->next()) : wire_->credits.next();
   }
+  /// Where some are lost.
+  void take_uncertain_credits(Cycle now) {
+    for (Cycle at; (at = wire_->credits.next()) <= now;) {
+      wire_->credits.take();
+      recover_credits(at);
+      credits_ += faults_->acknowledge(at);
+    }
+    recover_credits(now);
+  }
   /// Recovers credits that were lost on their way. Asking for them occupies the link like a packet, and does not count
   /// as waiting.
   void recover_credits(Cycle now) {
@@ -162,8 +164,8 @@ class OutPortOf {
     free_at_ = std::max(free_at_, now) + made.busy;
     busy_ += made.busy;
   }
-  void start(const Entry& entry, Cycle now) {
-    const Cycle cycles = entry.token.link_cycles;
+  void start(const T& token, Cycle now, bool cut_through) {
+    const Cycle cycles = token.link_cycles;
     Cycle arrival = now + latency_, busy = cycles;
     free_at_ = now + cycles;
     if (faults_) [[unlikely]] {
@@ -173,14 +175,14 @@ class OutPortOf {
       free_at_ = delivery.link_free;
     }
     // In order even where a head overtakes the tail before it.
-    arrival += entry.cut_through ? 0 : cycles - 1;
+    arrival += cut_through ? 0 : cycles - 1;
     last_arrival_ = std::max(last_arrival_, arrival);
     if (faults_) [[unlikely]]
       arrival = last_arrival_;
-    wire_->packets.send(arrival, entry.token);
+    wire_->packets.send(arrival, token);
     if constexpr (std::is_same_v<T, Token>) {
       if (recorder_.slices != nullptr) [[unlikely]]
-        recorder_.note(entry.token, now, free_at_, arrival);
+        recorder_.note(token, now, free_at_, arrival);
     }
     --credits_;
     busy_ += busy;

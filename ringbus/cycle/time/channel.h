@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "ringbus/cycle/time/clock.h"
@@ -66,6 +67,18 @@ class Channel {
     if constexpr (kHasBytes) bytes_taken_ += thing.bytes();
     if (++head_ % kBlock == 0) emptied_ = true;
     return thing;
+  }
+  /// Takes all that has arrived by `now`, where what arrives says nothing but that it does. Returns how many these
+  /// were.
+  std::size_t take_until(Cycle now) requires std::is_empty_v<T> {
+    const std::size_t end = tail_.load(std::memory_order_acquire), begin = head_;
+    while (head_ != end) {
+      arrival_ = first().arrival;
+      if (arrival_ > now) break;
+      arrival_ = kNever;
+      if (++head_ % kBlock == 0) emptied_ = true;
+    }
+    return head_ - begin;
   }
   /// How many have arrived by `now`.
   std::size_t arrived(Cycle now) const {

@@ -45,7 +45,13 @@ class TrafficRun {
     const std::vector<std::vector<Agent*>> parts = share_out();
     auto last_report = start;
     bool stopped = false;
-    WakeupTable wakeups(parts);  // stays empty: nodes are polled
+    WakeupTable wakeups(parts);
+    for (std::size_t i = 0; i < wires_.size(); ++i) {
+      const Topology::Wire& wire = topology_.wires()[i];
+      const TrafficNode &from = *nodes_[wire.from.value], &to = *nodes_[wire.to.value];
+      wakeups.connect(wires_[i]->packets, from, to);
+      if (!acks_.empty()) wakeups.connect(*acks_[i], from, to);
+    }
     run_windows(parts, wakeups, link_latency(), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();

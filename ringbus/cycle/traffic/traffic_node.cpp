@@ -23,13 +23,17 @@ TrafficNode::TrafficNode(ResourceId id, const Topology& topology, const FlowRule
       allowances_(ports_.acks_in.size(), {settings.link_depth, {}}),
       passing_acks_(ports_.acks_in.size()) {
   queues_.assign(settings.shared_queue ? 1 : ports_.out.size() + 1, {std::move(source), packets});
-  for (SourceQueue& queue : queues_) create(queue);
+  for (SourceQueue& queue : queues_) {
+    create(queue);
+    due_ = std::min(due_, queue.due);
+  }
 }
 
 void TrafficNode::create(SourceQueue& queue) {
   constexpr int kAhead = 64;  // packets of other queues that it reads past before they have been created
   look_at_next(queue);
   for (int i = 0; i < kAhead && queue.waiting && !queue.mine; ++i) look_at_next(queue);
+  queue.due = !queue.waiting ? kNever : queue.mine ? queue.ready : queue.source.created();
 }
 
 void TrafficNode::look_at_next(SourceQueue& queue) {
@@ -55,14 +59,17 @@ Cycle TrafficNode::next() const {
   Cycle first = next_here();
   for (const In& in : ports_.in)
     if (const Cycle at = in.next(); at > now_) first = std::min(first, at);
+  return std::min(first, next_ack());
+}
+
+Cycle TrafficNode::next_ack() const {
+  Cycle first = kNever;
   for (const Channel<TrafficAck>* acks : ports_.acks_in) first = std::min(first, acks->next());
   return first;
 }
 
 Cycle TrafficNode::next_here() const {
-  Cycle first = kNever;
-  for (const SourceQueue& queue : queues_)
-    if (queue.waiting) first = std::min(first, queue.mine ? next_injection(queue) : queue.source.created());
+  Cycle first = due_ > now_ ? due_ : next_injection();
   for (std::size_t d = 0; d < arrivals_.size(); ++d) {
     // An arrival that is not later than the last step waits: for the sink, or for the egress place.
     if (arrivals_[d] > now_)
@@ -76,8 +83,15 @@ Cycle TrafficNode::next_here() const {
   return first;
 }
 
+Cycle TrafficNode::next_injection() const {
+  Cycle first = kNever;
+  for (const SourceQueue& queue : queues_)
+    first = std::min(first, queue.due > now_ ? queue.due : next_injection(queue));
+  return first;
+}
+
+/// Of a packet that is ready.
 Cycle TrafficNode::next_injection(const SourceQueue& queue) const {
-  if (queue.ready > now_) return queue.ready;
   if (queue.route.hops == 0) return sink_free_ - (flits_ - 1u);
   if (!allowances_.empty()) {
     const Allowance& allowance = allowances_[queue.route.direction];
@@ -87,49 +101,62 @@ Cycle TrafficNode::next_injection(const SourceQueue& queue) const {
   return ports_.out[queue.exit].opens(places_wanted_);
 }
 
+/// Tells whether a credit may let it do something that next_here() does not know of.
+bool TrafficNode::awaits_credit() const {
+  if (egress_count_ > 0 &&
+      std::any_of(ports_.out.begin(), ports_.out.end(), [](const Out& out) { return out.awaits_credit(); }))
+    return true;
+  return due_ <= now_ && std::any_of(queues_.begin(), queues_.end(), [&](const SourceQueue& queue) {
+           return queue.due <= now_ && queue.route.hops > 0 && ports_.out[queue.exit].lacks_credits(places_wanted_);
+         });
+}
+
 void TrafficNode::run(Cycle end) {
   // Packets that are sent to it from now on arrive after `end`, so it is enough to look once.
   for (std::size_t d = 0; d < arrivals_.size(); ++d) arrivals_[d] = ports_.in[d].next();
   take_acks(end);
-  for (Cycle now; (now = next_here()) < end;) step(now);
+  while ((next_ = next_here()) < end) {
+    now_ = next_;
+    if (egress_count_ > 0) send(now_);
+    if (injects_first_ && due_ <= now_) inject_all(now_);
+    pass_all(now_);
+    if (due_ <= now_) inject_all(now_);
+  }
   for (std::size_t a = 0; a < passing_acks_.size(); ++a) forward_acks(a, end);
-}
-
-void TrafficNode::step(Cycle now) {
-  now_ = now;
-  if (egress_count_ > 0) {
-    for (Out& out : ports_.out) {
-      if (out.empty()) continue;
-      out.take_credits(now);
-      egress_count_ -= out.send(now);
-    }
-  }
-  if (injects_first_) inject_all(now);
-  const std::size_t ways = arrivals_.size(), first = first_in_;
-  for (std::size_t i = 0; i < ways; ++i) {
-    const std::size_t d = first + i < ways ? first + i : first + i - ways;
-    if (arrivals_[d] <= now) pass(d, now);
-  }
-  inject_all(now);
+  next_ = std::min(next_, next_ack());
+  awaits_credit_ = awaits_credit();
 }
 
 // ---- packets
 
+void TrafficNode::send(Cycle now) {
+  for (Out& out : ports_.out) {
+    if (out.empty()) continue;
+    out.take_credits(now);
+    egress_count_ -= out.send(now);
+  }
+}
+
+/// Each port in turn has the sink before the others.
+void TrafficNode::pass_all(Cycle now) {
+  const std::size_t ways = arrivals_.size();
+  for (std::size_t i = 0, d = first_in_; i < ways; ++i, d = d + 1 < ways ? d + 1 : 0)
+    if (arrivals_[d] <= now) pass(d, now);
+}
+
 void TrafficNode::pass(std::size_t d, Cycle now) {
   In& in = ports_.in[d];
+  Out& out = ports_.out[d];
   for (; arrivals_[d] <= now; arrivals_[d] = in.next()) {
-    if (in.front().skip == 0) {
-      if (!sink_open(now)) return;
-      const TrafficToken token = in.take(now);
+    const bool ends_here = in.front().skip == 0, open = !ends_here && out.open(now, 1);
+    if (ends_here ? !sink_open(now) : !open && !out.has_place()) return;
+    TrafficToken token = in.take(now);
+    if (ends_here) {
       if (!allowances_.empty()) acknowledge(token, d, now);
       deliver(token, now);
       first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;  // the others first, the next time
       continue;
     }
-    Out& out = ports_.out[d];
-    const bool open = out.open(now, 1);
-    if (!open && !out.has_place()) return;
-    TrafficToken token = in.take(now);
     --token.skip;
     if (open) {
       out.launch(token, now, token.skip > 0);
@@ -141,9 +168,11 @@ void TrafficNode::pass(std::size_t d, Cycle now) {
 }
 
 void TrafficNode::inject_all(Cycle now) {
+  due_ = kNever;
   for (SourceQueue& queue : queues_) {
-    while (queue.waiting && !queue.mine && queue.source.created() <= now) create(queue);
-    if (queue.waiting && queue.mine && queue.ready <= now) inject(queue, now);
+    while (!queue.mine && queue.due <= now) create(queue);
+    if (queue.due <= now) inject(queue, now);
+    due_ = std::min(due_, queue.due);
   }
 }
 

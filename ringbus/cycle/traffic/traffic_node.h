@@ -68,7 +68,10 @@ class TrafficNode final : public Agent {
               TrafficSource source, std::uint64_t packets, TrafficWindow window, Ports ports);
 
   Cycle next() const override;
+  bool polled() const override { return awaits_credit_; }  // no wakeup tells of credits
+  Cycle unannounced() const override { return next_here(); }
   void run(Cycle end) override;
+  Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
   const std::vector<Out>& out() const { return ports_.out; }
@@ -93,11 +96,16 @@ class TrafficNode final : public Agent {
     Topology::Route route{};
     std::size_t exit = 0;
     Cycle ready = 0, free = 0;  // not injected before
+    Cycle due = kNever;         // when it has something to do, if nothing is in its way
   };
 
   Cycle next_here() const;
+  Cycle next_injection() const;
   Cycle next_injection(const SourceQueue& queue) const;
-  void step(Cycle now);
+  Cycle next_ack() const;
+  bool awaits_credit() const;
+  void send(Cycle now);
+  void pass_all(Cycle now);
   void take_acks(Cycle end);
   void forward_acks(std::size_t a, Cycle end);
   void acknowledge(const TrafficToken& token, std::size_t d, Cycle now);
@@ -119,6 +127,9 @@ class TrafficNode final : public Agent {
   std::uint32_t places_wanted_;  // in the next queue, to inject
 
   Cycle now_ = 0;
+  Cycle next_ = 0;                // next(), at the end of the last run()
+  Cycle due_ = kNever;            // the first of the queues' due
+  bool awaits_credit_ = false;    // likewise: it cannot do anything more before a credit comes
   std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted when a window begins
   std::size_t egress_count_ = 0;  // packets in egress places
   std::size_t first_in_ = 0;      // the port that has the sink before the others
