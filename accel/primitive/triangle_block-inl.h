@@ -17,7 +17,8 @@
 #include "accel/primitive/has_non_opaque.h"
 #include "accel/primitive/local_ray.h"
 #include "accel/primitive/moller_trumbore-inl.h"
-#include "accel/primitive/precise_crossing.h"
+#include "accel/primitive/own_boxes-inl.h"
+#include "accel/primitive/precise_crossing-inl.h"
 #include "accel/primitive/sphere_hit.h"
 #include "accel/primitive/watertight-inl.h"
 #include "accel/structure/node.h"
@@ -32,24 +33,11 @@ struct Crossings {
   alignas(sizeof(T) * kBlockTriangles) T t[kBlockTriangles], second[kBlockTriangles], third[kBlockTriangles];
 };
 
-HWY_INLINE std::array<Vec3, 3> corners(const TriangleBlock& block, int lane) {
-  std::array<Vec3, 3> p;
-  for (std::size_t k = 0; k < 3; ++k)
-    p[k] = {block.vertex[k][0][lane], block.vertex[k][1][lane], block.vertex[k][2][lane]};
-  return p;
-}
-
-HWY_INLINE Aabb box_of(const std::array<Vec3, 3>& p) {
-  Aabb box;
-  for (const Vec3& corner : p) box.extend(corner);
-  return box;
-}
-
-/// Lowers `hit` to a crossing of the triangle `p` in lane `l`, if its (t', instance, primitive) is smaller and nothing
+/// Lowers `hit` to a crossing of the triangle in lane `l`, if its (t', instance, primitive) is smaller and nothing
 /// lets the ray pass: t' also counts the entries of the triangle's own box and of the instance's world box.
 template <class Slab>
-HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, int l, const std::array<Vec3, 3>& p,
-                      const Hit& crossing, float entry, const LocalRay<Slab>& ray, Hit& hit) {
+HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, std::size_t l, const Hit& crossing, float entry,
+                      const LocalRay<Slab>& ray, Hit& hit) {
   Hit found = crossing;
   found.t = entry > found.t ? entry : found.t;
   found.t = ray.instance_entry > found.t ? ray.instance_entry : found.t;
@@ -63,7 +51,7 @@ HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, int l, con
   if (!closer(found.t, found.instance, found.primitive, hit)) return false;
   const std::uint32_t calls_any_hit = block.primitive[l] & kNonOpaqueBit;
   if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront | kRayAll))) != 0) &&
-      !triangle_accepts(accel, calls_any_hit != 0, p, ray, found))
+      !triangle_accepts(accel, calls_any_hit != 0, corners(block, l), ray, found))
     return false;
   hit = found;
   return true;
@@ -79,39 +67,41 @@ HWY_INLINE bool in_range(float t, const LocalRay<Slab>& ray, float farthest) {
 template <class T, class Slab>
 HWY_INLINE bool update_closest(const Accel& accel, const TriangleBlock& block, const Crossings<T>& crossings,
                                const LocalRay<Slab>& ray, Hit& hit) {
+  if (crossings.inside == 0) return false;
+  const OwnBoxes<Slab> boxes(ray.slab, block);
   bool changed = false;
   for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
-    const int l = std::countr_zero(inside);
+    const auto l = static_cast<std::size_t>(std::countr_zero(inside));
     const Hit found{static_cast<float>(crossings.t[l]), static_cast<float>(crossings.second[l]),
                     static_cast<float>(crossings.third[l]), 0, 0};
     if (!in_range(found.t, ray, hit.t)) continue;
     float entry;
-    const std::array<Vec3, 3> p = corners(block, l);
-    if (slab(ray.slab, box_of(p), hit.t, entry)) changed |= lower(accel, block, l, p, found, entry, ray, hit);
+    if (boxes.enters(l, hit.t, entry)) changed |= lower(accel, block, l, found, entry, ray, hit);
   }
   return changed;
 }
 
-/// The same for crossings that have been decided in float, one of them in lane `l`: if its box may hold the closest
-/// hit, its distance and weights are computed in double, and these compete. A hit that the float puts ahead of the
-/// ray's start stays a hit, at the start if need be: the rounding that moved it there has moved the surface that the
-/// exact ray meets instead.
+/// The same for crossings that have been decided in float: those whose box may hold the closest hit compete with
+/// distances and weights computed in double. A hit that the float puts ahead of the ray's start stays a hit, at the
+/// start if need be: the rounding that moved it there has moved the surface that the exact ray meets instead.
 template <class Slab>
-HWY_NOINLINE bool lower_precisely(const Accel& accel, const TriangleBlock& block, const Crossings<float>& crossings,
-                                  int l, const LocalRay<Slab>& ray, Hit& hit) {
-  const float rounded = crossings.t[l];
-  if (rounded != rounded) return false;
-  float entry;
-  const std::array<Vec3, 3> p = corners(block, l);
-  if (!slab(ray.slab, box_of(p), hit.t, entry)) return false;
-  ++ray.counts->refined;
-  Hit found{rounded, crossings.second[l], crossings.third[l], 0, 0};
-  PreciseCrossing precise;
-  if (precise_crossing(ray.triangle.watertight, block, static_cast<std::size_t>(l), precise))
-    found = {static_cast<float>(precise.t), static_cast<float>(precise.second), static_cast<float>(precise.third), 0,
-             0};
-  if (found.t < ray.slab.tmin && in_range(rounded, ray, kInfinity)) found.t = ray.slab.tmin;
-  return in_range(found.t, ray, hit.t) && lower(accel, block, l, p, found, entry, ray, hit);
+HWY_NOINLINE bool update_closest_precisely(const Accel& accel, const TriangleBlock& block,
+                                           const Crossings<float>& crossings, const LocalRay<Slab>& ray, Hit& hit) {
+  const OwnBoxes<Slab> boxes(ray.slab, block);
+  const PreciseCrossings precise(ray.triangle.watertight, block);
+  bool changed = false;
+  for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
+    const auto l = static_cast<std::size_t>(std::countr_zero(inside));
+    const float rounded = crossings.t[l];
+    float entry;
+    if (rounded != rounded || !boxes.enters(l, hit.t, entry)) continue;
+    ++ray.counts->refined;
+    Hit found;
+    if (!precise.get(l, found)) found = {rounded, crossings.second[l], crossings.third[l], 0, 0};
+    if (found.t < ray.slab.tmin && in_range(rounded, ray, kInfinity)) found.t = ray.slab.tmin;
+    if (in_range(found.t, ray, hit.t)) changed |= lower(accel, block, l, found, entry, ray, hit);
+  }
+  return changed;
 }
 
 // Each tests the triangles of `block` that `lanes` selects.
@@ -131,10 +121,7 @@ template <class Slab>
 HWY_INLINE bool watertight_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
                                  const LocalRay<Slab>& ray, Hit& hit) {
   const Crossings<float> c = watertight_crossings(block, ray.triangle.watertight, lanes);
-  bool changed = false;
-  for (std::uint32_t inside = c.inside; inside != 0; inside &= inside - 1)
-    changed |= lower_precisely(accel, block, c, std::countr_zero(inside), ray, hit);
-  return changed;
+  return c.inside != 0 && update_closest_precisely(accel, block, c, ray, hit);
 }
 
 template <class Slab>
@@ -159,13 +146,12 @@ template <class Slab>
 HWY_INLINE bool exact_block(const Accel& accel, const TriangleBlock& block, std::uint32_t lanes,
                             const LocalRay<Slab>& ray, Hit& hit) {
   Crossings<float> c;
-  for (int l = 0; l < kBlockTriangles; ++l) {
-    if (!(lanes >> l & 1)) continue;
-    const std::array<Vec3, 3> p = corners(block, l);
+  const OwnBoxes<Slab> boxes(ray.slab, block);
+  for (std::size_t l = 0; l < kBlockTriangles; ++l) {
     float entry;
-    if (!slab(ray.slab, box_of(p), hit.t, entry)) continue;
+    if (!(lanes >> l & 1) || !boxes.enters(l, hit.t, entry)) continue;
     NearestCrossing crossing;
-    if (!exact_triangle(ray.triangle.line, p, crossing)) continue;
+    if (!exact_triangle(ray.triangle.line, corners(block, l), crossing)) continue;
     c.t[l] = crossing.t, c.second[l] = crossing.u, c.third[l] = crossing.v;
     c.inside |= 1u << l;
   }
