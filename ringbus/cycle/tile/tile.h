@@ -139,6 +139,7 @@ class Tile final : public ResourceAgent {
   bool admit();
   bool finish_tests(Cycle now);
   bool cut_through(Cycle now);
+  void let_pass(Cycle now);
   bool handle(Cycle now);
   bool handle_arrival(std::size_t d, Cycle now);
   bool pass_through_dispatch(std::size_t d, Cycle now);

@@ -133,9 +133,10 @@ bool Tile::start_alone(Cycle now) {
 bool Tile::pass_on(Cycle now) {
   if (waits_for_place_) return false;
   note_blocked(now);
-  for (OutPort& out : ports_.out) out.take_credits(now);
+  for (OutPort& out : ports_.out)
+    if (wants_credit_ || !out.empty()) out.take_credits(now);
   do {
-    cut_through(now);
+    let_pass(now);
     for (const InPort& in : ports_.in) {
       if (in.next() > now || !stops_here(in)) continue;
       if (dispatch_free_ <= now) return false;
