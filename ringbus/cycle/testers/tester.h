@@ -101,10 +101,7 @@ class Tester {
                    : units_[kind].account(bank, state, now);
     ray_reads_.account(store_, state, now);
     primitive_reads_.account(primitive_store_, state, now);
-    accounted_ = now;
   }
-  /// Time of the last account().
-  Cycle accounted() const { return accounted_; }
   /// Fills in how long each bank was busy until the last account().
   void fill_in(TileResult& result) const {
     for (const auto [kind, ledger] : units_) {
@@ -243,7 +240,6 @@ class Tester {
   TestersConfig::BundleBlocks blocks_;
   PerUnit<Ledger> units_;
   Ledger ray_reads_, primitive_reads_;
-  Cycle accounted_ = 0;
   RayStages stages_;
   std::optional<Distributor> distributor_;
   bool reads_cost_;

@@ -16,7 +16,10 @@ class TileLedger {
   /// From `now` on the resource is in `state`.
   void enter(TileState state, Cycle now) {
     // Banks keep their busy times until they have been accounted, so this must not be too rare.
-    if (state != clock_.state() || now - tester_.accounted() >= 4096) tester_.account(clock_.state(), now);
+    if (state != clock_.state() || now - accounted_ >= 4096) {
+      tester_.account(clock_.state(), now);
+      accounted_ = now;
+    }
     clock_.enter(state, now);
   }
   TileState state() const { return clock_.state(); }
@@ -33,6 +36,7 @@ class TileLedger {
 
  private:
   Tester& tester_;
+  Cycle accounted_ = 0;  // the banks' times until then
   StateClock<TileState, kTileStates> clock_;
 };
 

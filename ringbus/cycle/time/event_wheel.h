@@ -42,7 +42,7 @@ class EventWheel {
   }
 
  private:
-  static constexpr Cycle kSlots = 256;
+  static constexpr Cycle kSlots = 64;
   static constexpr std::uint32_t kNone = ~0u;
   struct List {
     std::uint32_t first = kNone, last = kNone;
