@@ -46,6 +46,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   if (!run.complete) return report::judge_gains({.complete = false});
   ringbus::RunOptions options;
   options.threads = prepared.threads_beside;
+  spdlog::debug("search: up to {} simulations at once", options.threads);
   options.stop = std::move(stop);
   options.statistics = false;
   std::optional<report::ProgressLine> line;

@@ -1,5 +1,11 @@
 // The verdict of `carousel run`, tried as its user would: on whole frames larger than the pilot, half sky and half
 // ground.
+#include <algorithm>
+#include <thread>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -54,6 +60,20 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
   EXPECT_LE(real, named["high"].get<double>() + 0.01);
   EXPECT_LT(named["low"], named["gain"]);
   EXPECT_LT(named["gain"], named["high"]);
+}
+
+// One simulation of few resources is fastest on one thread; those of the search have nothing to do with each other.
+TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
+  const auto cores = std::max(1u, std::thread::hardware_concurrency());
+  for (const auto& [threads, run, beside] : {std::tuple{"auto", 1u, cores}, {"1", 1u, 1u}, {"3", 3u, 3u}}) {
+    program_.write("a.yaml", kTerrain);
+    const Outcome outcome = program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.width=24",
+                                          "--set", "image.height=16", "--set", std::string("engine.threads=") + threads,
+                                          "--force", "--log-level", "debug"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, testing::HasSubstr(fmt::format("threads: {}", run)));
+    EXPECT_THAT(outcome.err, testing::HasSubstr(fmt::format("search: up to {} simulations at once", beside)));
+  }
 }
 
 TEST_F(VerdictRun, TheSteadyRateIsNeverAboveTheBound) {

@@ -86,5 +86,33 @@ TEST_F(ResourceLedger, PartsAddUpOnRandomMachines) {
   }
 }
 
+// Links that are late now and then make packets wait for credits. A resource with none of the rays and no packets of
+// its own has nothing else to wait for, so it is in the state `link` for just as long, whether or not anything happens
+// when a wait begins.
+TEST_F(ResourceLedger, AResourceThatOnlyPassesPacketsOnWaitsForLinksWhileItsLinkIsStalled) {
+  std::uint64_t waited = 0;
+  for (const char* pixels : {"2", "3", "16"})
+    for (const char* visit : {"all", "owners"})
+      for (const char* late : {"30", "150", "200"}) {
+        SCOPED_TRACE(fmt::format("{} pixels, visit: {}, {} cycles late", pixels, visit, late));
+        const Json run = report(
+            "scene: {builtin: terrain, triangles: 2000}\n"
+            "image: {height: 1, samples: 1, max_depth: 1}\n"
+            "topology: {shape: ring, resources: 5, link: {depth: 1, bytes_per_cycle: 8}}\n"
+            "collections: {traversal: spread}\n",
+            {fmt::format("image.width={}", pixels), fmt::format("topology.visit={}", visit),
+             fmt::format("faults.links={{delay: 0.3, delay_cycles: {}}}", late)});
+        for (std::size_t r = 0; r < run["resources"].size(); ++r) {
+          const Json& bank = run["resources"][r]["units"]["triangle"];
+          if (run["resources"][r]["packets_issued"] != 0 || bank["busy"] != 0 || bank["other_units"] != 0 ||
+              bank["memory"] != 0)
+            continue;
+          EXPECT_EQ(bank["link"], run["links"][r]["cycles"]["stalled"]) << "resource " << r;
+          waited += bank["link"].get<std::uint64_t>();
+        }
+      }
+  EXPECT_GT(waited, 0u);
+}
+
 }  // namespace
 }  // namespace carousel::resource_ledger_test
