@@ -130,7 +130,7 @@ class Channel {
 
  private:
   static constexpr bool kHasBytes = requires(const T& thing) { std::uint64_t{thing.bytes()}; };
-  static constexpr std::size_t kBlock = 8;
+  static constexpr std::size_t kBlock = 16;
   struct Item {
     Cycle arrival = 0;
     [[no_unique_address]] T thing{};
