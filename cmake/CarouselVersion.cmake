@@ -1,4 +1,5 @@
-# The commit and compiler that `carousel --version` and every report name, read when cmake configures.
+# The commit and compiler that `carousel --version` and every report name, read when cmake configures, which it does again
+# after a commit.
 find_package(Git QUIET)
 set(CAROUSEL_COMMIT "unknown")
 if(Git_FOUND)
@@ -7,6 +8,12 @@ if(Git_FOUND)
                   OUTPUT_VARIABLE described OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
   if(NOT failed)
     set(CAROUSEL_COMMIT ${described})
+  endif()
+  execute_process(COMMAND ${GIT_EXECUTABLE} rev-parse --git-path logs/HEAD WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}
+                  OUTPUT_VARIABLE commits OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  get_filename_component(commits "${commits}" ABSOLUTE BASE_DIR ${CMAKE_CURRENT_SOURCE_DIR})
+  if(EXISTS ${commits} AND NOT IS_DIRECTORY ${commits})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${commits})
   endif()
 endif()
 # On the one file that uses them: a new commit recompiles nothing else.
