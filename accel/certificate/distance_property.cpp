@@ -1,5 +1,5 @@
-// The distance that the watertight test reports, computed in double (accel/primitive/precise_crossing-inl.h), against the
-// exact one. With eps = 2^-53, and each corner's offset from the ray's origin, the shear, its product and the
+// The distance that the watertight test reports, computed in double (accel/primitive/precise_crossing-inl.h), against
+// the exact one. With eps = 2^-53, and each corner's offset from the ray's origin, the shear, its product and the
 // difference rounded once, a sheared corner's X is off by at most 4 eps Sx, Sx = |x| + |s z|. An edge's value, two
 // products of two of those and a difference, is off by 10 eps M, M = Sx Sy' + Sy Sx'. As the exact values U weigh the
 // corners' distances t_k so that sum U_k (t_k - t) = 0, the errors of the values move t by at most
