@@ -138,8 +138,7 @@ class Tile final : public ResourceAgent {
   void take_opacities(Cycle now);
   bool admit();
   bool finish_tests(Cycle now);
-  bool cut_through(Cycle now);
-  void let_pass(Cycle now);
+  bool cut_through(Cycle now, bool dispatch_rests = false);
   bool handle(Cycle now);
   bool handle_arrival(std::size_t d, Cycle now);
   bool pass_through_dispatch(std::size_t d, Cycle now);

@@ -136,7 +136,7 @@ bool Tile::pass_on(Cycle now) {
   for (OutPort& out : ports_.out)
     if (wants_credit_ || !out.empty()) out.take_credits(now);
   do {
-    let_pass(now);
+    cut_through(now, true);
     for (const InPort& in : ports_.in) {
       if (in.next() > now || !stops_here(in)) continue;
       if (dispatch_free_ <= now) return false;

@@ -122,7 +122,8 @@ void Tile::hold_dispatch(Cycle now, Cycle cycles, std::size_t ids, SliceKind kin
     note_dispatch(start, ids, kind, packet, has_trip);
 }
 
-bool Tile::cut_through(Cycle now) {
+/// `dispatch_rests`: it takes up nothing in this event, and what can leave at once goes past the egress queue.
+bool Tile::cut_through(Cycle now, bool dispatch_rests) {
   if (!cuts_through_) return false;
   bool moved = false;
   for (std::size_t d = 0; d < ports_.in.size(); ++d) {
@@ -131,28 +132,14 @@ bool Tile::cut_through(Cycle now) {
     while (in.next() <= now && out.has_place() && (window_ > 1 ? choose_to_cut(d, now) : in.front().skip > 0)) {
       Token token = in.take(now);
       --token.skip;
-      out.push(token, now, token.skip > 0);
+      if (dispatch_rests && out.open(now, 1))
+        out.launch(token, now, token.skip > 0);
+      else
+        out.push(token, now, token.skip > 0);
       moved = true;
     }
   }
   return moved;
-}
-
-/// The same where dispatch takes up nothing: what can leave at once goes past the egress queue.
-void Tile::let_pass(Cycle now) {
-  if (!cuts_through_) return;
-  for (std::size_t d = 0; d < ports_.in.size(); ++d) {
-    InPort& in = ports_.in[d];
-    OutPort& out = ports_.out[d];
-    while (in.next() <= now && in.front().skip > 0 && out.has_place()) {
-      Token token = in.take(now);
-      --token.skip;
-      if (out.open(now, 1))
-        out.launch(token, now, token.skip > 0);
-      else
-        out.push(token, now, token.skip > 0);
-    }
-  }
 }
 
 bool Tile::handle(Cycle now) {

@@ -36,7 +36,7 @@ class EventWheel {
     const std::uint32_t thing = list.first;
     list.first = link_[thing];
     if (list.first != kNone) return thing;
-    filled_[next_ % kSlots / 64] &= ~(std::uint64_t{1} << next_ % 64);
+    filled_ &= ~(std::uint64_t{1} << next_ % kSlots);
     next_ = find();
     return thing;
   }
@@ -62,7 +62,7 @@ class EventWheel {
       link_[list.last] = thing;
     list.last = thing;
     link_[thing] = kNone;
-    filled_[at % kSlots / 64] |= std::uint64_t{1} << at % 64;
+    filled_ |= std::uint64_t{1} << at % kSlots;
   }
   /// No event is earlier. Brings in those that are no longer far, before any that are added from now on.
   void turn_to(Cycle now) {
@@ -70,22 +70,13 @@ class EventWheel {
     for (; !far_.empty() && far_.top().at - base_ < kSlots; far_.pop()) append(far_.top().at, far_.top().thing);
   }
   Cycle find() const {
-    const Cycle start = base_ % kSlots;
-    for (Cycle i = 0; i <= kSlots / 64; ++i) {  // the first word again for the slots before the start
-      const Cycle word = (start / 64 + i) % (kSlots / 64);
-      std::uint64_t bits = filled_[word];
-      if (i == 0) bits &= ~std::uint64_t{0} << start % 64;
-      if (i == kSlots / 64) bits &= (std::uint64_t{1} << start % 64) - 1;
-      if (bits == 0) continue;
-      const Cycle slot = word * 64 + static_cast<Cycle>(std::countr_zero(bits));
-      return base_ + (slot - start + kSlots) % kSlots;
-    }
-    return far_.empty() ? kNever : far_.top().at;
+    if (filled_ == 0) return far_.empty() ? kNever : far_.top().at;
+    return base_ + static_cast<Cycle>(std::countr_zero(std::rotr(filled_, static_cast<int>(base_ % kSlots))));
   }
 
-  std::array<List, kSlots> lists_;                   // of the cycles from base_ on, each at its time modulo kSlots
-  std::array<std::uint64_t, kSlots / 64> filled_{};  // a bit for each list that is not empty
-  std::vector<std::uint32_t> link_;                  // by thing: the next one in its list
+  std::array<List, kSlots> lists_;   // of the cycles from base_ on, each at its time modulo kSlots
+  std::uint64_t filled_ = 0;         // a bit for each list that is not empty
+  std::vector<std::uint32_t> link_;  // by thing: the next one in its list
   std::priority_queue<Far, std::vector<Far>, std::greater<>> far_;
   std::uint64_t next_turn_ = 0;
   Cycle base_ = 0, next_ = kNever;

@@ -129,7 +129,7 @@ class TrafficNode final : public Agent {
   Cycle now_ = 0;
   Cycle next_ = 0;                // next(), at the end of the last run()
   Cycle due_ = kNever;            // the first of the queues' due
-  bool awaits_credit_ = false;    // likewise: it cannot do anything more before a credit comes
+  bool awaits_credit_ = false;    // likewise: a credit may let it do something before next_
   std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted when a window begins
   std::size_t egress_count_ = 0;  // packets in egress places
   std::size_t first_in_ = 0;      // the port that has the sink before the others

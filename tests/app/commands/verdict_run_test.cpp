@@ -65,7 +65,8 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
 // One simulation of few resources is fastest on one thread; those of the search have nothing to do with each other.
 TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
   const auto cores = std::max(1u, std::thread::hardware_concurrency());
-  for (const auto& [threads, run, beside] : {std::tuple{"auto", 1u, cores}, {"1", 1u, 1u}, {"3", 3u, 3u}}) {
+  for (const auto& [threads, run, beside] :
+       {std::tuple{"auto", "1, chosen", cores}, {"1", "1\n", 1u}, {"3", "3\n", 3u}}) {
     program_.write("a.yaml", kTerrain);
     const Outcome outcome = program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.width=24",
                                           "--set", "image.height=16", "--set", std::string("engine.threads=") + threads,
