@@ -45,6 +45,7 @@ class Search {
     std::vector<std::size_t> worth = worth_a_second_look();
     const std::uint64_t larger =
         pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
+    if (out_.complete) leave_out_beaten(worth);
     if (!out_.whole && larger > out_.paths + out_.paths / 2) {
       out_.paths = larger;
       begin("second pilot", worth.size());
@@ -53,7 +54,7 @@ class Search {
     for (int doubled = 0; out_.complete; ++doubled) {
       const bool alike = judge();
       if (alike) {
-        lift(worth, out_.deviation);
+        lift_best_first(worth);
         worth = perhaps_noise();
         if (worth.empty()) break;
       }
@@ -112,6 +113,11 @@ class Search {
 
   Foretelling foretelling() const {
     return {{&*base_.cycle, base_.rays_completed}, run_.result.rays_completed, 2 * fill_rays(slots_of(config_))};
+  }
+
+  /// By how much the run differs from what the pilot foretells, as a fraction.
+  double deviation() const {
+    return stops_ ? 0 : static_cast<double>(run_.result.cycle->cycles) / foretelling().cycles().value - 1;
   }
 
   /// True if the parts of a class had nothing to do for more than half of the run.
@@ -208,6 +214,38 @@ class Search {
     }
   }
 
+  /// Leaves out those of these classes that gain less, by the first pilot and what it is known to be off by, than
+  /// another one surely does. Their gains stay those of the first pilot, with that interval.
+  void leave_out_beaten(std::vector<std::size_t>& classes) {
+    double surely = 0;
+    for (const std::size_t i : classes) {
+      const RunResult& result = relaxed_[i].result;
+      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation()), 1);
+      surely = std::max(surely, out_.gains[i].low);
+    }
+    leave_out_below(surely, classes.begin(), classes);
+  }
+
+  void leave_out_below(double gain, std::vector<std::size_t>::iterator from, std::vector<std::size_t>& classes) const {
+    classes.erase(std::remove_if(from, classes.end(), [&](std::size_t i) { return out_.gains[i].high < gain; }),
+                  classes.end());
+  }
+
+  /// Relaxes these classes, the greatest gain first: of many, the two that promise most, and then those that may still
+  /// gain more.
+  void lift_best_first(std::vector<std::size_t>& classes) {
+    constexpr std::size_t kMany = 4, kFirst = 2;
+    if (classes.size() >= kMany && relaxed_[classes.front()].paths != out_.paths) {
+      const auto rest = classes.begin() + kFirst;
+      lift({classes.begin(), rest}, out_.deviation);
+      if (!out_.complete) return;
+      const std::size_t before = classes.size();
+      leave_out_below(std::max(out_.gains[classes[0]].low, out_.gains[classes[1]].low), rest, classes);
+      for (std::size_t k = classes.size(); k < before; ++k) pilots_.leave_out_one();
+    }
+    lift(classes, out_.deviation);
+  }
+
   /// The classes that the larger pilot simulates: those that might gain enough to be named, but not many.
   std::vector<std::size_t> worth_a_second_look() const {
     constexpr std::size_t kMost = 6;
@@ -250,7 +288,7 @@ class Search {
     }
     const double ran = static_cast<double>(run_.result.cycle->cycles), allowed = out_.uncertainty + kTolerance;
     out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, ran);
-    out_.deviation = ran / cycles.value - 1;
+    out_.deviation = deviation();
     if (std::abs(out_.deviation) > allowed) {
       out_.unlike = fmt::format("it foretells {:.0f} cycles for the frame, {:+.1f} % of the run's", cycles.value,
                                 100 * (cycles.value / ran - 1));
@@ -292,12 +330,12 @@ std::uint64_t slots_of(const Config& config) {
 }
 
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
-  // Four times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.
-  constexpr std::uint64_t kFills = 4, kLeastRays = 4000, kMostFills = 8 * kFills;
+  // Three times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.
+  constexpr std::uint64_t kFills = 3, kLeastRays = 3000, kMostFills = 32, kMostRays = 80'000;
   const std::uint64_t fill = 2 * fill_rays(slots_of(config));
   const double rays_each =
       static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
-  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(20 * kLeastRays, kMostFills * fill);
+  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(kMostRays, kMostFills * fill);
   const auto pilot =
       static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
   // A pilot of most of the frame spares little, and the frame leaves no question.

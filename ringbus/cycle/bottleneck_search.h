@@ -39,11 +39,12 @@ struct Bottleneck {
 ///
 /// The classes of parts that the run kept busy for less than half of its time are relaxed together; only where that
 /// gains enough to matter they are told apart, by halves. This and each other class by itself is simulated for a first,
-/// small pilot; the classes that may be worth naming, at most six, for a second, larger one. These pilots have together
-/// about as many rays as the run, but each has as many as the machine needs to be seen between fill and drain; where
-/// that is most of the frame, the pilot is the frame. The last pilot is compared with the run. If it is not like it, or
-/// if no class can be named since each gain may be noise, it is doubled, twice at most, for half of the classes. A
-/// pilot that is still not like the run finds out nothing.
+/// small pilot; the classes that may be worth naming, at most six, for a second, larger one, the most promising first:
+/// those that surely gain less than another are left out. These pilots have together at most about as many rays as the
+/// run, but each has as many as the machine needs to be seen between fill and drain; where that is most of the frame,
+/// the pilot is the frame. The last pilot is compared with the run. If it is not like it, or if no class can be named
+/// since each gain may be noise, it is doubled, twice at most, for half of the classes. A pilot that is still not like
+/// the run finds out nothing.
 ///
 /// As many simulations run at once as options.threads; `make_pilot` and its workloads are then called by several
 /// threads at once, each workload by one. The answer does not depend on that. Throws as run_cycle.
