@@ -63,6 +63,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
         return std::make_unique<PilotWorkload>(prepared, machine, job.first_hits(), paths);
       },
       {run, job.first_rays()}, options, show);
+  spdlog::debug("search: simulated {} rays, {:.2f} times those of the run", found.simulated,
+                report::ratio(found.simulated, run.rays_completed));
   if (found.whole)
     spdlog::debug("search: the pilot is the whole frame, {} rays", found.rays);
   else

@@ -90,6 +90,7 @@ class Search {
   std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
     std::vector<RunResult> results = pilots_.simulate(machines);
     out_.complete &= pilots_.complete();
+    out_.simulated = pilots_.simulated_rays();
     return results;
   }
 

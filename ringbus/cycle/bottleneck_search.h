@@ -28,6 +28,7 @@ struct Bottleneck {
   double rays_per_kilocycle = 0;  ///< of the machine as configured, over the whole frame
   std::uint64_t paths = 0;        ///< of the pilot
   std::uint64_t rays = 0;         ///< of the pilot, simulated for each class
+  std::uint64_t simulated = 0;    ///< rays of all simulations of the search
   bool whole = false;             ///< the pilot is the whole frame
   double deviation = 0;           ///< of the run's cycles from those that the pilot foretells, as a fraction
   double uncertainty = 0;         ///< of these, from the pilot alone, as a fraction

@@ -33,6 +33,7 @@ RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
   RunResult result = run_cycle(machine, accel_, scene_size_, *pilot, options);
   const std::lock_guard lock(mutex_);
   complete_ &= result.complete;
+  simulated_rays_ += result.rays_completed;
   state_.under_way -= shown;
   ++state_.done;
   return result;

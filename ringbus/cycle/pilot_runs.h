@@ -60,6 +60,8 @@ class PilotRuns {
 
   /// False if a simulation was interrupted; no further one is begun.
   bool complete() const { return complete_; }
+  /// Rays that all simulations so far have completed.
+  std::uint64_t simulated_rays() const { return simulated_rays_; }
 
  private:
   RunResult simulate(const Config& machine, std::size_t threads);
@@ -74,6 +76,7 @@ class PilotRuns {
   std::mutex mutex_;  // of the members below, and of the observer
   SearchProgress state_;
   bool complete_ = true;
+  std::uint64_t simulated_rays_ = 0;
 };
 
 }  // namespace carousel::ringbus

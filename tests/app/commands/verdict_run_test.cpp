@@ -77,6 +77,22 @@ TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
   }
 }
 
+// Nothing comes near to what more testers gain here, so that no other class is simulated for the larger pilot: by six
+// classes and the machine as configured it would bring the search to nearly as many rays as the run.
+TEST_F(VerdictRun, ClassesThatAnotherOneSurelyBeatsCostNoLargerPilot) {
+  program_.write("a.yaml", kTerrain);
+  const Outcome outcome = program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.width=256",
+                                        "--set", "image.height=160", "--out", "out", "--log-level", "debug"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(program_.read("out/report.json"))["bottleneck"]["limits"], "triangle_tests");
+  const std::string before = "rays, ", after = " times those of the run";
+  const std::size_t end = outcome.err.find(after), begin = outcome.err.rfind(before, end) + before.size();
+  ASSERT_NE(end, std::string::npos) << outcome.err;
+  const double times = std::stod(outcome.err.substr(begin, end - begin));
+  EXPECT_LT(times, 0.75);
+  EXPECT_GT(times, 0.3);
+}
+
 TEST_F(VerdictRun, TheSteadyRateIsNeverAboveTheBound) {
   for (const char* shading : {"shading.workers=16", "shading.workers=1"}) {
     const Json report = run(kTerrain, {shading});
