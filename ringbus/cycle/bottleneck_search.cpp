@@ -45,7 +45,7 @@ class Search {
     std::vector<std::size_t> worth = worth_a_second_look();
     const std::uint64_t larger =
         pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
-    if (out_.complete) leave_out_beaten(worth);
+    if (out_.complete) estimate(worth);
     if (!out_.whole && larger > out_.paths + out_.paths / 2) {
       out_.paths = larger;
       begin("second pilot", worth.size());
@@ -54,7 +54,7 @@ class Search {
     for (int doubled = 0; out_.complete; ++doubled) {
       const bool alike = judge();
       if (alike) {
-        lift_best_first(worth);
+        lift_contenders(worth);
         worth = perhaps_noise();
         if (worth.empty()) break;
       }
@@ -197,54 +197,41 @@ class Search {
                      gain.value,     gain.low,         gain.high,      together};
   }
 
-  /// Relaxes each of these classes, unless that was done with this pilot before.
-  void lift(const std::vector<std::size_t>& which, double deviation) {
-    std::vector<std::size_t> missing;
+  /// Relaxes each of these classes with the present pilot.
+  void lift(const std::vector<std::size_t>& which) {
     std::vector<const Config*> machines;
-    for (const std::size_t i : which)
-      if (relaxed_[i].paths != out_.paths) {
-        missing.push_back(i);
-        machines.push_back(&lifts_[i].relaxed);
-      }
+    for (const std::size_t i : which) machines.push_back(&lifts_[i].relaxed);
     std::vector<RunResult> results = simulate(machines);
     if (!out_.complete) return;
-    for (std::size_t k = 0; k < missing.size(); ++k) relaxed_[missing[k]] = {std::move(results[k]), out_.paths};
-    for (const std::size_t i : which) {
-      const RunResult& result = relaxed_[i].result;
-      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation), 1);
-    }
+    for (std::size_t k = 0; k < which.size(); ++k) relaxed_[which[k]] = {std::move(results[k]), out_.paths};
+    estimate(which);
   }
 
-  /// Leaves out those of these classes that gain less, by the first pilot and what it is known to be off by, than
-  /// another one surely does. Their gains stay those of the first pilot, with that interval.
-  void leave_out_beaten(std::vector<std::size_t>& classes) {
-    double surely = 0;
+  /// Notes the gains of classes that were relaxed with the present pilot, with what this is known to be off by.
+  void estimate(const std::vector<std::size_t>& classes) {
     for (const std::size_t i : classes) {
       const RunResult& result = relaxed_[i].result;
       note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation()), 1);
-      surely = std::max(surely, out_.gains[i].low);
     }
-    leave_out_below(surely, classes.begin(), classes);
   }
 
-  void leave_out_below(double gain, std::vector<std::size_t>::iterator from, std::vector<std::size_t>& classes) const {
-    classes.erase(std::remove_if(from, classes.end(), [&](std::size_t i) { return out_.gains[i].high < gain; }),
-                  classes.end());
-  }
-
-  /// Relaxes these classes, the greatest gain first: of many, the two that promise most, and then those that may still
-  /// gain more.
-  void lift_best_first(std::vector<std::size_t>& classes) {
+  /// Relaxes those of these classes that may be the best: of many, the two that promise most, and then those that may
+  /// still gain more. One that gains less than another surely does is left out, and keeps the gain of an earlier pilot.
+  void lift_contenders(const std::vector<std::size_t>& classes) {
     constexpr std::size_t kMany = 4, kFirst = 2;
-    if (classes.size() >= kMany && relaxed_[classes.front()].paths != out_.paths) {
-      const auto rest = classes.begin() + kFirst;
-      lift({classes.begin(), rest}, out_.deviation);
+    for (bool first = true;; first = false) {
+      double surely = 0;
+      for (const std::size_t i : classes) surely = std::max(surely, out_.gains[i].low);
+      std::vector<std::size_t> missing;
+      for (const std::size_t i : classes)
+        if (relaxed_[i].paths != out_.paths && out_.gains[i].high >= surely) missing.push_back(i);
+      if (first && missing.size() >= kMany) missing.resize(kFirst);
+      if (missing.empty()) break;
+      lift(missing);
       if (!out_.complete) return;
-      const std::size_t before = classes.size();
-      leave_out_below(std::max(out_.gains[classes[0]].low, out_.gains[classes[1]].low), rest, classes);
-      for (std::size_t k = classes.size(); k < before; ++k) pilots_.leave_out_one();
     }
-    lift(classes, out_.deviation);
+    for (const std::size_t i : classes)
+      if (relaxed_[i].paths != out_.paths) pilots_.leave_out_one();
   }
 
   /// The classes that the larger pilot simulates: those that might gain enough to be named, but not many.
