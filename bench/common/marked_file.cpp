@@ -6,16 +6,11 @@
 #include <stdexcept>
 
 #include "core/system/atomic_file.h"
+#include "core/system/error.h"
 
 namespace carousel::bench {
 
 namespace {
-
-std::string read_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 bool replace_in(std::string& text, const std::string& name, const std::string& body) {
   const std::string open = "<!-- bench:" + name + " -->", close = "<!-- /bench:" + name + " -->";
@@ -27,6 +22,12 @@ bool replace_in(std::string& text, const std::string& name, const std::string& b
 }
 
 }  // namespace
+
+std::string read_text(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw FileError("cannot read " + file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 void replace_marked(const std::vector<std::string>& files, const std::map<std::string, std::string>& bodies) {
   std::map<std::string, std::string> texts;

@@ -2,8 +2,6 @@
 // speed.
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 
@@ -26,12 +24,6 @@
 namespace carousel::bench {
 
 namespace {
-
-std::string read_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw FileError("cannot read " + file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 SceneResult run_scene(const SceneChoice& choice, const Options& options) {
   SceneResult result;

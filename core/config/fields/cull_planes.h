@@ -16,7 +16,7 @@ struct CullPlanesConfig {
   enum class Levels { kBlas, kTlas, kAll } levels = Levels::kBlas;
   struct Depth {
     std::int64_t first = 0, last = 255;
-  } depth;
+  } depth{};
 };
 
 template <>

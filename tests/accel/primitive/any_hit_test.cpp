@@ -67,9 +67,10 @@ TEST(AnyHit, IsAskedOnlyWhereSomethingMayPass) {
   EXPECT_GT(counts.any_hit_calls, 100u);
   EXPECT_EQ(counts.any_hit_calls, never.any_hit_calls());
   for (const RayResult& r : hits)
-    if (r.hit.valid())
+    if (r.hit.valid()) {
       EXPECT_EQ(scene.meshes[0].triangle_materials[r.hit.primitive], MaterialId(0))
           << "the others let everything through";
+    }
 
   for (RayRequest& ray : rays) ray.tag.flags = kRayForceOpaque;
   const std::uint64_t before = never.any_hit_calls();

@@ -54,8 +54,12 @@ void one_inverse_matrix_loses_far_meshes(const Json& report) {
 void a_bounded_spawn_offset_never_hits_its_own_triangle(const Json& report) {
   for (const Json& row : report.at("spawn")) {
     EXPECT_GT(row.at("bounces"), 100);
-    if (row.at("spawn") == "bound") EXPECT_EQ(row.at("self_hits").get<int>() + row.at("far_self_hits").get<int>(), 0);
-    if (row.at("spawn") == "epsilon") EXPECT_GT(row.at("far_self_hits"), 0);
+    if (row.at("spawn") == "bound") {
+      EXPECT_EQ(row.at("self_hits").get<int>() + row.at("far_self_hits").get<int>(), 0);
+    }
+    if (row.at("spawn") == "epsilon") {
+      EXPECT_GT(row.at("far_self_hits"), 0);
+    }
   }
 }
 

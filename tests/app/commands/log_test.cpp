@@ -154,7 +154,9 @@ TEST(Messages, TooLittleAddressSpaceEndsWithAMessage) {
       if (outcome.status != 0) {
         EXPECT_THAT(outcome.err, HasSubstr("error: ")) << kib;
       }
-      if (kib == 40'000) EXPECT_EQ(outcome.status, 2);
+      if (kib == 40'000) {
+        EXPECT_EQ(outcome.status, 2);
+      }
     }
   }
 }

@@ -85,7 +85,9 @@ TEST(StressCommand, TriesTheQueuesThatHandRaysOver) {
     const Outcome refused = program.run({"stress", "a.yaml", "--in", key, "--queue", "spsc_ring", "--seconds", "0.05",
                                          "--messages", "100", "--pattern", "stream", "--force"});
     EXPECT_EQ(refused.status, key == "shading.queue" ? 2 : 0) << refused.err;
-    if (key == "shading.queue") EXPECT_THAT(refused.err, HasSubstr("shading.queue: spsc_ring is made for one"));
+    if (key == "shading.queue") {
+      EXPECT_THAT(refused.err, HasSubstr("shading.queue: spsc_ring is made for one"));
+    }
   }
 }
 

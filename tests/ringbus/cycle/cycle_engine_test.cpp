@@ -1,5 +1,5 @@
-// The cycle engine: the same cycles for any number of threads, sums that agree, rays and packets conserved at every
-// step.
+// The cycle engine: the same cycles for any number of threads (CycleEngine); sums that agree, rays and packets
+// conserved at every step, on one thread (CycleLedgers).
 #include <map>
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(CycleEngine, TakesTheSameCyclesOnAnyNumberOfThreads) {
 
 // A resource deals with most events by a part of a step (tile.cpp). One that is to pause after more rays than there are
 // takes a whole step at every event, and nothing may come of that.
-TEST(CycleEngine, PartsOfAStepDoAsMuchAsTheWhole) {
+TEST(CycleLedgers, PartsOfAStepDoAsMuchAsTheWhole) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 300, 3);
   const auto count = static_cast<std::uint32_t>(cell_count(40));
   for (std::uint32_t seed = run_seed(); seed < run_seed() + count; ++seed) {
@@ -58,7 +58,7 @@ TEST(CycleEngine, PartsOfAStepDoAsMuchAsTheWhole) {
   }
 }
 
-TEST(CycleEngine, LedgersAddUp) {
+TEST(CycleLedgers, LedgersAddUp) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 600, 3);
   std::uint64_t transforms = 0, jobs = 0, waited = 0;
   const auto count = static_cast<std::uint32_t>(cell_count(40));
@@ -172,7 +172,7 @@ class Conservation {
   std::map<std::uint32_t, std::uint32_t> out_;  // rays by packet
 };
 
-TEST(CycleEngine, ConservesRaysAndPacketsAtEveryStep) {
+TEST(CycleLedgers, ConservesRaysAndPacketsAtEveryStep) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 300, 3);
   const auto machines = static_cast<std::uint32_t>(cell_count(12));
   std::size_t epochs = 0;
@@ -192,7 +192,7 @@ TEST(CycleEngine, ConservesRaysAndPacketsAtEveryStep) {
 }
 
 // Without flow control a small ring fills up. The run must end and say who waits for whom.
-TEST(CycleEngine, StuckRingNamesTheCircle) {
+TEST(CycleLedgers, StuckRingNamesTheCircle) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 2000, 1);
   Cell cell;
   Config& c = cell.config;

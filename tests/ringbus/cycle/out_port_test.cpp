@@ -32,8 +32,9 @@ TEST(OutPort, CountsTheWaitForACreditFromTheCycleInWhichThePacketCouldHaveGone) 
     EXPECT_EQ(out.blocked_from(), kNever);
     out.push(token, 7, false);
     EXPECT_EQ(out.blocked_from(), 7u);
-    if (looks)
+    if (looks) {
       for (Cycle now = 5; now < 30; now += 3) EXPECT_FALSE(out.send(now));
+    }
     wire.credits.send(30, {});
     out.take_credits(30);
     ASSERT_TRUE(out.send(30));

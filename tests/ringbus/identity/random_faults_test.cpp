@@ -7,7 +7,7 @@
 namespace carousel::ringbus {
 namespace {
 
-using Kind = FaultsConfig::Resource::Kind;
+using FaultKind = FaultsConfig::Resource::Kind;
 
 /// Fractions, times and resources that the factors do not have; the kind of the resource's fault stays.
 void draw_faults(std::mt19937& random, FaultsConfig& f, const Config& c) {
@@ -17,7 +17,7 @@ void draw_faults(std::mt19937& random, FaultsConfig& f, const Config& c) {
     f.links = {fraction(), fraction(), fraction(),
                fraction(), fraction(), 1 + static_cast<std::int64_t>(random() % 200)};
   FaultsConfig::Resource& r = f.resource;
-  const bool slow_from_the_start = c.engine.kind == EngineKind::kCycle && r.kind == Kind::kSlow;
+  const bool slow_from_the_start = c.engine.kind == EngineKind::kCycle && r.kind == FaultKind::kSlow;
   r.number = random() % static_cast<std::uint32_t>(c.topology.resources);
   r.after_rays = slow_from_the_start ? 0 : random() % 60;
   r.cycles = 1 + random() % 50'000;

@@ -7,7 +7,7 @@
 namespace carousel::ringbus {
 namespace {
 
-using Kind = FaultsConfig::Resource::Kind;
+using FaultKind = FaultsConfig::Resource::Kind;
 
 // Hits and picture do not notice, on either engine, whatever fails.
 TEST(FaultIdentity, FaultsCostTimeAndChangeNoHit) {
@@ -25,8 +25,8 @@ TEST(FaultIdentity, FaultsCostTimeAndChangeNoHit) {
       c.rays.slots_per_resource = 64;
       if (fault == 0) c.faults.links = {0.02, 0.02, 0.02, 0.02, 0.02, 30};
       if (fault == 1) c.faults.links.drop = 0.3;
-      if (fault == 2) c.faults.resource = {Kind::kPause, 1, 20, 50'000, 4};
-      if (fault == 3) c.faults.resource = {Kind::kSlow, 2, 0, 1, 20};
+      if (fault == 2) c.faults.resource = {FaultKind::kPause, 1, 20, 50'000, 4};
+      if (fault == 3) c.faults.resource = {FaultKind::kSlow, 2, 0, 1, 20};
       const auto outcome = run_cell(scene, cell);
       EXPECT_EQ(outcome.fault, "");
     }
@@ -41,7 +41,7 @@ Cell with_a_stop(EngineKind engine, std::int64_t resources, std::int64_t number,
   c.topology.resources = resources;
   c.topology.link.depth = 4;
   c.rays.slots_per_resource = 64;
-  c.faults.resource.kind = Kind::kStop;
+  c.faults.resource.kind = FaultKind::kStop;
   c.faults.resource.number = number;
   c.faults.resource.after_rays = after;
   return cell;

@@ -170,7 +170,7 @@ TEST(RayControl, AFullQueueHoldsNewRaysBack) {
   bench.control->submit(rays(56));  // seven groups for two queues of two
   EXPECT_EQ(bench.control->free_slots(), 128u - 32);
   RayGroup more;
-  more.ids.push_back(RayId(0));
+  more.ids.push_back(RayId{});
   EXPECT_FALSE(bench.control->deliver(ResourceId(1), more));
   EXPECT_EQ(more.ids.size(), 1u);  // as it was
   std::vector<std::uint32_t> order;

@@ -170,7 +170,9 @@ TEST(TrafficPlan, FullLoadIsMeasured) {
     const TrafficResult r = run_traffic(c, {});
     const double cycles = static_cast<double>(r.window_end - r.window_begin);
     EXPECT_NEAR(static_cast<double>(r.offered) / (8 * cycles), 1, 2 / cycles) << packets;
-    if (packets >= 800) EXPECT_GT(r.accepted, 0u);
+    if (packets >= 800) {
+      EXPECT_GT(r.accepted, 0u);
+    }
   }
 }
 

@@ -79,7 +79,9 @@ TEST_P(ShapeBlocksTest, AreThoseInWhichNodesBegin) {
         EXPECT_EQ(blocks.span(blocks.name({0, ref}).ref), blocks.span(ref));
       }
       EXPECT_LE(names.size(), all.size());
-      if (bytes > 64) EXPECT_LT(names.size(), all.size());
+      if (bytes > 64) {
+        EXPECT_LT(names.size(), all.size());
+      }
     }
   }
 }
