@@ -12,7 +12,7 @@
 #include "core/system/executor.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/cycle/memory/shape_room.h"
+#include "ringbus/cycle/shapes/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
 
 namespace carousel::app {

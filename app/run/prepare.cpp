@@ -22,7 +22,7 @@
 #include "core/system/executor.h"
 #include "core/system/process_memory.h"
 #include "report/text/number_text.h"
-#include "ringbus/cycle/memory/shape_room.h"
+#include "ringbus/cycle/shapes/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
 #include "shading/effects/effects_plan.h"
 

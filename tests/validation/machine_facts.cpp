@@ -25,8 +25,8 @@
 #include "core/system/error.h"
 #include "core/types/wrapped_workload.h"
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/cycle/memory/shape_blocks.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_blocks.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 
 namespace carousel {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/config/config.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/resource/collections/issue_policy.h"
 #include "ringbus/resource/traversal/make_traversal.h"

@@ -7,7 +7,7 @@
 
 #include "core/config/config.h"
 #include "core/types/workload.h"
-#include "ringbus/cycle/memory/shape_port.h"
+#include "ringbus/cycle/shapes/shape_port.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/results/ray_data_use.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/memory/shape_buffer.h"
 #include "ringbus/cycle/messages/side_wire.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/resource_agent.h"

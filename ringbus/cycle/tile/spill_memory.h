@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/cycle_result.h"
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "ringbus/cycle/fabric/packet_size.h"
-#include "ringbus/cycle/memory/multicast.h"
-#include "ringbus/cycle/memory/shape_buffer.h"
-#include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/rays/travelling_rays.h"
+#include "ringbus/cycle/shapes/multicast.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/completed_port.h"
 #include "ringbus/cycle/tile/context_phases.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/config/config.h"
-#include "ringbus/cycle/memory/shape_blocks.h"
+#include "ringbus/cycle/shapes/shape_blocks.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/resource/settings.h"
 #include "ringbus/results/observation.h"

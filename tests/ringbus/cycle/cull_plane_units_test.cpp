@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "ringbus/cycle/memory/shape_buffer.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/what_if.h"
 #include "tests/ringbus/support/test_machine.h"

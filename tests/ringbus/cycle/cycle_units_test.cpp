@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/fabric/ports.h"
-#include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/memory/memory.h"
-#include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/shapes/line_cache.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 

@@ -8,7 +8,7 @@
 #include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "ringbus/results/run_features.h"
-#include "tests/ringbus/cycle/generous_machine.h"
+#include "tests/ringbus/support/generous_machine.h"
 
 namespace carousel::ringbus {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/transform/instance_data.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "tests/accel/structure/placements.h"
 #include "tests/accel/structure/test_scenes.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/bottleneck_search.h"
-#include "tests/ringbus/cycle/generous_machine.h"
+#include "tests/ringbus/support/generous_machine.h"
 
 namespace carousel::ringbus {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/config/load/load.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/ringbus/support/test_machine.h"
 #include "tests/scene/gltf/gltf_builder.h"

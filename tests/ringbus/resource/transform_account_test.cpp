@@ -5,7 +5,7 @@
 
 #include "accel/build/build.h"
 #include "ringbus/cycle/fabric/packet_size.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "tests/ringbus/support/test_machine.h"
 

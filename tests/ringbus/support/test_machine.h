@@ -16,7 +16,7 @@
 #include "core/system/executor.h"
 #include "core/types/enum_names.h"
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/cycle/memory/shape_room.h"
+#include "ringbus/cycle/shapes/shape_room.h"
 #include "ringbus/native/native_engine.h"
 #include "ringbus/protocol/deadlock.h"
 #include "scene/builtin/builtin.h"

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "ringbus/cycle/memory/shape_buffer.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/walk/subtree_walk.h"
 #include "ringbus/cycle/time/event_wheel.h"

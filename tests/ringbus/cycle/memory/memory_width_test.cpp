@@ -2,10 +2,10 @@
 // that are no powers of two.
 #include <gtest/gtest.h>
 
-#include "ringbus/cycle/memory/line_cache.h"
 #include "ringbus/cycle/memory/memory.h"
-#include "ringbus/cycle/memory/shape_cache.h"
-#include "tests/ringbus/cycle/memory/timed_machine.h"
+#include "ringbus/cycle/shapes/line_cache.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
+#include "tests/ringbus/support/timed_machine.h"
 
 namespace carousel::ringbus::cycle {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "core/config/config.h"
 #include "core/statistics/cache_counts.h"
-#include "ringbus/cycle/memory/line_cache.h"
-#include "ringbus/cycle/memory/missing_lines.h"
-#include "ringbus/cycle/memory/strip_walks.h"
 #include "ringbus/cycle/messages/memory_messages.h"
+#include "ringbus/cycle/shapes/line_cache.h"
+#include "ringbus/cycle/shapes/missing_lines.h"
+#include "ringbus/cycle/shapes/strip_walks.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/cycle/time/channel.h"
 

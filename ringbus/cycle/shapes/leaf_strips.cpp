@@ -1,8 +1,8 @@
-#include "ringbus/cycle/memory/leaf_strips.h"
+#include "ringbus/cycle/shapes/leaf_strips.h"
 
 #include <bit>
 
-#include "ringbus/cycle/memory/triangle_strips.h"
+#include "ringbus/cycle/shapes/triangle_strips.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -6,7 +6,7 @@
 
 #include "core/config/load/load.h"
 #include "ringbus/cycle/memory/memory_agent.h"
-#include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
 
 namespace carousel::ringbus::cycle {
 namespace {

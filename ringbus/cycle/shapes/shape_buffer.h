@@ -9,8 +9,8 @@
 
 #include "core/config/config.h"
 #include "core/statistics/shape_buffer_counts.h"
-#include "ringbus/cycle/memory/shape_memory.h"
-#include "ringbus/cycle/memory/shape_port.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_port.h"
 
 namespace carousel::ringbus::cycle {
 

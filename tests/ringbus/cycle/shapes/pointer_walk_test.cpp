@@ -8,7 +8,7 @@
 #include "accel/traverse/ray_check.h"
 #include "ringbus/cycle/fabric/packet_size.h"
 #include "ringbus/cycle/tile/walk/subtree_visits.h"
-#include "tests/ringbus/cycle/memory/timed_machine.h"
+#include "tests/ringbus/support/timed_machine.h"
 
 namespace carousel::ringbus::cycle {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "ringbus/cycle/memory/shape_cache.h"
-#include "ringbus/cycle/memory/shape_memory.h"
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -1,5 +1,5 @@
 // The spans that a shape buffer holds: found by address, and replaced when nobody has held them for longest.
-#include "ringbus/cycle/memory/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
 
 namespace carousel::ringbus::cycle {
 

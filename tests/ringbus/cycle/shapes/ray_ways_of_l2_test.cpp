@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/config/load/load.h"
-#include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
 
 namespace carousel::ringbus::cycle {
 namespace {

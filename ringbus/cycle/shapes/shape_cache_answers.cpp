@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -1,5 +1,5 @@
 // Blocks of the simulated memory by which collections are keyed: which nodes share one, and what a visit reads.
-#include "ringbus/cycle/memory/shape_blocks.h"
+#include "ringbus/cycle/shapes/shape_blocks.h"
 
 #include <map>
 #include <set>

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/memory/shape_blocks.h"
+#include "ringbus/cycle/shapes/shape_blocks.h"
 
 #include <algorithm>
 

@@ -1,13 +1,13 @@
-#include "ringbus/cycle/memory/shape_room.h"
+#include "ringbus/cycle/shapes/shape_room.h"
 
 #include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include "ringbus/cycle/memory/shape_blocks.h"
-#include "ringbus/cycle/memory/shape_buffer.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_blocks.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/memory/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
 
 #include <algorithm>
 

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "core/config/load/load.h"
-#include "ringbus/cycle/memory/shape_buffer.h"
-#include "ringbus/cycle/memory/shape_cache.h"
-#include "tests/ringbus/cycle/memory/timed_machine.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
+#include "tests/ringbus/support/timed_machine.h"
 
 namespace carousel::ringbus::cycle {
 namespace {

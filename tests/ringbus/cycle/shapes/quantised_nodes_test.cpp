@@ -9,8 +9,8 @@
 #include "accel/box/slab.h"
 #include "accel/build/quantised_boxes.h"
 #include "accel/traverse/kernels.h"
-#include "ringbus/cycle/memory/shape_memory.h"
-#include "tests/ringbus/cycle/memory/timed_machine.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
+#include "tests/ringbus/support/timed_machine.h"
 
 namespace carousel::ringbus {
 namespace {

@@ -1,10 +1,10 @@
 // The shape buffer: a bound that holds, and data that is there when its last line is.
-#include "ringbus/cycle/memory/shape_buffer.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
 
 #include <gtest/gtest.h>
 
-#include "ringbus/cycle/memory/shape_room.h"
-#include "tests/ringbus/cycle/memory/timed_machine.h"
+#include "ringbus/cycle/shapes/shape_room.h"
+#include "tests/ringbus/support/timed_machine.h"
 
 namespace carousel::ringbus::cycle {
 namespace {

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/memory/triangle_strips.h"
+#include "ringbus/cycle/shapes/triangle_strips.h"
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
-#include "ringbus/cycle/memory/shape_memory.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/resource/visit/memory_blocks.h"
 
 namespace carousel::ringbus::cycle {

@@ -8,7 +8,7 @@
 
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
-#include "ringbus/cycle/memory/leaf_strips.h"
+#include "ringbus/cycle/shapes/leaf_strips.h"
 
 namespace carousel::ringbus::cycle {
 

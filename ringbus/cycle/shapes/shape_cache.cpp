@@ -1,4 +1,4 @@
-#include "ringbus/cycle/memory/shape_cache.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/memory/strip_walks.h"
+#include "ringbus/cycle/shapes/strip_walks.h"
 
 namespace carousel::ringbus::cycle {
 
