@@ -13,8 +13,8 @@ using testing::ElementsAre;
 
 /// Two resources behind a cache of one KiB with two ways; a line of 64 bytes is looked up each cycle, and all ways take
 /// a cycle.
-struct Bench {
-  explicit Bench(const std::string& more)
+struct TwoClients {
+  explicit TwoClients(const std::string& more)
       : config(load_config({"scene: {builtin: cornell}\nengine: {kind: cycle}\nmemory: {l2_kib: 1, ways: 2, "
                             "l2_lines_per_cycle: 1, l2_latency_cycles: 2, dram_latency_cycles: 2, " +
                                 more + "}\n",
@@ -49,7 +49,7 @@ struct Bench {
 TEST(L2RayWays, ShapesDoNotReplaceRays) {
   const std::uint64_t ray = (std::uint64_t{1} << 40) / 64;
   for (const int ways : {0, 1}) {
-    Bench bench("l2_ray_ways: " + std::to_string(ways));
+    TwoClients bench("l2_ray_ways: " + std::to_string(ways));
     EXPECT_FALSE(bench.read(ray));
     EXPECT_FALSE(bench.read(0));
     EXPECT_FALSE(bench.read(8));
@@ -62,7 +62,7 @@ TEST(L2RayWays, ShapesDoNotReplaceRays) {
 }
 
 TEST(L2Answers, FollowOneAnotherOnWiresWithAWidth) {
-  Bench bench("l2_answer_bytes_per_cycle: 16");
+  TwoClients bench("l2_answer_bytes_per_cycle: 16");
   bench.read(1);
   bench.read(2);
   bench.requests[0].send(1000, {1, 2, 7});  // both lines are looked up by 1002, and need eight cycles
@@ -73,7 +73,7 @@ TEST(L2Answers, FollowOneAnotherOnWiresWithAWidth) {
 }
 
 TEST(L2Answers, GoToAllThatTheRequestNames) {
-  Bench bench("l2_answer_bytes_per_cycle: 16");
+  TwoClients bench("l2_answer_bytes_per_cycle: 16");
   bench.read(1);
   FetchRequest request{1, 1, 7};
   request.skipped = 16;
