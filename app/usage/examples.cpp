@@ -12,7 +12,7 @@ const std::vector<Example>& examples() {
       {"run",
        "carousel run configs/demo.yaml --set engine.kind=cycle --set image.samples=1 --set "
        "rays.slots_per_resource=1024 --out out/cycle",
-       "the same machine under virtual time: cycles, and the parts that limit it"},
+       "the same ring with fewer ray slots, under virtual time: cycles, and the parts that limit it"},
       {"run", "carousel run configs/demo.yaml --set scene='{file: my.glb}' --out out/mine", "a scene of your own"},
       {"compare", "carousel compare out/demo out/cycle", "the numbers of two runs side by side"},
       {"sweep", "carousel sweep configs/sweep.yaml --vary topology.link.bytes_per_cycle=4..64*2",
