@@ -192,7 +192,7 @@ class WindowRun {
 
   static constexpr std::uint64_t kPollInterval = 64;
   // Checked builds ask the agents that are not to run whether they have anything to do. To ask all of them before every
-  // window takes as long as the run itself; who is not woken has still not run some windows later.
+  // window takes two thirds as long as the run itself; who is not woken has still not run some windows later.
   static constexpr std::uint64_t kAllAsked = 1000, kAskedEvery = 8;
 
   std::span<const std::vector<Agent*>> parts_;
