@@ -82,8 +82,8 @@ struct Binning {
       scale[a] = s < std::numeric_limits<float>::infinity() ? s : 0.0f;
     }
     scale[3] = 0;
-    // So that bins() subtracts nothing from the bits of an index: those of two great ones, of 8 million and more,
-    // differ by a denormal number, at which some processors stop for a hundred cycles.
+    // So that bins() subtracts nothing from the bits of an index. Those of two indices of 8 million and more may differ
+    // by a denormal number, for which some processors take many times as long (docs/performance.md).
     origin[3] = 0;
   }
   /// On one axis, as bins() says: faster where no other is wanted.
@@ -205,7 +205,7 @@ class Builder {
     for (int axis = 0; axis < 3; ++axis) {
       const auto& box = bins.box[static_cast<std::size_t>(axis)];
       const auto& counts = bins.count[static_cast<std::size_t>(axis)];
-      // Those that hold primitives; in most nodes they are few.
+      // Only the bins that hold primitives: in most nodes they are few.
       std::array<std::uint8_t, kBins> used;
       std::size_t bins_used = 0;
       for (std::size_t b = 0; b < kBins; ++b) {

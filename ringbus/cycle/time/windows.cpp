@@ -123,12 +123,15 @@ class WindowRun {
         barrier_.wait(patience);
         for (const Next& other : next_) first = std::min(first, other.cycle);
       }
-      if (first == kNever || stop) break;  // all threads come to the same conclusion
+      if (first == kNever || stop) {  // all threads come to the same conclusion
+        if (kChecked && !stop) check_at_rest(agents);
+        break;
+      }
       if (window % kPollInterval == 0) {
         if (thread == 0 && !keep_running_(first)) stop_.store(true, std::memory_order_relaxed);
         if (!alone) barrier_.wait(patience);
       }
-      run_window(agents, schedule, first + lookahead_, window);
+      run_window(agents, schedule, first, first + lookahead_);
       if (thread == 0) reached_ = first;
       if (!alone) barrier_.wait(patience);
     }
@@ -171,29 +174,41 @@ class WindowRun {
     return first;
   }
 
-  void run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle end, std::uint64_t window) {
-    const bool ask = kChecked && (window < kAllAsked || window % kAskedEvery == 0);
+  // What an agent has to do stays until it runs. So one that was not woken in time shows when it runs later, with
+  // something to do from before the window, or at the end if it does not: checked builds ask it only then.
+  [[noreturn]] static void throw_not_woken() { throw std::logic_error("an agent was not woken"); }
+
+  void check_at_rest(const std::vector<Agent*>& agents) {
+    try {
+      for (const Agent* agent : agents)
+        if (agent->next() != kNever) throw_not_woken();
+    } catch (...) {
+      keep_error();
+    }
+  }
+
+  /// The first one of all threads, from within a handler; no further window begins.
+  void keep_error() {
+    const std::lock_guard lock(mutex_);
+    if (!error_) error_ = std::current_exception();
+    stop_.store(true, std::memory_order_relaxed);
+  }
+
+  void run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle begin, Cycle end) {
     try {
       for (std::size_t i = 0; i < agents.size(); ++i) {
-        if (schedule.wake[i] >= end) {
-          if (ask && agents[i]->next() < end) throw std::logic_error("an agent was not woken");
-          continue;
-        }
+        if (schedule.wake[i] >= end) continue;
+        if (kChecked && agents[i]->next() < begin) throw_not_woken();
         agents[i]->run(end);
         schedule.wake[i] = agents[i]->next_after_run();
         schedule.polled[i] = agents[i]->polled();
       }
     } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!error_) error_ = std::current_exception();
-      stop_.store(true, std::memory_order_relaxed);
+      keep_error();
     }
   }
 
   static constexpr std::uint64_t kPollInterval = 64;
-  // Checked builds ask the agents that are not to run whether they have anything to do. To ask all of them before every
-  // window takes two thirds as long as the run itself; who is not woken has still not run some windows later.
-  static constexpr std::uint64_t kAllAsked = 1000, kAskedEvery = 8;
 
   std::span<const std::vector<Agent*>> parts_;
   WakeupTable& wakeups_;

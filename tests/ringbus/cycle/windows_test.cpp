@@ -104,5 +104,34 @@ TEST(Windows, WhoIsNotAskedIsWokenInTime) {
   }
 }
 
+// Channels are left unconnected, so that the second agent is not woken for what the first one sends.
+TEST(Windows, WhoIsNotWokenIsNoticedAtTheEnd) {
+  if (!kChecked) GTEST_SKIP() << "only checked builds look";
+  for (const std::size_t threads : {1, 2}) {
+    Channel<int> there, back;
+    Listener a(back, there, 3, true), b(there, back, 7, false);
+    std::vector<std::vector<Agent*>> parts(threads);
+    parts.front().push_back(&a);
+    parts.back().push_back(&b);
+    WakeupTable wakeups(parts);
+    EXPECT_THROW(run_windows(parts, wakeups, 3, [](Cycle) { return true; }), std::logic_error);
+  }
+}
+
+TEST(Windows, WhoIsWokenLateIsNoticed) {
+  if (!kChecked) GTEST_SKIP() << "only checked builds look";
+  Channel<int> there, back;
+  Listener a(back, there, 3, true), b(there, back, 7, false);
+  Ticker others;
+  const std::vector<std::vector<Agent*>> parts{{&a, &b, &others}};
+  WakeupTable wakeups(parts);
+  const auto wake_late = [&](Cycle at) {
+    if (at > 1) wakeups.row(0, 0)[1] = at;
+    return at < 10'000;
+  };
+  EXPECT_THROW(run_windows(parts, wakeups, 3, wake_late), std::logic_error);
+  EXPECT_TRUE(b.heard().empty());
+}
+
 }  // namespace
 }  // namespace carousel::ringbus::cycle
