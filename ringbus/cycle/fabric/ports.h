@@ -14,15 +14,12 @@
 
 namespace carousel::ringbus::cycle {
 
-/// A place in the receiver's input queue has become free.
-struct Credit {};
-
-/// A link between two nodes: packets go one way, credits the other. A packet is a T that knows how many cycles it
-/// occupies a link, T::link_cycles: a Token, or synthetic traffic.
+/// A link between two nodes: packets go one way, credits the other, which say that a place in the receiver's input
+/// queue has become free. A packet is a T that knows how many cycles it occupies a link, T::link_cycles: a Token, or
+/// synthetic traffic.
 template <class T>
 struct WireOf {
-  Channel<T> packets;
-  Channel<Credit> credits;
+  Channel<T, true> packets;
   alignas(64) Occupancy queue;  ///< the receiver's
 };
 
@@ -43,8 +40,7 @@ struct InPortOf {
 
   T take(Cycle now) {
     if (const Cycle arrival = wire->packets.next(); arrival < now) note_wait(arrival, now);
-    wire->credits.send(now + latency, {});
-    return wire->packets.take();
+    return wire->packets.take(now + latency);
   }
 
  private:
@@ -79,7 +75,7 @@ class OutPortOf {
   void take_credits(Cycle now) {
     if (faults_) [[unlikely]]
       return take_uncertain_credits(now);
-    if (wire_->credits.next() <= now) credits_ += static_cast<std::uint32_t>(wire_->credits.take_until(now));
+    credits_ += wire_->packets.take_returns(now);
   }
   /// Sends one packet if it may. Returns whether it did.
   bool send(Cycle now) {
@@ -102,7 +98,7 @@ class OutPortOf {
     return queue_.empty() && free_at_ <= now && credits_ >= places;
   }
   /// Sends a packet past the egress queue.
-  void launch(const T& token, Cycle now, bool cut_through) { start(token, now, cut_through); }
+  [[gnu::always_inline]] void launch(const T& token, Cycle now, bool cut_through) { start(token, now, cut_through); }
   /// The time at which it will be open(), as far as is known and if nothing else is sent before.
   Cycle opens(std::uint32_t places) const {
     if (!queue_.empty()) return kNever;
@@ -143,12 +139,13 @@ class OutPortOf {
 
   Cycle wants_to_start() const { return std::max(free_at_, queue_.front().ready); }
   Cycle next_credit() const {
-    return faults_ ? std::min(wire_->credits.next(), faults_->next()) : wire_->credits.next();
+    const Cycle credit = wire_->packets.next_return();
+    return faults_ ? std::min(credit, faults_->next()) : credit;
   }
   /// Where some are lost.
   void take_uncertain_credits(Cycle now) {
-    for (Cycle at; (at = wire_->credits.next()) <= now;) {
-      wire_->credits.take();
+    for (Cycle at; (at = wire_->packets.next_return()) <= now;) {
+      wire_->packets.take_return();
       recover_credits(at);
       credits_ += faults_->acknowledge(at);
     }
@@ -164,29 +161,28 @@ class OutPortOf {
     free_at_ = std::max(free_at_, now) + made.busy;
     busy_ += made.busy;
   }
-  void start(const T& token, Cycle now, bool cut_through) {
+  [[gnu::always_inline]] void start(const T& token, Cycle now, bool cut_through) {
     const Cycle cycles = token.link_cycles;
-    Cycle arrival = now + latency_, busy = cycles;
-    free_at_ = now + cycles;
-    if (faults_) [[unlikely]] {
-      const LinkFaultTimer::Delivery delivery = faults_->send(now, cycles);
-      arrival = delivery.arrival;
-      busy = delivery.busy;
-      free_at_ = delivery.link_free;
-    }
-    // In order even where a head overtakes the tail before it.
-    arrival += cut_through ? 0 : cycles - 1;
-    last_arrival_ = std::max(last_arrival_, arrival);
+    Flight flight{now + latency_ + (cut_through ? 0 : cycles - 1), now + cycles, cycles};
     if (faults_) [[unlikely]]
-      arrival = last_arrival_;
-    wire_->packets.send(arrival, token);
+      flight = uncertain_flight(now, cycles, cut_through);
+    free_at_ = flight.link_free;
+    wire_->packets.send(flight.arrival, token);
     if constexpr (std::is_same_v<T, Token>) {
       if (recorder_.slices != nullptr) [[unlikely]]
-        recorder_.note(token, now, free_at_, arrival);
+        recorder_.note(token, now, free_at_, flight.arrival);
     }
     --credits_;
-    busy_ += busy;
+    busy_ += flight.busy;
     ++packets_;
+  }
+  using Flight = LinkFaultTimer::Delivery;
+  [[gnu::noinline]] Flight uncertain_flight(Cycle now, Cycle cycles, bool cut_through) {
+    Flight flight = faults_->send(now, cycles);
+    // In order even where a head overtakes the tail before it.
+    last_arrival_ = std::max(last_arrival_, flight.arrival + (cut_through ? 0 : cycles - 1));
+    flight.arrival = last_arrival_;
+    return flight;
   }
 
   WireOf<T>* wire_;
@@ -196,8 +192,8 @@ class OutPortOf {
   Fifo<Entry> queue_;
   Cycle free_at_ = 0, busy_ = 0, stalled_ = 0;
   std::uint64_t packets_ = 0;
-  Cycle last_arrival_ = 0;
   std::unique_ptr<LinkFaultTimer> faults_;  // null: it has none
+  Cycle last_arrival_ = 0;                  // with faults
   LinkRecorder recorder_;
 };
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
-#include <memory>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -20,14 +19,21 @@ namespace carousel::ringbus::cycle {
 ///
 /// If a T has bytes(), the size of the message that it stands for, both ends count them.
 ///
-/// Things stand in a chain of blocks; the block that the receiver has emptied goes back to the sender.
-template <class T>
+/// With `Returns` the receiver gives each thing's place back when it takes the thing, and the sender learns of that at
+/// a time that the receiver names: the credits of a link, without a second channel.
+///
+/// Things stand in blocks that form a circle, so that the same few are used again and again. The sender puts a new one
+/// in when the next is still in use, and takes one out when there are too many; the receiver only follows.
+template <class T, bool Returns = false>
 class Channel {
  public:
-  Channel() : head_block_(new Block), tail_block_(head_block_) {}
+  Channel() : head_block_(new Block), tail_block_(head_block_) {
+    head_block_->next = head_block_;
+    if constexpr (Returns) returns_.block = head_block_;
+  }
   ~Channel() {
-    delete spare_.load(std::memory_order_relaxed);
-    while (head_block_ != nullptr) delete std::exchange(head_block_, head_block_->next);
+    for (Block* block = std::exchange(head_block_->next, nullptr); block != nullptr;)
+      delete std::exchange(block, block->next);
   }
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
@@ -37,18 +43,14 @@ class Channel {
       if (arrival < last_sent_) throw std::logic_error("a channel's arrivals go back in time");
       last_sent_ = arrival;
     }
-    const std::size_t tail = tail_.load(std::memory_order_relaxed), place = tail % kBlock;
-    if (place == 0 && tail > 0) {
-      // Acquire: the receiver has done with the block it gave back.
-      Block* block = spare_.exchange(nullptr, std::memory_order_acquire);
-      if (block == nullptr) block = new Block;
-      block->next = nullptr;
-      tail_block_->next = block;
-      tail_block_ = block;
-    }
     if constexpr (kHasBytes) bytes_sent_ += thing.bytes();
-    tail_block_->items[place] = {arrival, std::move(thing)};
-    tail_.store(tail + 1, std::memory_order_release);  // publishes the item, and the block's link
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    Item& item = tail_block_->items[tail % kBlock];
+    item.arrival = arrival;
+    item.thing = std::move(thing);
+    if ((tail + 1) % kBlock == 0) [[unlikely]]
+      begin_block(tail + 1);
+    tail_.store(tail + 1, std::memory_order_release);  // publishes the item, and what follows its block
     if (arrival < *wake_) *wake_ = arrival;
   }
   /// From now on `slot` keeps the earliest arrival that was sent since it was last cleared. The sender writes it.
@@ -56,42 +58,23 @@ class Channel {
 
   /// Arrival of the first thing; kNever when there is none.
   Cycle next() const {
-    if (arrival_ == kNever && head_ != tail_.load(std::memory_order_acquire)) arrival_ = first().arrival;
+    if (arrival_ == kNever && size() > 0) arrival_ = first().arrival;
     return arrival_;
   }
   /// Only when next() is not kNever, as take().
   const T& front() const { return first().thing; }
-  T take() {
-    T thing = std::move(const_cast<Item&>(first()).thing);
-    arrival_ = kNever;
-    if constexpr (kHasBytes) bytes_taken_ += thing.bytes();
-    if (++head_ % kBlock == 0) emptied_ = true;
-    return thing;
-  }
-  /// Takes all that has arrived by `now`, where what arrives says nothing but that it does. Returns how many these
-  /// were.
-  std::size_t take_until(Cycle now) requires std::is_empty_v<T> {
-    const std::size_t end = tail_.load(std::memory_order_acquire), begin = head_;
-    while (head_ != end) {
-      arrival_ = first().arrival;
-      if (arrival_ > now) break;
-      arrival_ = kNever;
-      if (++head_ % kBlock == 0) emptied_ = true;
-    }
-    return head_ - begin;
+  T take() requires(!Returns) { return take_first(); }
+  /// The sender learns at `back` that the thing has been taken; no earlier than of any before.
+  T take(Cycle back) requires Returns {
+    first().back = back;
+    return take_first();
   }
   /// How many have arrived by `now`.
   std::size_t arrived(Cycle now) const {
-    const std::size_t end = tail_.load(std::memory_order_acquire);
-    if (head_ == end) return 0;
-    first();  // the head block is the one that holds it
-    const Block* block = head_block_;
-    std::size_t at = head_;
-    for (; at != end; ++at) {
-      if (at != head_ && at % kBlock == 0) block = block->next;
-      if (block->items[at % kBlock].arrival > now) break;
-    }
-    return at - head_;
+    const std::size_t known = size();
+    std::size_t count = 0;
+    while (count < known && item(count).arrival <= now) ++count;
+    return count;
   }
   /// The arrival of the first thing that comes after `now`; kNever while none is known.
   Cycle next_after(Cycle now) const {
@@ -107,32 +90,53 @@ class Channel {
     for (; place > 0; --place) std::swap(item(place), item(place - 1));
     arrival_ = kNever;
   }
+
+  /// For the sender: when it learns of the first place that it has not heard of; kNever while none is known.
+  Cycle next_return() const requires Returns {
+    if (returns_.next == kNever && returns_.count != head_.load(std::memory_order_acquire))
+      returns_.next = returns_.block->items[returns_.count % kBlock].back;
+    return returns_.next;
+  }
+  /// For the sender: hears of all places of which it learns by `now`. Returns how many these are.
+  std::uint32_t take_returns(Cycle now) requires Returns {
+    if (next_return() > now) return 0;
+    const std::size_t before = returns_.count, head = head_.load(std::memory_order_acquire);
+    do take_return();
+    while (returns_.count != head && returns_.block->items[returns_.count % kBlock].back <= now);
+    return static_cast<std::uint32_t>(returns_.count - before);
+  }
+  /// Hears of the next one; only when next_return() is not kNever.
+  void take_return() requires Returns {
+    returns_.next = kNever;
+    if (++returns_.count % kBlock == 0) returns_.block = returns_.block->next;
+  }
+
   /// In all, as the sender and the receiver have counted; while no agent runs. `waiting` are those that have been sent
   /// and not taken.
   struct Count {
     std::uint64_t sent = 0, taken = 0, waiting = 0;
   };
   std::uint64_t bytes_sent() const { return bytes_sent_; }  ///< for the sender
-  Count messages() const { return {tail_.load(std::memory_order_acquire), head_, size()}; }
+  Count messages() const {
+    return {tail_.load(std::memory_order_acquire), head_.load(std::memory_order_acquire), size()};
+  }
   Count bytes() const {
     Count count{bytes_sent_, bytes_taken_, 0};
     if constexpr (kHasBytes) {
-      if (size() > 0) first();  // the head block is the one that holds it
-      const Block* block = head_block_;
-      for (std::size_t at = head_, end = head_ + size(); at != end; ++at) {
-        if (at != head_ && at % kBlock == 0) block = block->next;
-        count.waiting += block->items[at % kBlock].thing.bytes();
-      }
+      for (std::size_t place = 0; place < size(); ++place) count.waiting += item(place).thing.bytes();
     }
     return count;
   }
-  std::size_t size() const { return tail_.load(std::memory_order_acquire) - head_; }
+  /// For the receiver.
+  std::size_t size() const { return tail_.load(std::memory_order_acquire) - head_.load(std::memory_order_relaxed); }
 
  private:
   static constexpr bool kHasBytes = requires(const T& thing) { std::uint64_t{thing.bytes()}; };
   static constexpr std::size_t kBlock = 16;
+  struct Nothing {};
   struct Item {
     Cycle arrival = 0;
+    [[no_unique_address]] std::conditional_t<Returns, Cycle, Nothing> back{};
     [[no_unique_address]] T thing{};
   };
   struct Block {
@@ -140,38 +144,59 @@ class Channel {
     Block* next = nullptr;
   };
 
-  const Item& first() const {
-    if (emptied_) [[unlikely]] {
-      // There is a first thing, so the next block has been linked.
-      Block* block = std::exchange(head_block_, head_block_->next);
-      delete spare_.exchange(block, std::memory_order_release);
-      emptied_ = false;
-    }
-    return head_block_->items[head_ % kBlock];
-  }
+  /// What the sender has heard of.
+  struct Heard {
+    Block* block = nullptr;
+    std::size_t count = 0;
+    Cycle next = kNever;  // once it has been looked at
+  };
 
-  /// The sender does not touch what it has published.
+  Item& first() const { return head_block_->items[head_.load(std::memory_order_relaxed) % kBlock]; }
   Item& item(std::size_t place) const {
-    first();  // the head block is the one that holds it
+    const std::size_t head = head_.load(std::memory_order_relaxed);
     Block* block = head_block_;
-    for (std::size_t at = head_ / kBlock; at != (head_ + place) / kBlock; ++at) block = block->next;
-    return block->items[(head_ + place) % kBlock];
+    for (std::size_t at = head / kBlock; at != (head + place) / kBlock; ++at) block = block->next;
+    return block->items[(head + place) % kBlock];
+  }
+  T take_first() {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    T thing = std::move(head_block_->items[head % kBlock].thing);
+    arrival_ = kNever;
+    if constexpr (kHasBytes) bytes_taken_ += thing.bytes();
+    if ((head + 1) % kBlock == 0) head_block_ = head_block_->next;
+    head_.store(head + 1, std::memory_order_release);  // publishes the return, and that the block is done with
+    return thing;
+  }
+  /// The sender has filled its block up to the thing of number `end`, and goes on in the next one.
+  [[gnu::noinline]] void begin_block(std::size_t end) {
+    std::size_t done = head_.load(std::memory_order_acquire);
+    if constexpr (Returns) done = returns_.count;
+    // The n-th block from here on: its last thing was the one of number end - (blocks_ - n) * kBlock, a round ago.
+    const auto unused = [&](std::size_t n) { return n < blocks_ && done + (blocks_ - n) * kBlock >= end; };
+    if (!unused(1)) {
+      tail_block_->next = new Block{{}, tail_block_->next};
+      ++blocks_;
+    } else if (unused(3)) {
+      delete std::exchange(tail_block_->next, tail_block_->next->next);
+      --blocks_;
+    }
+    tail_block_ = tail_block_->next;
   }
 
-  // Used by the receiver.
-  alignas(64) mutable Block* head_block_;
-  std::size_t head_ = 0;
+  // Used by the receiver, and `head_` read by the sender.
+  alignas(64) Block* head_block_;
+  std::atomic<std::size_t> head_{0};
   std::uint64_t bytes_taken_ = 0;
   mutable Cycle arrival_ = kNever;  // of the first thing, once it has been looked at
-  mutable bool emptied_ = false;    // the head block has been read to its end, and the next one not begun
-  // Used by the sender.
+  // Used by the sender, and `tail_` read by the receiver.
   alignas(64) Block* tail_block_;
   std::atomic<std::size_t> tail_{0};
   std::uint64_t bytes_sent_ = 0;
-  Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds
-  Cycle unconnected_ = kNever;
+  std::size_t blocks_ = 1;
+  [[no_unique_address]] mutable std::conditional_t<Returns, Heard, Nothing> returns_;
   Cycle* wake_ = &unconnected_;
-  mutable std::atomic<Block*> spare_{nullptr};  // used by both, but only once a block
+  Cycle unconnected_ = kNever;
+  Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds
 };
 
 }  // namespace carousel::ringbus::cycle

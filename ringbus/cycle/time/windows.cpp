@@ -152,26 +152,28 @@ class WindowRun {
 
   /// Takes in the announcements, between windows. Returns the earliest time at which an agent of the thread has to run.
   Cycle look(std::size_t thread, Schedule& schedule) {
+    const std::vector<Agent*>& agents = parts_[thread];
     std::vector<Cycle>& wake = schedule.wake;
-    Cycle first = kNever;
     for (std::size_t from = 0; from < parts_.size(); ++from) {
-      std::vector<Cycle>& heard = wakeups_.row(thread, from);
-      std::vector<Cycle>& beside = wakeups_.row_beside(thread, from);
-      const bool last = from + 1 == parts_.size();
-      for (std::size_t i = 0; i < wake.size(); ++i) {
-        Cycle at = std::min(wake[i], heard[i]);
-        heard[i] = kNever;
-        if (beside[i] != kNever) {
-          parts_[thread][i]->hear(beside[i]);
-          at = std::min(at, beside[i]);
-          beside[i] = kNever;
-        }
-        if (last && schedule.polled[i]) at = std::min(at, parts_[thread][i]->unannounced());
-        wake[i] = at;
-        first = std::min(first, at);
-      }
+      hear(wakeups_.row(thread, from), wake, [](std::size_t, Cycle) {});
+      hear(wakeups_.row_beside(thread, from), wake, [&](std::size_t i, Cycle at) { agents[i]->hear(at); });
+    }
+    Cycle first = kNever;
+    for (std::size_t i = 0; i < wake.size(); ++i) {
+      if (schedule.polled[i]) wake[i] = std::min(wake[i], agents[i]->unannounced());
+      first = std::min(first, wake[i]);
     }
     return first;
+  }
+  /// `row` may be empty: nothing is announced there.
+  template <class Tell>
+  static void hear(std::vector<Cycle>& row, std::vector<Cycle>& wake, const Tell& tell) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (row[i] == kNever) continue;
+      tell(i, row[i]);
+      wake[i] = std::min(wake[i], row[i]);
+      row[i] = kNever;
+    }
   }
 
   // What an agent has to do stays until it runs. So one that was not woken in time shows when it runs later, with

@@ -114,16 +114,20 @@ bool TrafficNode::awaits_credit() const {
 void TrafficNode::run(Cycle end) {
   // Packets that are sent to it from now on arrive after `end`, so it is enough to look once.
   for (std::size_t d = 0; d < arrivals_.size(); ++d) arrivals_[d] = ports_.in[d].next();
-  take_acks(end);
-  while ((next_ = next_here()) < end) {
+  if (!allowances_.empty()) take_acks(end);
+  for (;;) {
+    next_ = injects_first_ ? next_here() : run_unhindered(end);
+    if (next_ >= end) break;
     now_ = next_;
     if (egress_count_ > 0) send(now_);
     if (injects_first_ && due_ <= now_) inject_all(now_);
     pass_all(now_);
     if (due_ <= now_) inject_all(now_);
   }
-  for (std::size_t a = 0; a < passing_acks_.size(); ++a) forward_acks(a, end);
-  next_ = std::min(next_, next_ack());
+  if (!allowances_.empty()) {
+    for (std::size_t a = 0; a < passing_acks_.size(); ++a) forward_acks(a, end);
+    next_ = std::min(next_, next_ack());
+  }
   awaits_credit_ = awaits_credit();
 }
 
@@ -137,34 +141,66 @@ void TrafficNode::send(Cycle now) {
   }
 }
 
-/// Each port in turn has the sink before the others.
+/// Takes the first packet of a port if its place is free, and returns whether it was.
+[[gnu::always_inline]] inline bool TrafficNode::pass(std::size_t d, Cycle now) {
+  In& in = ports_.in[d];
+  Out& out = ports_.out[d];
+  const bool ends_here = in.front().skip == 0, open = !ends_here && out.open(now, 1);
+  if (ends_here ? !sink_open(now) : !open && !out.has_place()) return false;
+  TrafficToken token = in.take(now);
+  arrivals_[d] = in.next();
+  if (ends_here) {
+    if (!allowances_.empty()) acknowledge(token, d, now);
+    deliver(token, now);
+    first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;  // the others first, the next time
+    return true;
+  }
+  --token.skip;
+  if (open) {
+    out.launch(token, now, token.skip > 0);
+  } else {
+    out.push(token, now, token.skip > 0);
+    ++egress_count_;
+  }
+  return true;
+}
+
+/// While nothing waits here but the source, packets that arrive pass, or the source injects one. Does what there is to
+/// do before `end`, as far as that goes, and returns next_here().
+Cycle TrafficNode::run_unhindered(Cycle end) {
+  while (egress_count_ == 0) {
+    const Cycle injection = due_ > now_ ? due_ : next_injection();
+    const std::size_t d = first_port();
+    const Cycle at = arrivals_[d];
+    if (at <= now_) break;  // it waits for the sink
+    if (std::min(at, injection) >= end) return std::min(at, injection);
+    if (at <= injection) {
+      if (!pass(d, at)) return at;
+      now_ = at - 1;  // in the same cycle, something may arrive at other ports
+    } else {
+      now_ = injection;
+      inject_all(now_);
+    }
+  }
+  return next_here();
+}
+
+/// The port with the first arrival. Each in turn has the sink before the others.
+std::size_t TrafficNode::first_port() const {
+  std::size_t first = first_in_;
+  const std::size_t ways = arrivals_.size();
+  for (std::size_t i = 1, d = first_in_; i < ways; ++i) {
+    d = d + 1 < ways ? d + 1 : 0;
+    if (arrivals_[d] < arrivals_[first]) first = d;
+  }
+  return first;
+}
+
 void TrafficNode::pass_all(Cycle now) {
   const std::size_t ways = arrivals_.size();
   for (std::size_t i = 0, d = first_in_; i < ways; ++i, d = d + 1 < ways ? d + 1 : 0)
-    if (arrivals_[d] <= now) pass(d, now);
-}
-
-void TrafficNode::pass(std::size_t d, Cycle now) {
-  In& in = ports_.in[d];
-  Out& out = ports_.out[d];
-  for (; arrivals_[d] <= now; arrivals_[d] = in.next()) {
-    const bool ends_here = in.front().skip == 0, open = !ends_here && out.open(now, 1);
-    if (ends_here ? !sink_open(now) : !open && !out.has_place()) return;
-    TrafficToken token = in.take(now);
-    if (ends_here) {
-      if (!allowances_.empty()) acknowledge(token, d, now);
-      deliver(token, now);
-      first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;  // the others first, the next time
-      continue;
+    while (arrivals_[d] <= now && pass(d, now)) {
     }
-    --token.skip;
-    if (open) {
-      out.launch(token, now, token.skip > 0);
-    } else {
-      out.push(token, now, token.skip > 0);
-      ++egress_count_;
-    }
-  }
 }
 
 void TrafficNode::inject_all(Cycle now) {

@@ -110,7 +110,9 @@ class TrafficNode final : public Agent {
   void forward_acks(std::size_t a, Cycle end);
   void acknowledge(const TrafficToken& token, std::size_t d, Cycle now);
   bool may_send_more(std::size_t direction, Cycle now);
-  void pass(std::size_t d, Cycle now);
+  Cycle run_unhindered(Cycle end);
+  std::size_t first_port() const;
+  bool pass(std::size_t d, Cycle now);
   void inject_all(Cycle now);
   void inject(SourceQueue& queue, Cycle now);
   bool sink_open(Cycle tail) const { return sink_free_ <= tail; }

@@ -8,8 +8,8 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-template <class T>
-void add(ByteRow& row, const Channel<T>& channel) {
+template <class T, bool Returns>
+void add(ByteRow& row, const Channel<T, Returns>& channel) {
   const auto bytes = channel.bytes();
   row.bytes += bytes.sent;
   row.bytes_taken += bytes.taken;

@@ -15,7 +15,7 @@ TEST(OutPort, TellsOfACreditBeforeThePacketInItsQueueMayLeave) {
   out.push(token, 0, false);
   out.push(token, 0, false);
   ASSERT_TRUE(out.send(0));  // the second packet leaves in cycle 20
-  wire.credits.send(7, {});
+  wire.packets.take(7);
   EXPECT_EQ(out.next(true), 7u);
   EXPECT_EQ(out.next(false), 20u);
 }
@@ -35,7 +35,7 @@ TEST(OutPort, CountsTheWaitForACreditFromTheCycleInWhichThePacketCouldHaveGone) 
     if (looks) {
       for (Cycle now = 5; now < 30; now += 3) EXPECT_FALSE(out.send(now));
     }
-    wire.credits.send(30, {});
+    wire.packets.take(30);
     out.take_credits(30);
     ASSERT_TRUE(out.send(30));
     EXPECT_EQ(out.stalled(), 23u);
