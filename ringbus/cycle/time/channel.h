@@ -27,12 +27,14 @@ namespace carousel::ringbus::cycle {
 template <class T, bool Returns = false>
 class Channel {
  public:
-  Channel() : head_block_(new Block), tail_block_(head_block_) {
-    head_block_->next = head_block_;
-    if constexpr (Returns) returns_.block = head_block_;
+  Channel() {
+    Block* block = new Block;
+    block->next = block;
+    head_ = tail_ = {block, block->items.data()};
+    if constexpr (Returns) returns_.at = head_;
   }
   ~Channel() {
-    for (Block* block = std::exchange(head_block_->next, nullptr); block != nullptr;)
+    for (Block* block = std::exchange(head_.block->next, nullptr); block != nullptr;)
       delete std::exchange(block, block->next);
   }
   Channel(const Channel&) = delete;
@@ -44,13 +46,14 @@ class Channel {
       last_sent_ = arrival;
     }
     if constexpr (kHasBytes) bytes_sent_ += thing.bytes();
-    const std::size_t tail = tail_.load(std::memory_order_relaxed);
-    Item& item = tail_block_->items[tail % kBlock];
-    item.arrival = arrival;
-    item.thing = std::move(thing);
-    if ((tail + 1) % kBlock == 0) [[unlikely]]
-      begin_block(tail + 1);
-    tail_.store(tail + 1, std::memory_order_release);  // publishes the item, and what follows its block
+    const std::size_t sent = sent_.load(std::memory_order_relaxed) + 1;
+    tail_.item->arrival = arrival;
+    tail_.item->thing = std::move(thing);
+    if (sent % kBlock == 0) [[unlikely]]
+      begin_block(sent);
+    else
+      ++tail_.item;
+    sent_.store(sent, std::memory_order_release);  // publishes the item, and what follows its block
     if (arrival < *wake_) *wake_ = arrival;
   }
   /// From now on `slot` keeps the earliest arrival that was sent since it was last cleared. The sender writes it.
@@ -58,15 +61,15 @@ class Channel {
 
   /// Arrival of the first thing; kNever when there is none.
   Cycle next() const {
-    if (arrival_ == kNever && size() > 0) arrival_ = first().arrival;
+    if (arrival_ == kNever && size() > 0) arrival_ = head_.item->arrival;
     return arrival_;
   }
   /// Only when next() is not kNever, as take().
-  const T& front() const { return first().thing; }
+  const T& front() const { return head_.item->thing; }
   T take() requires(!Returns) { return take_first(); }
   /// The sender learns at `back` that the thing has been taken; no earlier than of any before.
   T take(Cycle back) requires Returns {
-    first().back = back;
+    head_.item->back = back;
     return take_first();
   }
   /// How many have arrived by `now`.
@@ -93,22 +96,22 @@ class Channel {
 
   /// For the sender: when it learns of the first place that it has not heard of; kNever while none is known.
   Cycle next_return() const requires Returns {
-    if (returns_.next == kNever && returns_.count != head_.load(std::memory_order_acquire))
-      returns_.next = returns_.block->items[returns_.count % kBlock].back;
+    if (returns_.next == kNever && returns_.count != taken_.load(std::memory_order_acquire))
+      returns_.next = returns_.at.item->back;
     return returns_.next;
   }
   /// For the sender: hears of all places of which it learns by `now`. Returns how many these are.
   std::uint32_t take_returns(Cycle now) requires Returns {
     if (next_return() > now) return 0;
-    const std::size_t before = returns_.count, head = head_.load(std::memory_order_acquire);
+    const std::size_t before = returns_.count, taken = taken_.load(std::memory_order_acquire);
     do take_return();
-    while (returns_.count != head && returns_.block->items[returns_.count % kBlock].back <= now);
+    while (returns_.count != taken && returns_.at.item->back <= now);
     return static_cast<std::uint32_t>(returns_.count - before);
   }
   /// Hears of the next one; only when next_return() is not kNever.
   void take_return() requires Returns {
     returns_.next = kNever;
-    if (++returns_.count % kBlock == 0) returns_.block = returns_.block->next;
+    returns_.at.advance(++returns_.count);
   }
 
   /// In all, as the sender and the receiver have counted; while no agent runs. `waiting` are those that have been sent
@@ -118,7 +121,7 @@ class Channel {
   };
   std::uint64_t bytes_sent() const { return bytes_sent_; }  ///< for the sender
   Count messages() const {
-    return {tail_.load(std::memory_order_acquire), head_.load(std::memory_order_acquire), size()};
+    return {sent_.load(std::memory_order_acquire), taken_.load(std::memory_order_acquire), size()};
   }
   Count bytes() const {
     Count count{bytes_sent_, bytes_taken_, 0};
@@ -128,7 +131,7 @@ class Channel {
     return count;
   }
   /// For the receiver.
-  std::size_t size() const { return tail_.load(std::memory_order_acquire) - head_.load(std::memory_order_relaxed); }
+  std::size_t size() const { return sent_.load(std::memory_order_acquire) - taken_.load(std::memory_order_relaxed); }
 
  private:
   static constexpr bool kHasBytes = requires(const T& thing) { std::uint64_t{thing.bytes()}; };
@@ -144,59 +147,73 @@ class Channel {
     Block* next = nullptr;
   };
 
+  /// A place in the circle.
+  struct Cursor {
+    Block* block = nullptr;
+    Item* item = nullptr;
+    /// `passed`: the items before the new place.
+    void advance(std::size_t passed) {
+      if (passed % kBlock != 0) [[likely]] {
+        ++item;
+      } else {
+        block = block->next;
+        item = block->items.data();
+      }
+    }
+  };
   /// What the sender has heard of.
   struct Heard {
-    Block* block = nullptr;
+    Cursor at;  // the next one
     std::size_t count = 0;
-    Cycle next = kNever;  // once it has been looked at
+    Cycle next = kNever;  // its time, once it has been looked at
   };
 
-  Item& first() const { return head_block_->items[head_.load(std::memory_order_relaxed) % kBlock]; }
   Item& item(std::size_t place) const {
-    const std::size_t head = head_.load(std::memory_order_relaxed);
-    Block* block = head_block_;
-    for (std::size_t at = head / kBlock; at != (head + place) / kBlock; ++at) block = block->next;
-    return block->items[(head + place) % kBlock];
+    const std::size_t taken = taken_.load(std::memory_order_relaxed);
+    Block* block = head_.block;
+    for (std::size_t at = taken / kBlock; at != (taken + place) / kBlock; ++at) block = block->next;
+    return block->items[(taken + place) % kBlock];
   }
   T take_first() {
-    const std::size_t head = head_.load(std::memory_order_relaxed);
-    T thing = std::move(head_block_->items[head % kBlock].thing);
+    T thing = std::move(head_.item->thing);
     arrival_ = kNever;
     if constexpr (kHasBytes) bytes_taken_ += thing.bytes();
-    if ((head + 1) % kBlock == 0) head_block_ = head_block_->next;
-    head_.store(head + 1, std::memory_order_release);  // publishes the return, and that the block is done with
+    const std::size_t taken = taken_.load(std::memory_order_relaxed) + 1;
+    head_.advance(taken);
+    taken_.store(taken, std::memory_order_release);  // publishes the return, and that the block is done with
     return thing;
   }
   /// The sender has filled its block up to the thing of number `end`, and goes on in the next one.
   [[gnu::noinline]] void begin_block(std::size_t end) {
-    std::size_t done = head_.load(std::memory_order_acquire);
+    std::size_t done = taken_.load(std::memory_order_acquire);
     if constexpr (Returns) done = returns_.count;
     // The n-th block from here on: its last thing was the one of number end - (blocks_ - n) * kBlock, a round ago.
     const auto unused = [&](std::size_t n) { return n < blocks_ && done + (blocks_ - n) * kBlock >= end; };
+    Block* block = tail_.block;
     if (!unused(1)) {
-      tail_block_->next = new Block{{}, tail_block_->next};
+      block->next = new Block{{}, block->next};
       ++blocks_;
     } else if (unused(3)) {
-      delete std::exchange(tail_block_->next, tail_block_->next->next);
+      delete std::exchange(block->next, block->next->next);
       --blocks_;
     }
-    tail_block_ = tail_block_->next;
+    tail_.advance(end);
   }
 
-  // Used by the receiver, and `head_` read by the sender.
-  alignas(64) Block* head_block_;
-  std::atomic<std::size_t> head_{0};
+  // Used by the receiver, and `taken_` read by the sender.
+  alignas(64) Cursor head_;
+  std::atomic<std::size_t> taken_{0};
   std::uint64_t bytes_taken_ = 0;
   mutable Cycle arrival_ = kNever;  // of the first thing, once it has been looked at
-  // Used by the sender, and `tail_` read by the receiver.
-  alignas(64) Block* tail_block_;
-  std::atomic<std::size_t> tail_{0};
+  // Used by the sender, and `sent_` read by the receiver.
+  alignas(64) Cursor tail_;
+  std::atomic<std::size_t> sent_{0};
   std::uint64_t bytes_sent_ = 0;
-  std::size_t blocks_ = 1;
-  [[no_unique_address]] mutable std::conditional_t<Returns, Heard, Nothing> returns_;
   Cycle* wake_ = &unconnected_;
   Cycle unconnected_ = kNever;
+  std::size_t blocks_ = 1;
   Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds
+  [[no_unique_address]] mutable std::conditional_t<Returns, Heard, Nothing> returns_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -22,37 +22,37 @@ class WakeupTable {
   /// Agents by thread, as run_windows() gets them.
   explicit WakeupTable(std::span<const std::vector<Agent*>> parts)
       : threads_(parts.size()), rows_(threads_ * threads_), beside_(threads_ * threads_) {
-    for (std::size_t t = 0; t < threads_; ++t)
-      for (std::size_t i = 0; i < parts[t].size(); ++i) places_[parts[t][i]] = {t, i, parts[t].size()};
+    for (std::size_t t = 0; t < threads_; ++t) {
+      for (std::size_t i = 0; i < parts[t].size(); ++i) places_[parts[t][i]] = {t, i};
+      for (std::size_t from = 0; from < threads_; ++from) row(t, from).assign(parts[t].size(), kNever);
+    }
   }
 
   /// From now on the channel announces to agent `to` what agent `from` sends. Needed for every channel to an agent that
   /// is not polled().
   template <class T, bool Returns>
   void connect(Channel<T, Returns>& channel, const Agent& from, const Agent& to) {
-    channel.wakes(slot(rows_, from, to));
+    const Place place = places_.at(&to);
+    channel.wakes(row(place.thread, places_.at(&from).thread)[place.index]);
   }
   /// The same for a channel of which `to` hears apart.
   template <class T, bool Returns>
   void connect_beside(Channel<T, Returns>& channel, const Agent& from, const Agent& to) {
-    channel.wakes(slot(beside_, from, to));
+    const Place place = places_.at(&to);
+    const std::size_t from_thread = places_.at(&from).thread;
+    std::vector<Cycle>& beside = row_beside(place.thread, from_thread);
+    beside.resize(row(place.thread, from_thread).size(), kNever);
+    channel.wakes(beside[place.index]);
   }
-  /// By agent of thread `to`; empty if nothing is announced there.
+  /// By agent of thread `to`.
   std::vector<Cycle>& row(std::size_t to, std::size_t from) { return rows_[to * threads_ + from]; }
+  /// The same; empty if no channel is connected so.
   std::vector<Cycle>& row_beside(std::size_t to, std::size_t from) { return beside_[to * threads_ + from]; }
 
  private:
   struct Place {
-    std::size_t thread = 0, index = 0, agents = 0;  // of the thread
+    std::size_t thread = 0, index = 0;
   };
-
-  Cycle& slot(std::vector<std::vector<Cycle>>& rows, const Agent& from, const Agent& to) {
-    const Place place = places_.at(&to);
-    std::vector<Cycle>& row = rows[place.thread * threads_ + places_.at(&from).thread];
-    row.resize(place.agents, kNever);
-    return row[place.index];
-  }
-
   std::size_t threads_;
   std::vector<std::vector<Cycle>> rows_, beside_;
   std::unordered_map<const Agent*, Place> places_;

@@ -11,18 +11,19 @@ TrafficNode::TrafficNode(ResourceId id, const Topology& topology, const FlowRule
                          TrafficWindow window, Ports ports)
     : topology_(topology),
       id_(id),
-      ports_(std::move(ports)),
+      acks_in_(std::move(ports.acks_in)),
+      acks_out_(std::move(ports.acks_out)),
       window_(window),
       inject_cycles_(settings.inject_cycles),
       eject_cycles_(settings.eject_cycles),
       ack_latency_(settings.link_latency),
       flits_(settings.flits),
       places_wanted_(flow.places_to_inject()),
-      arrivals_(ports_.in.size()),
       injects_first_(flow.injects_first()),
-      allowances_(ports_.acks_in.size(), {settings.link_depth, {}}),
-      passing_acks_(ports_.acks_in.size()) {
-  queues_.assign(settings.shared_queue ? 1 : ports_.out.size() + 1, {std::move(source), packets});
+      allowances_(acks_in_.size(), {settings.link_depth, {}}),
+      passing_acks_(acks_in_.size()) {
+  for (std::size_t d = 0; d < ports.in.size(); ++d) ways_.push_back({ports.in[d], std::move(ports.out[d])});
+  queues_.assign(settings.shared_queue ? 1 : ways_.size() + 1, {std::move(source), packets});
   for (SourceQueue& queue : queues_) {
     create(queue);
     due_ = std::min(due_, queue.due);
@@ -44,8 +45,8 @@ void TrafficNode::look_at_next(SourceQueue& queue) {
   const ResourceId to = queue.source.destination();
   queue.route = topology_.route(id_, to, queue.source.random());
   queue.exit = topology_.direct() ? topology_.out_port_to(id_, to) : queue.route.direction;
-  queue.mine = queues_.size() == 1 || static_cast<std::size_t>(&queue - queues_.data()) ==
-                                          (queue.route.hops == 0 ? ports_.out.size() : queue.exit);
+  queue.mine = queues_.size() == 1 ||
+               static_cast<std::size_t>(&queue - queues_.data()) == (queue.route.hops == 0 ? ways_.size() : queue.exit);
   if (!queue.mine) return;
   queue.ready = std::max(queue.source.created() + inject_cycles_, queue.free);
   if (queue.source.created() < window_.begin) return;
@@ -57,66 +58,67 @@ void TrafficNode::look_at_next(SourceQueue& queue) {
 
 Cycle TrafficNode::next() const {
   Cycle first = next_here();
-  for (const In& in : ports_.in)
-    if (const Cycle at = in.next(); at > now_) first = std::min(first, at);
+  for (const Way& way : ways_)
+    if (const Cycle at = way.in.next(); at > now_) first = std::min(first, at);
   return std::min(first, next_ack());
 }
 
 Cycle TrafficNode::next_ack() const {
   Cycle first = kNever;
-  for (const Channel<TrafficAck>* acks : ports_.acks_in) first = std::min(first, acks->next());
-  return first;
-}
-
-Cycle TrafficNode::next_here() const {
-  Cycle first = due_ > now_ ? due_ : next_injection();
-  for (std::size_t d = 0; d < arrivals_.size(); ++d) {
-    // An arrival that is not later than the last step waits: for the sink, or for the egress place.
-    if (arrivals_[d] > now_)
-      first = std::min(first, arrivals_[d]);
-    else if (sink_free_ > now_ && ports_.in[d].front().skip == 0)
-      first = std::min(first, sink_free_);
-  }
-  if (egress_count_ > 0)
-    for (const Out& out : ports_.out)
-      if (!out.empty()) first = std::min(first, out.next(false));
-  return first;
-}
-
-Cycle TrafficNode::next_injection() const {
-  Cycle first = kNever;
-  for (const SourceQueue& queue : queues_)
-    first = std::min(first, queue.due > now_ ? queue.due : next_injection(queue));
+  for (const Channel<TrafficAck>* acks : acks_in_) first = std::min(first, acks->next());
   return first;
 }
 
 /// Of a packet that is ready.
-Cycle TrafficNode::next_injection(const SourceQueue& queue) const {
+[[gnu::always_inline]] inline Cycle TrafficNode::next_injection(const SourceQueue& queue) const {
   if (queue.route.hops == 0) return sink_free_ - (flits_ - 1u);
   if (!allowances_.empty()) {
     const Allowance& allowance = allowances_[queue.route.direction];
     if (allowance.left == 0 && allowance.acks.empty()) return kNever;
     if (allowance.left == 0 && allowance.acks.front() > now_) return allowance.acks.front();
   }
-  return ports_.out[queue.exit].opens(places_wanted_);
+  return ways_[queue.exit].out.opens(places_wanted_);
+}
+
+[[gnu::always_inline]] inline Cycle TrafficNode::next_injection() const {
+  if (due_ > now_) return due_;
+  Cycle first = kNever;
+  for (const SourceQueue& queue : queues_)
+    first = std::min(first, queue.due > now_ ? queue.due : next_injection(queue));
+  return first;
+}
+
+Cycle TrafficNode::next_here() const {
+  Cycle first = next_injection();
+  for (const Way& way : ways_) {
+    // An arrival that is not later than the last step waits: for the sink, or for the egress place.
+    if (way.arrival > now_)
+      first = std::min(first, way.arrival);
+    else if (sink_free_ > now_ && way.in.front().skip == 0)
+      first = std::min(first, sink_free_);
+  }
+  if (egress_count_ > 0)
+    for (const Way& way : ways_)
+      if (!way.out.empty()) first = std::min(first, way.out.next(false));
+  return first;
 }
 
 /// Tells whether a credit may let it do something that next_here() does not know of.
 bool TrafficNode::awaits_credit() const {
   if (egress_count_ > 0 &&
-      std::any_of(ports_.out.begin(), ports_.out.end(), [](const Out& out) { return out.awaits_credit(); }))
+      std::any_of(ways_.begin(), ways_.end(), [](const Way& way) { return way.out.awaits_credit(); }))
     return true;
   return due_ <= now_ && std::any_of(queues_.begin(), queues_.end(), [&](const SourceQueue& queue) {
-           return queue.due <= now_ && queue.route.hops > 0 && ports_.out[queue.exit].lacks_credits(places_wanted_);
+           return queue.due <= now_ && queue.route.hops > 0 && ways_[queue.exit].out.lacks_credits(places_wanted_);
          });
 }
 
 void TrafficNode::run(Cycle end) {
   // Packets that are sent to it from now on arrive after `end`, so it is enough to look once.
-  for (std::size_t d = 0; d < arrivals_.size(); ++d) arrivals_[d] = ports_.in[d].next();
+  for (Way& way : ways_) way.arrival = way.in.next();
   if (!allowances_.empty()) take_acks(end);
   for (;;) {
-    next_ = injects_first_ ? next_here() : run_unhindered(end);
+    next_ = injects_first_ || ways_.empty() ? next_here() : run_unhindered(end);
     if (next_ >= end) break;
     now_ = next_;
     if (egress_count_ > 0) send(now_);
@@ -134,32 +136,31 @@ void TrafficNode::run(Cycle end) {
 // ---- packets
 
 void TrafficNode::send(Cycle now) {
-  for (Out& out : ports_.out) {
-    if (out.empty()) continue;
-    out.take_credits(now);
-    egress_count_ -= out.send(now);
+  for (Way& way : ways_) {
+    if (way.out.empty()) continue;
+    way.out.take_credits(now);
+    egress_count_ -= way.out.send(now);
   }
 }
 
-/// Takes the first packet of a port if its place is free, and returns whether it was.
-[[gnu::always_inline]] inline bool TrafficNode::pass(std::size_t d, Cycle now) {
-  In& in = ports_.in[d];
-  Out& out = ports_.out[d];
-  const bool ends_here = in.front().skip == 0, open = !ends_here && out.open(now, 1);
-  if (ends_here ? !sink_open(now) : !open && !out.has_place()) return false;
-  TrafficToken token = in.take(now);
-  arrivals_[d] = in.next();
+/// Takes the first packet that comes one way if its place is free, and returns whether it was.
+[[gnu::always_inline]] inline bool TrafficNode::pass(Way& way, Cycle now) {
+  const bool ends_here = way.in.front().skip == 0, open = !ends_here && way.out.open(now, 1);
+  if (ends_here ? !sink_open(now) : !open && !way.out.has_place()) return false;
+  TrafficToken token = way.in.take(now);
+  way.arrival = way.in.next();
   if (ends_here) {
+    const std::size_t d = static_cast<std::size_t>(&way - ways_.data());
     if (!allowances_.empty()) acknowledge(token, d, now);
     deliver(token, now);
-    first_in_ = d + 1 < ports_.in.size() ? d + 1 : 0;  // the others first, the next time
+    first_in_ = d + 1 < ways_.size() ? d + 1 : 0;  // the others first, the next time
     return true;
   }
   --token.skip;
   if (open) {
-    out.launch(token, now, token.skip > 0);
+    way.out.launch(token, now, token.skip > 0);
   } else {
-    out.push(token, now, token.skip > 0);
+    way.out.push(token, now, token.skip > 0);
     ++egress_count_;
   }
   return true;
@@ -169,14 +170,14 @@ void TrafficNode::send(Cycle now) {
 /// do before `end`, as far as that goes, and returns next_here().
 Cycle TrafficNode::run_unhindered(Cycle end) {
   while (egress_count_ == 0) {
-    const Cycle injection = due_ > now_ ? due_ : next_injection();
-    const std::size_t d = first_port();
-    const Cycle at = arrivals_[d];
+    const Cycle injection = next_injection();
+    Way& way = first_way();
+    const Cycle at = way.arrival;
     if (at <= now_) break;  // it waits for the sink
     if (std::min(at, injection) >= end) return std::min(at, injection);
     if (at <= injection) {
-      if (!pass(d, at)) return at;
-      now_ = at - 1;  // in the same cycle, something may arrive at other ports
+      if (!pass(way, at)) return at;
+      now_ = at - 1;  // in the same cycle, something may arrive on other ways
     } else {
       now_ = injection;
       inject_all(now_);
@@ -185,21 +186,19 @@ Cycle TrafficNode::run_unhindered(Cycle end) {
   return next_here();
 }
 
-/// The port with the first arrival. Each in turn has the sink before the others.
-std::size_t TrafficNode::first_port() const {
-  std::size_t first = first_in_;
-  const std::size_t ways = arrivals_.size();
-  for (std::size_t i = 1, d = first_in_; i < ways; ++i) {
-    d = d + 1 < ways ? d + 1 : 0;
-    if (arrivals_[d] < arrivals_[first]) first = d;
+/// The one of the first arrival. Each in turn has the sink before the others.
+TrafficNode::Way& TrafficNode::first_way() {
+  Way* first = &ways_[first_in_];
+  for (std::size_t i = 1, d = first_in_; i < ways_.size(); ++i) {
+    d = d + 1 < ways_.size() ? d + 1 : 0;
+    if (ways_[d].arrival < first->arrival) first = &ways_[d];
   }
-  return first;
+  return *first;
 }
 
 void TrafficNode::pass_all(Cycle now) {
-  const std::size_t ways = arrivals_.size();
-  for (std::size_t i = 0, d = first_in_; i < ways; ++i, d = d + 1 < ways ? d + 1 : 0)
-    while (arrivals_[d] <= now && pass(d, now)) {
+  for (std::size_t i = 0, d = first_in_; i < ways_.size(); ++i, d = d + 1 < ways_.size() ? d + 1 : 0)
+    while (ways_[d].arrival <= now && pass(ways_[d], now)) {
     }
 }
 
@@ -220,7 +219,7 @@ void TrafficNode::inject(SourceQueue& queue, Cycle now) {
     const Cycle tail = now + flits_ - 1u;
     if (!sink_open(tail)) return;
     deliver(token, tail);
-  } else if (Out& out = ports_.out[queue.exit]; injects_first_) {
+  } else if (Out& out = ways_[queue.exit].out; injects_first_) {
     if (!out.has_place()) return;
     out.push(token, now, token.skip > 0);
     out.take_credits(now);
@@ -247,8 +246,8 @@ void TrafficNode::deliver(const TrafficToken& token, Cycle tail) {
 // ---- acknowledgements
 
 void TrafficNode::take_acks(Cycle end) {
-  for (std::size_t a = 0; a < ports_.acks_in.size(); ++a) {
-    Channel<TrafficAck>& acks = *ports_.acks_in[a];
+  for (std::size_t a = 0; a < acks_in_.size(); ++a) {
+    Channel<TrafficAck>& acks = *acks_in_[a];
     for (Cycle at; (at = acks.next()) < end;) {
       const TrafficAck ack = acks.take();
       if (ack.source == id_.value)
@@ -262,13 +261,13 @@ void TrafficNode::take_acks(Cycle end) {
 void TrafficNode::forward_acks(std::size_t a, Cycle end) {
   Fifo<PassingAck>& passing = passing_acks_[a];
   for (; !passing.empty() && passing.front().at < end; passing.pop_front())
-    ports_.acks_out[a]->send(passing.front().at + ack_latency_, passing.front().ack);
+    acks_out_[a]->send(passing.front().at + ack_latency_, passing.front().ack);
 }
 
 void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle now) {
   const std::size_t a = topology_.ack_direction(d);
   forward_acks(a, now + 1);  // those that came earlier leave earlier
-  ports_.acks_out[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
+  acks_out_[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
 }
 
 bool TrafficNode::may_send_more(std::size_t direction, Cycle now) {
@@ -284,12 +283,10 @@ bool TrafficNode::may_send_more(std::size_t direction, Cycle now) {
 
 std::string TrafficNode::describe() const {
   std::string text;
-  for (std::size_t d = 0; d < ports_.out.size(); ++d) {
-    const Out& out = ports_.out[d];
-    if (!out.empty())
+  for (const Way& way : ways_)
+    if (!way.out.empty())
       text += fmt::format("; a packet of resource {}, {} hops from its destination, waits for a place",
-                          out.first().source, out.first().skip + 1);
-  }
+                          way.out.first().source, way.out.first().skip + 1);
   std::uint64_t unread = 0;  // by the queue that has the most before it
   for (const SourceQueue& queue : queues_)
     if (queue.waiting) unread = std::max(unread, queue.to_create + 1);

@@ -59,7 +59,7 @@ class TrafficNode final : public Agent {
   using Out = OutPortOf<TrafficToken>;
   struct Ports {
     std::vector<In> in;
-    std::vector<Out> out;
+    std::vector<Out> out;                                 ///< as many; what comes in by one goes on by its fellow
     std::vector<Channel<TrafficAck>*> acks_in, acks_out;  ///< by direction; empty where no source waits for them
   };
 
@@ -74,7 +74,8 @@ class TrafficNode final : public Agent {
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
-  const std::vector<Out>& out() const { return ports_.out; }
+  /// Of `ports.out`, in their order.
+  const Out& out(std::size_t port) const { return ways_[port].out; }
   const LatencyHistogram& latency() const { return latency_; }  ///< of measured packets delivered here
   std::uint64_t flits() const { return flits_; }                ///< of a packet
   std::uint64_t delivered() const { return delivered_; }
@@ -99,6 +100,12 @@ class TrafficNode final : public Agent {
     Cycle due = kNever;         // when it has something to do, if nothing is in its way
   };
 
+  struct Way {
+    In in;
+    Out out;
+    Cycle arrival = 0;  // the next one; noted when a window begins
+  };
+
   Cycle next_here() const;
   Cycle next_injection() const;
   Cycle next_injection(const SourceQueue& queue) const;
@@ -111,8 +118,8 @@ class TrafficNode final : public Agent {
   void acknowledge(const TrafficToken& token, std::size_t d, Cycle now);
   bool may_send_more(std::size_t direction, Cycle now);
   Cycle run_unhindered(Cycle end);
-  std::size_t first_port() const;
-  bool pass(std::size_t d, Cycle now);
+  Way& first_way();
+  bool pass(Way& way, Cycle now);
   void inject_all(Cycle now);
   void inject(SourceQueue& queue, Cycle now);
   bool sink_open(Cycle tail) const { return sink_free_ <= tail; }
@@ -122,7 +129,8 @@ class TrafficNode final : public Agent {
 
   const Topology& topology_;
   ResourceId id_;
-  Ports ports_;
+  std::vector<Way> ways_;
+  std::vector<Channel<TrafficAck>*> acks_in_, acks_out_;
   TrafficWindow window_;
   Cycle inject_cycles_, eject_cycles_, ack_latency_;
   std::uint16_t flits_;
@@ -132,9 +140,8 @@ class TrafficNode final : public Agent {
   Cycle next_ = 0;                // next(), at the end of the last run()
   Cycle due_ = kNever;            // the first of the queues' due
   bool awaits_credit_ = false;    // likewise: a credit may let it do something before next_
-  std::vector<Cycle> arrivals_;   // the next ones, as ports_.in; noted when a window begins
   std::size_t egress_count_ = 0;  // packets in egress places
-  std::size_t first_in_ = 0;      // the port that has the sink before the others
+  std::size_t first_in_ = 0;      // the way that has the sink before the others
   Cycle sink_free_ = 0;           // for the next packet's tail
 
   bool injects_first_;  // before packets on their way
