@@ -1,6 +1,7 @@
 #include "ringbus/cycle/tile/tile.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -70,6 +71,21 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
 
 // ---- a step
 
+/// Does once what can be done. Returns whether that may have made something else possible.
+[[gnu::always_inline]] inline bool Tile::go_on(Cycle now) {
+  bool again = finish_tests(now);
+  again |= help_.step(now, testers_free());
+  // Packets that pass by make room for nothing else here; but dispatch may be idle then.
+  again |= cut_through(now) && partial_ == Partial::kIdle;
+  again |= handle(now);
+  again |= admit();
+  // The issue queue takes no more than before if only packets have been sent since.
+  if (again || served_ || !logic_.admission.empty()) again |= fill_issue(now);
+  served_ = false;
+  again |= send(now);
+  return again;
+}
+
 void Tile::step(Cycle now) {
   sample(now);
   note_blocked(now);
@@ -90,17 +106,9 @@ void Tile::step(Cycle now) {
     take_new_rays(now);
   }
   served_ = true;
-  for (bool again = true; again;) {
-    again = finish_tests(now);
-    again |= help_.step(now, testers_free());
-    again |= cut_through(now);
-    again |= handle(now);
-    again |= admit();
-    // The issue queue takes no more than before if only packets have been sent since.
-    if (again || served_ || !logic_.admission.empty()) again |= fill_issue(now);
-    served_ = false;
-    again |= send(now);
+  while (go_on(now)) {
   }
+  if (kChecked && now % 4 == 0 && go_on(now)) throw std::logic_error("a step has ended before all was done");
   hand_over(now);
   if (side) side_arrival_ = next_on_side();
   if (logic_.draining() && !told_drained_ && drained()) {
@@ -153,10 +161,14 @@ bool Tile::admit() {
 
 // ---- departures
 
+/// Returns whether there is a place again in an egress queue that was full.
 bool Tile::send(Cycle now) {
-  bool moved = false;
-  for (OutPort& out : ports_.out) moved |= out.send(now);
-  return moved;
+  bool room = false;
+  for (OutPort& out : ports_.out) {
+    const bool full = !out.has_place();
+    room |= out.send(now) && full;
+  }
+  return room;
 }
 
 // ---- the end, good or bad

@@ -126,8 +126,10 @@ class Tile final : public ResourceAgent {
   bool wants_credit() const;
   bool at_rest() const;
   void step(Cycle now);
+  bool go_on(Cycle now);
   bool take_shapes(Cycle now);
   bool start_alone(Cycle now);
+  void pass_ahead(Cycle end);
   bool pass_on(Cycle now);
   void look_at_links();
   void note_state(Cycle now);

@@ -71,9 +71,36 @@ bool Tile::dispatch_wanted() const {
 
 // ---- the way through events
 
+/// While nothing waits to leave, packets that pass by before `limit` go from link to link: as in pass_on(), without
+/// what changes nothing then.
+void Tile::pass_ahead(Cycle limit) {
+  if (steps_always_ || !cuts_through_ || waits_for_place_ || link_state_from_ != kNever ||
+      ledger_.state() == TileState::kLink)
+    return;
+  for (;;) {
+    std::size_t first = 0;
+    for (std::size_t d = 1; d < ports_.in.size(); ++d)
+      if (ports_.in[d].next() < ports_.in[first].next()) first = d;
+    InPort& in = ports_.in[first];
+    OutPort& out = ports_.out[first];
+    const Cycle at = in.next();
+    if (at >= limit || at <= now_ || samples_.due(at) || in.front().skip == 0 || !out.open(at, 1)) return;
+    Token token = in.take(at);
+    --token.skip;
+    out.launch(token, at, token.skip > 0);
+    now_ = at - 1;  // in the same cycle, something may arrive at other ports
+  }
+}
+
 void Tile::run(Cycle end) {
   for (;;) {
-    const Cycle links = next_on_links(), now = std::min({links, next_here_, next_start_, side_arrival_});
+    Cycle links = next_on_links();
+    const Cycle others = std::min({next_here_, next_start_, side_arrival_}), until = std::min(others, end);
+    if (!may_send_ && links < until && links < visits_.next()) {
+      pass_ahead(std::min(until, visits_.next()));
+      links = next_on_links();
+    }
+    const Cycle now = std::min(links, others);
     visits_.forget_news();
     if (const Cycle event = visits_.run_before(std::min(now, end)); event != kNever) {
       if (visits_.has_news()) {
