@@ -104,6 +104,7 @@ std::vector<Factor> traversal_and_units() {
       {"collections.block_bytes", {"64", "1000", "65536"}, {"collections.key=block"}},
       {"bvh.treelet_triangles", {"1", "64", "100000"}, {"collections.traversal=treelet"}},
       {"collections.policy", all<Policy>()},
+      {"collections.partial", all<Partial>(), {"engine.kind=cycle"}},
       {"collections.select", all<Select>()},
       {"collections.home", all<Home>()},
       {"collections.when_full", all<WhenFull>()},
