@@ -97,7 +97,7 @@ class OutPortOf {
     if (credits_ < places) take_credits(now);
     return queue_.empty() && free_at_ <= now && credits_ >= places;
   }
-  /// Sends a packet past the egress queue.
+  /// Sends a packet past the egress queue. Inlined, as most of what a network does is that packets pass.
   [[gnu::always_inline]] void launch(const T& token, Cycle now, bool cut_through) { start(token, now, cut_through); }
   /// The time at which it will be open(), as far as is known and if nothing else is sent before.
   Cycle opens(std::uint32_t places) const {

@@ -129,7 +129,7 @@ class Tile final : public ResourceAgent {
   bool go_on(Cycle now);
   bool take_shapes(Cycle now);
   bool start_alone(Cycle now);
-  void pass_ahead(Cycle end);
+  void pass_ahead(Cycle limit);
   bool pass_on(Cycle now);
   void look_at_links();
   void note_state(Cycle now);
