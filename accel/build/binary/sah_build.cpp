@@ -82,7 +82,7 @@ struct Binning {
       scale[a] = s < std::numeric_limits<float>::infinity() ? s : 0.0f;
     }
     scale[3] = 0;
-    // So that bins() subtracts nothing from the bits of an index. Those of two indices of 8 million and more may differ
+    // bins() must subtract nothing from the bits of an index: as floats, two indices of 8 million and more may differ
     // by a denormal number, for which some processors take many times as long (docs/performance.md).
     origin[3] = 0;
   }

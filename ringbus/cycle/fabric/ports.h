@@ -177,6 +177,7 @@ class OutPortOf {
     ++packets_;
   }
   using Flight = LinkFaultTimer::Delivery;
+  /// Out of line, as few links have faults.
   [[gnu::noinline]] Flight uncertain_flight(Cycle now, Cycle cycles, bool cut_through) {
     Flight flight = faults_->send(now, cycles);
     // In order even where a head overtakes the tail before it.

@@ -67,8 +67,13 @@ class Channel {
   /// Only when next() is not kNever, as take().
   const T& front() const { return head_.item->thing; }
   T take() requires(!Returns) { return take_first(); }
-  /// The sender learns at `back` that the thing has been taken; no earlier than of any before.
+  /// The sender learns at `back` that the thing has been taken; no earlier than of any before (checked builds throw a
+  /// std::logic_error).
   T take(Cycle back) requires Returns {
+    if constexpr (kChecked) {
+      if (back < last_back_) throw std::logic_error("a channel's places come back in another order");
+      last_back_ = back;
+    }
     head_.item->back = back;
     return take_first();
   }
@@ -161,11 +166,11 @@ class Channel {
       }
     }
   };
-  /// What the sender has heard of.
+  /// The places that the sender knows to have come back.
   struct Heard {
-    Cursor at;  // the next one
+    Cursor at;  // the first place that it does not know of
     std::size_t count = 0;
-    Cycle next = kNever;  // its time, once it has been looked at
+    Cycle next = kNever;  // when it learns of that place, once it has been looked at
   };
 
   Item& item(std::size_t place) const {
@@ -205,6 +210,7 @@ class Channel {
   std::atomic<std::size_t> taken_{0};
   std::uint64_t bytes_taken_ = 0;
   mutable Cycle arrival_ = kNever;  // of the first thing, once it has been looked at
+  Cycle last_back_ = 0;             // `back` of the last thing taken, in checked builds
   // Used by the sender, and `sent_` read by the receiver.
   alignas(64) Cursor tail_;
   std::atomic<std::size_t> sent_{0};

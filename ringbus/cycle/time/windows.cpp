@@ -176,8 +176,8 @@ class WindowRun {
     }
   }
 
-  // What an agent has to do stays until it runs. So one that was not woken in time shows when it runs later, with
-  // something to do from before the window, or at the end if it does not: checked builds ask it only then.
+  // An agent's work waits until the agent runs. An agent that was not woken in time therefore has work from before the
+  // window when it runs at last, or still has work at the end. Checked builds look at these two points only.
   [[noreturn]] static void throw_not_woken() { throw std::logic_error("an agent was not woken"); }
 
   void check_at_rest(const std::vector<Agent*>& agents) {

@@ -118,6 +118,7 @@ void TrafficNode::run(Cycle end) {
   for (Way& way : ways_) way.arrival = way.in.next();
   if (!allowances_.empty()) take_acks(end);
   for (;;) {
+    // run_unhindered() lets packets on their way go before those of the source, and needs a way.
     next_ = injects_first_ || ways_.empty() ? next_here() : run_unhindered(end);
     if (next_ >= end) break;
     now_ = next_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <random>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -65,7 +66,7 @@ TEST(Channel, BringsForwardAcrossBlocks) {
   EXPECT_EQ(channel.next(), kNever);
 }
 
-// What the sender has heard of by a cycle, against the list of what the receiver gave back.
+// The sender learns of as many places by each cycle as the receiver has given back for that cycle.
 TEST(Channel, PlacesComeBackWhenTheReceiverSays) {
   std::mt19937 random(2);
   Channel<int, true> channel;
@@ -89,6 +90,14 @@ TEST(Channel, PlacesComeBackWhenTheReceiverSays) {
     ASSERT_EQ(channel.take_returns(now), back);
   }
   EXPECT_GT(expected.size(), 0u);
+}
+
+TEST(Channel, PlacesComeBackInOrder) {
+  if (!kChecked) GTEST_SKIP() << "only checked builds look";
+  Channel<int, true> channel;
+  for (int i = 0; i < 2; ++i) channel.send(0, i);
+  channel.take(5);
+  EXPECT_THROW(channel.take(4), std::logic_error);
 }
 
 // Sender and receiver on two threads, which read what the other publishes.

@@ -85,21 +85,32 @@ class Listener final : public Agent {
   std::vector<Cycle> heard_;
 };
 
-TEST(Windows, WhoIsNotAskedIsWokenInTime) {
-  for (const std::size_t threads : {1, 2}) {
-    Channel<int> there, back;
-    Listener a(back, there, 3, true), b(there, back, 7, false);
+/// Two that send to each other, of which the first one starts.
+struct TwoListeners {
+  Channel<int> there, back;
+  Listener a{back, there, 3, true}, b{there, back, 7, false};
+
+  std::vector<std::vector<Agent*>> parts(std::size_t threads) {
     std::vector<std::vector<Agent*>> parts(threads);
     parts.front().push_back(&a);
     parts.back().push_back(&b);
+    return parts;
+  }
+};
+
+TEST(Windows, WhoIsNotAskedIsWokenInTime) {
+  for (const std::size_t threads : {1, 2}) {
+    TwoListeners two;
+    const std::vector<std::vector<Agent*>> parts = two.parts(threads);
     WakeupTable wakeups(parts);
-    wakeups.connect(there, a, b);
-    wakeups.connect(back, b, a);
+    wakeups.connect(two.there, two.a, two.b);
+    wakeups.connect(two.back, two.b, two.a);
     run_windows(parts, wakeups, 3, [](Cycle) { return true; });
-    ASSERT_EQ(a.heard().size() + b.heard().size(), 1001u);
-    for (std::size_t i = 0; i < b.heard().size(); ++i) {
-      EXPECT_EQ(a.heard()[i], 1 + 10 * i);
-      EXPECT_EQ(b.heard()[i], 4 + 10 * i);
+    const std::vector<Cycle>&a = two.a.heard(), &b = two.b.heard();
+    ASSERT_EQ(a.size() + b.size(), 1001u);
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      EXPECT_EQ(a[i], 1 + 10 * i);
+      EXPECT_EQ(b[i], 4 + 10 * i);
     }
   }
 }
@@ -108,11 +119,8 @@ TEST(Windows, WhoIsNotAskedIsWokenInTime) {
 TEST(Windows, WhoIsNotWokenIsNoticedAtTheEnd) {
   if (!kChecked) GTEST_SKIP() << "only checked builds look";
   for (const std::size_t threads : {1, 2}) {
-    Channel<int> there, back;
-    Listener a(back, there, 3, true), b(there, back, 7, false);
-    std::vector<std::vector<Agent*>> parts(threads);
-    parts.front().push_back(&a);
-    parts.back().push_back(&b);
+    TwoListeners two;
+    const std::vector<std::vector<Agent*>> parts = two.parts(threads);
     WakeupTable wakeups(parts);
     EXPECT_THROW(run_windows(parts, wakeups, 3, [](Cycle) { return true; }), std::logic_error);
   }
@@ -120,17 +128,17 @@ TEST(Windows, WhoIsNotWokenIsNoticedAtTheEnd) {
 
 TEST(Windows, WhoIsWokenLateIsNoticed) {
   if (!kChecked) GTEST_SKIP() << "only checked builds look";
-  Channel<int> there, back;
-  Listener a(back, there, 3, true), b(there, back, 7, false);
+  TwoListeners two;
   Ticker others;
-  const std::vector<std::vector<Agent*>> parts{{&a, &b, &others}};
+  std::vector<std::vector<Agent*>> parts = two.parts(1);
+  parts.front().push_back(&others);
   WakeupTable wakeups(parts);
   const auto wake_late = [&](Cycle at) {
     if (at > 1) wakeups.row(0, 0)[1] = at;
     return at < 10'000;
   };
   EXPECT_THROW(run_windows(parts, wakeups, 3, wake_late), std::logic_error);
-  EXPECT_TRUE(b.heard().empty());
+  EXPECT_TRUE(two.b.heard().empty());
 }
 
 }  // namespace
