@@ -224,10 +224,11 @@ const std::vector<Factor>& machine_factors() {
 
 std::vector<Factor> machine_factors_with(const std::vector<std::pair<std::string, std::vector<std::string>>>& changes) {
   std::vector<Factor> factors = machine_factors();
-  for (const auto& [key, values] : changes) {
-    const auto found = std::find_if(factors.begin(), factors.end(), [&](const Factor& f) { return f.key == key; });
-    if (found == factors.end()) throw std::logic_error("no factor " + key);
-    found->values = values;
+  for (const auto& change : changes) {
+    const auto found =
+        std::find_if(factors.begin(), factors.end(), [&](const Factor& f) { return f.key == change.first; });
+    if (found == factors.end()) throw std::logic_error("no factor " + change.first);
+    found->values = change.second;
   }
   return factors;
 }
