@@ -10,7 +10,7 @@
 
 #include "accel/build/build.h"
 #include "core/system/executor.h"
-#include "scene/builtin/builtin.h"
+#include "tests/ringbus/support/test_scene.h"
 
 namespace carousel::ringbus::cycle::shape_blocks_test {
 namespace {
