@@ -36,10 +36,9 @@ void set_up(Camera& camera, const CameraConfig& config) {
   constexpr float kDefaultDegrees = 40;
   const bool orthographic = camera.projection == Camera::Projection::kOrthographic;
   if (config.field_of_view && orthographic && !config.eye) {
-    throw ConfigError({{{},
-                        "camera.field_of_view",
-                        "the scene's camera is orthographic, and has no angle of view; expected auto, or camera.eye "
-                        "and camera.target beside it"}});
+    throw ConfigError("camera.field_of_view",
+                      "the scene's camera is orthographic, and has no angle of view; expected auto, or camera.eye "
+                      "and camera.target beside it");
   }
   if (config.eye && config.target) {
     const float fallback = orthographic ? kDefaultDegrees * kRadians : camera.yfov;
@@ -54,7 +53,7 @@ void set_up(Camera& camera, const CameraConfig& config) {
 Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn,
                  const ImageChoice& images, const View& view) {
   if (config.file.empty() == !config.builtin.has_value()) {
-    throw ConfigError({{{}, "scene", "expected exactly one of file and builtin"}});
+    throw ConfigError("scene", "expected exactly one of file and builtin");
   }
   Scene scene = config.builtin ? make_builtin(config) : load_gltf(find_file(config.file, config_dir), warn, images);
   if (config.sky || !config.builtin) {
@@ -63,10 +62,8 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
   }
   const auto cameras = static_cast<std::int64_t>(scene.cameras.size());
   if (config.camera < 0 || config.camera >= cameras) {
-    throw ConfigError({{{},
-                        "scene.camera",
-                        "expected 0 to " + std::to_string(cameras - 1) + " (the cameras of this scene), found " +
-                            std::to_string(config.camera)}});
+    throw ConfigError("scene.camera", "expected 0 to " + std::to_string(cameras - 1) +
+                                          " (the cameras of this scene), found " + std::to_string(config.camera));
   }
   Camera& camera = scene.cameras[static_cast<std::size_t>(config.camera)];
   if (scene.added.camera && !view.camera.eye) make_up_camera(scene, view.aspect);

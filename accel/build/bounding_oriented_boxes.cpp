@@ -57,10 +57,6 @@ void append(const Accel& accel, const Node& node, int lane, Below& out) {
   }
 }
 
-DVec3 normal_of(const CullPlane& plane) {
-  return {plane.normal[0], plane.normal[1], plane.normal[2]};
-}
-
 DVec3 centre_of(const Aabb& box) {
   return {plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y), plane_centre(box.lo.z, box.hi.z)};
 }

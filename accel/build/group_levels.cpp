@@ -17,7 +17,7 @@ namespace carousel::accel {
 
 namespace {
 
-constexpr float kMost = std::numeric_limits<float>::max();
+constexpr float kLargestBound = std::numeric_limits<float>::max();
 
 /// A map in double.
 struct Map {
@@ -43,8 +43,8 @@ Aabb box_in_group(const Map& group, const Map& placed, const Aabb& box) {
       terms += std::fabs(inverse[c][row] * offset[c]);
     }
     const double pad = 0x1p-48 * terms;  // about ten roundings
-    out.lo[row] = std::max(-kMost, std::nextafter(static_cast<float>(lo - pad), -INFINITY));
-    out.hi[row] = std::min(kMost, std::nextafter(static_cast<float>(hi + pad), INFINITY));
+    out.lo[row] = std::max(-kLargestBound, std::nextafter(static_cast<float>(lo - pad), -INFINITY));
+    out.hi[row] = std::min(kLargestBound, std::nextafter(static_cast<float>(hi + pad), INFINITY));
   }
   return out;
 }

@@ -132,7 +132,7 @@ class PlaneBuilder {
       }
       PlaneChoice choice(child);
       for (const std::vector<CullPlane>& planes : found_[node.child[lane].node()])
-        for (const CullPlane& plane : planes) choice.offer({plane.normal[0], plane.normal[1], plane.normal[2]});
+        for (const CullPlane& plane : planes) choice.offer(normal_of(plane));
       choice.offer_octants();
       found_[index][static_cast<std::size_t>(lane)] = choice.best(most_);
     }

@@ -12,10 +12,6 @@ namespace {
 /// surface.
 constexpr double kLeastGain = 1.0 / 16;
 
-DVec3 normal_of(const CullPlane& plane) {
-  return {plane.normal[0], plane.normal[1], plane.normal[2]};
-}
-
 }  // namespace
 
 BoxAxes axes_of(const std::vector<CullPlane>& planes) {

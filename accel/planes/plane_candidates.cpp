@@ -45,7 +45,7 @@ float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<
 }
 
 float distance_along(const CullPlane& plane, const Aabb& box, const Vec3& sphere, float radius) {
-  const DVec3 n(plane.normal[0], plane.normal[1], plane.normal[2]);
+  const DVec3 n = normal_of(plane);
   const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y),
                      plane_centre(box.lo.z, box.hi.z));
   const DVec3 terms = n * (DVec3(sphere) - centre);

@@ -57,7 +57,7 @@ BoxedShape TopPlanes::shape(const Node& node, int lane) const {
   return {box, [this, child, box](const CullPlane& plane) {
             const DVec3 centre(plane_centre(box.lo.x, box.hi.x), plane_centre(box.lo.y, box.hi.y),
                                plane_centre(box.lo.z, box.hi.z));
-            const DVec3 normal(plane.normal[0], plane.normal[1], plane.normal[2]);
+            const DVec3 normal = normal_of(plane);
             return rounded_up(farthest(child, normal, centre, -std::numeric_limits<double>::infinity()));
           }};
 }
@@ -111,8 +111,7 @@ void TopPlanes::offer(NodeRef child, PlaneChoice& choice) const {
   const NodeRef root = accel_.instances[instance].root;
   if (root.is_inner()) {
     for (const std::vector<CullPlane>& planes : found_[root.node()])
-      for (const CullPlane& plane : planes)
-        choice.offer(normals * DVec3(plane.normal[0], plane.normal[1], plane.normal[2]));
+      for (const CullPlane& plane : planes) choice.offer(normals * normal_of(plane));
     return;
   }
   for (std::uint32_t i = 0; i < root.triangles() && !root.is_procedural(); ++i) {

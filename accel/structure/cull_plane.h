@@ -21,6 +21,10 @@ struct CullPlane {
 static_assert(sizeof(CullPlane) == 16);
 inline constexpr int kMaxCullPlanes = 8;
 
+inline DVec3 normal_of(const CullPlane& plane) {
+  return {plane.normal[0], plane.normal[1], plane.normal[2]};
+}
+
 /// The point from which the distances of a box's planes are measured: the same float wherever it is computed.
 [[gnu::always_inline]] inline float plane_centre(float lo, float hi) {
   return 0.5f * lo + 0.5f * hi;

@@ -141,10 +141,8 @@ void select_simd_target(SimdTarget target) {
   if (std::find(available.begin(), available.end(), wanted) == available.end()) {
     std::string names;
     for (const std::string& name : simd_targets()) names += (names.empty() ? "" : ", ") + name;
-    ConfigIssue issue;
-    issue.key_path = "engine.simd";
-    issue.message = std::string("this machine or build has no ") + hwy::TargetName(wanted) + "; it has " + names;
-    throw ConfigError({issue});
+    throw ConfigError("engine.simd",
+                      std::string("this machine or build has no ") + hwy::TargetName(wanted) + "; it has " + names);
   }
   hwy::SetSupportedTargetsForTest(wanted);
   hwy::GetChosenTarget().DeInit();

@@ -27,10 +27,6 @@ namespace carousel::app {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& option, const std::string& message) {
-  throw ConfigError({{{}, option, message}});
-}
-
 std::optional<std::uint32_t> number(std::string_view text) {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -48,17 +44,19 @@ RayPlace place_of_row(const Prepared& p, std::uint64_t row) {
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   run(p.config(), p.accel, p.scene_size(), job.workload(), options);
   const std::vector<report::HitRow> rows = recorder.take();
-  if (row >= rows.size()) refuse("--ray", fmt::format("found {}; expected at most {}", row, rows.size() - 1));
+  if (row >= rows.size())
+    throw ConfigError("--ray", fmt::format("found {}; expected at most {}", row, rows.size() - 1));
   const RayTag& tag = rows[row].result.tag;
   return {rows[row].pixel, rows[row].sample, tag.kind, tag.bounce, tag.index};
 }
 
 RayPlace place_of(const Prepared& p, const FollowArguments& arguments) {
   const Config& config = p.config();
-  if (arguments.ray && !arguments.pixel.empty()) refuse("--ray", "expected either a pixel or the number of a ray");
+  if (arguments.ray && !arguments.pixel.empty())
+    throw ConfigError("--ray", "expected either a pixel or the number of a ray");
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     if (!arguments.ray)
-      refuse("--pixel", "the rays of a list have no pixels; expected --ray with a number of the list");
+      throw ConfigError("--pixel", "the rays of a list have no pixels; expected --ray with a number of the list");
     return place_of_row(p, *arguments.ray);
   }
   if (arguments.ray) return place_of_row(p, *arguments.ray);
@@ -69,13 +67,15 @@ RayPlace place_of(const Prepared& p, const FollowArguments& arguments) {
   const auto width = static_cast<std::uint32_t>(config.image.width),
              height = static_cast<std::uint32_t>(config.image.height);
   if (!x || !y || *x >= width || *y >= height)
-    refuse("--pixel", fmt::format("found {}; expected X,Y with X from 0 to {} and Y from 0 to {}",
+    throw ConfigError("--pixel",
+                      fmt::format("found {}; expected X,Y with X from 0 to {} and Y from 0 to {}",
                                   arguments.pixel.empty() ? "nothing" : arguments.pixel, width - 1, height - 1));
   if (arguments.sample >= static_cast<std::uint32_t>(config.image.samples))
-    refuse("--sample", fmt::format("found {}; expected 0 to {}", arguments.sample, config.image.samples - 1));
+    throw ConfigError("--sample",
+                      fmt::format("found {}; expected 0 to {}", arguments.sample, config.image.samples - 1));
   if (arguments.bounce >= static_cast<std::uint32_t>(config.image.max_depth))
-    refuse("--bounce", fmt::format("found {}; expected 0 to {}, below image.max_depth", arguments.bounce,
-                                   config.image.max_depth - 1));
+    throw ConfigError("--bounce", fmt::format("found {}; expected 0 to {}, below image.max_depth", arguments.bounce,
+                                              config.image.max_depth - 1));
   const RayKind kind = arguments.shadow        ? RayKind::kShadow
                        : arguments.bounce == 0 ? RayKind::kCamera
                                                : RayKind::kBounce;
@@ -175,18 +175,19 @@ int follow_command(const FollowArguments& arguments) {
   const InterruptScope interrupt;
   const Prepared p = prepare(arguments, {}, arguments.ray.has_value());
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic)
-    refuse("workload", "synthetic traffic has no rays; expected workload: rays, or the rays of a file");
+    throw ConfigError("workload", "synthetic traffic has no rays; expected workload: rays, or the rays of a file");
   if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace)
-    refuse("workload", "memory requests have no rays; expected workload: rays, or the rays of a file");
+    throw ConfigError("workload", "memory requests have no rays; expected workload: rays, or the rays of a file");
   if (p.config().bundles.size > 0)
-    refuse("bundles.size",
-           fmt::format("found {}; follow knows rays by themselves only; expected 0", p.config().bundles.size));
+    throw ConfigError("bundles.size", fmt::format("found {}; follow knows rays by themselves only; expected 0",
+                                                  p.config().bundles.size));
   if (const Placement placement = p.config().rays.placement;
       p.config().engine.kind == EngineKind::kCycle &&
       (placement == Placement::kFirstTaker || placement == Placement::kAddressed))
-    refuse("rays.placement", fmt::format("found {}; follow does not see new rays on their way to a slot; expected "
-                                         "balanced or round_robin",
-                                         enum_name(placement)));
+    throw ConfigError("rays.placement",
+                      fmt::format("found {}; follow does not see new rays on their way to a slot; expected "
+                                  "balanced or round_robin",
+                                  enum_name(placement)));
   const RayPlace place = place_of(p, arguments);
   RenderJob job(p);
   ringbus::FollowedRay ray;
@@ -199,7 +200,7 @@ int follow_command(const FollowArguments& arguments) {
   const bool native = p.config().engine.kind == EngineKind::kNative;
   ringbus::RunResult result =
       (native ? ringbus::run_native : ringbus::run_cycle)(p.config(), p.accel, p.scene_size(), workload, options);
-  if (!workload.request()) refuse(arguments.shadow ? "--shadow" : "--bounce", absent_text(workload));
+  if (!workload.request()) throw ConfigError(arguments.shadow ? "--shadow" : "--bounce", absent_text(workload));
   if (native) workload.add_times(result.start, result.facts);
   const std::optional<ringbus::RayLife> life = ringbus::ray_life(result.facts, *result.timeline, p.accel);
   if (!life) throw SimulationError("the followed ray left no trace");

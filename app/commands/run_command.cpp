@@ -114,19 +114,17 @@ std::string trace_text(const TraceArguments& trace) {
 /// Only a simulated machine has a memory.
 void require_memory(const RunArguments& arguments, const Config& config) {
   if (!arguments.dump_memory.empty() && config.engine.kind != EngineKind::kCycle)
-    throw ConfigError({{{},
-                        "--dump-memory",
-                        "the native engine has no simulated memory; expected engine.kind: cycle, or a run without this "
-                        "option"}});
+    throw ConfigError("--dump-memory",
+                      "the native engine has no simulated memory; expected engine.kind: cycle, or a run without this "
+                      "option");
 }
 
 /// Only estimates can be compared with the whole frame.
 void require_estimates(const RunArguments& arguments, const Config& config) {
   if (arguments.audit && config.sampling.fraction >= 1)
-    throw ConfigError({{{},
-                        "--audit",
-                        "this run has no estimates; expected sampling.fraction below 1, as in --set "
-                        "sampling.fraction=0.1, or a run without this option"}});
+    throw ConfigError("--audit",
+                      "this run has no estimates; expected sampling.fraction below 1, as in --set "
+                      "sampling.fraction=0.1, or a run without this option");
 }
 
 /// Tells two scenes apart, and the structures built of them, as far as all ranks have these.

@@ -48,10 +48,8 @@ std::vector<Value> chosen(const std::vector<std::string>& names, const char* opt
     const auto at = std::find(spellings.begin(), spellings.end(), name);
     if (at == spellings.end()) {
       const auto near = nearest_name(name, spellings);
-      throw ConfigError({{{},
-                          option,
-                          fmt::format("expected one of {}, found {}{}", fmt::join(spellings, ", "), name,
-                                      near ? "; did you mean " + *near + "?" : "")}});
+      throw ConfigError(option, fmt::format("expected one of {}, found {}{}", fmt::join(spellings, ", "), name,
+                                            near ? "; did you mean " + *near + "?" : ""));
     }
     const auto& entry = *(std::begin(known) + (at - spellings.begin()));
     const auto& [value, spelling] = entry;
@@ -96,10 +94,8 @@ report::StressRow row_of(const stress::StressRow& row, const stress::QueueUnderT
   std::vector<std::string> keys;
   for (const RingPlace& place : ring_places()) keys.emplace_back(place.key);
   const auto near = nearest_name(found, keys);
-  throw ConfigError({{{},
-                      "--in",
-                      fmt::format("expected one of {}, found {}{}", fmt::join(keys, ", "), found,
-                                  near ? "; did you mean " + *near + "?" : "")}});
+  throw ConfigError("--in", fmt::format("expected one of {}, found {}{}", fmt::join(keys, ", "), found,
+                                        near ? "; did you mean " + *near + "?" : ""));
 }
 
 void require_sizes(const std::vector<std::size_t>& sizes) {

@@ -104,10 +104,9 @@ OutputFolder::OutputFolder(const fs::path& folder, const Config* config, bool fo
   const std::string others = other_results(target_, config);
   of_another_ = !others.empty();
   if (of_another_ && !force)
-    throw ConfigError({{{},
-                        "--out",
-                        fmt::format("{} holds {}; expected a folder of its own (--out DIR), or --force to replace them",
-                                    folder.string(), others)}});
+    throw ConfigError("--out",
+                      fmt::format("{} holds {}; expected a folder of its own (--out DIR), or --force to replace them",
+                                  folder.string(), others));
   const fs::path parent = target_.parent_path();
   make_parents();
   prefix_ = "." + target_.filename().string() + ".carousel-";

@@ -17,10 +17,6 @@ namespace carousel::app {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& key, const std::string& message) {
-  throw ConfigError({{{}, key, message}});
-}
-
 /// True in a process made by a starter of parallel programs: Open MPI's mpirun, or srun with PMIx or PMI 2.
 bool started_as_rank() {
   const char* const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
@@ -43,11 +39,12 @@ std::string difference(const std::string& ours, const std::string& theirs) {
 
 RankScope::RankScope(const Config& config, const std::string& program) {
   if (!ringbus::MpiTransport::built())
-    refuse("engine.transport",
-           "this program was built without MPI (cmake -DCAROUSEL_MPI=ON); expected local, found mpi");
+    throw ConfigError("engine.transport",
+                      "this program was built without MPI (cmake -DCAROUSEL_MPI=ON); expected local, found mpi");
   if (!started_as_rank())
-    refuse("engine.transport",
-           "mpirun has not started this program, as in mpirun -n 2 carousel run ...; expected local, found mpi");
+    throw ConfigError(
+        "engine.transport",
+        "mpirun has not started this program, as in mpirun -n 2 carousel run ...; expected local, found mpi");
   transport_ = ringbus::MpiTransport::start([](const std::string& text) { spdlog::error("{}", text); });
   for (const auto& sink : spdlog::default_logger()->sinks())
     sink->set_pattern(fmt::format("rank {}: %^%l%$: %v", rank()));
@@ -64,8 +61,9 @@ void RankScope::require_same(const std::string& what, const std::string& digest)
   const std::vector<std::string> all = transport_->gather(digest);
   for (std::uint32_t r = 1; r < all.size(); ++r)
     if (all[r] != all[0])
-      refuse("engine.transport", fmt::format("rank {} has another {} than rank 0: {}; expected the same on all ranks",
-                                             r, what, difference(all[r], all[0])));
+      throw ConfigError("engine.transport",
+                        fmt::format("rank {} has another {} than rank 0: {}; expected the same on all ranks", r, what,
+                                    difference(all[r], all[0])));
 }
 
 void RankScope::require_files(const std::function<std::string()>& digest) {
@@ -78,22 +76,23 @@ void RankScope::require_files(const std::function<std::string()>& digest) {
   const std::vector<std::string> errors = transport_->gather(error);
   for (std::uint32_t r = 0; r < errors.size(); ++r)
     if (!errors[r].empty())
-      refuse("engine.transport",
-             fmt::format("rank {}: {}; expected the files on the hosts of all ranks", r, errors[r]));
+      throw ConfigError("engine.transport",
+                        fmt::format("rank {}: {}; expected the files on the hosts of all ranks", r, errors[r]));
   require_same("content of the scene's files", own);
 }
 
 void RankScope::require_room(const Config& config) const {
   const std::int64_t ranks = transport_->ranks();
   if (ranks > config.topology.resources)
-    refuse("topology.resources", fmt::format("each rank plays one resource at least; expected at least {} for the {} "
-                                             "ranks, found {}; rank {} would have none",
-                                             ranks, ranks, config.topology.resources, config.topology.resources));
+    throw ConfigError("topology.resources",
+                      fmt::format("each rank plays one resource at least; expected at least {} for the {} "
+                                  "ranks, found {}; rank {} would have none",
+                                  ranks, ranks, config.topology.resources, config.topology.resources));
   if (ranks > config.rays.slots_per_resource)
-    refuse("rays.slots_per_resource",
-           fmt::format("each rank fills one slot of a resource at least; expected at least "
-                       "{}, found {}; rank {} would have none",
-                       ranks, config.rays.slots_per_resource, config.rays.slots_per_resource));
+    throw ConfigError("rays.slots_per_resource",
+                      fmt::format("each rank fills one slot of a resource at least; expected at least "
+                                  "{}, found {}; rank {} would have none",
+                                  ranks, config.rays.slots_per_resource, config.rays.slots_per_resource));
 }
 
 void RankScope::leave() {

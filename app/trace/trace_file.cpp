@@ -40,7 +40,7 @@ ringbus::TimelineOptions options_of(const TraceArguments& arguments, bool native
                end = colon == std::string::npos ? -1 : number(window.substr(colon + 1)) * scale;
   const bool whole = native || (first == std::floor(first) && end == std::floor(end));
   if (first < 0 || end <= first || end > 0x1p53 || !whole)
-    throw ConfigError({{{}, "--trace-window", fmt::format("found {}; {}", arguments.window, kWindowFormat)}});
+    throw ConfigError("--trace-window", fmt::format("found {}; {}", arguments.window, kWindowFormat));
   out.first = static_cast<std::uint64_t>(first);
   out.end = static_cast<std::uint64_t>(end);
   return out;
@@ -60,11 +60,9 @@ bool is_counter(const ringbus::SeriesRow& row) {
 bool is_perfetto(const std::string& file) {
   const bool perfetto = file.ends_with(".pftrace") || file.ends_with(".perfetto-trace");
   if (perfetto && !has_perfetto_trace())
-    throw ConfigError({{{},
-                        "--trace",
-                        fmt::format("found {}, but this program was built without protobuf; expected a name "
-                                    "that ends in .json",
-                                    file)}});
+    throw ConfigError("--trace", fmt::format("found {}, but this program was built without protobuf; expected a name "
+                                             "that ends in .json",
+                                             file));
   return perfetto;
 }
 

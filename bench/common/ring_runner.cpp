@@ -16,7 +16,7 @@ namespace carousel::bench {
 namespace {
 
 [[noreturn]] void refuse(std::string_view key, std::string_view value) {
-  throw ConfigError({{{}, "--vary", "no setting " + std::string(key) + " of value " + std::string(value)}});
+  throw ConfigError("--vary", "no setting " + std::string(key) + " of value " + std::string(value));
 }
 
 std::int64_t number(std::string_view key, std::string_view value) {

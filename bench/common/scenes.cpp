@@ -20,7 +20,7 @@ std::vector<SceneChoice> choose_scenes(const std::vector<std::string>& builtins,
   std::vector<SceneChoice> scenes;
   for (const std::string& builtin : builtins) {
     if (builtin != "terrain" && builtin != "spheres" && builtin != "sliver")
-      throw ConfigError({{{}, "--builtin", "expected terrain, spheres or sliver, found " + builtin}});
+      throw ConfigError("--builtin", "expected terrain, spheres or sliver, found " + builtin);
     for (const std::int64_t size : sizes) scenes.push_back({builtin, size, {}});
   }
   for (const std::string& file : files) scenes.push_back({{}, 0, file});

@@ -36,6 +36,9 @@ std::string join(const std::vector<ConfigIssue>& issues) {
 ConfigError::ConfigError(std::vector<ConfigIssue> issues)
     : std::runtime_error(join(issues)), issues_(std::move(issues)) {}
 
+ConfigError::ConfigError(std::string key_path, std::string message)
+    : ConfigError(std::vector<ConfigIssue>{{{}, std::move(key_path), std::move(message)}}) {}
+
 SceneError::SceneError(std::string file, std::string json_path, std::string message)
     : std::runtime_error(plain_text(file + (json_path.empty() ? "" : ": " + json_path) + ": " + message)),
       file_(std::move(file)),

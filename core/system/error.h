@@ -30,6 +30,8 @@ struct ConfigIssue {
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::vector<ConfigIssue> issues);
+  /// Of one key or option, whose place in the file is not known.
+  ConfigError(std::string key_path, std::string message);
   const std::vector<ConfigIssue>& issues() const { return issues_; }
 
  private:

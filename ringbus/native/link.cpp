@@ -33,11 +33,8 @@ void require_parties(QueueKind kind, const std::string& key, Parties producers, 
       std::vector<std::string_view> fitting;
       for (const auto& entry : kEnumNames<QueueKind>)
         if (queue_fits(entry.value, producers, consumers)) fitting.push_back(entry.name);
-      ConfigIssue issue;
-      issue.key_path = key;
-      issue.message = fmt::format("{} is made for one {} at a time and here are several; expected one of {}",
-                                  enum_name(kind), who, fmt::join(fitting, ", "));
-      throw ConfigError({issue});
+      throw ConfigError(key, fmt::format("{} is made for one {} at a time and here are several; expected one of {}",
+                                         enum_name(kind), who, fmt::join(fitting, ", ")));
     };
     if (producers == Parties::kMany && Queue::kProducers == Parties::kOne) refuse("producer");
     if (consumers == Parties::kMany && Queue::kConsumers == Parties::kOne) refuse("consumer");

@@ -8,7 +8,7 @@ namespace {
 
 /// The parts of a packet in their order on the wire.
 template <class Visitor, class SomePacket>
-void visit(Visitor& visitor, SomePacket& packet) {
+void visit_packet(Visitor& visitor, SomePacket& packet) {
   visitor.part(packet.kind);
   visitor.part(packet.owner);
   visitor.part(packet.home);
@@ -36,12 +36,12 @@ PacketImage image_of(const Packet& packet) {
 
 void append_image(const Packet& packet, PacketImage& image) {
   WordWriter writer(image);
-  visit(writer, packet);
+  visit_packet(writer, packet);
 }
 
 void restore(std::span<const std::uint64_t> image, Packet& packet) {
   WordReader reader(image);
-  visit(reader, packet);
+  visit_packet(reader, packet);
 }
 
 }  // namespace carousel::ringbus

@@ -9,7 +9,7 @@ namespace {
 
 /// The parts of a message in their order on the wire.
 template <class Visitor, class SomeMessage>
-void visit(Visitor& visitor, SomeMessage& message) {
+void visit_message(Visitor& visitor, SomeMessage& message) {
   visitor.part(message.credits);
   visitor.part(message.rays);
   visitor.part(message.rays_taken);
@@ -63,7 +63,7 @@ void RankMessage::write(std::vector<std::uint64_t>& words) const {
   WordWriter writer(words);
   writer.part((token ? kHasToken : 0) | (farewell ? kHasFarewell : 0) | (trips.empty() ? 0 : kHasTrips) |
               (hungry ? kHungry : 0));
-  visit(writer, *this);
+  visit_message(writer, *this);
   if (token) writer.part(*token);
   if (!trips.empty()) writer.part(trips);
   if (!farewell) return;
@@ -75,7 +75,7 @@ void RankMessage::read(std::span<const std::uint64_t> words) {
   WordReader reader(words);
   std::uint64_t has = 0;
   reader.part(has);
-  visit(reader, *this);
+  visit_message(reader, *this);
   hungry = (has & kHungry) != 0;
   token.reset();
   trips.clear();

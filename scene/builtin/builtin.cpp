@@ -10,13 +10,13 @@ constexpr std::int64_t kLargestCount = std::int64_t{1} << 28;  // 32-bit vertex 
 
 std::int64_t checked_count(std::int64_t count, const char* key) {
   if (count >= 1 && count <= kLargestCount) return count;
-  throw ConfigError({{{}, key, "expected 1 to 268435456, found " + std::to_string(count)}});
+  throw ConfigError(key, "expected 1 to 268435456, found " + std::to_string(count));
 }
 
 }  // namespace
 
 Scene make_builtin(const SceneConfig& config) {
-  if (!config.builtin) throw ConfigError({{{}, "scene.builtin", "no built-in scene is named"}});
+  if (!config.builtin) throw ConfigError("scene.builtin", "no built-in scene is named");
   const auto triangles = [&] { return checked_count(config.triangles, "scene.triangles"); };
   switch (*config.builtin) {
     case BuiltinScene::kCornell:
@@ -30,7 +30,7 @@ Scene make_builtin(const SceneConfig& config) {
     case BuiltinScene::kSliver:
       return make_sliver(triangles(), config.seed);
   }
-  throw ConfigError({{{}, "scene.builtin", "unknown built-in scene"}});
+  throw ConfigError("scene.builtin", "unknown built-in scene");
 }
 
 }  // namespace carousel::scene
