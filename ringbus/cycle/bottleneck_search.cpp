@@ -172,7 +172,9 @@ class Search {
         have_base = true;
       }
       for (std::size_t k = 0; k < tried.size(); ++k) {
-        const Estimate gain = foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0);
+        const bool warms =
+            std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return lifts_[i].keeps_shapes; });
+        const Estimate gain = foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0, warms);
         if (tried[k].size() == 1) relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
         // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
         if (tried[k].size() == 1 || gain.value < kEnough)
@@ -211,7 +213,7 @@ class Search {
   void estimate(const std::vector<std::size_t>& classes) {
     for (const std::size_t i : classes) {
       const RunResult& result = relaxed_[i].result;
-      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation()), 1);
+      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation(), lifts_[i].keeps_shapes), 1);
     }
   }
 

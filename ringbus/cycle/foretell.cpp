@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ringbus/cycle/progress_blocks.h"
 
@@ -62,18 +63,36 @@ std::vector<double> Foretelling::busy() const {
   return out;
 }
 
-Estimate Foretelling::gain(PilotRun relaxed, double deviation) const {
-  const Window w = window(relaxed);
-  const double ratio = frame_cycles(base_, w) / frame_cycles(relaxed, w), gain = ratio - 1;
-  if (whole()) return {gain, gain, gain};
-  const std::vector<double> base = block_means(*base_.result, w.begin, w.end, cycle_of),
-                            other = block_means(*relaxed.result, w.begin, w.end, cycle_of);
-  const double all = std::max(1.0, other.back() - other.front()), of_window = (base.back() - base.front()) / all;
+/// By how much longer the base takes from each block to the next than the other machine, scaled to the same sum, as a
+/// fraction of the other's time.
+std::vector<double> Foretelling::differences(PilotRun other, Window window) const {
+  const std::vector<double> base = block_means(*base_.result, window.begin, window.end, cycle_of),
+                            rest = block_means(*other.result, window.begin, window.end, cycle_of);
+  const double all = std::max(1.0, rest.back() - rest.front()), ratio = (base.back() - base.front()) / all;
   std::vector<double> d;
-  for (std::size_t i = 0; i < kProgressBlocks; ++i) d.push_back(base[i] - of_window * other[i]);
-  d = steps(d);
-  const double half = 2 * standard_error(d) / all + std::abs(deviation) * ratio * ratio / 2;
-  return {gain, gain - half, gain + half};
+  for (std::size_t i = 0; i < kProgressBlocks; ++i) d.push_back((base[i] - ratio * rest[i]) / all);
+  return steps(d);
+}
+
+Estimate Foretelling::gain(PilotRun relaxed, double deviation, bool warms) const {
+  const auto gain_by = [&](Window w) { return frame_cycles(base_, w) / frame_cycles(relaxed, w) - 1; };
+  Window w = window(relaxed);
+  if (whole()) {
+    const double gain = gain_by(w);
+    return {gain, gain, gain};
+  }
+  std::vector<double> d = differences(relaxed, w);
+  double still = 0;  // that it may yet gain
+  const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
+  if (const double grown = std::accumulate(middle, d.end(), 0.0) - std::accumulate(d.begin(), middle, 0.0);
+      warms && grown > 2 * standard_error(d)) {
+    const Window earlier{w.begin, w.begin + w.rays() / 2};
+    w.begin = earlier.end;
+    still = std::max(0.0, gain_by(w) - gain_by(earlier));
+    d = differences(relaxed, w);
+  }
+  const double gain = gain_by(w), half = 2 * standard_error(d) + std::abs(deviation) * (1 + gain) * (1 + gain) / 2;
+  return {gain, gain - half, gain + half + still};
 }
 
 }  // namespace carousel::ringbus

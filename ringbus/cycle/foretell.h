@@ -44,7 +44,11 @@ class Foretelling {
   /// d[i])^2 / 2, as for any systematic sample (K. Wolter, Introduction to Variance Estimation, 2nd edition 2007,
   /// section 8.2, v2). Two standard errors count. `deviation`, the fraction by which the frame is known to differ from
   /// its foretelling, is added: if it lies in the class at question, the time that the class limits is off by as much.
-  Estimate gain(PilotRun relaxed, double deviation) const;
+  ///
+  /// `warms`: the relaxed machine has more room for shapes, and may go on filling it after it is full of rays. If the
+  /// later half of the pilot gains surely more than the earlier one, it stands for the frame's further rays, and the
+  /// interval's upper end is as much farther up as these halves differ, since it may not be warm yet.
+  Estimate gain(PilotRun relaxed, double deviation, bool warms = false) const;
 
  private:
   struct Window {
@@ -55,6 +59,7 @@ class Foretelling {
   Window window(PilotRun other) const;
   static double per_ray(const cycle::CycleResult& result, Window window);
   double frame_cycles(PilotRun run, Window window) const;
+  std::vector<double> differences(PilotRun other, Window window) const;
 
   PilotRun base_;
   std::uint64_t frame_rays_, fill_;

@@ -56,7 +56,8 @@ struct PartClass {
   const char *name, *action;
   bool (*present)(const Config&);
   void (*relax)(Config&);
-  int lifts = 6;  ///< how often tester_limited() relaxes it; 0: it is part of the test, or a choice
+  int lifts = 6;              ///< how often tester_limited() relaxes it; 0: it is part of the test, or a choice
+  bool keeps_shapes = false;  // as WhatIf's
 };
 constexpr int kStorageLifts = 2;  // the host has to store it too
 constexpr PartClass kPartClasses[] = {
@@ -107,12 +108,13 @@ constexpr PartClass kPartClasses[] = {
     {"issue_rule", "collections.partial: idle",
      [](const Config& c) { return passes_packets(c) && c.collections.partial == Partial::kAhead; },
      [](Config& c) { c.collections.partial = Partial::kIdle; }, 0},
-    {"shape_buffer", "twice memory.shape_buffer_kib", every_machine, [](Config& c) { c.memory.shape_buffer_kib *= 2; }},
+    {"shape_buffer", "twice memory.shape_buffer_kib", every_machine, [](Config& c) { c.memory.shape_buffer_kib *= 2; },
+     6, true},
     {"fetch_ahead", "twice memory.fetch_ahead", passes_packets,
      [](Config& c) { c.memory.fetch_ahead = std::max<std::int64_t>(1, 2 * c.memory.fetch_ahead); }},
-    {"l2_size", "twice memory.l2_kib", every_machine, [](Config& c) { c.memory.l2_kib *= 2; }},
+    {"l2_size", "twice memory.l2_kib", every_machine, [](Config& c) { c.memory.l2_kib *= 2; }, 6, true},
     {"l2_port", "twice memory.l2_lines_per_cycle", every_machine, [](Config& c) { c.memory.l2_lines_per_cycle *= 2; }},
-    {"l1_size", "twice memory.l1_kib", has_own_caches, [](Config& c) { c.memory.l1_kib *= 2; }},
+    {"l1_size", "twice memory.l1_kib", has_own_caches, [](Config& c) { c.memory.l1_kib *= 2; }, 6, true},
     {"l1_port", "twice memory.l1_lines_per_cycle", has_own_caches, [](Config& c) { c.memory.l1_lines_per_cycle *= 2; }},
     {"l1_mshrs", "twice memory.l1_mshrs", [](const Config& c) { return has_own_caches(c) && c.memory.l1_mshrs > 0; },
      [](Config& c) { c.memory.l1_mshrs *= 2; }},
@@ -183,8 +185,8 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   std::vector<WhatIf> all;
   const std::string resolved = resolved_yaml(config);
   const bool valid = may_be_set(resolved, {});  // a test's machine may lack keys that the lifts do not touch
-  const auto add = [&](const char* name, std::string action, const auto& relax) {
-    WhatIf what_if{name, std::move(action), {}, relax, config};
+  const auto add = [&](const char* name, std::string action, const auto& relax, bool keeps_shapes = false) {
+    WhatIf what_if{name, std::move(action), {}, relax, config, keeps_shapes};
     relax(what_if.relaxed);
     what_if.sets = config_differences(config, what_if.relaxed);
     if (what_if.sets.empty() || (valid && !may_be_set(resolved, what_if.sets))) return;
@@ -198,7 +200,7 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
     });
   }
   for (const PartClass& part : kPartClasses)
-    if (part.present(config)) add(part.name, part.action, part.relax);
+    if (part.present(config)) add(part.name, part.action, part.relax, part.keeps_shapes);
   return all;
 }
 

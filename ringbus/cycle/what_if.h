@@ -16,7 +16,8 @@ struct WhatIf {
   std::string action;             ///< the keys that were doubled or halved
   std::vector<std::string> sets;  ///< the same as values of --set
   std::function<void(Config&)> relax;
-  Config relaxed;  ///< the machine with the class relaxed
+  Config relaxed;             ///< the machine with the class relaxed
+  bool keeps_shapes = false;  ///< more room for shapes, which fills long after the machine is full of rays
 };
 /// The what-ifs of the classes that the configured machine with such a scene has: a row for each kind of test unit
 /// (core/types/unit_kind.h), then the table of other parts, which has every other key that costs hardware. Classes

@@ -95,11 +95,13 @@ TEST(CycleLedgers, LedgersAddUp) {
       const cycle::Cycle job = static_cast<cycle::Cycle>(cell.config.shading.cycles_per_shade);
       EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
       jobs += job == 0 ? 0 : shaded / job;
-      // The banks are busy for the tests that the resource counted, rounded up a packet at a time.
+      // The banks are busy for the tests that the resource counted, rounded up a packet at a time; behind a distributor
+      // for the mean of its testers, rounded down.
       const TesterUnits& box = cell.config.testers.units[UnitKind::kBox];
-      EXPECT_GE(
-          tile.units[UnitKind::kBox].busy * static_cast<std::uint64_t>(box.units * cell.config.testers.simd.lanes),
-          out.result.resources[r].tests.box);
+      const auto testers = static_cast<std::uint64_t>(tile.distributor ? cell.config.testers.distributor.testers : 1);
+      EXPECT_GE((tile.units[UnitKind::kBox].busy * testers + testers - 1) *
+                    static_cast<std::uint64_t>(box.units * cell.config.testers.simd.lanes),
+                out.result.resources[r].tests.box);
       transforms += tile.units[UnitKind::kTransform].busy;
     }
     std::uint64_t hops = 0;

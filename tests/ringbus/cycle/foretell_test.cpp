@@ -71,6 +71,23 @@ TEST(Foretell, CheapRaysThatCompleteFirstChangeNothing) {
   EXPECT_GE(gain.high, real);
 }
 
+// Twice the room for shapes: rays take 10 cycles each as before, then ever fewer, down to 4, while it fills.
+TEST(Foretell, AMachineThatWarmsGainsWhatItsLaterHalfSays) {
+  using Each = std::function<double(std::uint64_t)>;
+  const Each ten = [](std::uint64_t) { return 10.0; };
+  for (const double rays_to_fill : {300.0, 600.0, 1200.0}) {
+    const Each warming = [=](std::uint64_t i) { return 4 + 6 * std::exp(-static_cast<double>(i) / rays_to_fill); };
+    const CycleResult base = machine(4000, 0, ten), relaxed = machine(4000, 0, warming);
+    const Foretelling foretelling({&base, 4000}, 100000, 100);
+    const double real = whole_gain(100000, 0, ten, 0, warming);
+    const Estimate without = foretelling.gain({&relaxed, 4000}, 0), gain = foretelling.gain({&relaxed, 4000}, 0, true);
+    EXPECT_LT(std::abs(gain.value - real), std::abs(without.value - real) / 2) << rays_to_fill;
+    EXPECT_LE(gain.low, real) << rays_to_fill;
+    EXPECT_GE(gain.high, real) << rays_to_fill;
+    EXPECT_LT(without.high, real) << rays_to_fill;
+  }
+}
+
 // Blocks that differ at random between the machines: the interval holds the true gain 19 times in 20.
 TEST(Foretell, TheIntervalIsAsWideAsTheNoise) {
   using Each = std::function<double(std::uint64_t)>;
