@@ -8,8 +8,6 @@
 #define CAROUSEL_ACCEL_WATERTIGHT_INL_H_
 #endif
 
-#include <cmath>
-#include <limits>
 #include <type_traits>
 
 #include <hwy/highway.h>
@@ -29,14 +27,6 @@ HWY_INLINE hn::Vec<D> load_floats(D d, const float* p) {
     return hn::Load(d, p);
   else
     return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), p));
-}
-
-/// The nearest float that has the sign of `x`: a triangle that is seen edge-on by a ray with a denormal direction has
-/// edge values below all floats, and rounded to zero they would make hits of misses.
-inline float float_with_sign(double x) {
-  const float rounded = static_cast<float>(x);
-  return rounded == 0 && x != 0 ? std::copysign(std::numeric_limits<float>::denorm_min(), static_cast<float>(x))
-                                : rounded;
 }
 
 /// For the lanes from `i` on: bit l of the result when triangle i + l is crossed by the ray's line (whatever the
@@ -71,9 +61,9 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
       hn::Store(u, d, edge[0]), hn::Store(v, d, edge[1]), hn::Store(w, d, edge[2]);
       for (std::size_t l = 0; l < kLanes; ++l) {
         if (edge[0][l] != 0.0f && edge[1][l] != 0.0f && edge[2][l] != 0.0f) continue;
-        edge[0][l] = float_with_sign(double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]));
-        edge[1][l] = float_with_sign(double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]));
-        edge[2][l] = float_with_sign(double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]));
+        edge[0][l] = static_cast<float>(double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]));
+        edge[1][l] = static_cast<float>(double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]));
+        edge[2][l] = static_cast<float>(double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]));
       }
       u = hn::Load(d, edge[0]), v = hn::Load(d, edge[1]), w = hn::Load(d, edge[2]);
     }
