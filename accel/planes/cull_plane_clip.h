@@ -3,8 +3,7 @@
 //
 // No child may be culled in which the triangle kernel has a hit, rounding included. The watertight kernel's point lies
 // on the ray's line to within its own rounding: the sheared corners (A.x, A.y) are computed, but of those the signs of
-// the edge values are exact, since rounding is monotone and a zero is settled in double (but for edge values below
-// all floats, which become zeros again: docs/soak.md, "Found since, and open"). So weights a >= 0 exist with
+// the edge values are exact, since rounding is monotone and a zero is settled in double. So weights a >= 0 exist with
 // sum a_i (A_i.x, A_i.y) = 0, and the triangle's point p = sum a_i V_i stands beside the line's point at the same
 // depth, t* = (p.z - o.z) / d.z. Each A.x = (V.x - o.x) - (d.x / d.z)(V.z - o.z) is off by at most 2 u |V.x - o.x| +
 // 4 u |V.z - o.z|, for |d.x| <= |d.z|: with g the largest |V - o| along any axis, p is off the line by 6 u g along x

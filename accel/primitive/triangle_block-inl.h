@@ -7,6 +7,7 @@
 #define CAROUSEL_ACCEL_TRIANGLE_BLOCK_INL_H_
 #endif
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
@@ -83,7 +84,8 @@ HWY_INLINE bool update_closest(const Accel& accel, const TriangleBlock& block, c
 
 /// The same for crossings that have been decided in float: those whose box may hold the closest hit compete with
 /// distances and weights computed in double. A hit that the float puts ahead of the ray's start stays a hit, at the
-/// start if need be: the rounding that moved it there has moved the surface that the exact ray meets instead.
+/// start or at the largest float if need be: the rounding that moved it there has moved the surface that the exact ray
+/// meets instead.
 template <class Slab>
 HWY_NOINLINE bool update_closest_precisely(const Accel& accel, const TriangleBlock& block,
                                            const Crossings<float>& crossings, const LocalRay<Slab>& ray, Hit& hit) {
@@ -98,7 +100,8 @@ HWY_NOINLINE bool update_closest_precisely(const Accel& accel, const TriangleBlo
     ++ray.counts->refined;
     Hit found;
     if (!precise.get(l, found)) found = {rounded, crossings.second[l], crossings.third[l], 0, 0};
-    if (found.t < ray.slab.tmin && in_range(rounded, ray, kInfinity)) found.t = ray.slab.tmin;
+    if (HWY_UNLIKELY(!in_range(found.t, ray, kInfinity)) && in_range(rounded, ray, kInfinity))
+      found.t = std::clamp(found.t, ray.slab.tmin, std::numeric_limits<float>::max());
     if (in_range(found.t, ray, hit.t)) changed |= lower(accel, block, l, found, entry, ray, hit);
   }
   return changed;

@@ -61,9 +61,15 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
       hn::Store(u, d, edge[0]), hn::Store(v, d, edge[1]), hn::Store(w, d, edge[2]);
       for (std::size_t l = 0; l < kLanes; ++l) {
         if (edge[0][l] != 0.0f && edge[1][l] != 0.0f && edge[2][l] != 0.0f) continue;
-        edge[0][l] = static_cast<float>(double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]));
-        edge[1][l] = static_cast<float>(double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]));
-        edge[2][l] = static_cast<float>(double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]));
+        const double eu = double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]);
+        const double ev = double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]);
+        const double ew = double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]);
+        // A float may lose the sign again: a triangle that is seen edge-on along a denormal direction would be hit by
+        // a ray that passes it at a distance. So it is decided here; any two other signs say the same.
+        const bool passes = (eu < 0.0 || ev < 0.0 || ew < 0.0) && (eu > 0.0 || ev > 0.0 || ew > 0.0);
+        edge[0][l] = passes ? -1.0f : static_cast<float>(eu);
+        edge[1][l] = passes ? 1.0f : static_cast<float>(ev);
+        edge[2][l] = static_cast<float>(ew);
       }
       u = hn::Load(d, edge[0]), v = hn::Load(d, edge[1]), w = hn::Load(d, edge[2]);
     }

@@ -53,15 +53,22 @@ struct Sheared {
 };
 
 template <class T>
+bool signs_differ(T u, T v, T w) {
+  return (u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0);
+}
+
+template <class T>
 bool watertight_scalar(const Ray& ray, const Corners& p, Crossing& out) {
   Sheared<T> s(ray, p);
   if (std::is_same_v<T, float> && (s.u == 0 || s.v == 0 || s.w == 0)) {
     const auto &x = s.x, &y = s.y;
-    s.u = T(double(x[2]) * y[1] - double(y[2]) * x[1]);
-    s.v = T(double(x[0]) * y[2] - double(y[0]) * x[2]);
-    s.w = T(double(x[1]) * y[0] - double(y[1]) * x[0]);
+    const double u = double(x[2]) * y[1] - double(y[2]) * x[1];
+    const double v = double(x[0]) * y[2] - double(y[0]) * x[2];
+    const double w = double(x[1]) * y[0] - double(y[1]) * x[0];
+    if (signs_differ(u, v, w)) return false;
+    s.u = T(u), s.v = T(v), s.w = T(w);
   }
-  if ((s.u < 0 || s.v < 0 || s.w < 0) && (s.u > 0 || s.v > 0 || s.w > 0)) return false;
+  if (signs_differ(s.u, s.v, s.w)) return false;
   const T det = s.u + (s.v + s.w);
   if (det == 0) return false;
   const T inverse = T{1} / det;
@@ -85,7 +92,7 @@ void refine(const Ray& ray, const Corners& p, Crossing& out) {
     }
     out = {float(t < least ? least : t > most ? most : t), float(weight[1]), float(weight[2])};
   }
-  if (ahead) out.t = std::max(out.t, ray.tmin);
+  if (ahead) out.t = std::clamp(out.t, ray.tmin, std::numeric_limits<float>::max());
 }
 
 // Möller, Trumbore 1997, section 2.

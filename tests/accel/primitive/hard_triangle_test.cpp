@@ -266,5 +266,31 @@ TEST(HardTriangle, TwoSharingAnEdgeSeenEdgeOn) {
   EXPECT_GT(hits, 100u);
 }
 
+// Triangles in a plane, and rays in it but for a denormal: their edge values are below all floats. Where the ray's line
+// passes a triangle at a distance, the watertight level called it hit.
+TEST(HardTriangle, DenormalDirectionsInventNoHits) {
+  Random random(run_seed() + 32);
+  constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+  const auto in_plane = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 3); };
+  std::size_t passes = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 a = in_plane(), b = in_plane(), c = in_plane(), from = 2.0f * in_plane() - Vec3(0, 0, 3);
+    const Vec3 along = in_plane() - from;
+    const Vec3 direction(along.x, along.y,
+                         (random.below(2) ? kLeast : -kLeast) * static_cast<float>(1 + random.below(3)));
+    double least = INFINITY, most = -INFINITY;  // distances of the corners from the line, one side positive
+    for (const Vec3& corner : {a, b, c}) {
+      const DVec3 to(corner - from), d(along);
+      const double beside = (to.x * d.y - to.y * d.x) / std::hypot(d.x, d.y);
+      least = std::min(least, beside), most = std::max(most, beside);
+    }
+    if (least < 1e-3 && most > -1e-3) continue;
+    ++passes;
+    for (const AccuracyConfig& accuracy : safe_levels())
+      ASSERT_FALSE(trace_one(at_level(scene_of(soup({a, b, c})), accuracy), ray_to(from, direction)).valid()) << i;
+  }
+  EXPECT_GT(passes, 2000u);
+}
+
 }  // namespace
 }  // namespace carousel::accel

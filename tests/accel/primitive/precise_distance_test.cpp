@@ -88,7 +88,8 @@ bool float_hits(const Ray& ray, const Corners& p) {
   int kx = (kz + 1) % 3, ky = (kx + 1) % 3;
   if (d[kz] < 0) std::swap(kx, ky);
   const float sx = d[kx] / d[kz], sy = d[ky] / d[kz], sz = 1.0f / d[kz];
-  float x[3], y[3], z[3], e[3];
+  float x[3], y[3], z[3];
+  double e[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 a = p[i] - ray.origin;
     x[i] = a[kx] - sx * a[kz], y[i] = a[ky] - sy * a[kz], z[i] = sz * a[kz];
@@ -96,14 +97,16 @@ bool float_hits(const Ray& ray, const Corners& p) {
   const auto edges = [&]<class T>(T) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 2) % 3, k = (i + 1) % 3;
-      e[i] = static_cast<float>(T{x[j]} * T{y[k]} - T{y[j]} * T{x[k]});
+      e[i] = T{x[j]} * T{y[k]} - T{y[j]} * T{x[k]};
     }
   };
   edges(0.0f);
   if (e[0] == 0 || e[1] == 0 || e[2] == 0) edges(0.0);
-  const float det = e[0] + (e[1] + e[2]), least = std::min({e[0], e[1], e[2]}), most = std::max({e[0], e[1], e[2]});
-  if ((least < 0 && most > 0) || det == 0) return false;
-  const float t = (e[0] * z[0] + (e[1] * z[1] + e[2] * z[2])) * (1.0f / det);
+  if (std::min({e[0], e[1], e[2]}) < 0 && std::max({e[0], e[1], e[2]}) > 0) return false;
+  const auto u = static_cast<float>(e[0]), v = static_cast<float>(e[1]), w = static_cast<float>(e[2]);
+  const float det = u + (v + w);
+  if (det == 0) return false;
+  const float t = (u * z[0] + (v * z[1] + w * z[2])) * (1.0f / det);
   return t >= ray.tmin && t <= std::numeric_limits<float>::max();
 }
 
@@ -126,6 +129,17 @@ TEST(PreciseDistance, NothingThatTheFloatHitsIsLost) {
   }
   EXPECT_GT(hits, 3000u);
   EXPECT_GT(ahead_by_rounding, 10u);  // or it is not seen that the float decides
+}
+
+// In float its distance is one, in double it is beyond all floats.
+TEST(PreciseDistance, AHitAtTheLargestFloatIsNotLost) {
+  const Corners corners = {Vec3{-0x1.b3aaeap-81f, -0x1.e54abp+21f, -0x1.0b4becp+2f},
+                           Vec3{-0x1.8bdc4cp-89f, 0x1.7eb0c4p-10f, -0x1.d626c6p-31f},
+                           Vec3{-0x1.ebb4e2p-46f, -0x1.6bd08p-88f, 0x1.2af81cp-62f}};
+  const Ray ray{.origin = {-0x1.12b848p-56f, 0x1.33138cp-86f, -0x1.7b0eep+33f},
+                .direction = {-0.0f, -0x1.20d608p-108f, 0x1.7b0eep-95f}};
+  ASSERT_TRUE(float_hits(ray, corners));
+  EXPECT_EQ(OneLeaf({&corners, 1}).hit(ray, AccuracyConfig{}).t, std::numeric_limits<float>::max());
 }
 
 }  // namespace
