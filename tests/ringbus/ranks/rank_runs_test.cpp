@@ -29,9 +29,14 @@
 namespace carousel::ringbus {
 namespace {
 
+#ifdef __SANITIZE_THREAD__  // half of the picture: of all suites this one takes longest there
+constexpr std::uint64_t kSamples = 1;
+#else
+constexpr std::uint64_t kSamples = 2;
+#endif
 constexpr const char* kRankMachine =
     "scene: {builtin: cornell}\n"
-    "image: {width: 24, height: 16, samples: 2, max_depth: 3}\n"
+    "image: {width: 24, height: 16, max_depth: 3}\n"
     "engine: {kind: native, threads: 1}\n"
     "topology: {resources: 5, link: {depth: 4}}\n"
     "packets: {rays: 8}\n"
@@ -62,7 +67,8 @@ class RankRuns : public testing::Test {
     RunResult result;
   };
 
-  void load(const std::vector<std::string>& sets) {
+  void load(std::vector<std::string> sets) {
+    sets.push_back(fmt::format("image.samples={}", kSamples));
     config_ = load_config({kRankMachine, "ranks.yaml"}, sets).config;
     scene_ = scene::load_scene(
         config_.scene, {}, [](const std::string&) {}, {}, scene::View{config_.camera, 1.5f});
@@ -89,7 +95,7 @@ class RankRuns : public testing::Test {
     options.stop = stop;
     options.timeline.most = slices_;
     if (transport != nullptr) {
-      share = shading::share_of_paths(24 * 16 * 2, transport->rank(), transport->ranks());
+      share = shading::share_of_paths(24 * 16 * kSamples, transport->rank(), transport->ranks());
       tracer.set_sample(&*share);
     }
     RankWorkload workload(tracer, shaded);
@@ -298,7 +304,7 @@ TEST_F(RankRuns, EndWithTheRankThatFails) {
 }
 
 TEST_F(RankRuns, StopTogether) {
-  load({"image.samples=2"});
+  load({});
   std::stop_source stop;
   const std::vector<Ended> ended =
       over(3,
