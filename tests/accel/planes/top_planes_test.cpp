@@ -157,13 +157,17 @@ TEST(TopPlanes, LoseNoHitOfInstancesAnywhere) {
       }
       EXPECT_EQ(losses.lost, 0u) << placed.name << ", " << enum_name(level) << ", CAROUSEL_SEED=" << run_seed() << ": "
                                  << losses.example;
-      EXPECT_GT(losses.culled, losses.hits / 50) << placed.name << ", " << enum_name(level);
+      // So that no loss means something. Of "anything" the instances may be such that little is culled: 1.3 % of the
+      // hits with CAROUSEL_SEED=723212000, and 14 to 76 % with 11 other seeds.
+      EXPECT_GT(losses.culled, placed.name == "anything" ? 0 : losses.hits / 50)
+          << placed.name << ", " << enum_name(level);
       sum.hits += losses.hits;
       sum.lost += losses.lost;
       sum.culled += losses.culled;
     }
   std::cout << total << " rays, " << sum.hits << " hits, " << sum.culled << " culled, " << sum.lost << " lost\n";
   EXPECT_GT(sum.hits, total / 3);
+  EXPECT_GT(sum.culled, sum.hits / 2);
 }
 
 TEST(TopPlanes, LoseNoHitOfExactTriangles) {
