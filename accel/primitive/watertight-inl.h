@@ -65,7 +65,7 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
         const double ev = double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]);
         const double ew = double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]);
         // A float may lose the sign again: a triangle that is seen edge-on along a denormal direction would be hit by
-        // a ray that passes it at a distance. So it is decided here; any two other signs say the same.
+        // a ray that passes it at a distance. So it is decided here, and a value of each sign says so below.
         const bool passes = (eu < 0.0 || ev < 0.0 || ew < 0.0) && (eu > 0.0 || ev > 0.0 || ew > 0.0);
         edge[0][l] = passes ? -1.0f : static_cast<float>(eu);
         edge[1][l] = passes ? 1.0f : static_cast<float>(ev);
