@@ -131,7 +131,7 @@ TEST(PreciseDistance, NothingThatTheFloatHitsIsLost) {
   EXPECT_GT(ahead_by_rounding, 10u);  // or it is not seen that the float decides
 }
 
-// In float its distance is one, in double it is beyond all floats.
+// The distance is below the largest float as fp32 computes it, and above it as fp64 does.
 TEST(PreciseDistance, AHitAtTheLargestFloatIsNotLost) {
   const Corners corners = {Vec3{-0x1.b3aaeap-81f, -0x1.e54abp+21f, -0x1.0b4becp+2f},
                            Vec3{-0x1.8bdc4cp-89f, 0x1.7eb0c4p-10f, -0x1.d626c6p-31f},
