@@ -68,7 +68,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
   AccessorTable accessors(document, model, unpacked, warn);
   ImportBudget budget(document, bytes.size() + model.bytes_read);
   for (const auto& [view, decoded] : unpacked) budget.earn(decoded.size());
-  std::vector<Mesh> spheres = read_nodes(document, model.model, accessors, budget, default_material, scene);
+  std::vector<Mesh> spheres = read_nodes(document, model.model, accessors, budget, default_material, warn, scene);
   MeshReader meshes(document, model.model, accessors, budget, default_material, warn);
   DracoReader draco(document, accessors, budget);
   read_used_meshes(meshes, draco, model.model, std::move(spheres), scene);

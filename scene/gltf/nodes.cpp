@@ -20,12 +20,13 @@ Vec3 color_of(const std::vector<double>& color) {
 class NodeReader {
  public:
   NodeReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-             ImportBudget& budget, MaterialId default_material, Scene& scene)
+             ImportBudget& budget, MaterialId default_material, const WarningSink& warn, Scene& scene)
       : document_(document),
         model_(model),
         accessors_(accessors),
         budget_(budget),
         default_material_(default_material),
+        warn_(warn),
         scene_(scene) {}
 
   std::vector<Mesh> take_spheres() { return std::move(spheres_); }
@@ -36,10 +37,11 @@ class NodeReader {
       int node;
       DMat4 parent;
       std::size_t parent_entry;
+      bool visible;  ///< as far as the ancestors say
     };
     std::vector<Visit> stack;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-      stack.push_back({*root, DMat4(1), Hierarchy::kWorld});
+      stack.push_back({*root, DMat4(1), Hierarchy::kWorld, true});
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
@@ -47,16 +49,25 @@ class NodeReader {
       const std::string path = json_path("/nodes", static_cast<std::size_t>(visit.node));
       const DMat4 local = node_transform(document_, node, path), world = visit.parent * local;
       const std::size_t entry = hierarchy_.add(visit.parent_entry, local, world, scene_.instances.size());
-      if (const auto mesh = mesh_of(visit.node, node)) add_instances(node, *mesh, world, path);
+      const bool visible = visit.visible && shows_itself(visit.node);
+      if (visible) {
+        if (const auto mesh = mesh_of(visit.node, node)) add_instances(node, *mesh, world, path);
+        add_light(node, world, path);
+      }
       if (node.camera >= 0) add_camera(node, world, path);
-      add_light(node, world, path);
       for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-        stack.push_back({*child, world, entry});
+        stack.push_back({*child, world, entry, visible});
     }
     hierarchy_.write(scene_);
   }
 
  private:
+  /// KHR_node_visibility, which hides meshes and lights, and no cameras.
+  bool shows_itself(int index) const {
+    const Json::json_pointer pointer("/extensions/KHR_node_visibility/visible");
+    return document_.json["nodes"][static_cast<std::size_t>(index)].value(pointer, true);
+  }
+
   std::optional<MeshId> mesh_of(int index, const tinygltf::Node& node) {
     if (node.mesh >= 0) return MeshId(static_cast<std::uint32_t>(node.mesh));
     const Json& json = document_.json["nodes"][static_cast<std::size_t>(index)];
@@ -170,7 +181,16 @@ class NodeReader {
     }
     to.position = rounded(document_, world, path).translation;
     to.range = static_cast<float>(from.range);
-    if (from.type != "point") to.direction = -frame_of(world, path).back;
+    if (from.type != "point") {
+      const auto frame = orthonormal_frame(world);
+      if (!frame) {
+        if (warn_)
+          warn_(document_.file + ": " + path +
+                ": the light is left out, since its node's scale leaves it no direction");
+        return;
+      }
+      to.direction = -frame->back;
+    }
     if (from.type == "directional") to.kind = PunctualLight::Kind::kDirectional;
     if (from.type == "spot") {
       to.kind = PunctualLight::Kind::kSpot;
@@ -185,6 +205,7 @@ class NodeReader {
   const AccessorTable& accessors_;
   ImportBudget& budget_;
   const MaterialId default_material_;
+  const WarningSink& warn_;
   Scene& scene_;
   Hierarchy hierarchy_;
   std::vector<Mesh> spheres_;
@@ -206,8 +227,8 @@ std::vector<int> all_roots(const tinygltf::Model& model) {
 }  // namespace
 
 std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                             ImportBudget& budget, MaterialId default_material, Scene& scene) {
-  NodeReader reader(document, model, accessors, budget, default_material, scene);
+                             ImportBudget& budget, MaterialId default_material, const WarningSink& warn, Scene& scene) {
+  NodeReader reader(document, model, accessors, budget, default_material, warn, scene);
   if (model.scenes.empty()) {
     reader.walk(all_roots(model));
   } else {

@@ -110,10 +110,7 @@ AccessorTable::AccessorTable(const GltfDocument& document, const GltfModel& mode
     views_.push_back(entry != unpacked.end() ? std::span<const unsigned char>(entry->second)
                                              : bytes_of(json["bufferViews"][i], model));
   }
-  if (json.contains("extensionsUsed")) {
-    const Json& used = json["extensionsUsed"];
-    quantized_ = std::ranges::find(used, Json("KHR_mesh_quantization")) != used.end();
-  }
+  quantized_ = lists_extension(document, "extensionsUsed", "KHR_mesh_quantization");
   if (!json.contains("accessors")) return;
   const Json& accessors = json["accessors"];
   const Uses uses = uses_of(json);

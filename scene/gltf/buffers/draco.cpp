@@ -130,6 +130,12 @@ bool copy_indices(const draco::Mesh& from, Component component, Bytes& out) {
 
 }  // namespace
 
+DracoReader::DracoReader(const GltfDocument& document, AccessorTable& accessors, ImportBudget& budget)
+    : document_(document),
+      accessors_(accessors),
+      budget_(budget),
+      required_(lists_extension(document, "extensionsRequired", "KHR_draco_mesh_compression")) {}
+
 void DracoReader::decode(std::size_t mesh, tinygltf::Mesh& model) {
   const Json& primitives = document_.json["meshes"][mesh]["primitives"];
   for (std::size_t p = 0; p < primitives.size(); ++p) {
@@ -172,10 +178,10 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
     if (accessor == primitive["attributes"].end()) document_.fail(at, "the primitive has no such attribute");
     targets.push_back({accessor->get<std::size_t>(), id.get<std::int64_t>(), at, name});
   }
-  // A primitive whose accessors all have data in the file needs no stream.
-  const bool needed = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
-    return sources_.contains(target.accessor) || !accessors_.stored(target.accessor);
-  });
+  // A primitive whose accessors all have data in the file needs no stream, unless the file requires the extension.
+  const bool needed = required_ || std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
+                        return sources_.contains(target.accessor) || !accessors_.stored(target.accessor);
+                      });
   if (!needed) return;
   bool decoded = true;
   for (Target& target : targets) {

@@ -1,10 +1,13 @@
-// EXT_meshopt_compression: the rules of its section "JSON schema updates", the bitstreams by meshoptimizer.
+// EXT_meshopt_compression and KHR_meshopt_compression: the rules of their section "JSON schema updates". The bitstreams
+// are read by meshoptimizer, except version 1 of attributes and the filter of colours, which came after its 0.18.
 #include "scene/gltf/buffers/meshopt.h"
 
 #include <span>
 #include <string>
 
 #include <meshoptimizer.h>
+
+#include "scene/gltf/buffers/meshopt_attributes.h"
 
 namespace carousel::scene {
 
@@ -16,11 +19,13 @@ constexpr std::uint64_t kMostPacking = 64;
 
 class MeshoptView {
  public:
-  MeshoptView(const GltfDocument& document, const Json& view, std::string path)
+  /// `extension` is one of kMeshoptExtensions.
+  MeshoptView(const GltfDocument& document, const Json& view, const std::string& view_path, const char* extension)
       : document_(document),
         view_(view),
-        path_(std::move(path)),
-        extension_(view.at(Json::json_pointer("/extensions/EXT_meshopt_compression"))),
+        path_(json_path(view_path + "/extensions", extension)),
+        extension_(view["extensions"][extension]),
+        may_be_v1_(extension == kMeshoptExtensions[1]),
         length_(view["byteLength"].get<std::uint64_t>()),
         count_(extension_["count"].get<std::uint64_t>()),
         stride_(extension_["byteStride"].get<std::uint64_t>()),
@@ -35,14 +40,17 @@ class MeshoptView {
     }
     Bytes out(static_cast<std::size_t>(length_));
     const auto count = static_cast<std::size_t>(count_), stride = static_cast<std::size_t>(stride_);
+    const bool attributes_v1 = mode_ == "ATTRIBUTES" && may_be_v1_ && is_attributes_v1(packed);
     const int failure =
-        mode_ == "ATTRIBUTES"  ? meshopt_decodeVertexBuffer(out.data(), count, stride, packed.data(), packed.size())
-        : mode_ == "TRIANGLES" ? meshopt_decodeIndexBuffer(out.data(), count, stride, packed.data(), packed.size())
-                               : meshopt_decodeIndexSequence(out.data(), count, stride, packed.data(), packed.size());
+        attributes_v1           ? decode_attributes_v1(out, stride, packed) ? 0 : 1
+        : mode_ == "ATTRIBUTES" ? meshopt_decodeVertexBuffer(out.data(), count, stride, packed.data(), packed.size())
+        : mode_ == "TRIANGLES"  ? meshopt_decodeIndexBuffer(out.data(), count, stride, packed.data(), packed.size())
+                                : meshopt_decodeIndexSequence(out.data(), count, stride, packed.data(), packed.size());
     if (failure != 0) document_.fail(path_, "the compressed data is broken or ends early");
     if (filter_ == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
     if (filter_ == "QUATERNION") meshopt_decodeFilterQuat(out.data(), count, stride);
     if (filter_ == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), count, stride);
+    if (filter_ == "COLOR") decode_filter_color(out, stride);
     return out;
   }
 
@@ -61,7 +69,8 @@ class MeshoptView {
       fail("count", "expected a multiple of 3 in mode TRIANGLES, found " + std::to_string(count_));
     }
     if (filter_ != "NONE" && !attributes) fail("filter", "filters go with mode ATTRIBUTES only");
-    if ((filter_ == "OCTAHEDRAL" && stride_ != 4 && stride_ != 8) || (filter_ == "QUATERNION" && stride_ != 8)) {
+    const bool four_components = filter_ == "OCTAHEDRAL" || filter_ == "COLOR";
+    if ((four_components && stride_ != 4 && stride_ != 8) || (filter_ == "QUATERNION" && stride_ != 8)) {
       fail("filter", "filter " + filter_ + " does not go with a byteStride of " + std::to_string(stride_));
     }
     if (length_ % stride_ != 0 || length_ / stride_ != count_) {  // a product might wrap
@@ -92,6 +101,7 @@ class MeshoptView {
   const Json& view_;
   const std::string path_;
   const Json& extension_;
+  const bool may_be_v1_;
   const std::uint64_t length_, count_, stride_;
   const std::string mode_, filter_;
 };
@@ -103,9 +113,12 @@ std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, 
   if (!document.json.contains("bufferViews")) return out;
   const Json& views = document.json["bufferViews"];
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!views[i].contains(Json::json_pointer("/extensions/EXT_meshopt_compression"))) continue;
-    const std::string path = json_path("/bufferViews", i) + "/extensions/EXT_meshopt_compression";
-    out.emplace(i, MeshoptView(document, views[i], path).decode(model));
+    const std::string path = json_path("/bufferViews", i);
+    for (const char* extension : kMeshoptExtensions) {
+      if (!views[i].contains("extensions") || !views[i]["extensions"].contains(extension)) continue;
+      if (out.contains(i)) document.fail(json_path(path + "/extensions", extension), "the view has both names of it");
+      out.emplace(i, MeshoptView(document, views[i], path, extension).decode(model));
+    }
   }
   return out;
 }

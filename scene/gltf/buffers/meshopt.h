@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 
@@ -9,9 +10,12 @@
 
 namespace carousel::scene {
 
-/// Unpacks EXT_meshopt_compression, filters included: byteLength bytes for each buffer view with the extension, by
-/// index of the view. Throws SceneError for parameters that the extension forbids, for data that ends early or is
-/// broken, and, before anything is allocated, for sizes larger than such data can hold.
+/// The extension by its two names: the ratified one adds a version of the attributes' stream, and a filter of colours.
+inline constexpr std::array<const char*, 2> kMeshoptExtensions{"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+/// Unpacks both meshopt extensions, filters included: byteLength bytes for each buffer view with the extension, by
+/// index of the view. Throws SceneError for a view with both, for parameters that the extension forbids, for data that
+/// ends early or is broken, and, before anything is allocated, for sizes larger than such data can hold.
 std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, const GltfModel& model);
 
 }  // namespace carousel::scene

@@ -1,10 +1,12 @@
 #include "scene/gltf/buffers/model.h"
 
+#include <algorithm>
 #include <exception>
 #include <string>
 #include <utility>
 
 #include "core/system/error.h"
+#include "scene/gltf/buffers/meshopt.h"
 #include "scene/gltf/document/uses.h"
 
 namespace carousel::scene {
@@ -67,10 +69,12 @@ std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buf
   return json.dump();
 }
 
-/// True for a buffer that only readers without EXT_meshopt_compression use.
+/// True for a buffer that only readers without the meshopt extensions use.
 bool is_fallback(const Json& buffer) {
-  const Json::json_pointer pointer("/extensions/EXT_meshopt_compression/fallback");
-  return buffer.contains(pointer) && buffer.at(pointer).get<bool>();
+  return std::ranges::any_of(kMeshoptExtensions, [&](const char* extension) {
+    const Json::json_pointer pointer(std::string("/extensions/") + extension + "/fallback");
+    return buffer.contains(pointer) && buffer.at(pointer).get<bool>();
+  });
 }
 
 /// Checks that every image that is used and lies in a buffer view has its bytes there, before tinygltf reads them.

@@ -154,6 +154,11 @@ void GltfDocument::fail(const std::string& path, const std::string& message) con
   throw SceneError(file, path, message);
 }
 
+bool lists_extension(const GltfDocument& document, const char* list, const char* extension) {
+  const auto entry = document.json.find(list);
+  return entry != document.json.end() && std::ranges::find(*entry, Json(extension)) != entry->end();
+}
+
 void ImportBudget::spend(std::uint64_t elements, const std::string& path) {
   if (elements > left_) {
     document_.fail(path,

@@ -26,6 +26,9 @@ struct GltfDocument {
   [[noreturn]] void fail(const std::string& path, const std::string& message) const;
 };
 
+/// True if the list, "extensionsUsed" or "extensionsRequired", names the extension.
+bool lists_extension(const GltfDocument& document, const char* list, const char* extension);
+
 /// Splits a .glb into its chunks or takes the bytes as JSON text, and parses that. Nesting is bounded before
 /// any parser runs, because tinygltf recurses on what it reads. `bytes` must outlive the result. Throws
 /// SceneError for a broken container, broken JSON, nesting beyond 128 levels or another glTF version.

@@ -62,17 +62,20 @@ const Schema kAsset{text("version", true), text("generator")};
 
 // Buffers, buffer views, accessors.
 const Schema kMeshoptBuffer{flag("fallback")};
-const Schema kBufferExtensions{object("EXT_meshopt_compression", kMeshoptBuffer)};
+const Schema kBufferExtensions{object("EXT_meshopt_compression", kMeshoptBuffer),
+                               object("KHR_meshopt_compression", kMeshoptBuffer)};
 const Schema kBuffer{text("name"), text("uri"), integer("byteLength", 1, kMostBytes, true),
                      object("extensions", kBufferExtensions)};
-const Schema kMeshoptView{index("buffer", "/buffers", true),
-                          integer("byteOffset", 0, kMostBytes),
-                          integer("byteLength", 1, kMostBytes, true),
-                          integer("byteStride", 1, 256, true),
-                          integer("count", 1, kMostBytes, true),
-                          name_of("mode", {"ATTRIBUTES", "TRIANGLES", "INDICES"}, true),
-                          name_of("filter", {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})};
-const Schema kViewExtensions{object("EXT_meshopt_compression", kMeshoptView)};
+Schema meshopt_view(std::vector<std::string> filters) {
+  return {index("buffer", "/buffers", true),          integer("byteOffset", 0, kMostBytes),
+          integer("byteLength", 1, kMostBytes, true), integer("byteStride", 1, 256, true),
+          integer("count", 1, kMostBytes, true),      name_of("mode", {"ATTRIBUTES", "TRIANGLES", "INDICES"}, true),
+          name_of("filter", std::move(filters))};
+}
+const Schema kExtMeshoptView = meshopt_view({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"});
+const Schema kKhrMeshoptView = meshopt_view({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"});
+const Schema kViewExtensions{object("EXT_meshopt_compression", kExtMeshoptView),
+                             object("KHR_meshopt_compression", kKhrMeshoptView)};
 const Schema kBufferView{index("buffer", "/buffers", true), integer("byteOffset", 0, kMostBytes),
                          integer("byteLength", 1, kMostBytes, true), integer("byteStride", 4, 252),
                          object("extensions", kViewExtensions)};
@@ -177,8 +180,10 @@ const Schema kRootExtensions{object("KHR_lights_punctual", kLights)};
 // Nodes and scenes.
 const Schema kNodeLight{index("light", "/extensions/KHR_lights_punctual/lights", true)};
 const Schema kNodeInstancing{index_map("attributes", "/accessors")};
+const Schema kNodeVisibility{flag("visible")};
 const Schema kNodeExtensions{object("KHR_lights_punctual", kNodeLight),
-                             object("EXT_mesh_gpu_instancing", kNodeInstancing)};
+                             object("EXT_mesh_gpu_instancing", kNodeInstancing),
+                             object("KHR_node_visibility", kNodeVisibility)};
 const Schema kSphere{number("radius", 1e-20, 1e18, true), index("material", "/materials")};
 const Schema kNodeExtras{object("carousel_sphere", kSphere)};
 const Schema kNode{text("name"),
