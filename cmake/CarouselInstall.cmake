@@ -28,6 +28,9 @@ install(CODE "
   carousel_writes(schema.json schema config)
   execute_process(COMMAND gzip -9nc \"${CMAKE_CURRENT_SOURCE_DIR}/CHANGELOG.md\" OUTPUT_FILE \"${written}/changelog.gz\"
                   COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR} -DPROGRAM=\${carousel_program} -DOUT=${written}
+                          -DVERSION=${PROJECT_VERSION} -DCOMMIT=${CAROUSEL_COMMIT} -DPAGES=${CAROUSEL_PAGES_HAVE_CHARTS}
+                          -P \"${CMAKE_CURRENT_SOURCE_DIR}/cmake/notices.cmake\" COMMAND_ERROR_IS_FATAL ANY)
   # Debian's zsh and Python look elsewhere below /usr than below /usr/local.
   if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
     set(carousel_zsh share/zsh/vendor-completions)
@@ -43,7 +46,7 @@ install(FILES ${written}/schema.json DESTINATION ${data}/configs ${program})
 install(DIRECTORY configs/ DESTINATION ${data}/configs ${program} PATTERN schema.json EXCLUDE)
 install(DIRECTORY python/carousel DESTINATION "\${carousel_python}" ${program} PATTERN __pycache__ EXCLUDE)
 install(FILES ${written}/changelog.gz README.md DESTINATION ${docs} ${program})
-install(FILES cmake/copyright DESTINATION ${docs} ${program})
+install(FILES cmake/copyright ${written}/NOTICES.gz ${written}/carousel.spdx.json DESTINATION ${docs} ${program})
 install(DIRECTORY docs/ DESTINATION ${docs} ${program})
 install(DIRECTORY python/examples/ DESTINATION ${docs}/examples/python ${program} PATTERN .ipynb_checkpoints EXCLUDE)
 

@@ -39,6 +39,15 @@ if(CAROUSEL_SANITIZE)
   endif()
 endif()
 
+# What users run reads files of strangers: checked copies (_FORTIFY_SOURCE), a guarded stack, and tables of addresses that are
+# read-only once the program has begun. docs/performance.md says what that costs. Sanitizers bring checks of their own.
+option(CAROUSEL_HARDEN "Build releases with checked copies, a guarded stack and read-only tables of addresses" ON)
+if(CAROUSEL_HARDEN AND CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CAROUSEL_SANITIZE)
+  target_compile_options(carousel_options INTERFACE
+                         "$<BUILD_INTERFACE:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3;-fstack-protector-strong>")
+  target_link_options(carousel_options INTERFACE "$<BUILD_INTERFACE:LINKER:-z,relro,-z,now>")
+endif()
+
 find_package(Threads REQUIRED)
 target_link_libraries(carousel_options INTERFACE Threads::Threads)
 

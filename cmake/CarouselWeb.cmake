@@ -7,6 +7,7 @@ find_program(NODE_PROGRAM node)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/web/package-lock.json)
 if(NODE_PROGRAM AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/web/node_modules/esbuild
    AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/web/node_modules/echarts)
+  set(CAROUSEL_PAGES_HAVE_CHARTS ON)
   set(page_js ${CMAKE_CURRENT_BINARY_DIR}/web/page.js)
   file(GLOB_RECURSE page_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/web/src/*.js)
   add_custom_command(OUTPUT ${page_js}
@@ -17,6 +18,7 @@ if(NODE_PROGRAM AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/web/node_modules/esbuild
   list(APPEND page_definitions "CAROUSEL_PAGE_JS=\"${page_js}\"")
   list(APPEND page_inputs ${page_js})
 else()
+  set(CAROUSEL_PAGES_HAVE_CHARTS OFF)
   message(STATUS "HTML pages will have no charts: node or web/node_modules is missing; script/bootstrap installs both")
 endif()
 # By itself, so that only this file depends on the bundle.

@@ -4,6 +4,7 @@ CAROUSEL_BUILD names the build folder. Nothing of the project is compiled here b
 """
 
 import gzip
+import json
 import os
 import re
 import subprocess
@@ -46,6 +47,34 @@ class Install(unittest.TestCase):
             self.assertGreater(self.one(pattern).stat().st_size, 0, pattern)
         self.assertEqual(list(self.prefix.glob("**/*.cpp")),
                          list(self.prefix.glob("share/doc/carousel-dev/examples/*.cpp")))
+
+    def test_notices_hold_every_library_that_is_compiled_in(self):
+        notices = gzip.decompress(self.one("share/doc/carousel/NOTICES.gz").read_bytes()).decode()
+        wanted = re.search(r"release=\(([^)]*)\)", (SOURCE / "script/bootstrap").read_text())[1]
+        wanted = [name for name in wanted.split() if name.endswith("-dev")]
+        self.assertGreater(len(wanted), 15)
+        for name in wanted:
+            self.assertIn(f"======== {name} ", notices)
+        for words in ("G-Truc Creation", "Niels Lohmann", "Henry Schreiner", "Cameron Desrochers", "zrender"):
+            self.assertIn(words, notices)
+
+    def test_the_bill_of_materials_names_what_the_program_loads(self):
+        bill = json.loads(self.one("share/doc/carousel/carousel.spdx.json").read_text())
+        self.assertEqual(bill["spdxVersion"], "SPDX-2.3")
+        versions = {package["name"]: package["versionInfo"] for package in bill["packages"]}
+        identities = {package["SPDXID"] for package in bill["packages"]}
+        self.assertEqual(len(identities), len(bill["packages"]))
+        for relation in bill["relationships"]:
+            self.assertIn(relation["relatedSpdxElement"], identities)
+        loaded = re.findall(r"=> (/\S+)", run("ldd", self.program))
+        self.assertGreater(len(loaded), 15)
+        for library in loaded:
+            # Where /lib is a link to /usr/lib, packages may list either name.
+            owner = subprocess.run(["dpkg-query", "-S", library, "/usr" + library], capture_output=True, text=True,
+                                   check=False).stdout.split(":")[0]
+            self.assertEqual(versions[owner], run("dpkg-query", "-W", "-f", "${Version}", owner))
+        for name in ("libglm-dev", "nlohmann-json3-dev", "echarts"):
+            self.assertIn(name, versions)
 
     def test_one_version_everywhere(self):
         version = re.search(r'^version = "(.*)"', (SOURCE / "python/pyproject.toml").read_text(), re.M)[1]
