@@ -10,9 +10,10 @@ PRESETS = {
     "hbm2_2": dict(period=1000, pseudo=2, columns=32, cl=14, cwl=5, rcd=(14, 12), rp=14, ras=34, rc=48, rrd=(4, 4),
                    faw=15, rtp=5, wr=16, wtr=(6, 8), rtw=13, refi=3900, rfc=160, act=2, buses=2),
     "lpddr5_6400": dict(period=1250, pseudo=1, columns=64, cl=17, cwl=9, rcd=(15, 15), rp=15, ras=34, rc=49, rrd=(4, 4),
-                        faw=16, rtp=8, wr=28, wtr=(5, 10), rtw=12, refi=3125, rfc=168, act=2, buses=1),
+                        faw=16, rtp=8, wr=28, wtr=(5, 12), rtw=12, refi=3125, rfc=168, act=1, buses=1),
 }
 BL, CCD, GROUPS, BANKS = 2, (2, 4), 4, 4  # of all three
+PPD, AAD, CLOCK_POST = 2, 8, 1  # of LPDDR5
 
 
 class Request:
@@ -60,6 +61,10 @@ class Channel:
 
     def step(self, now):
         """The request that is served in this cycle, with the end of its data."""
+        self.begin(now)
+        return self.command(now)
+
+    def begin(self, now):
         if now >= self.due and self.refresh is None:
             self.refresh = "close"
             self.due += self.t["refi"]
@@ -72,6 +77,8 @@ class Channel:
             self.writing = writes > (self.places // 4 if reads else 0)
         else:
             self.writing = writes >= self.places - self.places // 4 or (reads == 0 and writes > 0)
+
+    def command(self, now):
         queue = self.queues[self.writing]
         served = row = None
         ready = [request for request in self.active if self.may_move(request, now)]
@@ -137,11 +144,14 @@ class Channel:
         bank.promised += 1
         self.active.append(request)
 
+    def all_closable(self, opened):
+        return max([self.bus["row"]] + [bank.precharge for bank in opened])
+
     def do_refresh(self, now):
         if self.refresh == "close":
             opened = [bank for bank in self.banks if bank.row is not None]
             if opened:
-                if now < max([self.bus["row"]] + [bank.precharge for bank in opened]):
+                if now < self.all_closable(opened):
                     return
                 for bank in opened:
                     bank.row, bank.activate = None, max(bank.activate, now + self.t["rp"])
@@ -153,6 +163,94 @@ class Channel:
             bank.activate = now + self.t["rfc"]
         self.take_bus("row", now + 1)
         self.refresh = None
+
+
+class Lpddr5Channel(Channel):
+    """An activate is two commands, and the data clock is started before data."""
+
+    def __init__(self, t, places):
+        super().__init__(t, places)
+        self.precharge = 0                     # the earliest of any bank
+        self.half, self.latest = None, 0       # the request whose row is half activated; the last cycle for the other half
+        self.started, self.clock_stops = None, 0
+
+    def busy(self):
+        return super().busy() or self.half is not None or self.started is not None
+
+    def may_change_row(self, request, now):
+        if self.half is not None and (self.banks[request.bank].row is None or request.bank == self.half.bank):
+            return False
+        return super().may_change_row(request, now) and (self.banks[request.bank].row is None or now >= self.precharge)
+
+    def all_closable(self, opened):
+        return max(super().all_closable(opened), self.precharge)
+
+    def candidate(self, now):
+        """The request that goes first, and the list in which it stands."""
+        for request in self.active:
+            if self.may_move(request, now):
+                return request, self.active
+        queue = self.queues[self.writing]
+        if self.refresh is None:
+            for request in queue:
+                hit = self.banks[request.bank].row == request.row
+                if self.may_move(request, now) if hit else self.may_change_row(request, now):
+                    return request, queue
+        return None, queue
+
+    def command(self, now):
+        if self.started is not None:
+            (request, place), self.started = self.started, None
+            return self.serve(request, place, now)
+        request, place = self.candidate(now)
+        moves = request is not None and self.banks[request.bank].row == request.row
+        stopped = moves and now >= self.clock_stops
+        if self.half is not None and (request is None or now + stopped >= self.latest):
+            self.open_half(now)
+        elif stopped:
+            self.started = request, place
+            self.take_bus("column", now + 1)
+        elif moves:
+            return self.serve(request, place, now)
+        elif request is not None:
+            self.change(request, place, now)
+        if self.refresh is not None and not self.active and self.half is None:
+            self.close_and_refresh(now)
+        return None
+
+    def serve(self, request, place, now):
+        place.remove(request)
+        if place is self.active:
+            self.banks[request.bank].promised -= 1
+        done = self.move(request, now)
+        self.clock_stops = max(self.clock_stops, done + CLOCK_POST)
+        return request, done
+
+    def change(self, request, place, now):
+        if self.banks[request.bank].row is not None:
+            self.precharge = now + PPD
+            self.change_row(request, place, now)
+            return
+        self.change_row(request, place, now)
+        self.active.remove(request)
+        self.banks[request.bank].row = None
+        self.half, self.latest = request, now + AAD
+
+    def open_half(self, now):
+        self.banks[self.half.bank].row = self.half.row
+        self.active.append(self.half)
+        self.half = None
+        self.take_bus("row", now + 1)
+
+    def close_and_refresh(self, now):
+        before = [bank.row for bank in self.banks]
+        self.do_refresh(now)
+        if before != [bank.row for bank in self.banks]:
+            self.precharge = now + PPD
+
+
+def channel_of(preset, times, places):
+    return (Lpddr5Channel if preset == "lpddr5_6400" else Channel)(times, places)
 
 
 class BankedMemory:
@@ -170,7 +268,7 @@ class BankedMemory:
             t["refi"] = NEVER
         self.t, self.caches, self.line, self.d = t, caches, piece_of(config), d
         self.back = way_back(m["dram_latency_cycles"])
-        self.channels = [Channel(t, d["queue"]) for _ in range(d["channels"])]
+        self.channels = [channel_of(d["preset"], t, d["queue"]) for _ in range(d["channels"])]
         self.per_million = t["period"] * config["engine"]["clock_mhz"]  # engine cycles of a million DRAM cycles
         self.tick = 0
 

@@ -1,6 +1,7 @@
 #include "ringbus/cycle/memory/dram/dram_channel.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace carousel::ringbus::cycle {
 
@@ -87,15 +88,19 @@ DramChannel::Issued DramChannel::step() {
       row = row_.at <= now;
     }
   }
+  const std::optional<Plan> started = std::exchange(behind_clock_, std::nullopt);
+  if (started) column = true, row = false;
+  const bool further = !started && further_command(column, row, now);
+  if (further) column = row = false;
   Issued issued;
-  if (column) issued = issue_column(column_, now);
+  if (column) issued = issue_column(started ? *started : column_, now);
   if (row) issue_row(row_, now);
   DramCycle wake = refresh_due_;
-  if (refresh_ != Refresh::kNone && active_.empty()) {
+  if (refresh_ != Refresh::kNone && active_.empty() && !half_) {
     refresh(now, wake);
     changed = refresh_ == Refresh::kNone;
   }
-  if (changed)
+  if (changed || further || started)
     plan(now + 1);
   else if (column || row)
     plan_behind(now + 1, column, row);
@@ -103,9 +108,26 @@ DramChannel::Issued DramChannel::step() {
   for (const bool write : {false, true})
     if (!arrivals_[write].empty() && queues_[write].size() < places_)
       wake = std::min(wake, arrivals_[write].front().at);
-  next_ = std::max(wake, now + 1);
+  next_ = half_ || behind_clock_ ? now + 1 : std::max(wake, now + 1);
   now_ = now + 1;
   return issued;
+}
+
+/// The second of two activate commands, or that which starts the data clock, if one of them goes before what was
+/// chosen.
+bool DramChannel::further_command(bool column, bool row, DramCycle now) {
+  const bool stopped = column && timing_.clock_post > 0 && now >= clock_stops_;
+  const DramCycle needed = stopped ? now + 1 : now;  // the cycle that the chosen command takes last
+  if (half_ && (needed >= half_->latest || (!column && !row))) {
+    open_for(half_->entry);
+    half_.reset();
+    use_row_bus(now + 1);
+    return true;
+  }
+  if (!stopped) return false;
+  behind_clock_ = column_;
+  use_column_bus(now + 1);
+  return true;
 }
 
 void DramChannel::set_row(std::uint32_t bank, std::uint64_t row) {
@@ -123,7 +145,7 @@ void DramChannel::set_row(std::uint32_t bank, std::uint64_t row) {
 /// Closes all rows with one command as soon as all may be closed, and refreshes when all banks could be activated.
 void DramChannel::refresh(DramCycle now, DramCycle& wake) {
   if (refresh_ == Refresh::kClose) {
-    DramCycle at = row_bus_;
+    DramCycle at = std::max(row_bus_, precharge_);
     bool open = false;
     for (const Bank& bank : banks_) {
       if (bank.row == kClosed) continue;
@@ -142,6 +164,7 @@ void DramChannel::refresh(DramCycle now, DramCycle& wake) {
         bank.activate = std::max(bank.activate, now + timing_.rp);
       }
       use_row_bus(now + 1);
+      precharge_ = now + timing_.ppd;
     }
     refresh_ = Refresh::kRefresh;
   }
@@ -164,7 +187,7 @@ DramChannel::Issued DramChannel::issue_column(const Plan& column, DramCycle now)
     active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(column.index));
     activated_ &= ~(std::uint64_t{1} << column.bank);
   } else {
-    entry = queues_[planned_writes_].take(column.index, bank.row);
+    entry = queues_[column.write].take(column.index, bank.row);
   }
   Group& group = groups_[bank.group];
   Pseudo& pseudo = pseudos_[bank.pseudo];
@@ -182,6 +205,7 @@ DramChannel::Issued DramChannel::issue_column(const Plan& column, DramCycle now)
     not_before(pseudo.column[1], now + timing_.read_to_write);
   }
   use_column_bus(now + 1);
+  clock_stops_ = std::max(clock_stops_, done + timing_.clock_post);
   if (!entry.counted) ++counts_.row_hits;
   ++(write ? counts_.writes : counts_.reads);
   if (!write) latencies_.add(static_cast<std::uint64_t>(done - entry.taken));
@@ -200,15 +224,14 @@ void DramChannel::issue_row(const Plan& row, DramCycle now) {
     set_row(row.bank, kClosed);
     bank.activate = std::max(bank.activate, now + timing_.rp);
     use_row_bus(now + 1);
+    precharge_ = now + timing_.ppd;
     return;
   }
   if (!waiting.counted) ++counts_.row_misses;
   waiting.counted = true;
-  active_.push_back(queue.take(row.index, kClosed));
-  const Entry& entry = active_.back();
+  const Entry entry = queue.take(row.index, kClosed);
   Group& group = groups_[bank.group];
   Pseudo& pseudo = pseudos_[bank.pseudo];
-  set_row(row.bank, entry.request.row);
   bank.column = {now + timing_.rcd_read, now + timing_.rcd_write};
   bank.precharge = now + timing_.ras;
   bank.activate = now + timing_.rc;
@@ -218,6 +241,16 @@ void DramChannel::issue_row(const Plan& row, DramCycle now) {
   pseudo.last[pseudo.turn] = now + timing_.faw;
   pseudo.turn = (pseudo.turn + 1) % 4;
   use_row_bus(now + timing_.activate_cycles);
+  if (timing_.aad > 0)
+    half_ = {entry, now + timing_.aad};
+  else
+    open_for(entry);
+}
+
+/// The request has activated its row.
+void DramChannel::open_for(const Entry& entry) {
+  active_.push_back(entry);
+  set_row(entry.request.bank, entry.request.row);
 }
 
 }  // namespace carousel::ringbus::cycle

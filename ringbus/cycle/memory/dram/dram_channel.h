@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "core/numeric/latency_histogram.h"
@@ -24,6 +25,11 @@ namespace carousel::ringbus::cycle {
 ///    issued; a row is not precharged in the cycle in which a request of it is served.
 /// 3. A refresh that is due: no request is begun, all rows are closed at once as soon as those that have been activated
 ///    are served, and then nothing is activated for rfc cycles.
+///
+/// LPDDR5 has two further commands. Its activate is two commands (DramTiming::aad): the first begins all times, the
+/// second opens the row. The second is issued in the first cycle in which nothing else can be, or at the latest that is
+/// allowed; until then no other activate is issued, and no row of its bank is closed. And its data clock stops
+/// (DramTiming::clock_post): a read or a write then waits for a command that starts it, and follows directly behind.
 ///
 /// Reads are served until no read is left or three quarters of the writes' places are taken, and then writes until a
 /// quarter is taken, if reads wait, or none.
@@ -84,8 +90,14 @@ class DramChannel {
     std::uint64_t order = 0;
     std::uint32_t index = 0, bank = 0;  // of the request, which has a place
     bool active = false;                // it has none: `index` is that in active_
+    bool write = false;                 // the kind of the request, if it has a place
   };
   using Entry = DramQueue::Entry;
+  /// A request whose row has had the first of two activate commands.
+  struct HalfActive {
+    Entry entry;
+    DramCycle latest = 0;  // of the second
+  };
   enum class Refresh { kNone, kClose, kRefresh };
 
   /// What took a place, if anything did.
@@ -104,8 +116,10 @@ class DramChannel {
   void first_row(std::uint64_t banks, DramCycle from, Plan& row) const;
   void set_row(std::uint32_t bank, std::uint64_t row);
   void refresh(DramCycle now, DramCycle& wake);
+  bool further_command(bool column, bool row, DramCycle now);
   Issued issue_column(const Plan& column, DramCycle now);
   void issue_row(const Plan& row, DramCycle now);
+  void open_for(const Entry& entry);
   void use_row_bus(DramCycle until);
   void use_column_bus(DramCycle until);
 
@@ -119,7 +133,11 @@ class DramChannel {
   std::vector<Bank> banks_;
   std::vector<Group> groups_;
   std::vector<Pseudo> pseudos_;
+  std::optional<HalfActive> half_;
+  std::optional<Plan> behind_clock_;        // is issued in the next cycle: the data clock has been started for it
+  DramCycle clock_stops_ = 0;               // of the data
   DramCycle row_bus_ = 0, column_bus_ = 0;  // free from
+  DramCycle precharge_ = 0;                 // the earliest of any bank
   DramCycle refresh_due_;
   Refresh refresh_ = Refresh::kNone;
   bool writing_ = false;

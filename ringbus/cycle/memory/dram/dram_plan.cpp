@@ -63,18 +63,21 @@ void DramChannel::plan_behind(DramCycle from, bool column, bool row) {
 void DramChannel::consider_active(std::uint32_t index, DramCycle from) {
   const DramRequest& request = active_[index].request;
   const DramCycle at = std::max(from, column_time(request.bank, request.write));
-  if (at < column_.at || (at == column_.at && !column_.active)) column_ = {at, 0, index, request.bank, true};
+  if (at < column_.at || (at == column_.at && !column_.active))
+    column_ = {at, 0, index, request.bank, true, request.write};
 }
 
 void DramChannel::consider_column(std::uint32_t bank, DramCycle from) {
   const DramQueue::Line& line = queues_[planned_writes_].line(bank);
   const DramCycle at = std::max(from, column_time(bank, planned_writes_));
   if (at < column_.at || (at == column_.at && !column_.active && line.hit_order < column_.order))
-    column_ = {at, line.hit_order, line.hit, bank, false};
+    column_ = {at, line.hit_order, line.hit, bank, false, planned_writes_};
 }
 
-/// The first row command of these banks, each of which has a request of a row that is not open. What is compared is one
-/// number: the cycle, then the order of taking, then the bank. So there is no branch that a processor cannot foresee.
+/// The first row command of these banks, each of which has a request of a row that is not open. There is none if all of
+/// them need an activate while the second command of another is awaited.
+/// What is compared is one number: the cycle, then the order of taking, then the bank. So there is no branch that a
+/// processor cannot foresee.
 /// The times are those of commands and a refresh, far below 2^26 cycles from now; and no request waits for 2^31 others,
 /// since the oldest goes first as soon as it can.
 void DramChannel::first_row(std::uint64_t banks, DramCycle from, Plan& row) const {
@@ -89,15 +92,16 @@ void DramChannel::first_row(std::uint64_t banks, DramCycle from, Plan& row) cons
     first = std::min(first, static_cast<std::uint64_t>(at - from) << (kOrderBits + kBankBits) |
                                 (order & 0xffffffffu) << kBankBits | bank);
   };
-  const DramCycle precharge = std::max(from, row_bus_);
+  const DramCycle precharge = std::max({from, row_bus_, precharge_});
   for (std::uint64_t left = banks & open_; left != 0; left &= left - 1) {
     const auto bank = static_cast<std::uint32_t>(std::countr_zero(left));
     compare(bank, std::max(precharge, banks_[bank].precharge));
   }
-  for (std::uint64_t left = banks & ~open_; left != 0; left &= left - 1) {
+  for (std::uint64_t left = half_ ? 0 : banks & ~open_; left != 0; left &= left - 1) {
     const auto bank = static_cast<std::uint32_t>(std::countr_zero(left));
     compare(bank, std::max({from, banks_[bank].activate, groups_[banks_[bank].group].gate}));
   }
+  if (first == ~std::uint64_t{0}) return;
   const auto bank = static_cast<std::uint32_t>(first & kBankMask);
   const DramQueue::Line& line = queue.line(bank);
   row.at = from + static_cast<DramCycle>(first >> (kOrderBits + kBankBits));

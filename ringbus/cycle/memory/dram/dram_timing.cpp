@@ -65,7 +65,8 @@ constexpr DramTiming kHbm2{.period_ps = 1000,
                            .activate_cycles = 2,
                            .two_buses = true};
 
-// A channel of 16 bits at 6.4 Gb/s a pin, the command clock an eighth of it: 12.8 GB/s. Its refresh is that of 8 Gb.
+// A channel of 16 bits at 6.4 Gb/s a pin, the command clock an eighth of it: 12.8 GB/s. Its refresh is that of 8 Gb. A
+// burst takes four cycles of its group, two more than of the data bus, and nWTR long begins behind these.
 constexpr DramTiming kLpddr5{.period_ps = 1250,
                              .groups = 4,
                              .banks = 4,
@@ -86,11 +87,13 @@ constexpr DramTiming kLpddr5{.period_ps = 1250,
                              .rtp = 8,
                              .wr = 28,
                              .wtr_short = 5,
-                             .wtr_long = 10,
+                             .wtr_long = 10 + 2,
                              .read_to_write = 17 + 2 + 2 - 9,
                              .refi = 3125,
                              .rfc = 168,
-                             .activate_cycles = 2};
+                             .ppd = 2,
+                             .aad = 8,
+                             .clock_post = 1};
 
 const DramTiming& preset(DramConfig::Preset preset) {
   switch (preset) {

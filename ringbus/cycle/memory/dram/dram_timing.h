@@ -26,8 +26,13 @@ struct DramTiming {
   DramCycle wtr_short = 0, wtr_long = 0;  ///< a write's last data to a read
   DramCycle read_to_write = 0;            ///< read to write of a pseudo-channel
   DramCycle refi = 0, rfc = 0;            ///< refresh to refresh, and the time of one
+  DramCycle ppd = 1;                      ///< precharge to precharge
   DramCycle activate_cycles = 1;          ///< of the command bus, taken by an activate
   bool two_buses = false;                 ///< rows and columns have a command bus each
+  /// An activate is two commands, the second at most so long behind the first. 0 if it is one command.
+  DramCycle aad = 0;
+  /// The data clock runs for so long behind data, and takes a command to start again. 0 if it always runs.
+  DramCycle clock_post = 0;
 
   std::uint32_t all_banks() const { return pseudo_channels * groups * banks; }
   std::uint32_t columns() const { return row_bytes / kTransactionBytes; }

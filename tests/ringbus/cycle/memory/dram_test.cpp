@@ -1,12 +1,8 @@
-// DRAM with banks by itself, against closed forms and against rows that Ramulator 2.1 gave. DRAM and engine have the
-// same clock here, so that cycles are DRAM cycles.
-#include <algorithm>
+// DRAM with banks by itself, against closed forms. DRAM and engine have the same clock here, so that cycles are DRAM
+// cycles.
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/config/load/load.h"
@@ -17,18 +13,6 @@
 namespace carousel::ringbus {
 namespace {
 
-Config dram_config(const std::string& preset, const std::string& more = "") {
-  return load_config({"engine: {kind: cycle, clock_mhz: 1000}\nworkload: {memory_trace: a.csv}\n"
-                      "memory: {dram: {preset: " +
-                          preset + ", channels: 1, period_ps: 1000, mapping: row_bank_group_column" + more + "}}\n",
-                      "dram.yaml"})
-      .config;
-}
-
-MemoryTraceResult run(const std::string& preset, const std::string& more, const MemoryLog& requests) {
-  return run_memory_trace(dram_config(preset, more), requests);
-}
-
 struct Standard {
   std::string name, preset;
   ChannelShape shape;
@@ -36,11 +20,12 @@ struct Standard {
   double random_interval = 0;
   std::uint64_t rcd = 0, cl = 0, bl = 2, rp = 0;
   double refresh_loss = 0;
+  std::uint64_t clock = 0;  ///< cycles to start the data clock, which stops in quiet times
 };
 const Standard kStandards[] = {
     {"GDDR6", "gddr6_14", kGddr6Shape, 2, 11, 30, 24, 2, 30, (4.0 + 30 + 211 + 30) / 3333},
     {"HBM2", "hbm2_2", kHbm2Shape, 1, 3, 14, 14, 2, 14, (5.0 + 14 + 160 + 14) / 3900},
-    {"LPDDR5", "lpddr5_6400", kLpddr5Shape, 2, 4, 15, 17, 2, 15, (8.0 + 15 + 168 + 15) / 3125},
+    {"LPDDR5", "lpddr5_6400", kLpddr5Shape, 2, 4, 15, 17, 2, 15, (8.0 + 15 + 168 + 15 + 1) / 3125, 1},
 };
 
 constexpr const char* kNoRefresh = ", refresh: false";
@@ -55,7 +40,7 @@ TEST(Dram, AnIsolatedReadTakesTheSumOfItsCommands) {
       MemoryLog requests;
       if (before) requests.push_back({0, 0, 32, false});
       requests.push_back({1000, address, 32, false});
-      EXPECT_EQ(run(s.preset, kNoRefresh, requests).cycles, 1000 + expected) << s.name << " " << address;
+      EXPECT_EQ(run_dram(s.preset, kNoRefresh, requests).cycles, 1000 + expected + s.clock) << s.name << " " << address;
     }
   }
 }
@@ -63,7 +48,7 @@ TEST(Dram, AnIsolatedReadTakesTheSumOfItsCommands) {
 TEST(Dram, ReachesItsPeak) {
   for (const Standard& s : kStandards) {
     const MemoryTraceResult out =
-        run(s.preset, std::string(kNoRefresh) + ", queue: 128", pattern_of("sequential", s.shape, 20'000, 1));
+        run_dram(s.preset, std::string(kNoRefresh) + ", queue: 128", pattern_of("sequential", s.shape, 20'000, 1));
     EXPECT_NEAR(static_cast<double>(out.last_taken) / 20'000, s.peak_interval, 0.01 * s.peak_interval) << s.name;
     EXPECT_NEAR(out.dram->channels[0].utilisation, 1, 0.01) << s.name;
     EXPECT_EQ(out.dram->channels[0].bytes, 20'000u * 32);
@@ -73,7 +58,7 @@ TEST(Dram, ReachesItsPeak) {
 TEST(Dram, RandomReadsAreLimitedByActivates) {
   for (const Standard& s : kStandards) {
     const MemoryTraceResult out =
-        run(s.preset, std::string(kNoRefresh) + ", queue: 256", pattern_of("random_32", s.shape, 20'000, 1));
+        run_dram(s.preset, std::string(kNoRefresh) + ", queue: 256", pattern_of("random_32", s.shape, 20'000, 1));
     EXPECT_NEAR(static_cast<double>(out.last_taken) / (20'000 - 256), s.random_interval, 0.01 * s.random_interval)
         << s.name;
   }
@@ -81,17 +66,17 @@ TEST(Dram, RandomReadsAreLimitedByActivates) {
 
 /// Reads of one row, which nothing but refreshes closes: one each nCCD long. A refresh that is due lets no further read
 /// begin; the row is closed nRTP after the last one (no sooner than the refresh is due, since nRTP is not below nCCD
-/// long), and the next read comes nRP + nRFC + nRCD later.
+/// long), and the next read comes nRP + nRFC + nRCD later, and behind the command that starts the data clock again.
 TEST(Dram, ARefreshTakesTheSumOfItsCommands) {
   for (const Standard& s : kStandards) {
     const cycle::DramTiming t = cycle::dram_timing(dram_config(s.preset).memory.dram);
     MemoryLog requests;
     for (std::uint64_t i = 0; i < 100'000; ++i) requests.push_back({i, 32 * (i % s.shape.columns), 32, false});
-    const auto with = run(s.preset, "", requests), without = run(s.preset, kNoRefresh, requests);
+    const auto with = run_dram(s.preset, "", requests), without = run_dram(s.preset, kNoRefresh, requests);
     const std::uint64_t refreshes = with.cycles / static_cast<std::uint64_t>(t.refi);
     ASSERT_GT(refreshes, 100u);
     EXPECT_EQ(with.dram->channels[0].counts.refreshes, refreshes);
-    const auto lost = static_cast<std::uint64_t>(t.rtp - t.ccd_long + t.rp + t.rfc + t.rcd_read);
+    const std::uint64_t lost = static_cast<std::uint64_t>(t.rtp - t.ccd_long + t.rp + t.rfc + t.rcd_read) + s.clock;
     EXPECT_EQ(with.cycles - without.cycles, refreshes * lost) << s.name;
     const double part = static_cast<double>(lost) / static_cast<double>(t.refi);
     EXPECT_NEAR(1 - static_cast<double>(without.cycles) / static_cast<double>(with.cycles), part, 0.01 * part)
@@ -105,7 +90,7 @@ TEST(Dram, RefreshTakesItsPartOfTheTime) {
     MemoryLog requests;
     for (std::uint64_t i = 0; i < 40'000; ++i)
       requests.push_back({i, 32 * s.shape.columns * (i % (s.shape.groups * s.shape.pseudo_channels)), 32, false});
-    const auto with = run(s.preset, "", requests), without = run(s.preset, kNoRefresh, requests);
+    const auto with = run_dram(s.preset, "", requests), without = run_dram(s.preset, kNoRefresh, requests);
     const double lost = 1 - static_cast<double>(without.last_taken) / static_cast<double>(with.last_taken);
     // A refresh more or less at the end is 2 %, and while the rows are opened one behind the other, nRRD apart, some
     // groups still wait: the closed form has no term for that, and is exact for one row (above).
@@ -118,10 +103,11 @@ TEST(Dram, RefreshTakesItsPartOfTheTime) {
 
 TEST(Dram, WritesTurnTheBusRound) {
   // A read directly behind a write of the same group and row waits for the write's data and nWTR long.
-  const MemoryTraceResult out = run("gddr6_14", kNoRefresh, {{0, 0, 32, true}, {21, 32, 32, false}});
+  const MemoryTraceResult out = run_dram("gddr6_14", kNoRefresh, {{0, 0, 32, true}, {21, 32, 32, false}});
   EXPECT_EQ(out.cycles, 20 + (6 + 2 + 11) + 24 + 2u);  // nRCD write; nCWL + nBL + nWTR; nCL + nBL
   // A precharge behind a write waits for nWR besides.
-  const MemoryTraceResult conflict = run("gddr6_14", kNoRefresh, {{0, 0, 32, true}, {60, 32 * 64 * 16, 32, false}});
+  const MemoryTraceResult conflict =
+      run_dram("gddr6_14", kNoRefresh, {{0, 0, 32, true}, {60, 32 * 64 * 16, 32, false}});
   EXPECT_EQ(conflict.cycles, std::max(60, 20 + 6 + 2 + 30) + 30 + 30 + 24 + 2u);
   EXPECT_EQ(conflict.dram->channels[0].counts.row_conflicts, 1u);
   EXPECT_EQ(conflict.dram->channels[0].counts.writes, 1u);
@@ -132,7 +118,7 @@ TEST(Dram, WritesTurnTheBusRound) {
 TEST(Dram, ARowThatIsReadIsNotPrechargedInTheSameCycle) {
   const std::uint64_t other_row = 32 * 32 * 2 * 16;
   const MemoryTraceResult out =
-      run("hbm2_2", kNoRefresh, {{0, 0, 32, false}, {30, other_row, 32, false}, {34, 32, 32, false}});
+      run_dram("hbm2_2", kNoRefresh, {{0, 0, 32, false}, {30, other_row, 32, false}, {34, 32, 32, false}});
   EXPECT_EQ(out.cycles, 34 + 5 + 14 + 14 + 14 + 2u);  // nRTP, nRP, nRCD, nCL, nBL
   EXPECT_EQ(out.dram->channels[0].counts.row_hits, 1u);
 }
@@ -144,7 +130,7 @@ TEST(Dram, ChoosesAsAScanOfAllRequests) {
     std::uint64_t cycles, latencies, hits, misses, conflicts;
   };
   const std::array<Expected, 3> expected = {
-      {{154050, 4260501, 7196, 1381, 11423}, {77406, 965756, 4997, 1714, 13289}, {85353, 2430727, 5356, 2238, 12406}}};
+      {{154050, 4260501, 7196, 1381, 11423}, {77406, 965756, 4997, 1714, 13289}, {80865, 2295735, 6454, 2093, 11453}}};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     MemoryLog requests;
     std::uint64_t state = 1, at = 0;
@@ -156,7 +142,7 @@ TEST(Dram, ChoosesAsAScanOfAllRequests) {
       at += draw(3) == 0 ? draw(24) : 0;
       requests.push_back({at, draw(4096) * 32, 32, draw(3) == 0});
     }
-    const MemoryTraceResult out = run(kStandards[i].preset, ", queue: 24", requests);
+    const MemoryTraceResult out = run_dram(kStandards[i].preset, ", queue: 24", requests);
     const DramUse::Channel& channel = out.dram->channels[0];
     EXPECT_EQ(out.cycles, expected[i].cycles) << kStandards[i].name;
     EXPECT_EQ(channel.latencies.sum(), expected[i].latencies);
@@ -213,38 +199,6 @@ TEST(Dram, ChannelsHoldBlocksInTurn) {
   const cycle::DramMap map(config, cycle::dram_timing(config));
   for (std::uint64_t address = 0; address < 4096; address += 32)
     EXPECT_EQ(map.place(address).channel, address / 256 % 3) << address;
-}
-
-/// The rows of a file that Ramulator 2.1 gave, of which the saturated ones with 32 places are tried here; the table in
-/// docs/validation.md has all.
-TEST(Dram, AgreesWithRamulator) {
-  std::ifstream file(CAROUSEL_SOURCE_DIR "/tests/data/dram-ramulator21.csv");
-  std::string line;
-  std::getline(file, line);
-  std::vector<double> cycle_errors, latency_errors;
-  while (std::getline(file, line)) {
-    std::vector<std::string> cell;
-    std::istringstream row(line);
-    for (std::string one; std::getline(row, one, ',');) cell.push_back(one);
-    ASSERT_EQ(cell.size(), 11u);
-    if (cell[2] != "32" || cell[4] != "1") continue;
-    const Standard& s = *std::find_if(std::begin(kStandards), std::end(kStandards),
-                                      [&](const Standard& standard) { return standard.name == cell[0]; });
-    const MemoryTraceResult out =
-        run(s.preset, fmt::format(", queue: {}, refresh: {}", cell[2], cell[3] == "1" ? "true" : "false"),
-            pattern_of(cell[1], s.shape, std::stoull(cell[5]), std::stoull(cell[4])));
-    const double cycles = static_cast<double>(out.last_taken) / std::stod(cell[6]) - 1;
-    const double latency = (out.dram->channels[0].latencies.mean() + 1) / std::stod(cell[10]) - 1;
-    EXPECT_LT(std::abs(cycles), 0.05) << line;
-    EXPECT_LT(std::abs(latency), 0.11) << line;
-    cycle_errors.push_back(std::abs(cycles));
-    latency_errors.push_back(std::abs(latency));
-  }
-  ASSERT_GE(cycle_errors.size(), 16u);
-  std::sort(cycle_errors.begin(), cycle_errors.end());
-  std::sort(latency_errors.begin(), latency_errors.end());
-  EXPECT_LT(cycle_errors[cycle_errors.size() / 2], 0.01);
-  EXPECT_LT(latency_errors[latency_errors.size() / 2], 0.02);
 }
 
 }  // namespace
