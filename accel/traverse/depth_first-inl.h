@@ -74,6 +74,12 @@ inline Nodes nodes_of(const Accel& accel) {
   return accel.elements.empty() && accel.planes.empty() && accel.full_nodes.empty() ? Nodes::kPlain : Nodes::kOther;
 }
 
+/// The lanes of the node's children. No finite ray meets the box of another lane; but every box is met by a ray that is
+/// infinite or not a number along each axis, as a ray may become in the space of an instance.
+HWY_INLINE std::uint32_t child_lanes(const Node& node) {
+  return (1u << node.count) - 1;
+}
+
 /// The children of the node at `ref` that the ray meets, in whatever bounds them, with entries; those that the node
 /// holds itself are not among them, nor counted.
 template <Nodes kNodes, class Slab, class Registers>
@@ -91,7 +97,7 @@ HWY_INLINE std::uint32_t met_children(const Accel& accel, NodeRef ref, const Loc
       tested += more;
       return met & ~direct;
     }
-  return slab_node(node, ray, tmax, entry) & ~direct;
+  return slab_node(node, ray, tmax, entry) & child_lanes(node) & ~direct;
 }
 
 /// Counts the children in `mask` that the ray meets only because their boxes are quantised. Called with full_nodes.
@@ -206,7 +212,7 @@ HWY_INLINE WideSlabRay group_ray(const Accel& accel, std::uint32_t group, const 
 HWY_INLINE std::uint32_t met_members(const Accel& accel, NodeRef ref, std::uint32_t lanes, const WideSlabLanes& ray,
                                      float tmax, float* entry, IntersectionCounts& counts) {
   const Node& node = accel.nodes[ref.node()];
-  lanes &= (1u << node.count) - 1;  // an infinite slack would let the ray into lanes without a box
+  lanes &= child_lanes(node);  // an infinite slack lets the ray into every lane
   counts.box += static_cast<std::uint64_t>(std::popcount(lanes));
   const std::uint32_t mask = slab_node(node, ray, tmax, entry) & lanes;
   if (HWY_UNLIKELY(!accel.full_nodes.empty()) && mask != 0) count_extra_hits(accel, ref, ray, tmax, mask, counts);

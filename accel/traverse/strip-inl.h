@@ -55,7 +55,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
                 IntersectionCounts& counts) {
   const Node& node = accel.nodes[key.ref.node()];
   const InstanceTransform* transform = key.instance == kNoInstance ? nullptr : &accel.instances[key.instance].transform;
-  lanes &= (1u << node.count) - 1;
+  lanes &= child_lanes(node);
   const std::uint32_t direct = node.direct & lanes, held = ~std::uint32_t{node.direct};
   const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes & held));
   const float widening = far_widening(accel.accuracy.box);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "accel/traverse/kernels.h"
+#include "accel/traverse/ray_check.h"
 #include "ringbus/resource/traversal/bundle_tally.h"
 #include "ringbus/resource/visit/count_children.h"
 
@@ -141,13 +142,14 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   const std::uint32_t direct = node.direct & packet.lanes,
                       boxes = packet.lanes & ~std::uint32_t{node.direct} & ((1u << node.count) - 1);
   const std::span<const std::uint32_t> rays = store.rays_of(local.slot);
-  // A bundle of the world, at the border of an instance, becomes one of the instance, if there is a slot for it.
+  // A bundle of the world, at the border of an instance, becomes one of the instance, if there is a slot for it and its
+  // rays have bounds there.
   const bool enters =
       split_.in_model_space(packet.key) && (store.bundle(local.slot).flags & accel::BundleRecord::kInModelSpace) == 0;
-  const bool stays_out = enters && free_bundles_.empty();
-  accel::BundleRecord inside;
-  if (enters && !stays_out) inside = bounds_in(packet.key.instance, rays, counts);
-  const accel::BundleRecord& bundle = enters ? inside : store.bundle(local.slot);
+  std::optional<accel::BundleRecord> inside;
+  if (enters && !free_bundles_.empty()) inside = bounds_in(packet.key.instance, rays, counts);
+  const bool stays_out = enters && !inside;
+  const accel::BundleRecord& bundle = inside ? *inside : store.bundle(local.slot);
   accel::BundleAnswer answer;
   if (stays_out || split_.too_wide(bundle, node)) {
     answer.undecided = static_cast<std::uint8_t>(boxes);
@@ -182,7 +184,7 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   count_children(masks_, outcome);
   packet.members[local.member].mask = enters ? std::uint8_t{0} : together;
   local.change = (enters ? 0 : std::popcount(together)) - 1;
-  if (enters && together != 0) descend_into_instance(packet, rays, inside, together);
+  if (enters && together != 0) descend_into_instance(packet, rays, *inside, together);
   add_visit(counts_, rays.size(), node.count, std::popcount(answer.all), std::popcount(answer.undecided));
 }
 
@@ -211,13 +213,17 @@ void BundledTraversal::eject_singles(Packet& packet, const LocalRays& local, Tes
   charge.write(outcome.counts);
 }
 
-/// The bounds of rays in the space of an instance, as the box tests there will see them.
-accel::BundleRecord BundledTraversal::bounds_in(std::uint32_t instance, std::span<const std::uint32_t> rays,
-                                                IntersectionCounts& counts) const {
+/// The bounds of rays in the space of an instance, as the box tests there will see them. None if one of the rays
+/// overflows there or has no direction.
+std::optional<accel::BundleRecord> BundledTraversal::bounds_in(std::uint32_t instance,
+                                                               std::span<const std::uint32_t> rays,
+                                                               IntersectionCounts& counts) const {
   accel::BundleRecord bundle;
   for (const std::uint32_t slot : rays) {
     const RayRecord& record = context_.store.record(slot);
-    bundle.widen(context_.accel.instances[instance].transform.to_model(record.ray), record.hit.t);
+    const Ray model = context_.accel.instances[instance].transform.to_model(record.ray);
+    if (!accel::valid(model)) return std::nullopt;
+    bundle.widen(model, record.hit.t);
   }
   bundle.count = static_cast<std::uint8_t>(rays.size());
   if (context_.transforms != nullptr) return bundle;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,8 +66,8 @@ class BundledTraversal final : public TraversalMethod {
   void add_passes(const accel::BundleAnswer& answer, BundlePasses& passes) const;
   void give_back(Packet& packet, LocalBundle& local, bool entered, TestOutcome& outcome);
   void eject_singles(Packet& packet, const LocalRays& local, TestOutcome& outcome);
-  accel::BundleRecord bounds_in(std::uint32_t instance, std::span<const std::uint32_t> rays,
-                                IntersectionCounts& counts) const;
+  std::optional<accel::BundleRecord> bounds_in(std::uint32_t instance, std::span<const std::uint32_t> rays,
+                                               IntersectionCounts& counts) const;
   void charge_transforms(std::span<const std::uint32_t> rays, accel::NodeKey key);
   void write_transforms(accel::NodeKey key, IntersectionCounts& counts, TestOutcome& outcome) const;
   void charge_reads(std::span<const std::uint32_t> rays, accel::NodeKey key, TestOutcome& outcome);
