@@ -36,12 +36,42 @@ void quantise_axis(float* lo, float* hi, int count) {
   }
 }
 
+void quantise(Node& node) {
+  for (int axis = 0; axis < 3; ++axis) quantise_axis(node.plane[axis], node.plane[axis + 3], node.count);
+}
+
+/// True if a hit has to lie in the world box of a child of the top level's node, and no other test sees to that.
+bool holds_world_boxes(const Accel& accel, const Node& node) {
+  return std::any_of(node.child, node.child + node.count, [&](NodeRef child) {
+    if (!child.is_instance()) return false;
+    const InstanceNode& instance = accel.instances[child.instance_index()];
+    return !instance.transform.identity && !instance.group;
+  });
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> unquantised_nodes(const Accel& accel) {
+  std::vector<std::uint32_t> out;
+  const NodeKey root = accel.root_key();
+  if (root.instance != kNoInstance || !root.ref.is_inner()) return out;
+  std::vector<std::uint32_t> open{root.ref.node()};
+  while (!open.empty()) {
+    const std::uint32_t at = open.back();
+    open.pop_back();
+    const Node& node = accel.nodes[at];
+    if (!node.above_instances) continue;  // of merged meshes
+    if (holds_world_boxes(accel, node)) out.push_back(at);
+    for (int lane = 0; lane < node.count; ++lane)
+      if (node.child[lane].is_inner()) open.push_back(node.child[lane].node());
+  }
+  return out;
+}
 
 void quantise_boxes(Accel& accel) {
   accel.full_nodes = accel.nodes;
-  for (Node& node : accel.nodes)
-    for (int axis = 0; axis < 3; ++axis) quantise_axis(node.plane[axis], node.plane[axis + 3], node.count);
+  for (Node& node : accel.nodes) quantise(node);
+  for (const std::uint32_t node : unquantised_nodes(accel)) accel.nodes[node] = accel.full_nodes[node];
 }
 
 }  // namespace carousel::accel

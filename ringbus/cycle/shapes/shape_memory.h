@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "accel/build/quantised_boxes.h"
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
 #include "ringbus/cycle/shapes/leaf_strips.h"
@@ -31,7 +32,8 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
 /// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
-/// nodes have 64 or 80 bytes, and each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
+/// nodes have 64 or 80 bytes, but for those that keep their boxes as floats (accel/build/quantised_boxes.h), and each
+/// primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
 ///
 /// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
 /// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive
@@ -199,9 +201,14 @@ class ShapeMemory {
   /// Fills in behind_before_; the bytes in all.
   std::uint64_t bytes_behind_nodes() {
     std::uint64_t bytes = 0;
+    std::vector<bool> full(accel_.nodes.size());
+    if (quantised_)
+      for (const std::uint32_t n : accel::unquantised_nodes(accel_)) full[n] = true;
     behind_before_.reserve(accel_.nodes.size() + 1);
-    for (const accel::Node& node : accel_.nodes) {
+    for (std::size_t n = 0; n < accel_.nodes.size(); ++n) {
+      const accel::Node& node = accel_.nodes[n];
       behind_before_.push_back(bytes);
+      if (full[n]) bytes += sizeof(accel::Node) - node_bytes_;
       bytes += accel::plane_bytes(node, accel_.shared_normals);
       for (int lane = 0; lane < node.count; ++lane)
         if (node.direct >> lane & 1) bytes += accel_.held_leaf(node, lane).blocks() * sizeof(accel::TriangleBlock);

@@ -1,4 +1,5 @@
 // Nodes with boxes in 8 bits a plane: they contain the full ones, change no hit, and have the bytes of their formats.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -28,9 +29,15 @@ TEST(QuantisedNodes, BoxesContainTheFullOnesAndFit8Bits) {
     const accel::Accel& full = scene.accel(bvh_of(6, BvhConfig::Storage::kFull));
     accel::Accel small = full;
     accel::quantise_boxes(small);
+    const std::vector<std::uint32_t> kept = accel::unquantised_nodes(full);
+    EXPECT_EQ(kept.empty(), builtin == BuiltinScene::kTerrain || builtin == BuiltinScene::kSliver);
     std::size_t wider = 0;
-    for (std::size_t n = 0; n < full.nodes.size(); ++n) {
+    for (std::uint32_t n = 0; n < full.nodes.size(); ++n) {
       const accel::Node &a = full.nodes[n], &b = small.nodes[n];
+      if (std::find(kept.begin(), kept.end(), n) != kept.end()) {
+        EXPECT_TRUE(std::equal(&a.plane[0][0], &a.plane[0][0] + 6 * accel::kMaxWidth, &b.plane[0][0]));
+        continue;
+      }
       for (int axis = 0; axis < 3; ++axis) {
         float origin = std::numeric_limits<float>::infinity(), end = -origin;
         for (int lane = 0; lane < a.count; ++lane) {
@@ -81,6 +88,22 @@ TEST(QuantisedNodes, HaveTheBytesOfTheirFormats) {
     }
     // Leaves lie side by side without a gap.
     EXPECT_EQ(leaves_end - (accel.nodes.size() * bytes + 63) / 64 * 64, leaf_bytes);
+  }
+}
+
+TEST(QuantisedNodes, HaveTheBytesOfFullOnesAboveTurnedInstances) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 60), 1, 1);
+  const BvhConfig bvh = bvh_of(8, BvhConfig::Storage::kQuantised);
+  const accel::Accel& accel = scene.accel(bvh);
+  const cycle::ShapeMemory memory(accel, AccuracyConfig{}, bvh);
+  const std::vector<std::uint32_t> kept = accel::unquantised_nodes(accel);
+  ASSERT_FALSE(kept.empty());
+  std::uint64_t end = 0;
+  for (std::uint32_t n = 0; n < accel.nodes.size(); ++n) {
+    const bool full = std::find(kept.begin(), kept.end(), n) != kept.end();
+    const cycle::ShapeSpan node = memory.strip({kNoInstance, accel::NodeRef::inner(n)});
+    EXPECT_EQ(node, (cycle::ShapeSpan{end, full ? 256u : 80u}));
+    end += node.bytes;
   }
 }
 
