@@ -10,10 +10,8 @@
 
 namespace carousel::accel {
 
-/// The closest hit by testing every primitive of every instance, in plain scalar code that shares nothing with
-/// the SIMD kernels but the definition of a hit (DESIGN.md section 3), the instance transform, and the exact triangle
-/// and the sphere test, which are scalar anyway. Non-opaque materials call `any_hit`, unless it is null. Slow; for
-/// tests on small scenes.
+/// The closest hit by testing every primitive of every instance as accel/traverse/oracle_primitive.h does. Non-opaque
+/// materials call `any_hit`, unless it is null. Slow; for tests on small scenes.
 Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy = {},
                 const AnyHit* any_hit = nullptr);
 

@@ -2,8 +2,6 @@
 
 #include <bit>
 
-#include "accel/traverse/reference_tracer.h"
-
 namespace carousel::accel {
 
 bool same_result(const RayResult& a, const RayResult& b) {
@@ -14,20 +12,14 @@ bool same_result(const RayResult& a, const RayResult& b) {
 }
 
 void VerifyingWorkload::shade(WorkerId worker, const HitBatch& completed, RayBatch& out) {
-  RayBatch again;
-  again.reserve(completed.size());
-  for (const RayResult& result : completed) again.push_back({result.ray, result.tag});
-  HitBatch expected;
-  expected.reserve(completed.size());
-  IntersectionCounts counts;
-  trace_depth_first(accel_, again, expected, counts);
   // Relaxed: plain sums, read when the engine's threads have been joined.
   compared_.fetch_add(completed.size(), std::memory_order_relaxed);
-  for (std::size_t i = 0; i < completed.size(); ++i) {
-    if (same_result(completed[i], expected[i])) continue;
+  for (const RayResult& result : completed) {
+    const RayResult expected{result.ray, oracle_.trace({result.ray, result.tag}), result.tag};
+    if (same_result(result, expected)) continue;
     mismatches_.fetch_add(1, std::memory_order_relaxed);
     const std::lock_guard lock(example_mutex_);
-    if (!example_) example_ = Mismatch{completed[i], expected[i]};
+    if (!example_) example_ = Mismatch{result, expected};
   }
   inner_.shade(worker, completed, out);
 }

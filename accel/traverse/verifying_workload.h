@@ -5,17 +5,17 @@
 #include <mutex>
 #include <optional>
 
-#include "accel/structure/accel.h"
+#include "accel/traverse/hit_oracle.h"
 #include "core/types/wrapped_workload.h"
 
 namespace carousel::accel {
 
-/// A workload that traces every completed ray of another one again, depth-first, and compares the bits of the
-/// hits (`verify: reference`). Shadow rays are compared by occluded or visible. Same threads as the workload.
+/// A workload that compares the hit of every completed ray of another one with the oracle's, bit by bit
+/// (`verify: reference`). Shadow rays are compared by occluded or visible. Same threads as the workload.
 class VerifyingWorkload final : public WrappedWorkload {
  public:
   /// Keeps references to both.
-  VerifyingWorkload(Workload& inner, const Accel& accel) : WrappedWorkload(inner), accel_(accel) {}
+  VerifyingWorkload(Workload& inner, const HitOracle& oracle) : WrappedWorkload(inner), oracle_(oracle) {}
 
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
@@ -28,7 +28,7 @@ class VerifyingWorkload final : public WrappedWorkload {
   const std::optional<Mismatch>& example() const { return example_; }
 
  private:
-  const Accel& accel_;
+  const HitOracle& oracle_;
   std::atomic<std::uint64_t> compared_{0}, mismatches_{0};
   std::mutex example_mutex_;
   std::optional<Mismatch> example_;

@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "accel/build/build.h"
-#include "accel/planes/cull_planes.h"
+#include "accel/traverse/hit_oracle.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
 #include "app/build_report/memory_report.h"
@@ -113,27 +113,15 @@ report::Report play_requests(const Prepared& p, const InterruptScope& interrupt)
   return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
 }
 
-/// The structure without planes, spheres and levels of groups, that holds each triangle once.
-accel::Accel built_plainly(const Prepared& p) {
-  BvhConfig bvh;
-  bvh.width = p.config().bvh.width;
-  accel::Accel accel = accel::build(p.scene, bvh, *make_tbb_executor(p.threads), p.config().accuracy);
-  accel.any_hit = p.accel.any_hit;
-  return accel;
-}
-
 }  // namespace
 
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
                         const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory) {
+  std::optional<accel::HitOracle> oracle;
   std::optional<accel::VerifyingWorkload> verifying;
-  std::optional<accel::Accel> plain;  // planes, spheres, levels and pieces of boxes are verified as well
   if (p.config().verify == Verify::kReference) {
-    if (!p.accel.groups.empty() || p.config().bvh.builder != BvhConfig::Builder::kSah)
-      plain = built_plainly(p);
-    else if (!accel::is_plain(p.accel))
-      plain = accel::plain_copy(p.accel);
-    verifying.emplace(job.workload(), plain ? *plain : p.accel);
+    oracle.emplace(p.scene, p.config().accuracy, p.accel.any_hit);
+    verifying.emplace(job.workload(), *oracle);
   }
   const bool picture = p.config().workload.kind == WorkloadConfig::Kind::kRays;
   const auto rays_a_path = static_cast<std::uint64_t>(picture ? 2 * p.config().image.max_depth : 1);

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "accel/planes/cull_planes.h"
+#include "accel/traverse/hit_oracle.h"
 #include "core/system/error.h"
 #include "core/system/process_memory.h"
 #include "report/csv/ray_csv.h"
@@ -79,8 +79,7 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
   need.scene = scene_bytes(scene);
   if (need.paths > 0) need.paths = paths_in_flight(config) * shading::plan_effects(scene, config).path_state_bytes();
   need.accel = accel.size_bytes();
-  if (config.verify == Verify::kReference && (!accel::is_plain(accel) || !accel.groups.empty()))
-    need.accel += accel.size_bytes();  // another structure to verify with
+  if (config.verify == Verify::kReference) need.accel += accel::HitOracle::foretold_bytes(scene);
   need.ring = ringbus::estimate_memory(config, accel.max_depth);
   return need;
 }

@@ -33,12 +33,13 @@ class VerifyingWorkloadTest : public testing::Test {
  protected:
   scene::Scene scene_ = icosphere_scene(2);
   Accel accel_ = build_sequential(scene_);
+  HitOracle oracle_{scene_, AccuracyConfig{}, nullptr};
   RayBatch rays_ = mixed_rays(scene_, 500, 71);
 };
 
 TEST_F(VerifyingWorkloadTest, FindsNothingWhenAllIsRight) {
   ListWorkload inner(rays_);
-  VerifyingWorkload verifying(inner, accel_);
+  VerifyingWorkload verifying(inner, oracle_);
   const ReferenceRun run = run_reference(accel_, verifying, 64);
   EXPECT_EQ(run.rays, rays_.size());
   EXPECT_EQ(inner.shaded(), rays_.size());
@@ -51,7 +52,7 @@ TEST_F(VerifyingWorkloadTest, FindsEveryKindOfPlantedFault) {
   const HitBatch right = trace(accel_, rays_);
   const auto mismatches = [&](const RayResult& wrong) {
     ListWorkload inner({});
-    VerifyingWorkload verifying(inner, accel_);
+    VerifyingWorkload verifying(inner, oracle_);
     RayBatch out;
     verifying.shade(WorkerId{0}, {wrong}, out);
     EXPECT_EQ(verifying.example().has_value(), verifying.mismatches() == 1);
@@ -86,6 +87,42 @@ TEST_F(VerifyingWorkloadTest, FindsEveryKindOfPlantedFault) {
   }
   EXPECT_GT(closest, 100u);
   EXPECT_GT(shadow, 30u);
+}
+
+/// Rays that mismatch when `accel` answers them.
+std::uint64_t mismatches_of(const Accel& accel, const scene::Scene& scene, const RayBatch& rays) {
+  const HitOracle oracle(scene, accel.accuracy, accel.any_hit);
+  ListWorkload inner(rays);
+  VerifyingWorkload verifying(inner, oracle);
+  run_reference(accel, verifying, 64);
+  EXPECT_EQ(verifying.compared(), rays.size());
+  return verifying.mismatches();
+}
+
+/// A structure that the run and its verification shared would hide all of these.
+TEST(Verification, FindsFaultsInEveryPartOfAStructure) {
+  const scene::Scene scene = small_builtin(BuiltinScene::kInstances, 0, 30);
+  const RayBatch rays = mixed_rays(scene, 2000, 5);
+  BvhConfig bvh;
+  bvh.storage = BvhConfig::Storage::kQuantised;
+  const Accel right = build(scene, bvh, *make_sequential_executor());
+  EXPECT_EQ(mismatches_of(right, scene, rays), 0u);
+  Accel wrong = right;
+  for (Node& node : wrong.nodes)  // boxes too small by a step of quantisation
+    if (!node.above_instances)
+      for (int lane = 0; lane < node.count; ++lane)
+        node.plane[3][lane] -= 0.02f * (node.plane[3][lane] - node.plane[0][lane]);
+  EXPECT_GT(mismatches_of(wrong, scene, rays), 0u) << "nodes of meshes";
+  wrong = right;
+  for (Node& node : wrong.nodes)
+    if (node.above_instances) node.plane[4][0] = node.plane[1][0];
+  EXPECT_GT(mismatches_of(wrong, scene, rays), 0u) << "nodes of the top level";
+  wrong = right;
+  wrong.blocks[0].vertex[1][2][0] += 0.1f;
+  EXPECT_GT(mismatches_of(wrong, scene, rays), 0u) << "triangles";
+  wrong = right;
+  wrong.instances[3].transform.translation.x += 0.05f;
+  EXPECT_GT(mismatches_of(wrong, scene, rays), 0u) << "transforms";
 }
 
 TEST(ReferenceRun, IsDividedAmongPieces) {
