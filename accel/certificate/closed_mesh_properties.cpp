@@ -30,7 +30,7 @@ CaseValues make_closed_mesh(CaseRandom& random) {
             away = random.below(2) ? static_cast<int>(random.below(static_cast<std::uint32_t>(16 - flat))) : -100;
   DVec3 scale(1);
   if (random.below(2)) scale[static_cast<int>(random.below(3))] = std::ldexp(1.0, -flat);
-  const double size = std::ldexp(1.0, static_cast<int>(random.below(60)) - 30);
+  const double size = std::ldexp(1.0, static_cast<int>(random.below(200)) - 100);
   const DMat3 turn = random.below(3) ? rotation(random_direction(random), 360.0 * random.uniform()) : DMat3(1.0);
   const DVec3 centre = std::ldexp(1.0, away) * random_direction(random);
   const auto world = [&](const DVec3& p) { return Vec3(size * (centre + turn * (scale * p))); };

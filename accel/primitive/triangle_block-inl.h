@@ -96,7 +96,7 @@ HWY_NOINLINE bool update_closest_precisely(const Accel& accel, const TriangleBlo
     const auto l = static_cast<std::size_t>(std::countr_zero(inside));
     const float rounded = crossings.t[l];
     float entry;
-    if (rounded != rounded || !boxes.enters(l, hit.t, entry)) continue;
+    if (!boxes.enters(l, hit.t, entry)) continue;
     ++ray.counts->refined;
     Hit found;
     if (!precise.get(l, found)) found = {rounded, crossings.second[l], crossings.third[l], 0, 0};

@@ -8,6 +8,9 @@
 #define CAROUSEL_ACCEL_WATERTIGHT_INL_H_
 #endif
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include <hwy/highway.h>
@@ -27,6 +30,54 @@ HWY_INLINE hn::Vec<D> load_floats(D d, const float* p) {
     return hn::Load(d, p);
   else
     return hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), p));
+}
+
+/// Between these a sum of edge values says what exact products would say. A mesh of any size has edges beyond them if
+/// the products of its coordinates are: theirs are computed in double, and scaled.
+inline constexpr float kLeastEdge = 0x1p-100f, kLargestEdge = 0x1p100f;
+inline constexpr double kLargestProduct = std::numeric_limits<double>::max();
+
+/// Computes the edge values of the lanes in `which` anew, from the exact products of the sheared corners. Values of
+/// extreme size are scaled by a power of two, the same for all three: only their ratios count. If their signs differ,
+/// so do those of the answers.
+template <class D>
+HWY_NOINLINE void settle_edges(D d, hn::Mask<D> which, hn::Vec<D> ax, hn::Vec<D> ay, hn::Vec<D> bx, hn::Vec<D> by,
+                               hn::Vec<D> cx, hn::Vec<D> cy, hn::Vec<D>& u, hn::Vec<D>& v, hn::Vec<D>& w) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  alignas(16) float a[2][kLanes], b[2][kLanes], c[2][kLanes], edge[3][kLanes];
+  hn::Store(ax, d, a[0]), hn::Store(ay, d, a[1]);
+  hn::Store(bx, d, b[0]), hn::Store(by, d, b[1]);
+  hn::Store(cx, d, c[0]), hn::Store(cy, d, c[1]);
+  hn::Store(u, d, edge[0]), hn::Store(v, d, edge[1]), hn::Store(w, d, edge[2]);
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(d, which, bits);
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    if (!(bits[0] >> l & 1)) continue;
+    double eu = double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]);
+    double ev = double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]);
+    double ew = double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]);
+    if (const double most = std::fmax(std::fabs(eu), std::fmax(std::fabs(ev), std::fabs(ew)));
+        (most > 0 && most < double{kLeastEdge}) || (most > double{kLargestEdge} && most <= kLargestProduct)) {
+      const double scale = std::ldexp(1.0, -std::ilogb(most));
+      eu *= scale, ev *= scale, ew *= scale;
+    }
+    // A float may lose the sign again: a triangle that is seen edge-on along a denormal direction would be hit by
+    // a ray that passes it at a distance. So it is decided here, and a value of each sign says so below.
+    const bool passes = (eu < 0.0 || ev < 0.0 || ew < 0.0) && (eu > 0.0 || ev > 0.0 || ew > 0.0);
+    edge[0][l] = passes ? -1.0f : static_cast<float>(eu);
+    edge[1][l] = passes ? 1.0f : static_cast<float>(ev);
+    edge[2][l] = static_cast<float>(ew);
+  }
+  u = hn::Load(d, edge[0]), v = hn::Load(d, edge[1]), w = hn::Load(d, edge[2]);
+}
+
+/// The lanes whose edge values, with their sum, say that the line passes the triangle or runs in its plane.
+template <class V>
+HWY_INLINE auto is_outside(V u, V v, V w, V det) {
+  const auto zero = hn::Zero(hn::DFromV<V>());
+  const auto any_negative = hn::Or(hn::Lt(u, zero), hn::Or(hn::Lt(v, zero), hn::Lt(w, zero)));
+  const auto any_positive = hn::Or(hn::Gt(u, zero), hn::Or(hn::Gt(v, zero), hn::Gt(w, zero)));
+  return hn::Or(hn::And(any_negative, any_positive), hn::Eq(det, zero));
 }
 
 /// For the lanes from `i` on: bit l of the result when triangle i + l is crossed by the ray's line (whatever the
@@ -53,33 +104,23 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
   // double a rounded zero is let count as an edge for both its triangles: no leak either.
   if constexpr (std::is_same_v<T, float>) {
     const auto on_edge = hn::Or(hn::Eq(u, zero), hn::Or(hn::Eq(v, zero), hn::Eq(w, zero)));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, on_edge))) {
-      alignas(16) float a[2][kLanes], b[2][kLanes], c[2][kLanes], edge[3][kLanes];
-      hn::Store(ax, d, a[0]), hn::Store(ay, d, a[1]);
-      hn::Store(bx, d, b[0]), hn::Store(by, d, b[1]);
-      hn::Store(cx, d, c[0]), hn::Store(cy, d, c[1]);
-      hn::Store(u, d, edge[0]), hn::Store(v, d, edge[1]), hn::Store(w, d, edge[2]);
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        if (edge[0][l] != 0.0f && edge[1][l] != 0.0f && edge[2][l] != 0.0f) continue;
-        const double eu = double(c[0][l]) * double(b[1][l]) - double(c[1][l]) * double(b[0][l]);
-        const double ev = double(a[0][l]) * double(c[1][l]) - double(a[1][l]) * double(c[0][l]);
-        const double ew = double(b[0][l]) * double(a[1][l]) - double(b[1][l]) * double(a[0][l]);
-        // A float may lose the sign again: a triangle that is seen edge-on along a denormal direction would be hit by
-        // a ray that passes it at a distance. So it is decided here, and a value of each sign says so below.
-        const bool passes = (eu < 0.0 || ev < 0.0 || ew < 0.0) && (eu > 0.0 || ev > 0.0 || ew > 0.0);
-        edge[0][l] = passes ? -1.0f : static_cast<float>(eu);
-        edge[1][l] = passes ? 1.0f : static_cast<float>(ev);
-        edge[2][l] = static_cast<float>(ew);
-      }
-      u = hn::Load(d, edge[0]), v = hn::Load(d, edge[1]), w = hn::Load(d, edge[2]);
-    }
+    if (HWY_UNLIKELY(!hn::AllFalse(d, on_edge))) settle_edges(d, on_edge, ax, ay, bx, by, cx, cy, u, v, w);
   }
-
-  const auto any_negative = hn::Or(hn::Lt(u, zero), hn::Or(hn::Lt(v, zero), hn::Lt(w, zero)));
-  const auto any_positive = hn::Or(hn::Gt(u, zero), hn::Or(hn::Gt(v, zero), hn::Gt(w, zero)));
-  const auto det = hn::Add(u, hn::Add(v, w));
-  const auto outside = hn::Or(hn::And(any_negative, any_positive), hn::Eq(det, zero));
+  auto det = hn::Add(u, hn::Add(v, w));
+  auto outside = is_outside(u, v, w, det);
   if (hn::AllTrue(d, outside)) return 0;
+  if constexpr (std::is_same_v<T, float>) {
+    // Of products that overflow or underflow neither sum nor quotient can be trusted. Unused lanes are not looked at.
+    const auto size = hn::Abs(det);
+    const auto usual = hn::And(hn::Ge(size, hn::Set(d, kLeastEdge)), hn::Le(size, hn::Set(d, kLargestEdge)));
+    const auto extreme = hn::AndNot(hn::Or(outside, usual), hn::Eq(akz, akz));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, extreme))) {
+      settle_edges(d, extreme, ax, ay, bx, by, cx, cy, u, v, w);
+      det = hn::Add(u, hn::Add(v, w));
+      outside = is_outside(u, v, w, det);
+    }
+    outside = hn::Or(outside, hn::Not(hn::Eq(det, det)));  // NaN: unused lanes, and rays or corners beyond all floats
+  }
 
   const auto scaled_t =
       hn::Add(hn::Mul(u, hn::Mul(sz, akz)), hn::Add(hn::Mul(v, hn::Mul(sz, bkz)), hn::Mul(w, hn::Mul(sz, ckz))));

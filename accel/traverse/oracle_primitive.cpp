@@ -51,20 +51,35 @@ bool signs_differ(T u, T v, T w) {
   return (u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0);
 }
 
+/// The edges' values of a triangle in float, from the exact products of its sheared corners. Where these are beyond
+/// 2^-100 to 2^100 all three are scaled by one power of two. False if their signs differ.
+bool settle_edges(Sheared<float>& s) {
+  const auto &x = s.x, &y = s.y;
+  double u = double(x[2]) * y[1] - double(y[2]) * x[1];
+  double v = double(x[0]) * y[2] - double(y[0]) * x[2];
+  double w = double(x[1]) * y[0] - double(y[1]) * x[0];
+  if (signs_differ(u, v, w)) return false;
+  const double most = std::max({std::fabs(u), std::fabs(v), std::fabs(w)});
+  if (std::isfinite(most) && most > 0 && (most < 0x1p-100 || most > 0x1p100)) {
+    const double scale = std::ldexp(1.0, -std::ilogb(most));
+    u *= scale, v *= scale, w *= scale;
+  }
+  s.u = float(u), s.v = float(v), s.w = float(w);
+  return true;
+}
+
 template <class T>
 bool watertight_scalar(const Ray& ray, const Corners& p, Crossing& out) {
   Sheared<T> s(ray, p);
-  if (std::is_same_v<T, float> && (s.u == 0 || s.v == 0 || s.w == 0)) {
-    const auto &x = s.x, &y = s.y;
-    const double u = double(x[2]) * y[1] - double(y[2]) * x[1];
-    const double v = double(x[0]) * y[2] - double(y[0]) * x[2];
-    const double w = double(x[1]) * y[0] - double(y[1]) * x[0];
-    if (signs_differ(u, v, w)) return false;
-    s.u = T(u), s.v = T(v), s.w = T(w);
+  if constexpr (std::is_same_v<T, float>) {
+    if ((s.u == 0 || s.v == 0 || s.w == 0) && !settle_edges(s)) return false;
+    if (signs_differ(s.u, s.v, s.w)) return false;
+    const float size = std::fabs(s.u + (s.v + s.w));
+    if (size != 0 && !(size >= 0x1p-100f && size <= 0x1p100f) && !settle_edges(s)) return false;
   }
   if (signs_differ(s.u, s.v, s.w)) return false;
   const T det = s.u + (s.v + s.w);
-  if (det == 0) return false;
+  if (det == 0 || std::isnan(det)) return false;
   const T inverse = T{1} / det;
   out = {float(s.t_times_det() * inverse), float(s.v * inverse), float(s.w * inverse)};
   return true;
@@ -107,7 +122,7 @@ bool crosses(TriangleLevel level, const Ray& ray, const Corners& p, Crossing& ou
     case TriangleLevel::kFast:
       return moller_trumbore_scalar(ray, p, out);
     case TriangleLevel::kWatertight:
-      if (!watertight_scalar<float>(ray, p, out) || std::isnan(out.t)) return false;
+      if (!watertight_scalar<float>(ray, p, out)) return false;
       refine(ray, p, out);
       return true;
     case TriangleLevel::kDouble:

@@ -100,8 +100,17 @@ bool float_hits(const Ray& ray, const Corners& p) {
       e[i] = T{x[j]} * T{y[k]} - T{y[j]} * T{x[k]};
     }
   };
+  // Exact products, all scaled by one power of two if they are too large or too small for their quotients.
+  const auto exact_edges = [&] {
+    edges(0.0);
+    const double most = std::max({std::fabs(e[0]), std::fabs(e[1]), std::fabs(e[2])});
+    if (std::isfinite(most) && most > 0 && (most < 0x1p-100 || most > 0x1p100))
+      for (double& edge : e) edge = std::ldexp(edge, -std::ilogb(most));
+  };
   edges(0.0f);
-  if (e[0] == 0 || e[1] == 0 || e[2] == 0) edges(0.0);
+  if (e[0] == 0 || e[1] == 0 || e[2] == 0) exact_edges();
+  const double sum = std::fabs(e[0] + (e[1] + e[2]));
+  if (sum != 0 && !(sum >= 0x1p-100 && sum <= 0x1p100)) exact_edges();
   if (std::min({e[0], e[1], e[2]}) < 0 && std::max({e[0], e[1], e[2]}) > 0) return false;
   const auto u = static_cast<float>(e[0]), v = static_cast<float>(e[1]), w = static_cast<float>(e[2]);
   const float det = u + (v + w);
