@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <istream>
@@ -32,8 +33,9 @@ void write_rays_csv(const std::filesystem::path& path, const std::vector<HitRow>
 
 /// Rays to trace, in file order: a header and at least the first ten columns; of further ones only `flags` is
 /// read, so that a hits.csv can be read too. The tag's path is the row's number. Throws a ConfigError with the
-/// positions of the first problems, and FileError when the file cannot be read.
+/// positions of the first problems, of which more than `most` rays is one, and FileError when the file cannot be read.
+inline constexpr std::size_t kMostRays = 100'000'000;
 RayBatch read_rays_csv(const std::filesystem::path& path);
-RayBatch read_rays_csv(std::istream& in, const std::string& name);
+RayBatch read_rays_csv(std::istream& in, const std::string& name, std::size_t most = kMostRays);
 
 }  // namespace carousel::report

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/system/error.h"
+#include "core/text/line_reader.h"
 #include "report/csv/ray_csv.h"
 #include "report/csv/ray_csv_columns.h"
 
@@ -54,14 +55,17 @@ std::optional<float> read_float(std::string_view text) {
 
 class RayReader {
  public:
-  explicit RayReader(const std::string& name) : name_(name) {}
+  RayReader(const std::string& name, std::size_t most) : name_(name), most_(most) {}
 
   RayBatch read(std::istream& in) {
-    std::string line;
-    for (line_ = 1; std::getline(in, line) && issues_.size() < kMostIssues; ++line_) {
-      if (!line.empty() && line.back() == '\r') line.pop_back();
-      if (line.size() > kLongestLine) {
-        issue(0, "expected a line of CSV, found one of " + std::to_string(line.size()) + " bytes");
+    LineReader lines(in, kLongestLine);
+    for (line_ = 1; issues_.size() < kMostIssues && lines.next(); ++line_) {
+      const std::string& line = lines.line();
+      if (lines.too_long()) {
+        issue(0, fmt::format("expected a line of CSV, found one of more than {} bytes", kLongestLine));
+      } else if (rays_.size() == most_) {
+        issue(0, fmt::format("expected at most {} rays, found more", most_));
+        break;
       } else if (line_ == 1) {
         read_header(line);
         if (!issues_.empty()) break;  // the rest would only repeat it
@@ -164,6 +168,7 @@ class RayReader {
   }
 
   const std::string& name_;
+  const std::size_t most_;
   int line_ = 1;
   std::size_t flags_ = kNowhere;  // the cell of the flags
   RayBatch rays_;
@@ -172,8 +177,8 @@ class RayReader {
 
 }  // namespace
 
-RayBatch read_rays_csv(std::istream& in, const std::string& name) {
-  return RayReader(name).read(in);
+RayBatch read_rays_csv(std::istream& in, const std::string& name, std::size_t most) {
+  return RayReader(name, most).read(in);
 }
 
 RayBatch read_rays_csv(const std::filesystem::path& path) {

@@ -50,6 +50,18 @@ HitRow row(std::uint32_t pixel, std::uint32_t sample, RayKind kind, std::uint8_t
   return out;
 }
 
+TEST(RayCsv, ListsHaveABound) {
+  const std::string ray = "0,camera,0,0,0,0,0,1,0,inf\n";
+  std::istringstream enough(kHeader + ray + ray), more(kHeader + ray + ray + ray);
+  EXPECT_EQ(read_rays_csv(enough, "r.csv", 2).size(), 2u);
+  try {
+    read_rays_csv(more, "r.csv", 2);
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.issues().at(0).text(), "r.csv:4: expected at most 2 rays, found more");
+  }
+}
+
 TEST(RayCsv, WritesTheColumnsOfTheContract) {
   const auto path = temporary("hits.csv");
   write_hits_csv(path, {row(0, 0, RayKind::kCamera, 0, true), row(0, 0, RayKind::kBounce, 1, false),
