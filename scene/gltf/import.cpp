@@ -5,11 +5,14 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "core/system/error.h"
+#include "core/system/memory_budget.h"
 #include "core/system/plain_text.h"
+#include "scene/gltf/bounded_import.h"
 #include "scene/gltf/buffers/accessor.h"
 #include "scene/gltf/buffers/buffers.h"
 #include "scene/gltf/buffers/draco.h"
@@ -52,7 +55,7 @@ void read_used_meshes(MeshReader& reader, DracoReader& draco, tinygltf::Model& m
 }
 
 Scene import(std::span<const std::byte> bytes, const std::string& file, std::optional<std::filesystem::path> folder,
-             const WarningSink& warn, const ImageChoice& choice) {
+             const WarningSink& warn, const ImageChoice& choice, MemoryBudget& memory) {
   GltfDocument document = parse_document(bytes, file);
   check_extensions(document, warn);
   check_schema(document, warn);
@@ -61,13 +64,12 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
   const std::vector<std::size_t> images = read_materials(document, scene, warn);
   scene.added.material = true;
   const MaterialId default_material(static_cast<std::uint32_t>(scene.materials.size() - 1));
-  const GltfResources resources(document, std::move(folder));
+  const ImportBudget budget(document, memory);
+  const GltfResources resources(document, budget, std::move(folder));
   GltfModel model = read_model(document, resources);
 
-  const std::map<std::size_t, Bytes> unpacked = decode_meshopt_views(document, model);
-  AccessorTable accessors(document, model, unpacked, warn);
-  ImportBudget budget(document, bytes.size() + model.bytes_read);
-  for (const auto& [view, decoded] : unpacked) budget.earn(decoded.size());
+  const std::map<std::size_t, Bytes> unpacked = decode_meshopt_views(document, model, budget);
+  AccessorTable accessors(document, model, unpacked, budget, warn);
   std::vector<Mesh> spheres = read_nodes(document, model.model, accessors, budget, default_material, warn, scene);
   MeshReader meshes(document, model.model, accessors, budget, default_material, warn);
   DracoReader draco(document, accessors, budget);
@@ -78,7 +80,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
   }
   const bool empty =
       std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
-  read_images(document, resources, model, images, choice, scene);
+  read_images(document, resources, model, budget, images, choice, scene);
   if (empty) {
     // Other faults come first: they may be why nothing is shown.
     for (std::size_t i = 0; i < model.model.meshes.size(); ++i) {
@@ -107,10 +109,24 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, cons
   std::ifstream stream(file, std::ios::binary);
   if (error || !stream) throw SceneError(name, "", "cannot be read");
   try {
+    MemoryBudget memory(MemoryBudget::of_process());
+    memory.take(size);
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw SceneError(name, "", "reading failed");
-    return import(bytes, name, file.parent_path(), warn, images);
+    return import(bytes, name, file.parent_path(), warn, images, memory);
+  } catch (const std::bad_alloc&) {
+    throw SceneError(name, "", "not enough memory to load it");
+  } catch (const std::length_error& too_much) {
+    throw SceneError(name, "", std::string("the file ") + too_much.what());
+  }
+}
+
+Scene load_gltf_within(std::uint64_t budget_bytes, std::span<const std::byte> bytes, const std::string& name,
+                       const WarningSink& warn, const ImageChoice& images) {
+  try {
+    MemoryBudget memory(budget_bytes);
+    return import(bytes, name, std::nullopt, warn, images, memory);
   } catch (const std::bad_alloc&) {
     throw SceneError(name, "", "not enough memory to load it");
   }
@@ -118,11 +134,7 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, cons
 
 Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name, const WarningSink& warn,
                             const ImageChoice& images) {
-  try {
-    return import(bytes, name, std::nullopt, warn, images);
-  } catch (const std::bad_alloc&) {
-    throw SceneError(name, "", "not enough memory to load it");
-  }
+  return load_gltf_within(MemoryBudget::of_process(), bytes, name, warn, images);
 }
 
 }  // namespace carousel::scene

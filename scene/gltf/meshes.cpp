@@ -21,6 +21,11 @@ struct MeshReader::Attributes {
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uv0, uv1;
   std::vector<Vec4> colors;
+
+  std::uint64_t bytes() const {
+    return (positions.size() + normals.size()) * sizeof(Vec3) + (uv0.size() + uv1.size()) * sizeof(Vec2) +
+           colors.size() * sizeof(Vec4);
+  }
 };
 
 namespace {
@@ -105,10 +110,11 @@ struct MeshReader::Cache {
   std::map<std::string, int> key;
   std::array<bool, 2> reads{};  ///< the material's sets of texture coordinates
   Attributes attributes;
+  MemoryBudget::Loan loan;  ///< for the attributes
 };
 
 MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                       ImportBudget& budget, MaterialId default_material, WarningSink warn)
+                       const ImportBudget& budget, MaterialId default_material, WarningSink warn)
     : document_(document),
       model_(model),
       accessors_(accessors),
@@ -125,7 +131,10 @@ const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitiv
   const std::array reads{material && reads_tex_coords(*material, 0), material && reads_tex_coords(*material, 1)};
   if (cache_->key != primitive.attributes || cache_->reads != reads) {
     cache_->key.clear();
+    cache_->attributes = {};
+    cache_->loan = {};
     cache_->attributes = read_attributes(primitive, path, reads);
+    cache_->loan = budget_.lend(cache_->attributes.bytes(), path, "the primitive");
     cache_->key = primitive.attributes;
     cache_->reads = reads;
   }
@@ -179,8 +188,13 @@ MeshReader::Attributes MeshReader::read_attributes(const tinygltf::Primitive& pr
   return out;
 }
 
-void MeshReader::add_vertices(Mesh& mesh, const Attributes& more) {
+void MeshReader::add_vertices(Mesh& mesh, const Attributes& more, std::uint64_t& taken, const std::string& path) const {
   const std::size_t before = mesh.positions.size(), after = before + more.positions.size();
+  const auto width = [](const auto& a, const auto& b) { return a.empty() && b.empty() ? 0 : sizeof a[0]; };
+  const std::uint64_t bytes = after * (sizeof(Vec3) + width(mesh.normals, more.normals) + width(mesh.uv0, more.uv0) +
+                                       width(mesh.uv1, more.uv1) + width(mesh.colors, more.colors));
+  budget_.take(bytes - taken, path, "the mesh of " + std::to_string(after) + " vertices");
+  taken = bytes;
   mesh.positions.insert(mesh.positions.end(), more.positions.begin(), more.positions.end());
   append(mesh.normals, more.normals, before, after, Vec3(0, 0, 1));
   append(mesh.uv0, more.uv0, before, after, Vec2(0));
@@ -193,11 +207,17 @@ std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive&
   std::vector<std::uint32_t> order;
   const bool indexed = primitive.indices >= 0;
   const std::string where = indexed ? json_path(path, "indices") : json_path(json_path(path, "attributes"), "POSITION");
+  // A triangle has three indices, which are here and then in the mesh, and a material.
+  const auto take = [&](std::uint64_t corners) {
+    const std::uint64_t triangles = primitive.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : corners;
+    budget_.take(triangles * (2 * 3 * sizeof(std::uint32_t) + sizeof(MaterialId)), where,
+                 std::to_string(triangles) + " triangles: the primitive");
+  };
   if (indexed) {
     const auto accessor = static_cast<std::size_t>(primitive.indices);
     accessors_.check_use(accessor, AccessorUse::kIndices, where);
-    budget_.spend(accessors_.count(accessor), where);
-    order = accessors_.integers(accessor);
+    take(accessors_.count(accessor));
+    order = accessors_.integers(accessor, where);
     for (std::size_t i = 0; i < order.size(); ++i) {
       if (order[i] >= vertices) {
         document_.fail(where, "index " + std::to_string(order[i]) + " at position " + std::to_string(i) +
@@ -205,7 +225,7 @@ std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive&
       }
     }
   } else {
-    budget_.spend(vertices, where);
+    take(vertices);
     order.resize(static_cast<std::size_t>(vertices));
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
   }
@@ -224,6 +244,7 @@ Mesh MeshReader::read(std::size_t index) {
   };
   const bool any_normals = std::ranges::any_of(
       source.primitives, [&](const tinygltf::Primitive& p) { return usable(p) && p.attributes.contains("NORMAL"); });
+  std::uint64_t taken = 0;
   std::map<std::map<std::string, int>, std::uint32_t> bases;  // first vertex of those taken as a whole
   for (std::size_t p = 0; p < source.primitives.size(); ++p) {
     const tinygltf::Primitive& primitive = source.primitives[p];
@@ -237,26 +258,27 @@ Mesh MeshReader::read(std::size_t index) {
     const std::size_t before = mesh.positions.size();
     std::uint32_t base = static_cast<std::uint32_t>(before);
     if (any_normals && whole.normals.empty()) {  // flat: every corner a vertex of its own
-      budget_.spend(triangles.size(), path);
+      const auto loan =
+          budget_.lend(triangles.size() / std::max<std::size_t>(whole.positions.size(), 1) * whole.bytes() +
+                           triangles.size() * sizeof(Vec3),
+                       path, "the primitive");
       Attributes flat = picked(whole, triangles);
       std::iota(triangles.begin(), triangles.end(), 0u);
       for (std::size_t t = 0; t < triangles.size(); t += 3) {
         const Vec3 n = unit(face_normal(flat.positions, &triangles[t])).value_or(Vec3(0, 0, 1));
         flat.normals.insert(flat.normals.end(), 3, n);
       }
-      add_vertices(mesh, flat);
+      add_vertices(mesh, flat, taken, path);
     } else if (whole.positions.size() / 2 > triangles.size()) {  // a few out of many: only those it uses
       std::vector<std::uint32_t> used = triangles;
       std::ranges::sort(used);
       used.erase(std::unique(used.begin(), used.end()), used.end());
-      budget_.spend(used.size(), path);
       for (std::uint32_t& v : triangles) {
         v = static_cast<std::uint32_t>(std::ranges::lower_bound(used, v) - used.begin());
       }
-      add_vertices(mesh, picked(whole, used));
+      add_vertices(mesh, picked(whole, used), taken, path);
     } else if (const auto [entry, fresh] = bases.try_emplace(primitive.attributes, base); fresh) {
-      budget_.spend(whole.positions.size(), path);
-      add_vertices(mesh, whole);
+      add_vertices(mesh, whole, taken, path);
     } else {
       base = entry->second;
     }

@@ -18,7 +18,7 @@ class MeshReader {
  public:
   /// `default_material` is the material of primitives that name none.
   MeshReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-             ImportBudget& budget, MaterialId default_material, WarningSink warn);
+             const ImportBudget& budget, MaterialId default_material, WarningSink warn);
   ~MeshReader();
 
   /// The triangles of all primitives in order; strips and fans become lists. Primitives with the same
@@ -41,12 +41,13 @@ class MeshReader {
   std::vector<std::uint32_t> read_triangles(const tinygltf::Primitive& primitive, std::uint64_t vertices,
                                             const std::string& path);
   static Attributes picked(const Attributes& from, const std::vector<std::uint32_t>& vertices);
-  static void add_vertices(Mesh& mesh, const Attributes& more);
+  /// Appends vertices. `taken`: the bytes of the mesh's vertices so far, as the budget knows them.
+  void add_vertices(Mesh& mesh, const Attributes& more, std::uint64_t& taken, const std::string& path) const;
 
   const GltfDocument& document_;
   const tinygltf::Model& model_;
   const AccessorTable& accessors_;
-  ImportBudget& budget_;
+  const ImportBudget& budget_;
   MaterialId default_material_;
   WarningSink warn_;
   std::unique_ptr<Cache> cache_;

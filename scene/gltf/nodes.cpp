@@ -17,10 +17,13 @@ Vec3 color_of(const std::vector<double>& color) {
   return Vec3(DVec3(std::max(color[0], 0.0), std::max(color[1], 0.0), std::max(color[2], 0.0)));
 }
 
+/// An instance, its place in its group, and what vectors keep free while they grow.
+constexpr std::uint64_t kBytesPerInstance = 2 * (sizeof(Instance) + sizeof(Group::Member));
+
 class NodeReader {
  public:
   NodeReader(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-             ImportBudget& budget, MaterialId default_material, const WarningSink& warn, Scene& scene)
+             const ImportBudget& budget, MaterialId default_material, const WarningSink& warn, Scene& scene)
       : document_(document),
         model_(model),
         accessors_(accessors),
@@ -94,7 +97,7 @@ class NodeReader {
   void add_instances(const tinygltf::Node& node, MeshId mesh, const DMat4& world, const std::string& path) {
     const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
     if (extension == node.extensions.end()) {
-      budget_.spend(1, path);
+      budget_.take(kBytesPerInstance, path, "the instance");
       hierarchy_.add_own(DMat4(1));
       add_instance(mesh, world, path);
       return;
@@ -112,7 +115,7 @@ class NodeReader {
       count = accessors_.count(accessor);
     }
     if (!count) document_.fail(where, "expected at least one attribute");
-    budget_.spend(*count, where);
+    budget_.take(*count * kBytesPerInstance, where, "the node asks for " + std::to_string(*count) + " elements, and");
     const auto read = [&](const char* name, AccessorUse use) -> std::vector<float> {
       if (!attributes.Has(name)) return {};
       const auto accessor = static_cast<std::size_t>(attributes.Get(name).GetNumberAsInt());
@@ -203,7 +206,7 @@ class NodeReader {
   const GltfDocument& document_;
   const tinygltf::Model& model_;
   const AccessorTable& accessors_;
-  ImportBudget& budget_;
+  const ImportBudget& budget_;
   const MaterialId default_material_;
   const WarningSink& warn_;
   Scene& scene_;
@@ -227,7 +230,8 @@ std::vector<int> all_roots(const tinygltf::Model& model) {
 }  // namespace
 
 std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                             ImportBudget& budget, MaterialId default_material, const WarningSink& warn, Scene& scene) {
+                             const ImportBudget& budget, MaterialId default_material, const WarningSink& warn,
+                             Scene& scene) {
   NodeReader reader(document, model, accessors, budget, default_material, warn, scene);
   if (model.scenes.empty()) {
     reader.walk(all_roots(model));

@@ -19,6 +19,7 @@ namespace carousel::scene {
 /// direction is left out with a warning.
 /// Throws SceneError for transforms that cannot be used and for bad EXT_mesh_gpu_instancing attributes.
 std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                             ImportBudget& budget, MaterialId default_material, const WarningSink& warn, Scene& scene);
+                             const ImportBudget& budget, MaterialId default_material, const WarningSink& warn,
+                             Scene& scene);
 
 }  // namespace carousel::scene

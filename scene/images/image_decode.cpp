@@ -14,9 +14,9 @@ namespace carousel::scene {
 
 namespace {
 
-constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
-/// Deflate packs at most 1032:1, and a PNG byte holds at most 8 pixels; JPEG and pictures worth a WebP stay far below.
-constexpr std::uint64_t kMostPixelsPerByte = 8 * 1032;
+/// What a decoder keeps beside the picture while it works, for each pixel: libwebp a second picture and its transforms,
+/// libjpeg-turbo the coefficients of a progressive file (16 bits of each of up to four components).
+constexpr std::uint64_t kBytesPerPixel = 4, kWorkPerPixel = 8;
 
 enum class Format { kNone, kPng, kJpeg, kWebp };
 
@@ -30,20 +30,19 @@ Format format_of(std::span<const unsigned char> bytes) {
   return Format::kNone;
 }
 
-/// Before anything is allocated.
-void check_size(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
-  const std::string size = std::to_string(width) + " x " + std::to_string(height);
-  if (width * height > kMostPixels) throw std::runtime_error(size + " pixels; at most 67108864 in all are read");
-  if (width * height > kMostPixelsPerByte * bytes) {
-    throw std::runtime_error(size + " pixels announced in only " + std::to_string(bytes) + " bytes");
-  }
-}
-
 }  // namespace
 
-Image decode_image(std::span<const unsigned char> encoded) {
+Image decode_image(std::span<const unsigned char> encoded, MemoryBudget& memory) {
+  MemoryBudget::Loan work;
   const auto checked = [&](const auto& header) {
-    check_size(header.width, header.height, encoded.size());
+    const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
+    try {
+      work = memory.lend(pixels * kWorkPerPixel);
+      memory.take(pixels * kBytesPerPixel);
+    } catch (const std::length_error& error) {
+      throw std::length_error("of " + std::to_string(header.width) + " x " + std::to_string(header.height) +
+                              " pixels " + error.what());
+    }
     return header;
   };
   switch (format_of(encoded)) {

@@ -47,7 +47,8 @@ std::optional<PagePicture> page_picture(const std::filesystem::path& png) {
 
   scene::Image picture;
   try {
-    picture = scene::decode_image({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
+    MemoryBudget memory(MemoryBudget::of_process());
+    picture = scene::decode_image({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()}, memory);
   } catch (const std::exception&) {
     return std::nullopt;
   }

@@ -5,11 +5,11 @@
 #include <span>
 
 #include "core/system/error.h"
-#include "scene/gltf/import.h"
+#include "scene/gltf/bounded_import.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    carousel::scene::load_gltf_from_memory(std::as_bytes(std::span(data, size)), "fuzz");
+    carousel::scene::load_gltf_within(std::uint64_t{512} << 20, std::as_bytes(std::span(data, size)), "fuzz");
   } catch (const carousel::SceneError&) {
     // The only exception allowed; any other ends the process and is reported.
   }

@@ -101,8 +101,9 @@ std::span<const unsigned char> bytes_of(const Json& view, const GltfModel& model
 }  // namespace
 
 AccessorTable::AccessorTable(const GltfDocument& document, const GltfModel& model,
-                             const std::map<std::size_t, Bytes>& unpacked, const WarningSink& warn)
-    : document_(document) {
+                             const std::map<std::size_t, Bytes>& unpacked, const ImportBudget& budget,
+                             const WarningSink& warn)
+    : document_(document), budget_(budget) {
   const Json& json = document.json;
   const std::size_t views = json.contains("bufferViews") ? json["bufferViews"].size() : 0;
   for (std::size_t i = 0; i < views; ++i) {
@@ -218,10 +219,18 @@ std::vector<std::uint32_t> AccessorTable::sparse_indices(std::size_t index) cons
 }
 
 template <class T, class Convert>
-std::vector<T> AccessorTable::read(std::size_t index, const Convert& convert) const {
+std::vector<T> AccessorTable::read(std::size_t index, const std::string& path, const Convert& convert) const {
   const Accessor& accessor = accessors_[index];
   const auto width = static_cast<std::size_t>(accessor.components);
   const std::size_t size = size_of(accessor.component);
+  // The caller makes vectors of the numbers, and then forgets these.
+  const auto loan = budget_.lend(2 * accessor.count * width * sizeof(T), path,
+                                 "accessor " + std::to_string(index) + " asks for " + std::to_string(accessor.count) +
+                                     " elements and " + "stores " +
+                                     std::to_string(accessor.base     ? accessor.count
+                                                    : accessor.sparse ? accessor.sparse->count
+                                                                      : 0) +
+                                     ", and");
   std::vector<T> out(static_cast<std::size_t>(accessor.count) * width);  // zero where there is no base
   const auto put = [&](const Strided& where, std::uint64_t from, std::size_t to) {
     const unsigned char* at = where.first + where.stride * static_cast<std::size_t>(from);
@@ -238,7 +247,7 @@ std::vector<T> AccessorTable::read(std::size_t index, const Convert& convert) co
 }
 
 std::vector<float> AccessorTable::floats(std::size_t index, const std::string& path) const {
-  std::vector<float> out = read<float>(index, [](const unsigned char* from, const Accessor& accessor) {
+  std::vector<float> out = read<float>(index, path, [](const unsigned char* from, const Accessor& accessor) {
     return to_float(from, accessor.component, accessor.normalized);
   });
   const auto bad = std::ranges::find_if(out, [](float v) { return !std::isfinite(v); });
@@ -252,9 +261,10 @@ std::vector<float> AccessorTable::floats(std::size_t index, const std::string& p
   return out;
 }
 
-std::vector<std::uint32_t> AccessorTable::integers(std::size_t index) const {
-  return read<std::uint32_t>(
-      index, [](const unsigned char* from, const Accessor& accessor) { return to_integer(from, accessor.component); });
+std::vector<std::uint32_t> AccessorTable::integers(std::size_t index, const std::string& path) const {
+  return read<std::uint32_t>(index, path, [](const unsigned char* from, const Accessor& accessor) {
+    return to_integer(from, accessor.component);
+  });
 }
 
 }  // namespace carousel::scene

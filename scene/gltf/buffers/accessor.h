@@ -46,7 +46,7 @@ class AccessorTable {
   /// warns instead. `unpacked` holds the bytes of buffer views that were compressed. All arguments must outlive the
   /// table.
   AccessorTable(const GltfDocument& document, const GltfModel& model, const std::map<std::size_t, Bytes>& unpacked,
-                const WarningSink& warn);
+                const ImportBudget& budget, const WarningSink& warn);
 
   /// From here on the accessor reads `bytes`: its elements one after the other, of its own type. The position of its
   /// data in the file is forgotten.
@@ -73,11 +73,11 @@ class AccessorTable {
   std::span<const unsigned char> view(std::size_t index) const { return views_[index]; }
 
   /// All elements, count * components floats; normalised integers become -1..1 or 0..1, exactly rounded.
-  /// Throws SceneError at `path` for the first one that is not finite, and at the accessor for bad sparse
-  /// indices.
+  /// Throws SceneError at `path` for the first one that is not finite and for more elements than the import's memory
+  /// holds, and at the accessor for bad sparse indices.
   std::vector<float> floats(std::size_t accessor, const std::string& path) const;
-  /// All elements of a scalar integer accessor.
-  std::vector<std::uint32_t> integers(std::size_t accessor) const;
+  /// All elements of a scalar integer accessor. Throws SceneError at `path` as floats() does.
+  std::vector<std::uint32_t> integers(std::size_t accessor, const std::string& path) const;
 
  private:
   /// Elements `stride` bytes apart; null if the data is not in the file.
@@ -107,9 +107,10 @@ class AccessorTable {
                  const std::string& path) const;
   std::vector<std::uint32_t> sparse_indices(std::size_t accessor) const;
   template <class T, class Convert>
-  std::vector<T> read(std::size_t accessor, const Convert& convert) const;
+  std::vector<T> read(std::size_t accessor, const std::string& path, const Convert& convert) const;
 
   const GltfDocument& document_;
+  const ImportBudget& budget_;
   std::vector<std::span<const unsigned char>> views_;  ///< one a buffer view; empty: without data
   std::deque<Bytes> replacements_;
   std::vector<Accessor> accessors_;

@@ -77,12 +77,6 @@ void AccessorTable::check_type(std::size_t index, AccessorUse use, const std::st
 void AccessorTable::check_use(std::size_t index, AccessorUse use, const std::string& path) const {
   check_type(index, use, path);
   const Accessor& accessor = accessors_[index];
-  // Zeros need no bytes in the file, so only this check bounds their number.
-  const std::uint64_t stored = accessor.sparse ? accessor.sparse->count : 0;
-  if (!accessor.base && accessor.count > 65536 + 1024 * stored) {
-    document_.fail(path, "accessor " + std::to_string(index) + " asks for " + std::to_string(accessor.count) +
-                             " elements and stores " + std::to_string(stored));
-  }
   for (const std::size_t view : accessor.views) {
     if (views_[view].empty()) {
       document_.fail(path, "the data of accessor " + std::to_string(index) + " is not in the file: buffer " +

@@ -86,6 +86,7 @@ std::optional<Bytes> GltfResources::buffer(std::size_t index) const {
     document_.fail(json_path(path, "byteLength"),
                    std::to_string(length) + " bytes are announced, the data has " + std::to_string(bytes.size()));
   }
+  budget_.take(bytes.size(), path, "the buffer");
   return bytes;
 }
 
@@ -102,6 +103,7 @@ Bytes GltfResources::read_uri(const std::string& uri, const std::string& path, s
   if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64")) {
     document_.fail(path, "expected a data: URI in base64");
   }
+  const auto loan = budget_.lend(std::min<std::uint64_t>(uri.size() / 4 * 3, most_bytes), path, "the data");
   std::optional<Bytes> bytes = decode_base64(std::string_view(uri).substr(comma + 1), most_bytes);
   if (!bytes) document_.fail(path, "the data: URI is not proper base64");
   return std::move(*bytes);
@@ -129,6 +131,7 @@ Bytes GltfResources::read_file(const std::string& uri, const std::string& path, 
   const std::uintmax_t size = std::filesystem::file_size(full, error);
   std::ifstream stream(full, std::ios::binary);
   if (error || !stream) document_.fail(path, "'" + shown(uri) + "': cannot be read");
+  const auto loan = budget_.lend(std::min<std::uintmax_t>(size, most_bytes), path, "the file");
   Bytes bytes(static_cast<std::size_t>(std::min<std::uintmax_t>(size, most_bytes)));
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (static_cast<std::size_t>(stream.gcount()) != bytes.size())

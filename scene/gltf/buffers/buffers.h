@@ -18,11 +18,11 @@ class GltfResources {
  public:
   /// `folder` is where relative paths start; absent for a scene from memory, which then must embed
   /// everything.
-  GltfResources(const GltfDocument& document, std::optional<std::filesystem::path> folder)
-      : document_(document), folder_(std::move(folder)) {}
+  GltfResources(const GltfDocument& document, const ImportBudget& budget, std::optional<std::filesystem::path> folder)
+      : document_(document), budget_(budget), folder_(std::move(folder)) {}
 
   /// Exactly byteLength bytes, or none for a buffer without data (as compression extensions allow).
-  /// Throws SceneError when the data cannot be found or is too short.
+  /// Throws SceneError when the data cannot be found, is too short, or exceeds the import's memory.
   std::optional<Bytes> buffer(std::size_t index) const;
   /// The encoded bytes of an image that has a `uri`.
   Bytes image(std::size_t index) const;
@@ -32,6 +32,7 @@ class GltfResources {
   Bytes read_file(const std::string& uri, const std::string& path, std::uint64_t most_bytes) const;
 
   const GltfDocument& document_;
+  const ImportBudget& budget_;
   std::optional<std::filesystem::path> folder_;
 };
 

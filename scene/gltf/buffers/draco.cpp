@@ -22,8 +22,9 @@ namespace carousel::scene {
 namespace {
 
 constexpr std::int64_t kIndices = -1;
-/// Most triangles per byte: real meshes need at least a quarter of a byte per triangle.
-constexpr std::uint64_t kMostPerByte = 64, kAlwaysAllowed = 4096;
+/// The memory that the decoder takes for connectivity, measured at its peak (docs/gltf.md), and for each component of
+/// an attribute: the decoded integer, the value and its copy.
+constexpr std::uint64_t kBytesPerFace = 100, kBytesPerVertex = 80, kBytesPerComponent = 12;
 
 using Stream = std::span<const unsigned char>;
 
@@ -53,17 +54,17 @@ std::optional<Announced> announced(Stream bytes) {
   return out;
 }
 
-std::unique_ptr<draco::Mesh> decode_stream(const GltfDocument& document, Stream bytes, const std::string& path) {
+/// `components` are those of all attributes that are wanted of the stream.
+std::unique_ptr<draco::Mesh> decode_stream(const GltfDocument& document, const ImportBudget& budget,
+                                           std::uint64_t components, Stream bytes, const std::string& path) {
   const auto broken = [&](const std::string& why) { document.fail(path, "the compressed data is broken: " + why); };
   try {
     const auto counts = announced(bytes);
     if (!counts) broken("not a mesh of Draco bitstream 2.2");
-    const std::uint64_t most = kAlwaysAllowed + kMostPerByte * bytes.size();
-    if (counts->faces > most || counts->vertices > most) {
-      document.fail(path, "announces " + std::to_string(counts->faces) + " triangles and " +
-                              std::to_string(counts->vertices) + " vertices in only " + std::to_string(bytes.size()) +
-                              " bytes");
-    }
+    const auto loan = budget.lend(
+        counts->faces * kBytesPerFace + counts->vertices * (kBytesPerVertex + components * kBytesPerComponent), path,
+        "the stream announces " + std::to_string(counts->faces) + " triangles and " + std::to_string(counts->vertices) +
+            " vertices, and");
     draco::DecoderBuffer in;
     in.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto result = draco::Decoder().DecodeMeshFromBuffer(&in);
@@ -130,7 +131,7 @@ bool copy_indices(const draco::Mesh& from, Component component, Bytes& out) {
 
 }  // namespace
 
-DracoReader::DracoReader(const GltfDocument& document, AccessorTable& accessors, ImportBudget& budget)
+DracoReader::DracoReader(const GltfDocument& document, AccessorTable& accessors, const ImportBudget& budget)
     : document_(document),
       accessors_(accessors),
       budget_(budget),
@@ -196,7 +197,10 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
 
   const Stream bytes = accessors_.view(view);
   if (bytes.empty()) document_.fail(json_path(where, "bufferView"), "the buffer holds no data");
-  const std::unique_ptr<draco::Mesh> mesh = decode_stream(document_, bytes, where);
+  std::uint64_t components = 0;
+  for (const Target& target : targets)
+    if (target.id != kIndices) components += static_cast<std::uint64_t>(accessors_.components(target.accessor));
+  const std::unique_ptr<draco::Mesh> mesh = decode_stream(document_, budget_, components, bytes, where);
   for (const Target& target : targets) {
     const bool indices = target.id == kIndices;
     const std::size_t found = indices ? std::size_t{mesh->num_faces()} * 3 : mesh->num_points();
@@ -207,6 +211,7 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
     }
     const Component component = accessors_.component(target.accessor);
     const int width = accessors_.components(target.accessor);
+    budget_.take(found * static_cast<std::uint64_t>(width) * size_of(component), target.path, name);
     Bytes data;
     if (indices) {
       accessors_.check_type(target.accessor, AccessorUse::kIndices, target.path);
@@ -229,7 +234,6 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
                        "the compressed data does not fit " + std::string(name_of(component)) + " elements");
       }
     }
-    budget_.earn(data.size());
     accessors_.replace(target.accessor, std::move(data));
   }
 }

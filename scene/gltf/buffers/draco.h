@@ -16,11 +16,11 @@ namespace carousel::scene {
 class DracoReader {
  public:
   /// Keeps references to all arguments.
-  DracoReader(const GltfDocument& document, AccessorTable& accessors, ImportBudget& budget);
+  DracoReader(const GltfDocument& document, AccessorTable& accessors, const ImportBudget& budget);
 
   /// Gives the accessors of the mesh's compressed primitives their data; call before the mesh is read. A primitive
   /// whose accessors all have data of their own (a fallback) is left as it is where the extension is optional. Throws
-  /// SceneError for streams that are broken, declare more triangles or vertices than so few bytes can hold (before
+  /// SceneError for streams that are broken, announce more than the memory of the import holds (before
   /// anything is allocated for them), hold other numbers of elements than the accessors say, or lack an attribute. Some
   /// writers name one accessor for several attributes of a stream (two sets of texture coordinates): each then gets an
   /// accessor of its own, and `attributes` of tinygltf's primitive is changed to name it.
@@ -34,7 +34,7 @@ class DracoReader {
 
   const GltfDocument& document_;
   AccessorTable& accessors_;
-  ImportBudget& budget_;
+  const ImportBudget& budget_;
   const bool required_;                    ///< the file requires the extension
   std::map<std::size_t, Source> sources_;  ///< of an accessor's data
   /// The accessors that stand for one of the file whose data has another source.

@@ -13,10 +13,6 @@ namespace carousel::scene {
 
 namespace {
 
-/// Most output bytes of one input byte: 16 bytes of an attribute need at least the 2 bits of their header, the 12 bytes
-/// of a triangle at least one byte, the 4 bytes of an index at least one.
-constexpr std::uint64_t kMostPacking = 64;
-
 class MeshoptView {
  public:
   /// `extension` is one of kMeshoptExtensions.
@@ -32,12 +28,10 @@ class MeshoptView {
         mode_(extension_["mode"].get<std::string>()),
         filter_(extension_.value("filter", "NONE")) {}
 
-  Bytes decode(const GltfModel& model) const {
+  Bytes decode(const GltfModel& model, const ImportBudget& budget) const {
     check_parameters();
     const std::span<const unsigned char> packed = source(model);
-    if (length_ / kMostPacking > packed.size()) {
-      fail("count", std::to_string(length_) + " bytes cannot come out of " + std::to_string(packed.size()));
-    }
+    budget.take(length_, json_path(path_, "count"), std::to_string(count_) + " elements: the view");
     Bytes out(static_cast<std::size_t>(length_));
     const auto count = static_cast<std::size_t>(count_), stride = static_cast<std::size_t>(stride_);
     const bool attributes_v1 = mode_ == "ATTRIBUTES" && may_be_v1_ && is_attributes_v1(packed);
@@ -108,7 +102,8 @@ class MeshoptView {
 
 }  // namespace
 
-std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, const GltfModel& model) {
+std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, const GltfModel& model,
+                                                  const ImportBudget& budget) {
   std::map<std::size_t, Bytes> out;
   if (!document.json.contains("bufferViews")) return out;
   const Json& views = document.json["bufferViews"];
@@ -117,7 +112,7 @@ std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, 
     for (const char* extension : kMeshoptExtensions) {
       if (!views[i].contains("extensions") || !views[i]["extensions"].contains(extension)) continue;
       if (out.contains(i)) document.fail(json_path(path + "/extensions", extension), "the view has both names of it");
-      out.emplace(i, MeshoptView(document, views[i], path, extension).decode(model));
+      out.emplace(i, MeshoptView(document, views[i], path, extension).decode(model, budget));
     }
   }
   return out;

@@ -15,7 +15,8 @@ inline constexpr std::array<const char*, 2> kMeshoptExtensions{"EXT_meshopt_comp
 
 /// Unpacks both meshopt extensions, filters included: byteLength bytes for each buffer view with the extension, by
 /// index of the view. Throws SceneError for a view with both, for parameters that the extension forbids, for data that
-/// ends early or is broken, and, before anything is allocated, for sizes larger than such data can hold.
-std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, const GltfModel& model);
+/// ends early or is broken, and, before anything is allocated, for sizes beyond the import's memory.
+std::map<std::size_t, Bytes> decode_meshopt_views(const GltfDocument& document, const GltfModel& model,
+                                                  const ImportBudget& budget);
 
 }  // namespace carousel::scene

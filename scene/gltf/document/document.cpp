@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 #include <vector>
 
 #include "core/system/error.h"
@@ -159,12 +160,20 @@ bool lists_extension(const GltfDocument& document, const char* list, const char*
   return entry != document.json.end() && std::ranges::find(*entry, Json(extension)) != entry->end();
 }
 
-void ImportBudget::spend(std::uint64_t elements, const std::string& path) {
-  if (elements > left_) {
-    document_.fail(path,
-                   "asks for " + std::to_string(elements) + " elements, more than a file of this size can justify");
+MemoryBudget::Loan ImportBudget::lend(std::uint64_t bytes, const std::string& path, const std::string& what) const {
+  try {
+    return memory_.lend(bytes);
+  } catch (const std::length_error& error) {
+    document_.fail(path, what + " " + error.what());
   }
-  left_ -= elements;
+}
+
+void ImportBudget::take(std::uint64_t bytes, const std::string& path, const std::string& what) const {
+  try {
+    memory_.take(bytes);
+  } catch (const std::length_error& error) {
+    document_.fail(path, what + " " + error.what());
+  }
 }
 
 GltfDocument parse_document(std::span<const std::byte> bytes, const std::string& file) {

@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/system/memory_budget.h"
+
 namespace carousel::scene {
 
 using Json = nlohmann::json;
@@ -34,20 +36,23 @@ bool lists_extension(const GltfDocument& document, const char* list, const char*
 /// SceneError for a broken container, broken JSON, nesting beyond 128 levels or another glTF version.
 GltfDocument parse_document(std::span<const std::byte> bytes, const std::string& file);
 
-/// The limit of an import's size: vertices, triangles and instances count one each. With accessors without data or
-/// shared by many meshes a small file could request any amount of memory; no real file comes near the limit.
+/// The memory of an import, and the places in the file that ask for it. All that a file announces is asked for here
+/// before it is allocated: a few bytes may announce zeros by the billion.
 class ImportBudget {
  public:
-  ImportBudget(const GltfDocument& document, std::uint64_t bytes_read)
-      : document_(document), left_((std::uint64_t{1} << 20) + 16 * bytes_read) {}
-  /// Throws SceneError at `path` when more than the budget would be spent; call before allocating.
-  void spend(std::uint64_t elements, const std::string& path);
-  /// Raises the limit for bytes that were unpacked from compressed data.
-  void earn(std::uint64_t bytes) { left_ += 16 * bytes; }
+  /// Keeps references to both.
+  ImportBudget(const GltfDocument& document, MemoryBudget& memory) : document_(document), memory_(memory) {}
+
+  /// Takes bytes for the rest of the import. Throws a SceneError at `path` that begins with `what` ("the image") if
+  /// fewer are left.
+  void take(std::uint64_t bytes, const std::string& path, const std::string& what) const;
+  /// The same for as long as the result lives.
+  [[nodiscard]] MemoryBudget::Loan lend(std::uint64_t bytes, const std::string& path, const std::string& what) const;
+  MemoryBudget& memory() const { return memory_; }
 
  private:
   const GltfDocument& document_;
-  std::uint64_t left_;
+  MemoryBudget& memory_;
 };
 
 }  // namespace carousel::scene

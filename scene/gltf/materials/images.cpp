@@ -11,29 +11,33 @@ namespace carousel::scene {
 
 namespace {
 
-Image decode(const GltfDocument& document, std::size_t index, std::span<const unsigned char> encoded) {
+Image decode(const GltfDocument& document, const ImportBudget& budget, std::size_t index,
+             std::span<const unsigned char> encoded) {
   try {
-    return decode_image(encoded);
+    return decode_image(encoded, budget.memory());
   } catch (const std::runtime_error& e) {
     document.fail(json_path("/images", index), std::string("the image is ") + e.what());
+  } catch (const std::length_error& e) {
+    document.fail(json_path("/images", index), std::string("the image ") + e.what());
   }
 }
 
 Image read_image(const GltfDocument& document, const GltfResources& resources, const tinygltf::Model& model,
-                 std::size_t index) {
+                 const ImportBudget& budget, std::size_t index) {
   const Json& image = document.json["images"][index];
-  if (!image.contains("bufferView")) return decode(document, index, resources.image(index));
+  if (!image.contains("bufferView")) return decode(document, budget, index, resources.image(index));
   const tinygltf::BufferView& view = model.bufferViews[image["bufferView"].get<std::size_t>()];
   const std::span<const unsigned char> buffer = model.buffers[static_cast<std::size_t>(view.buffer)].data;
   if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
     document.fail(json_path(json_path("/images", index), "bufferView"), "lies beyond its buffer");
-  return decode(document, index, buffer.subspan(view.byteOffset, view.byteLength));
+  return decode(document, budget, index, buffer.subspan(view.byteOffset, view.byteLength));
 }
 
 }  // namespace
 
 void read_images(const GltfDocument& document, const GltfResources& resources, const GltfModel& model,
-                 const std::vector<std::size_t>& file_images, const ImageChoice& choice, Scene& scene) {
+                 const ImportBudget& budget, const std::vector<std::size_t>& file_images, const ImageChoice& choice,
+                 Scene& scene) {
   scene.images.resize(file_images.size());
   for (std::size_t i = 0; i < file_images.size(); ++i) {
     const Json& image = document.json["images"][file_images[i]];
@@ -44,7 +48,7 @@ void read_images(const GltfDocument& document, const GltfResources& resources, c
   for (std::size_t i = 0; i < file_images.size(); ++i) {
     if (!wanted.at(i)) continue;
     std::string name = std::move(scene.images[i].name);
-    scene.images[i] = read_image(document, resources, model.model, file_images[i]);
+    scene.images[i] = read_image(document, resources, model.model, budget, file_images[i]);
     scene.images[i].name = std::move(name);
   }
 }

@@ -14,6 +14,7 @@ namespace carousel::scene {
 /// decoded; the others keep a name and no pixels, whatever is wrong with them. Call when all else of the scene is
 /// there. Throws SceneError.
 void read_images(const GltfDocument& document, const GltfResources& resources, const GltfModel& model,
-                 const std::vector<std::size_t>& file_images, const ImageChoice& choice, Scene& scene);
+                 const ImportBudget& budget, const std::vector<std::size_t>& file_images, const ImageChoice& choice,
+                 Scene& scene);
 
 }  // namespace carousel::scene

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "scene/gltf/bounded_import.h"
 #include "tests/scene/gltf/gltf_builder.h"
 
 namespace carousel::scene {
@@ -174,7 +175,9 @@ TEST(GltfAccessor, RefusesManyMeshesThatMultiplyOneAccessor) {
   GltfBuilder b;
   const int positions = b.accessor(-1, 5126, 65535, "VEC3");  // all zero, no bytes
   for (int i = 0; i < 200; ++i) b.mesh({{"POSITION", positions}});
-  expect_refused(b, "/meshes/9/primitives/0", "more than a file of this size can justify");
+  // 20 bytes a vertex or more stay of each mesh.
+  expect_scene_error([&] { load_gltf_within(13 << 20, b.glb(), "x.glb"); },
+                     "/meshes/9/primitives/0/attributes/POSITION", "(engine.memory_limit_mib)");
 }
 
 TEST(GltfAccessor, RefusesSparseIndexBeyondTheCount) {
