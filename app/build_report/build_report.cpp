@@ -9,6 +9,7 @@
 #include "app/build_report/levels_section.h"
 #include "app/build_report/ring_sections.h"
 #include "app/build_report/series.h"
+#include "app/build_report/structure_levels.h"
 #include "app/host/machine_info.h"
 #include "app/host/program_info.h"
 #include "core/config/config.h"
@@ -60,6 +61,10 @@ report::Structure structure(const Prepared& p) {
   out.leaves = size.leaves;
   out.merged_meshes = p.accel.merged.count();
   out.surface_cost = size.surface_cost;
+  if (p.accel.partition) return out;
+  const ringbus::cycle::ShapeMemory memory(p.accel, p.config().accuracy, p.config().bvh);
+  out.bytes = memory.size_bytes();
+  out.levels = structure_levels(p.accel, memory);
   return out;
 }
 

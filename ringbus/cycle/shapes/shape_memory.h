@@ -88,6 +88,9 @@ class ShapeMemory {
     return {whole.address + std::min(before, whole.bytes - bytes), bytes};
   }
 
+  /// Of the whole structure, with the gaps that alignment leaves.
+  std::uint64_t size_bytes() const { return instances_at_ + accel_.instances.size() * instance_room_; }
+
   /// How many boxes of the node `key` the lanes select; at least one.
   std::uint32_t boxes(accel::NodeKey key, std::uint32_t lanes) const {
     const auto count = static_cast<std::uint32_t>(accel_.nodes[key.ref.node()].count);
