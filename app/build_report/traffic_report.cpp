@@ -34,13 +34,13 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
   out.routers_mean = result.routers_mean();
   out.zero_load_latency = result.zero_load_latency(config);
   out.latency = report::latency_of(result.latency);
-  std::uint64_t busy = 0, busiest = 0;
-  for (const ringbus::cycle::LinkUse& link : result.links) {
-    busy += link.use.busy;
-    busiest = std::max(busiest, link.use.busy);
+  const std::uint64_t window = result.window_end - result.window_begin;
+  std::uint64_t busiest = 0;
+  for (const std::uint64_t busy : result.busy_in_window) {
+    out.flit_hops += busy;  // a flit a cycle
+    busiest = std::max(busiest, busy);
   }
-  out.link_utilisation = {ratio(busy, result.cycles * result.links.size()), ratio(busiest, result.cycles)};
-  out.flit_hops = result.flit_hops();
+  out.link_utilisation = {ratio(out.flit_hops, window * result.links.size()), ratio(busiest, window)};
   return out;
 }
 
@@ -67,6 +67,7 @@ report::Report traffic_report(const Prepared& prepared, const ringbus::TrafficRe
   r.incomplete = !result.complete;
   r.carousel = program_info();
   r.config = config_json(config);
+  for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
   r.scene.name = "none";
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.cycles = result.cycles;

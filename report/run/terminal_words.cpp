@@ -280,7 +280,7 @@ std::vector<TerminalWord> words_of_traffic() {
       .item("N with nobody in the way, at N resources visited", "traffic.zero_load_latency");
   w.line("links")
       .item("N busy on average, N the busiest", "traffic.link_utilisation",
-            "part of the run's cycles in which links moved flits")
+            "part of the window's cycles in which links moved flits")
       .item("N flit-hops", "traffic.flit_hops");
   w.line("simulated").item("N cycles", "engine.cycles");
   w.line("host")

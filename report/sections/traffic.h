@@ -10,7 +10,7 @@ struct LinkUse {
 
 template <class V>
 void describe(V& v, const LinkUse& r) {
-  v.field("mean", r.mean, "fraction", "mean of all links, over the whole run");
+  v.field("mean", r.mean, "fraction", "mean of all links");
   v.field("max", r.max, "fraction", "utilisation of the busiest link");
 }
 
@@ -45,8 +45,9 @@ void describe(V& v, const Traffic& r) {
   v.field("zero_load_latency", r.zero_load_latency, "cycles",
           "mean latency of the measured packets if each were alone");
   v.section("latency", r.latency, "latency of the measured packets, from creation to delivery of the last flit");
-  v.section("link_utilisation", r.link_utilisation, "fraction of the run's cycles in which a link moved a flit");
-  v.field("flit_hops", r.flit_hops, "flits", "flits moved, summed over all links");
+  v.section("link_utilisation", r.link_utilisation,
+            "fraction of the cycles of the window in which a link moved a flit");
+  v.field("flit_hops", r.flit_hops, "flits", "flits moved within the window, summed over all links");
 }
 
 }  // namespace carousel::report

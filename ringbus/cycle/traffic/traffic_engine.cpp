@@ -120,7 +120,10 @@ class TrafficRun {
     }
     std::vector<std::size_t> exits(nodes_.size());
     for (const Topology::Wire& wire : topology_.wires()) {
-      const TrafficNode::Out& port = nodes_[wire.from.value]->out(exits[wire.from.value]++);
+      const TrafficNode& node = *nodes_[wire.from.value];
+      const std::size_t exit = exits[wire.from.value]++;
+      const TrafficNode::Out& port = node.out(exit);
+      out.busy_in_window.push_back(node.busy_in_window(exit));
       out.links.push_back(
           {wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[out.links.size()]->queue});
       out.link_packets.push_back(port.packets());

@@ -117,6 +117,25 @@ void TrafficNode::run(Cycle end) {
   // Packets that are sent to it from now on arrive after `end`, so it is enough to look once.
   for (Way& way : ways_) way.arrival = way.in.next();
   if (!allowances_.empty()) take_acks(end);
+  if (marks_passed_ < 2) pass_marks(end);
+  advance(end);
+  if (!allowances_.empty()) {
+    for (std::size_t a = 0; a < passing_acks_.size(); ++a) forward_acks(a, end);
+    next_ = std::min(next_, next_ack());
+  }
+  awaits_credit_ = awaits_credit();
+}
+
+/// Notes what the links have moved when the window of measurement begins, and when it ends.
+void TrafficNode::pass_marks(Cycle end) {
+  for (; marks_passed_ < 2 && mark(marks_passed_) <= end; ++marks_passed_) {
+    advance(mark(marks_passed_));
+    for (Way& way : ways_) way.busy[marks_passed_] = way.out.busy(mark(marks_passed_));
+  }
+}
+
+/// Does all that happens before `end`.
+void TrafficNode::advance(Cycle end) {
   for (;;) {
     // run_unhindered() lets packets on their way go before those of the source, and needs a way.
     next_ = injects_first_ || ways_.empty() ? next_here() : run_unhindered(end);
@@ -127,11 +146,6 @@ void TrafficNode::run(Cycle end) {
     pass_all(now_);
     if (due_ <= now_) inject_all(now_);
   }
-  if (!allowances_.empty()) {
-    for (std::size_t a = 0; a < passing_acks_.size(); ++a) forward_acks(a, end);
-    next_ = std::min(next_, next_ack());
-  }
-  awaits_credit_ = awaits_credit();
 }
 
 // ---- packets

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -85,6 +86,8 @@ class TrafficNode final : public Agent {
   /// Routers that the packets offered had to visit, first and last included.
   std::uint64_t routers() const { return routers_; }
   Cycle last() const { return last_; }  ///< when something was last delivered
+  /// Cycles of the window in which the link of `ports.out` moved a flit, once the run is over.
+  Cycle busy_in_window(std::size_t port) const { return busy_before(port, 1) - busy_before(port, 0); }
 
  private:
   /// The source as one queue sees it: it reads on to the next packet that is its own. All queues read the same packets,
@@ -103,9 +106,16 @@ class TrafficNode final : public Agent {
   struct Way {
     In in;
     Out out;
-    Cycle arrival = 0;  // the next one; noted when a window begins
+    Cycle arrival = 0;            // the next one; noted when a window begins
+    std::array<Cycle, 2> busy{};  // cycles in which `out` moved a flit before the marks that are passed
   };
 
+  void advance(Cycle end);
+  void pass_marks(Cycle end);
+  Cycle mark(std::size_t i) const { return i == 0 ? window_.begin : window_.end; }
+  Cycle busy_before(std::size_t port, std::size_t i) const {
+    return i < marks_passed_ ? ways_[port].busy[i] : out(port).busy(mark(i));
+  }
   Cycle next_here() const;
   Cycle next_injection() const;
   Cycle next_injection(const SourceQueue& queue) const;
@@ -132,6 +142,7 @@ class TrafficNode final : public Agent {
   std::vector<Way> ways_;
   std::vector<Channel<TrafficAck>*> acks_in_, acks_out_;
   TrafficWindow window_;
+  std::size_t marks_passed_ = 0;  // of the two ends of the window
   Cycle inject_cycles_, eject_cycles_, ack_latency_;
   std::uint16_t flits_;
   std::uint32_t places_wanted_;  // in the next queue, to inject

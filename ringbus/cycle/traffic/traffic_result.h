@@ -23,11 +23,12 @@ struct TrafficResult {
   std::uint64_t hops = 0;                    ///< links crossed by packets
   LatencyHistogram latency;                  ///< of the packets offered
   std::vector<cycle::LinkUse> links;
-  std::vector<std::uint64_t> link_packets;  ///< by link
+  std::vector<std::uint64_t> link_packets;   ///< by link
+  std::vector<cycle::Cycle> busy_in_window;  ///< by link: cycles of the window in which it moved a flit
   double wall_seconds = 0;
   std::size_t threads = 1;
 
-  std::uint64_t flit_hops() const { return hops * flits; }
+  std::uint64_t flit_hops() const { return hops * flits; }  ///< of the whole run
   /// Part of what all links could move within the window that packets delivered in it needed.
   double accepted_of_links() const {
     const double most = static_cast<double>(links.size()) * static_cast<double>(window_end - window_begin);

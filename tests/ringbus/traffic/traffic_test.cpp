@@ -60,7 +60,35 @@ TEST(Traffic, EveryPacketIsDeliveredOnceAndNoneFasterThanAlone) {
     EXPECT_GT(r.offered, 0u);
     EXPECT_LE(r.accepted, r.delivered);
     EXPECT_GE(r.latency.mean(), r.zero_load_latency(c) - 1e-9);
-    for (const cycle::LinkUse& link : r.links) EXPECT_LE(link.use.busy + link.use.stalled, r.cycles);
+    for (std::size_t i = 0; i < r.links.size(); ++i) {
+      EXPECT_LE(r.links[i].use.busy + r.links[i].use.stalled, r.cycles);
+      EXPECT_LE(r.busy_in_window[i], std::min(r.links[i].use.busy, r.window_end - r.window_begin));
+    }
+  }
+}
+
+// The same packets travel whatever the warm-up is. Before issue 45 the links' use was that of the whole run.
+TEST(Traffic, UseOfLinksLeavesTheWarmUpOut) {
+  Config c = traffic_config(Shape::kRing, 8, Pattern::kUniform, 0.1, 4000);
+  const auto flits_with = [&](double warm_up) {
+    c.workload.traffic.warmup_fraction = warm_up;
+    const TrafficResult r = run_traffic(c, {});
+    std::uint64_t flits = 0;
+    for (const std::uint64_t busy : r.busy_in_window) flits += busy;
+    // In the window of a steady network links move about what its packets need.
+    const double needed = static_cast<double>(r.accepted_hops * r.flits);
+    EXPECT_NEAR(static_cast<double>(flits), needed, 0.02 * needed + 64) << warm_up;
+    return std::pair(flits, r.flit_hops());
+  };
+  const auto [all, moved] = flits_with(0);
+  EXPECT_LE(all, moved);
+  EXPECT_NEAR(static_cast<double>(all), static_cast<double>(moved), 200);  // what drains after the window
+  for (const double part : {0.1, 0.5, 0.9}) {
+    const auto [flits, whole] = flits_with(part);
+    EXPECT_EQ(whole, moved) << part;
+    EXPECT_NEAR(static_cast<double>(flits), (1 - part) * static_cast<double>(all), 0.1 * static_cast<double>(all))
+        << part;
+    EXPECT_LT(flits, all) << part;
   }
 }
 
@@ -78,6 +106,7 @@ TEST(Traffic, IsTheSameOnAnyNumberOfThreads) {
       EXPECT_EQ(together.accepted, alone.accepted);
       EXPECT_TRUE(together.latency == alone.latency);
       EXPECT_TRUE(together.links == alone.links);
+      EXPECT_EQ(together.busy_in_window, alone.busy_in_window);
     }
   }
 }
