@@ -103,8 +103,13 @@ class RingCells {
 
   std::optional<report::StressPairs> compare_best_and_worst() {
     if (paired_ == 0 || trial_.stop.stop_requested()) return std::nullopt;
-    const auto [worst, best] = std::minmax_element(
-        cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) { return median(a.rates) < median(b.rates); });
+    const auto slower = [](const Cell* a, const Cell* b) { return median(a->rates) < median(b->rates); };
+    std::vector<Cell*> cells;
+    for (Cell& cell : cells_) cells.push_back(&cell);
+    Cell* const best = *std::max_element(cells.begin(), cells.end(), slower);
+    // A deep queue against a shallow one would say little about their designs.
+    if (trial_.kinds.size() > 1) std::erase_if(cells, [&](const Cell* cell) { return cell->depth != best->depth; });
+    Cell* const worst = *std::min_element(cells.begin(), cells.end(), slower);
     std::vector<ringbus::stress::RatePair> pairs;
     Cell fast{best->kind, best->depth, {}}, slow{worst->kind, worst->depth, {}};
     for (std::size_t i = 0; i < paired_; ++i) {

@@ -32,7 +32,7 @@ struct RingTrial {
   std::vector<QueueKind> kinds;
   std::vector<std::int64_t> depths;
   std::size_t repetitions = 3;  ///< of every kind and depth
-  std::size_t pairs = 12;       ///< of runs of the best and the worst by these repetitions
+  std::size_t pairs = 12;       ///< of runs of the best and the worst of its depth by these repetitions
   std::stop_token stop{};
   std::function<void(double part)> progress{};
 };
@@ -43,7 +43,8 @@ struct RingTrialResult {
 };
 
 /// Runs the ring of a prepared configuration on the native engine with each kind of queue at each depth, repetition by
-/// repetition and in turn. The best and the worst by the medians then run in pairs, each of them first in every other
+/// repetition and in turn. The best and the worst of its depth by the medians, or of one kind the best and the worst
+/// depth, then run in pairs, each of them first in every other
 /// pair: medians of few runs, picked out of many, differ by chance.
 RingTrialResult try_in_ring(const Prepared& prepared, const RingTrial& trial);
 

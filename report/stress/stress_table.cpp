@@ -1,5 +1,7 @@
 #include "report/stress/stress_table.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "report/text/number_text.h"
@@ -38,7 +40,9 @@ void alone(const Stress& s, std::string& out) {
         "  {:<14}{:>10.3g}{:>18}  {:<44}{:>6.2f}{:>9}{:>9}{:>9}{:>10}{}\n", row.queue, row.rate_median * 1e-6,
         fmt::format("{:.3g}-{:.3g}", row.rate_least * 1e-6, row.rate_most * 1e-6), latency_text(row), row.fairness,
         percent(row.push_refused), percent(row.pop_refused), percent(row.blocked), bytes_text(row.memory_bytes),
-        row.found.empty() ? "" : "  BROKEN: " + row.found + " (" + row.detail + ")");
+        row.found.empty()      ? ""
+        : row.expected.empty() ? "  BROKEN: " + row.found + " (" + row.detail + ")"
+                               : "  expected: " + row.found + " (" + row.expected + ")");
   }
 }
 
@@ -61,7 +65,10 @@ std::string stress_table(const Stress& s) {
                                 seconds_text(s.seconds), s.incomplete ? ", incomplete" : "");
   alone(s, out);
   inside(s, out);
-  out += s.broken() ? "\nbroken\n" : "\nnothing lost, doubled, reordered or torn; nothing stuck\n";
+  const bool found = std::any_of(s.rows.begin(), s.rows.end(), [](const StressRow& row) { return !row.found.empty(); });
+  out += s.broken() ? "\nbroken\n"
+         : found    ? "\nnothing but what is expected of a design\n"
+                    : "\nnothing lost, doubled, reordered or torn; nothing stuck\n";
   return out;
 }
 

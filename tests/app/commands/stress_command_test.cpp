@@ -55,6 +55,8 @@ TEST(StressCommand, TriesQueuesInsideTheRing) {
   EXPECT_EQ(pairs["pairs"], 3);
   EXPECT_EQ(pairs["difference"], false);  // whatever the rates
   EXPECT_FALSE(pairs.contains("ratio_least"));
+  EXPECT_EQ(pairs["first"]["depth"], pairs["second"]["depth"]);  // designs are compared, not depths
+  EXPECT_NE(pairs["first"]["queue"], pairs["second"]["queue"]);
   const std::string verdict = json["ring_verdict"];
   EXPECT_THAT(verdict, HasSubstr("no difference shown between "));
   EXPECT_THAT(verdict, HasSubstr(" of 3 pairs of runs, median "));
