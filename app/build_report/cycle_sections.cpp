@@ -133,7 +133,8 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   for (const ringbus::cycle::TileResult& tile : c.tiles) sent += tile.sent;
   if (r.packets) r.packets->sent = sent;
   if (r.packets && trips.count() > 0) r.packets->latency = report::latency_of(trips);
-  if (r.collections && config.collections.when_full == WhenFull::kSpill) {
+  if (r.collections && properties_of(config.topology.shape).has_packets &&
+      config.collections.when_full == WhenFull::kSpill) {
     r.collections->spill_bytes_written = r.collections->spill_bytes_read = 0;
     for (const ringbus::cycle::TileResult& tile : c.tiles) {
       *r.collections->spill_bytes_written += tile.spilled.written;
@@ -151,7 +152,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (config.shading.lanes > 1) {
     const ringbus::cycle::ShadeVectorCounts& of = c.shading_vectors;
     r.shading.vectors = {of.vectors, of.rays,
-                         ratio(of.rays, of.vectors * static_cast<std::uint64_t>(config.shading.lanes)),
+                         ratio(of.rays, of.runs * static_cast<std::uint64_t>(config.shading.lanes)),
                          ratio(of.runs, of.vectors)};
   }
   r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));

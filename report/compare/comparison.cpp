@@ -203,8 +203,11 @@ Comparison compare_runs(const std::vector<ComparedRun>& runs, const std::string&
   drop(out.texts, [&](const ComparedText& text) {
     return other(text) || std::all_of(text.texts.begin(), text.texts.end(), [](const auto& t) { return t.empty(); });
   });
+  const std::size_t keys = out.configuration.size(), values = out.differences.size();
   drop(out.configuration, other);
   drop(out.differences, other);
+  out.keys_hidden = keys - out.configuration.size();
+  out.values_hidden = values - out.differences.size();
   for (ComparedSection& section : out.sections)
     drop(section.rows, [&](const ComparedRow& row) {
       return is_empty(row) || !(matches(section.name, only) || matches(row.name, only));
@@ -241,7 +244,9 @@ nlohmann::ordered_json comparison_json(const Comparison& c, bool all) {
            {"texts", texts(c.texts)},
            {"sections", std::move(sections)},
            {"configuration", texts(c.configuration)},
-           {"values_that_differ", c.differences.size()}};
+           {"keys_hidden", c.keys_hidden},
+           {"values_that_differ", c.differences.size()},
+           {"values_hidden", c.values_hidden}};
   if (all) out["differences"] = texts(c.differences);
   return out;
 }

@@ -47,6 +47,8 @@ struct Comparison {
   std::vector<ComparedSection> sections;
   std::vector<ComparedText> configuration;  ///< the keys that differ
   std::vector<ComparedText> differences;    ///< all other values outside of `host` that differ, by their path
+  std::size_t keys_hidden = 0;              ///< keys that differ and that the pattern leaves out of `configuration`
+  std::size_t values_hidden = 0;            ///< likewise of `differences`
 };
 
 /// Compares two runs or more. With a pattern only rows and keys stay whose name, or whose section's, contains it, in

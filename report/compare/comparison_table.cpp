@@ -78,6 +78,14 @@ std::string texts_of(const std::vector<ComparedText>& list) {
   return out;
 }
 
+/// Counts the keys that differ, those too that the pattern hides.
+std::string keys_text(std::size_t shown, std::size_t hidden) {
+  const std::size_t all = shown + hidden;
+  std::string out = fmt::format("{} {}", all, all == 1 ? "key differs" : "keys differ");
+  if (hidden > 0) out += all == hidden ? ", hidden by --only" : fmt::format(", {} of them hidden by --only", hidden);
+  return out;
+}
+
 }  // namespace
 
 std::string comparison_table(const Comparison& c, bool all) {
@@ -89,8 +97,7 @@ std::string comparison_table(const Comparison& c, bool all) {
   out += fmt::format("\nhits           {}\npicture        {}\n", sameness(c.same_hits), sameness(c.same_picture));
   const bool same_answers = sameness(c.same_hits) == "the same" && sameness(c.same_picture) == "the same";
   if (!c.same_configuration)
-    out += fmt::format("configuration  {} {}\n", c.configuration.size(),
-                       c.configuration.size() == 1 ? "key differs" : "keys differ");
+    out += fmt::format("configuration  {}\n", keys_text(c.configuration.size(), c.keys_hidden));
   else if (c.deterministic)
     out += "configuration  the same\n";
   else
@@ -114,6 +121,9 @@ std::string comparison_table(const Comparison& c, bool all) {
   if (shown.size() < c.differences.size())
     out += fmt::format("{} more values differ (--all, or --only PATTERN, lists them)\n",
                        c.differences.size() - shown.size());
+  if ((all || unexpected) && c.values_hidden > 0)
+    out += fmt::format("{} {} hidden by --only\n", c.values_hidden,
+                       c.values_hidden == 1 ? "value that differs is" : "values that differ are");
   return out;
 }
 

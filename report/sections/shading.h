@@ -133,7 +133,8 @@ template <class V>
 void describe(V& v, const ShadeVectors& r) {
   v.field("vectors", r.vectors, "vectors", "vectors of completed rays that the workers shaded");
   v.field("rays", r.rays, "rays", "rays of these");
-  v.field("fill", r.fill, "fraction", "fraction of their lanes that had a ray");
+  v.field("fill", r.fill, "fraction",
+          "fraction of the lanes that had a ray in a pass; a vector takes a pass for each of its different shaders");
   v.field("shaders", r.shaders, "shaders", "mean of the different shaders of a vector, which run one after the other");
 }
 

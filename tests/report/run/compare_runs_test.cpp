@@ -37,6 +37,20 @@ TEST(CompareRuns, EqualReportsAreIdenticalWhateverTheHost) {
   EXPECT_EQ(comparison_table(c, false), "identical\n");
 }
 
+// Before issue 45 the table said "0 keys differ" where the pattern hid the key.
+TEST(CompareRuns, CountsTheKeysThatThePatternHides) {
+  const auto table = [](const std::string& only) {
+    return comparison_table(compare_runs({{"a", report(100)}, {"b", report(90, "aa", 8)}}, only), true);
+  };
+  EXPECT_NE(table("").find("configuration  1 key differs\n"), std::string::npos);
+  EXPECT_NE(table("resources").find("configuration  1 key differs\n"), std::string::npos);
+  EXPECT_NE(table("whole run").find("configuration  1 key differs, hidden by --only\n"), std::string::npos);
+  EXPECT_NE(table("whole run").find("values that differ are hidden by --only\n"), std::string::npos);
+  const Json json = comparison_json(compare_runs({{"a", report(100)}, {"b", report(90, "aa", 8)}}, "whole run"), true);
+  EXPECT_EQ(json["keys_hidden"], 1);
+  EXPECT_TRUE(json["configuration"].empty());
+}
+
 TEST(CompareRuns, GivesValuesAndRatios) {
   const Comparison c = compare_runs({{"a", report(100)}, {"b", report(50, "bb", 8)}, {"c", report(200)}});
   EXPECT_EQ(c.same_hits, (std::vector<bool>{true, false, true}));
