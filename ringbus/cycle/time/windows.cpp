@@ -74,7 +74,8 @@ class WindowRun {
         lookahead_(lookahead),
         keep_running_(keep_running),
         barrier_(parts.size()),
-        next_(parts.size()) {}
+        next_(parts.size()),
+        schedules_(parts.begin(), parts.end()) {}
 
   Cycle run() {
     {
@@ -95,6 +96,7 @@ class WindowRun {
  private:
   struct alignas(64) Next {
     Cycle cycle = kNever;
+    std::uint64_t runs = 0;  // of the thread's agents since the last look at how much they do
   };
 
   enum class Start { kNotYet, kNow, kNever };
@@ -111,10 +113,14 @@ class WindowRun {
 
   void work(std::size_t thread) {
     const std::vector<Agent*>& agents = parts_[thread];
-    Schedule schedule(agents);
+    Schedule& schedule = schedules_[thread];
     const bool alone = parts_.size() == 1;
     Barrier::Patience patience;
     for (std::uint64_t window = 0;; ++window) {
+      if (!alone && window > 0 && window % kPollInterval == 0 && has_little_work()) {  // all threads agree
+        if (thread == 0) run_alone();
+        barrier_.wait(patience);
+      }
       Cycle first = look(thread, schedule);
       // Written before the last barrier, so all threads read the same here.
       const bool stop = stop_.load(std::memory_order_relaxed);
@@ -129,11 +135,36 @@ class WindowRun {
       }
       if (window % kPollInterval == 0) {
         if (thread == 0 && !keep_running_(first)) stop_.store(true, std::memory_order_relaxed);
+        next_[thread].runs = 0;
         if (!alone) barrier_.wait(patience);
       }
-      run_window(agents, schedule, first, first + lookahead_);
+      next_[thread].runs += run_window(agents, schedule, first, first + lookahead_);
       if (thread == 0) reached_ = first;
       if (!alone) barrier_.wait(patience);
+    }
+  }
+
+  /// Waiting for each other takes the threads longer than the few agents that run in a window.
+  bool has_little_work() const {
+    std::uint64_t runs = 0;
+    for (const Next& one : next_) runs += one.runs;
+    return runs < kLeastRuns * parts_.size() * kPollInterval;
+  }
+
+  /// The calling thread runs the agents of all threads, which wait, until there is more to do or an end.
+  void run_alone() {
+    for (std::uint64_t window = 0, runs = 0;; ++window) {
+      if (window == kPollInterval) {
+        if (runs >= 2 * kLeastRuns * parts_.size() * kPollInterval) return;
+        window = runs = 0;
+      }
+      Cycle first = kNever;
+      for (std::size_t t = 0; t < parts_.size(); ++t) first = std::min(first, look(t, schedules_[t]));
+      if (first == kNever || stop_.load(std::memory_order_relaxed)) return;
+      if (window == 0 && !keep_running_(first)) return stop_.store(true, std::memory_order_relaxed);
+      for (std::size_t t = 0; t < parts_.size(); ++t)
+        runs += run_window(parts_[t], schedules_[t], first, first + lookahead_);
+      reached_ = first;
     }
   }
 
@@ -196,11 +227,14 @@ class WindowRun {
     stop_.store(true, std::memory_order_relaxed);
   }
 
-  void run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle begin, Cycle end) {
+  /// Returns how many agents had something to do.
+  std::uint64_t run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle begin, Cycle end) {
+    std::uint64_t runs = 0;
     try {
       for (std::size_t i = 0; i < agents.size(); ++i) {
         if (schedule.wake[i] >= end) continue;
         if (kChecked && agents[i]->next() < begin) throw_not_woken();
+        ++runs;
         agents[i]->run(end);
         schedule.wake[i] = agents[i]->next_after_run();
         schedule.polled[i] = agents[i]->polled();
@@ -208,9 +242,11 @@ class WindowRun {
     } catch (...) {
       keep_error();
     }
+    return runs;
   }
 
   static constexpr std::uint64_t kPollInterval = 64;
+  static constexpr std::uint64_t kLeastRuns = 8;  // of agents in a window, a thread; fewer are not worth two barriers
 
   std::span<const std::vector<Agent*>> parts_;
   WakeupTable& wakeups_;
@@ -218,6 +254,7 @@ class WindowRun {
   const std::function<bool(Cycle)>& keep_running_;
   Barrier barrier_;
   std::vector<Next> next_;
+  std::vector<Schedule> schedules_;  // by thread
   std::atomic<Start> start_{Start::kNotYet};
   std::atomic<bool> stop_{false};
   Cycle reached_ = 0;

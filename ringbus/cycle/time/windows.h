@@ -11,7 +11,8 @@ namespace carousel::ringbus::cycle {
 
 /// Runs agents to the end of time: window after window of `lookahead` cycles, the least latency between any two
 /// agents (conservative synchronous windows; R. Fujimoto, Parallel discrete event simulation, CACM 33 (1990)).
-/// The result is the same for any number of threads.
+/// The result is the same for any number of threads. While fewer than eight agents a thread have something to do in a
+/// window, all run on the calling thread: to wait for each other would take longer.
 ///
 /// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `keep_running` is called there before
 /// every 64th window with its first cycle, while no agent runs, so that it may look at all of them; when it answers

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -55,6 +56,48 @@ TEST(Windows, AStopEndsAllThreads) {
       WakeupTable wakeups(parts);
       EXPECT_LT(run_windows(parts, wakeups, 1, [](Cycle) { return false; }), 10u);
     }
+  }
+}
+
+/// Has something to do in each of many cycles, and notes on which thread.
+class Placed final : public Agent {
+ public:
+  Cycle next() const override { return now_ < kCycles ? now_ + 1 : kNever; }
+  void run(Cycle end) override {
+    now_ = end - 1;
+    ++runs_;
+    elsewhere_ += std::this_thread::get_id() != made_on_;
+  }
+  std::string describe() const override { return ""; }
+  std::uint64_t runs() const { return runs_; }
+  std::uint64_t elsewhere() const { return elsewhere_; }
+
+ private:
+  static constexpr Cycle kCycles = 640;
+  Cycle now_ = 0;
+  std::uint64_t runs_ = 0, elsewhere_ = 0;
+  std::thread::id made_on_ = std::this_thread::get_id();
+};
+
+// Before issue 45 two threads took ten times as long as one for machines with little to do in a window.
+TEST(Windows, FewAgentsRunOnOneThreadAndManyOnTheirOwn) {
+  for (const std::size_t each : {1, 3, 20}) {
+    std::vector<std::unique_ptr<Placed>> agents;
+    std::vector<std::vector<Agent*>> parts(2);
+    for (std::vector<Agent*>& part : parts)
+      for (std::size_t i = 0; i < each; ++i) part.push_back(agents.emplace_back(std::make_unique<Placed>()).get());
+    WakeupTable wakeups(parts);
+    std::vector<Cycle> looks;
+    run_windows(parts, wakeups, 1, [&](Cycle at) {
+      looks.push_back(at);
+      return true;
+    });
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+      EXPECT_EQ(agents[i]->runs(), 640u);
+      EXPECT_EQ(agents[i]->elsewhere(), i < each ? 0u : each < 8 ? 64u : 640u) << each << " agents a thread";
+    }
+    for (std::size_t i = 0; i < looks.size(); ++i) EXPECT_EQ(looks[i], 1 + 64 * i);  // as on one thread
+    EXPECT_EQ(looks.size(), 10u);
   }
 }
 
