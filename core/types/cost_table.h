@@ -75,7 +75,6 @@ struct CostRow {
 namespace cost_sources {
 using std::string_view;
 inline constexpr string_view kHorowitz = "Horowitz, ISSCC 2014";
-inline constexpr string_view kJouppi = "Jouppi et al., ISCA 2021, Table 2, from memory";
 inline constexpr string_view kHbm2 = "HBM2: O'Connor et al., MICRO 2017";
 }  // namespace cost_sources
 
@@ -127,7 +126,7 @@ inline constexpr auto kCostTable = [] {
        "pJ",
        "A decision if a non-opaque primitive is hit.",
        {45.8f, kAssumed, "6 products, 4 sums and 64 bits of 32 KB; Horowitz, ISSCC 2014"},
-       {18, kAssumed, "6 products, 4 sums and 64 bits of 32 KB; Jouppi et al., ISCA 2021, Table 2"}},
+       {18, kAssumed, "6 products and 4 sums (Jouppi et al., ISCA 2021, Table 2), and 64 bits of 32 KB"}},
       {Cost::kHop,
        kE,
        "hop",
@@ -148,21 +147,21 @@ inline constexpr auto kCostTable = [] {
        "pJ",
        "An access of 64 bits to a store of 8 KiB. Other sizes are interpolated.",
        {10, kPublished, kHorowitz},
-       {7.5f, kAssumed, kJouppi}},
+       {7.5f, kAssumed, "three quarters of 45 nm's; no source"}},
       {Cost::kSram32,
        kE,
        "sram_32_kib",
        "pJ",
        "An access of 64 bits to a store of 32 KiB.",
        {20, kPublished, kHorowitz},
-       {8.5f, kAssumed, kJouppi}},
+       {8.5f, kAssumed, "two fifths of 45 nm's; no source"}},
       {Cost::kSram1024,
        kE,
        "sram_1_mib",
        "pJ",
        "An access of 64 bits to a store of 1 MiB.",
        {100, kPublished, kHorowitz},
-       {14, kAssumed, kJouppi}},
+       {14, kAssumed, "a seventh of 45 nm's; no source"}},
       {Cost::kDram,
        kE,
        "dram",
@@ -207,7 +206,7 @@ inline constexpr auto kCostTable = [] {
        "pJ",
        "A filtered texture lookup.",
        {80, kAssumed, "8 texels of 4 bytes from 32 KB; Horowitz, ISSCC 2014"},
-       {34, kAssumed, "8 texels of 4 bytes from 32 KB; Jouppi et al., ISCA 2021, Table 2"}},
+       {34, kAssumed, "8 texels of 4 bytes from 32 KB"}},
       {Cost::kBoxUnit,
        kA,
        "box",
