@@ -18,25 +18,9 @@ using report::AreaPart;
 
 constexpr double kRecordBytes = 64, kIdBytes = 4, kStackBytes = 64, kHeaderBytes = 16, kKiB = 1024;
 
-/// The kinds of units that the machine has. Units that test what the machine never meets are left out.
-bool has_units(const Config& c, UnitKind kind) {
-  switch (kind) {
-    case UnitKind::kPlane:
-      return c.cull_planes.count > 0;
-    case UnitKind::kBundle:
-      return c.bundles.size > 0;
-    case UnitKind::kProcedural:
-      return c.scene.procedural;
-    case UnitKind::kAnyHit:
-      return c.testers.any_hit == TestersConfig::AnyHit::kInline;
-    default:
-      return true;
-  }
-}
-
-void add_units(report::AreaOf& out, const Config& c, const TestersConfig& testers) {
+void add_units(report::AreaOf& out, const Config& c, const SceneFacts& scene, const TestersConfig& testers) {
   for (const auto [kind, units] : testers.units) {
-    if (!has_units(c, kind)) continue;
+    if (!has_units(c, scene, kind)) continue;
     const auto lanes = static_cast<double>(units.units * testers.simd.lanes * own_testers(c));
     out.size += lanes;
     out.mm2 += lanes * cost(c, area_of(kind));
@@ -65,7 +49,7 @@ double place_bytes(const Config& c) {
 
 }  // namespace
 
-report::Area machine_area(const Config& c) {
+report::Area machine_area(const Config& c, const SceneFacts& scene) {
   report::Area out;
   report::AreaParts& parts = out.parts;
   const ringbus::Topology topology(c.topology);
@@ -74,7 +58,8 @@ report::Area machine_area(const Config& c) {
     parts[part].size += kib;
     parts[part].mm2 += kib * cost(c, Cost::kSramArea);
   };
-  for (std::int64_t r = 0; r < c.topology.resources; ++r) add_units(parts[AreaPart::kUnits], c, testers_of(c, r));
+  for (std::int64_t r = 0; r < c.topology.resources; ++r)
+    add_units(parts[AreaPart::kUnits], c, scene, testers_of(c, r));
   const double slots = n * static_cast<double>(c.rays.slots_per_resource);
   store(AreaPart::kRayStores, slots * kRecordBytes / kKiB);
   if (c.rays.banks > 0)  // of which each has two ports
@@ -108,7 +93,7 @@ report::Area machine_area(const Config& c) {
   return out;
 }
 
-void fit_area(LocatedConfig& located) {
+void fit_area(LocatedConfig& located, const SceneFacts& scene) {
   Config& c = located.config;
   if (!c.area.budget_mm2) return;
   const auto budget = static_cast<double>(*c.area.budget_mm2);
@@ -118,7 +103,7 @@ void fit_area(LocatedConfig& located) {
   if (c.energy.profile == CostProfile::kNone)
     refuse("an area needs a process; expected energy.profile: n45 or n7, found none");
   if (c.area.fit == AreaConfig::Fit::kRefuse) {
-    const double area = machine_area(c).mm2;
+    const double area = machine_area(c, scene).mm2;
     if (area > budget)
       refuse(fmt::format("expected a machine of at most {} mm2, found one of {:.4g}", *c.area.budget_mm2, area));
     return;
@@ -126,11 +111,11 @@ void fit_area(LocatedConfig& located) {
   const std::int64_t given = c.topology.resources;
   for (std::int64_t n = config::kMaxResources; n > 0; --n) {
     c.topology.resources = n;
-    if (validate_config(c, located.positions, {.force = true}).empty() && machine_area(c).mm2 <= budget) return;
+    if (validate_config(c, located.positions, {.force = true}).empty() && machine_area(c, scene).mm2 <= budget) return;
   }
   c.topology.resources = given;
   refuse(fmt::format("no number of resources makes a machine of at most {} mm2; with {} it has {:.4g}",
-                     *c.area.budget_mm2, given, machine_area(c).mm2));
+                     *c.area.budget_mm2, given, machine_area(c, scene).mm2));
 }
 
 }  // namespace carousel::app

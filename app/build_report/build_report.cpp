@@ -18,6 +18,7 @@
 #include "core/system/process_memory.h"
 #include "core/types/enum_names.h"
 #include "report/text/ratio.h"
+#include "ringbus/results/run_features.h"
 
 namespace carousel::app {
 
@@ -129,6 +130,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   r.incomplete = !result.complete;
   r.carousel = program_info();
   r.config = config_json(config);
+  for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
   r.scene = summary(prepared);
   r.structure = structure(prepared);
   if (!prepared.accel.groups.empty()) r.levels = levels_section(prepared.accel);
@@ -152,7 +154,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   add_effects(r.shading, prepared.scene, config);
   if (result.series) (result.cycle ? r.time_series : r.host.time_series) = series_section(*result.series);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
-  add_energy(r, config);
+  add_energy(r, config, ringbus::scene_facts(prepared.accel));
   if (result.rays_restarted > 0 || (result.cycle && result.cycle->stop)) r.faults.emplace().stop = stop(config, result);
   if (verifying) r.verify = verify(*verifying);
   r.digest = {job.hits_digest(), job.image_digest()};

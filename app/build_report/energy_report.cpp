@@ -136,9 +136,9 @@ std::vector<report::CostConstant> constants(const Config& config) {
 
 }  // namespace
 
-void add_energy(report::Report& r, const Config& config) {
+void add_energy(report::Report& r, const Config& config, const SceneFacts& scene) {
   if (config.energy.profile == CostProfile::kNone || !r.engine.cycles || !r.bytes || !r.memory || !r.resources) return;
-  report::Area area = machine_area(config);
+  report::Area area = machine_area(config, scene);
   report::Energy& energy = r.energy.emplace();
   energy.profile = enum_name(config.energy.profile);
   energy.parts = Account(r, config, area.link_mm).take();

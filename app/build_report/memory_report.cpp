@@ -34,6 +34,7 @@ report::Report memory_report(const Prepared& prepared, const ringbus::MemoryTrac
   r.incomplete = !result.complete;
   r.carousel = program_info();
   r.config = config_json(config);
+  for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
   r.scene.name = "none";
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.cycles = result.cycles;

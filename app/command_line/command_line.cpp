@@ -97,6 +97,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   CLI::App* check = program.add_subcommand(
       "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
   add_config_options(*check, arguments.check);
+  add_strict_option(*check, arguments.check);
   CLI::App* stress =
       program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
   add_config_options(*stress, arguments.stress, "the queues are tested by themselves");

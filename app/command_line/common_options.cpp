@@ -33,4 +33,9 @@ void add_config_options(CLI::App& command, ConfigArguments& arguments, const cha
   add_set_option(command, arguments.sets);
 }
 
+void add_strict_option(CLI::App& command, ConfigArguments& arguments) {
+  command.add_flag("--strict", arguments.strict,
+                   "Refuse a configuration that sets keys which the machine ignores (default: they are named)");
+}
+
 }  // namespace carousel::app

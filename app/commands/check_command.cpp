@@ -50,6 +50,8 @@ int check_command(const CheckArguments& arguments) {
     if (p.config().workload.kind == WorkloadConfig::Kind::kRaysFrom) text += ray_list_text(p);
     text += memory_text(estimate(p.config(), false, p.scene, p.accel), usable_memory_bytes());
   }
+  if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty())
+    text += fmt::format("ignored: {}\n", ignored_text(ignored));
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
   print_result(resolved_yaml(p.config()) + "\n" + commented(text));
   return verdict.can_deadlock ? kUsage : kDone;

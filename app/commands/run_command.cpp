@@ -177,6 +177,8 @@ int run_command(const RunArguments& arguments) {
       [&] { return ranks ? &ranks->transport() : nullptr; });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
+  if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty() && (!ranks || ranks->rank() == 0))
+    spdlog::warn("this machine ignores {}", ignored_text(ignored));
   if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *output);
   require_memory(arguments, p.config());
   require_estimates(arguments, p.config());

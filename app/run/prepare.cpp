@@ -24,6 +24,7 @@
 #include "report/text/number_text.h"
 #include "ringbus/cycle/shapes/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
+#include "ringbus/results/run_features.h"
 #include "shading/effects/effects_plan.h"
 
 namespace carousel::app {
@@ -190,8 +191,12 @@ void limit_memory(const Prepared& p) {
   limit_data_memory(limit);
 }
 
-/// Does all preparation after reading the configuration.
-void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport = nullptr) {
+/// Holds the machine to its area, now that the scene is known.
+void fit(Prepared& p) {
+  fit_area(p.located, ringbus::scene_facts(p.accel));
+}
+
+void choose_threads(Prepared& p) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
   // A second thread makes the cycle engine faster only if each thread has many resources (docs/performance.md).
   const std::int64_t automatic =
@@ -199,16 +204,22 @@ void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport 
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));
   p.threads_beside = static_cast<std::size_t>(p.config().engine.threads.value_or(cores));
   spdlog::debug("threads: {}{}", p.threads, p.config().engine.threads ? "" : ", chosen");
+}
+
+/// Does all preparation after reading the configuration.
+void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport = nullptr) {
+  choose_threads(p);
   limit_memory(p);
-  if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) return;  // synthetic traffic needs no scene
   const KeyPositions& positions = p.located.positions;
   require_list(p);
-  if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace) return;
+  if (!p.has_rays()) return;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
     load_scene(p);
     build_accel(p, transport);
   });
+  fit(p);
+  choose_threads(p);
   require_room(p, keep_hits);
 }
 
@@ -223,6 +234,10 @@ bool Prepared::has_rays() const {
   return config().workload.kind != kTraffic && config().workload.kind != kMemoryTrace;
 }
 
+std::vector<IgnoredKey> Prepared::ignored() const {
+  return ignored_keys(located, ringbus::scene_facts(accel));
+}
+
 float Prepared::scene_size() const {
   const Aabb box = scene.bounds();
   return box.empty() ? 1.0f : glm::length(box.extent());
@@ -233,28 +248,33 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
                  const std::function<ringbus::Transport*()>& ranks) {
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
-  fit_area(p.located);
   if (!options.ranks) require_one_rank(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
-  if (before_scene) with_positions(p.located.positions, [&] { before_scene(p.config()); });
+  const bool is_fitted = p.config().area.budget_mm2.has_value();
+  const auto call = [&] {
+    if (before_scene) with_positions(p.located.positions, [&] { before_scene(p.config()); });
+  };
+  if (!is_fitted) call();
   prepare_located(p, keep_hits, ranks ? ranks() : nullptr);
+  if (is_fitted) call();
+  const std::vector<IgnoredKey> ignored = p.ignored();
+  if (arguments.strict) refuse_ignored(ignored);
   return p;
 }
 
 void set_machine(Prepared& p, LocatedConfig located) {
   p.located = std::move(located);
-  fit_area(p.located);
   require_one_rank(p);
   limit_memory(p);
   if (!p.has_rays()) return;
   set_query(p);
+  fit(p);
   require_room(p, false);
 }
 
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets) {
   Prepared p;
   p.located = load_config({text, name}, sets, {.force = true});
-  fit_area(p.located);
   require_one_rank(p);
   prepare_located(p, false);
   return p;

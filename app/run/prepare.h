@@ -10,6 +10,7 @@
 #include "accel/structure/accel.h"
 #include "accel/structure/structure_size.h"
 #include "app/run/all_hits.h"
+#include "core/config/load/ignored_keys.h"
 #include "core/config/load/load.h"
 #include "ringbus/transport/transport.h"
 #include "scene/load_scene.h"
@@ -22,6 +23,7 @@ namespace carousel::app {
 struct ConfigArguments {
   std::string config;
   std::vector<std::string> sets;
+  bool strict = false;  ///< keys that the machine ignores are errors
 };
 
 /// A configuration with its scene and acceleration structure, ready to run.
@@ -40,6 +42,8 @@ struct Prepared {
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }
+  /// The keys that the user sets and the machine ignores.
+  std::vector<IgnoredKey> ignored() const;
   bool has_rays() const;  ///< whether the workload is rays, for which there is a scene
   /// Scale of entry distances, for the policy `nearest`.
   float scene_size() const;
@@ -47,8 +51,9 @@ struct Prepared {
 
 /// Loads configuration, scene and structure; for synthetic traffic the configuration only. Refuses a scene that would
 /// not fit into the machine's memory before loading it. `before_scene` is called with the configuration first, then
-/// `ranks` for the way to the other ranks, null if there are none. Throws ConfigError, SceneError and FileError; logs
-/// warnings and the times of the phases.
+/// `ranks` for the way to the other ranks, null if there are none; where the scene decides how large the machine is,
+/// `before_scene` is called when that is known. Throws ConfigError, SceneError and FileError; logs warnings and the
+/// times of the phases.
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits,
                  const std::function<void(const Config&)>& before_scene = {},
                  const std::function<ringbus::Transport*()>& ranks = {});

@@ -40,6 +40,7 @@ struct Report {
   bool incomplete = false;
   Program carousel;
   nlohmann::ordered_json config = nlohmann::ordered_json::object();
+  std::vector<std::string> ignored_keys;
   SceneSummary scene;
   Engine engine;
   Rays rays;
@@ -82,6 +83,8 @@ void describe(V& v, const Report& r) {
           "after it");
   v.section("carousel", r.carousel, "program that wrote the report");
   v.any("config", r.config, "resolved configuration; see carousel schema config");
+  v.field("ignored_keys", r.ignored_keys, "",
+          "keys that the configuration sets and that this machine, with its scene and workload, cannot feel");
   v.section("scene", r.scene, "scene that was rendered");
   v.section("engine", r.engine, "engine that simulated the machine");
   v.section("rays", r.rays, "rays; emitted = completed + lost");

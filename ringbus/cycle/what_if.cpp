@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "core/config/differences.h"
+#include "core/config/key_conditions.h"
 #include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "core/system/error.h"
 #include "ringbus/results/run_features.h"
-#include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
 
@@ -19,26 +19,8 @@ std::int64_t halved(std::int64_t cycles) {
   return std::max<std::int64_t>(1, cycles / 2);
 }
 
-bool passes_packets(const Config& c) {
-  return Topology(c.topology).has_packets();
-}
-bool has_pipe(const Config& c) {
-  return c.memory.dram.preset == DramConfig::Preset::kPipe;
-}
-bool has_banks(const Config& c) {
-  return !has_pipe(c);
-}
-bool has_own_caches(const Config& c) {
-  return c.memory.l1_kib > 0;
-}
 bool uses_links(const Config& c) {
-  return passes_packets(c) && c.topology.resources > 1 && c.collections.home != Home::kLocal;
-}
-bool has_bundles(const Config& c) {
-  return c.bundles.size > 0;
-}
-bool boxes_test_bundles(const Config& c) {
-  return c.testers.bundle_blocks == TestersConfig::BundleBlocks::kShared;
+  return in_use(c, {}, "topology.link.depth");
 }
 constexpr bool every_machine(const Config&) {
   return true;
@@ -54,7 +36,7 @@ void for_all_testers(Config& c, const Body& body) {
 /// A class of parts other than test units.
 struct PartClass {
   const char *name, *action;
-  bool (*present)(const Config&);
+  bool (*present)(const Config&);  ///< a machine whose keys say so; whether it feels them is core/config's to say
   void (*relax)(Config&);
   int lifts = 6;              ///< how often tester_limited() relaxes it; 0: it is part of the test, or a choice
   bool keeps_shapes = false;  // as WhatIf's
@@ -68,77 +50,66 @@ constexpr PartClass kPartClasses[] = {
        });
      },
      0},
-    {"contexts", "twice testers.contexts", passes_packets,
+    {"contexts", "twice testers.contexts", every_machine,
      [](Config& c) { for_all_testers(c, [](TestersConfig& testers) { testers.contexts *= 2; }); }},
-    {"ray_reads", "twice rays.reads_per_cycle", [](const Config& c) { return c.rays.reads_per_cycle > 0; },
-     [](Config& c) { c.rays.reads_per_cycle *= 2; }},
-    {"ray_banks", "twice rays.banks", [](const Config& c) { return c.rays.banks > 0; },
-     [](Config& c) { c.rays.banks *= 2; }},
+    {"ray_reads", "twice rays.reads_per_cycle", every_machine, [](Config& c) { c.rays.reads_per_cycle *= 2; }},
+    {"ray_banks", "twice rays.banks", every_machine, [](Config& c) { c.rays.banks *= 2; }},
     {"cells", "twice testers.simd.lanes", has_cells,
      [](Config& c) { for_all_testers(c, [](TestersConfig& testers) { testers.simd.lanes *= 2; }); }},
-    {"distributed_testers", "twice testers.distributor.testers", has_distributor,
+    {"distributed_testers", "twice testers.distributor.testers", every_machine,
      [](Config& c) { c.testers.distributor.testers *= 2; }},
-    {"handing_out", "twice testers.distributor.ids_per_cycle", has_distributor,
+    {"handing_out", "twice testers.distributor.ids_per_cycle", every_machine,
      [](Config& c) { c.testers.distributor.ids_per_cycle *= 2; }},
-    {"tester_queues", "twice testers.distributor.queue and results", has_distributor,
+    {"tester_queues", "twice testers.distributor.queue and results", every_machine,
      [](Config& c) { c.testers.distributor.queue *= 2, c.testers.distributor.results *= 2; }},
-    {"out_of_order", "twice testers.distributor.out_of_order, or 1", has_distributor,
+    {"out_of_order", "twice testers.distributor.out_of_order, or 1", every_machine,
      [](Config& c) {
        c.testers.distributor.out_of_order = std::max<std::int64_t>(1, 2 * c.testers.distributor.out_of_order);
      }},
-    {"decision_point", "twice testers.distributor.results_per_cycle", has_distributor,
+    {"decision_point", "twice testers.distributor.results_per_cycle", every_machine,
      [](Config& c) { c.testers.distributor.results_per_cycle *= 2; }},
-    {"stragglers", "testers.distributor.stragglers: forward",
-     [](const Config& c) {
-       return has_distributor(c) && c.testers.distributor.stragglers == TestersConfig::Distributor::Stragglers::kWait;
-     },
+    {"stragglers", "testers.distributor.stragglers: forward", every_machine,
      [](Config& c) { c.testers.distributor.stragglers = TestersConfig::Distributor::Stragglers::kForward; }, 0},
-    {"bundle_builder", "twice bundles.builder.rays_per_cycle", has_bundles,
+    {"bundle_builder", "twice bundles.builder.rays_per_cycle", every_machine,
      [](Config& c) { c.bundles.builder.rays_per_cycle *= 2; }},
-    {"bundles_open", "twice bundles.builder.open", has_bundles, [](Config& c) { c.bundles.builder.open *= 2; }},
-    {"handling", "twice packets.ids_per_cycle", passes_packets, [](Config& c) { c.packets.ids_per_cycle *= 2; }},
-    {"sorting", "twice collections.sort_ids_per_cycle",
-     [](const Config& c) { return passes_packets(c) && c.collections.sort_ids_per_cycle > 0; },
+    {"bundles_open", "twice bundles.builder.open", every_machine, [](Config& c) { c.bundles.builder.open *= 2; }},
+    {"handling", "twice packets.ids_per_cycle", every_machine, [](Config& c) { c.packets.ids_per_cycle *= 2; }},
+    {"sorting", "twice collections.sort_ids_per_cycle", every_machine,
      [](Config& c) { c.collections.sort_ids_per_cycle *= 2; }},
-    {"collection_storage", "twice collections.capacity", passes_packets, [](Config& c) { c.collections.capacity *= 2; },
+    {"collection_storage", "twice collections.capacity", every_machine, [](Config& c) { c.collections.capacity *= 2; },
      kStorageLifts},
-    {"issue_rule", "collections.partial: ahead",
-     [](const Config& c) { return passes_packets(c) && c.collections.partial != Partial::kAhead; },
+    {"issue_rule", "collections.partial: ahead", every_machine,
      [](Config& c) { c.collections.partial = Partial::kAhead; }, 0},
     {"issue_rule", "collections.partial: idle",
-     [](const Config& c) { return passes_packets(c) && c.collections.partial == Partial::kAhead; },
+     [](const Config& c) { return c.collections.partial == Partial::kAhead; },
      [](Config& c) { c.collections.partial = Partial::kIdle; }, 0},
     {"shape_buffer", "twice memory.shape_buffer_kib", every_machine, [](Config& c) { c.memory.shape_buffer_kib *= 2; },
      6, true},
-    {"fetch_ahead", "twice memory.fetch_ahead", passes_packets,
+    {"fetch_ahead", "twice memory.fetch_ahead", every_machine,
      [](Config& c) { c.memory.fetch_ahead = std::max<std::int64_t>(1, 2 * c.memory.fetch_ahead); }},
     {"l2_size", "twice memory.l2_kib", every_machine, [](Config& c) { c.memory.l2_kib *= 2; }, 6, true},
     {"l2_port", "twice memory.l2_lines_per_cycle", every_machine, [](Config& c) { c.memory.l2_lines_per_cycle *= 2; }},
-    {"l1_size", "twice memory.l1_kib", has_own_caches, [](Config& c) { c.memory.l1_kib *= 2; }, 6, true},
-    {"l1_port", "twice memory.l1_lines_per_cycle", has_own_caches, [](Config& c) { c.memory.l1_lines_per_cycle *= 2; }},
-    {"l1_mshrs", "twice memory.l1_mshrs", [](const Config& c) { return has_own_caches(c) && c.memory.l1_mshrs > 0; },
-     [](Config& c) { c.memory.l1_mshrs *= 2; }},
-    {"l2_mshrs", "twice memory.l2_mshrs", [](const Config& c) { return c.memory.l2_mshrs > 0; },
-     [](Config& c) { c.memory.l2_mshrs *= 2; }},
+    {"l1_size", "twice memory.l1_kib", every_machine, [](Config& c) { c.memory.l1_kib *= 2; }, 6, true},
+    {"l1_port", "twice memory.l1_lines_per_cycle", every_machine, [](Config& c) { c.memory.l1_lines_per_cycle *= 2; }},
+    {"l1_mshrs", "twice memory.l1_mshrs", every_machine, [](Config& c) { c.memory.l1_mshrs *= 2; }},
+    {"l2_mshrs", "twice memory.l2_mshrs", every_machine, [](Config& c) { c.memory.l2_mshrs *= 2; }},
     {"memory_latency", "half memory.l2_latency_cycles and memory.dram_latency_cycles", every_machine,
      [](Config& c) {
        c.memory.l2_latency_cycles = halved(c.memory.l2_latency_cycles);
        c.memory.dram_latency_cycles = halved(c.memory.dram_latency_cycles);
      }},
-    {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", has_pipe,
+    {"memory_bandwidth", "twice memory.dram_bytes_per_cycle", every_machine,
      [](Config& c) { c.memory.dram_bytes_per_cycle *= 2; }},
-    {"memory_bandwidth", "twice memory.dram.channels", has_banks, [](Config& c) { c.memory.dram.channels *= 2; }},
-    {"dram_queue", "twice memory.dram.queue", has_banks, [](Config& c) { c.memory.dram.queue *= 2; }},
+    {"memory_bandwidth", "twice memory.dram.channels", every_machine, [](Config& c) { c.memory.dram.channels *= 2; }},
+    {"dram_queue", "twice memory.dram.queue", every_machine, [](Config& c) { c.memory.dram.queue *= 2; }},
     {"ray_slots", "twice rays.slots_per_resource", every_machine, [](Config& c) { c.rays.slots_per_resource *= 2; },
      kStorageLifts},
     {"shading", "twice shading.workers", every_machine, [](Config& c) { c.shading.workers = 2 * shader_workers(c); }},
     {"shading_lanes", "twice shading.lanes", [](const Config& c) { return c.shading.lanes > 1; },
      [](Config& c) { c.shading.lanes *= 2; }},
-    {"shading_order", "shading.sort: shader",
-     [](const Config& c) { return c.shading.lanes > 1 && c.shading.sort == ShadingConfig::Sort::kNone; },
+    {"shading_order", "shading.sort: shader", [](const Config& c) { return c.shading.lanes > 1; },
      [](Config& c) { c.shading.sort = ShadingConfig::Sort::kShader; }, 0},
-    {"shading_sorter", "twice shading.sort_rays_per_cycle",
-     [](const Config& c) { return c.shading.sort == ShadingConfig::Sort::kShader; },
+    {"shading_sorter", "twice shading.sort_rays_per_cycle", every_machine,
      [](Config& c) { c.shading.sort_rays_per_cycle *= 2; }},
     {"link_bandwidth", "twice topology.link.bytes_per_cycle", uses_links,
      [](Config& c) { c.topology.link.bytes_per_cycle *= 2; }},
@@ -153,6 +124,19 @@ constexpr PartClass kPartClasses[] = {
      [](const Config& c) { return uses_links(c) && c.topology.shape == TopologyShape::kRing; },
      [](Config& c) { c.topology.shape = TopologyShape::kBidirectional; }, 0},
 };
+
+/// The keys that the relaxed machine has otherwise, as values of --set; none if the machine feels none of them.
+std::vector<std::string> felt_differences(const Config& config, const SceneFacts& scene, const Config& relaxed) {
+  Config simulated = config;
+  simulated.engine.kind = EngineKind::kCycle;  // a machine that was given for the native engine is simulated here, too
+  std::vector<std::string> sets = config_differences(config, relaxed);
+  const bool felt = std::any_of(sets.begin(), sets.end(), [&](const std::string& set) {
+    const std::string_view key = std::string_view(set).substr(0, set.find('='));
+    return key != "topology.overrides" && in_use(simulated, scene, key);  // overrides repeat what `testers` has
+  });
+  if (!felt) sets.clear();
+  return sets;
+}
 
 /// Reads the configuration as a user's who tries the lift. Returns whether it may be run.
 bool may_be_set(const std::string& resolved, const std::vector<std::string>& sets) {
@@ -173,7 +157,7 @@ Config tester_limited(const Config& config) {
     for (int i = 0; i < part.lifts && part.present(machine); ++i) {
       Config next = machine;
       part.relax(next);
-      const std::vector<std::string> sets = config_differences(machine, next);
+      const std::vector<std::string> sets = felt_differences(machine, {}, next);
       if (sets.empty() || (valid && !may_be_set(resolved_yaml(machine), sets))) break;
       machine = std::move(next);
     }
@@ -184,21 +168,19 @@ Config tester_limited(const Config& config) {
 std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   std::vector<WhatIf> all;
   const std::string resolved = resolved_yaml(config);
+  const SceneFacts scene = scene_facts(accel);
   const bool valid = may_be_set(resolved, {});  // a test's machine may lack keys that the lifts do not touch
   const auto add = [&](const char* name, std::string action, const auto& relax, bool keeps_shapes = false) {
     WhatIf what_if{name, std::move(action), {}, relax, config, keeps_shapes};
     relax(what_if.relaxed);
-    what_if.sets = config_differences(config, what_if.relaxed);
+    what_if.sets = felt_differences(config, scene, what_if.relaxed);
     if (what_if.sets.empty() || (valid && !may_be_set(resolved, what_if.sets))) return;
     all.push_back(std::move(what_if));
   };
-  const RunFeatures features = features_of(config, accel);
-  for (const UnitKindRow& row : kUnitKinds) {
-    if (!features.show(row.shown) || (row.kind == UnitKind::kBundle && boxes_test_bundles(config))) continue;
+  for (const UnitKindRow& row : kUnitKinds)
     add(row.work, fmt::format("twice testers.{}.units", row.key), [kind = row.kind](Config& c) {
       for_all_testers(c, [&](TestersConfig& testers) { testers.units[kind].units *= 2; });
     });
-  }
   for (const PartClass& part : kPartClasses)
     if (part.present(config)) add(part.name, part.action, part.relax, part.keeps_shapes);
   return all;

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/config/tree/tree.h"
 
@@ -16,6 +17,8 @@ class KeyPositions {
 
   /// The position of the value at `path`, or else of the nearest enclosing section that is given, or else of the file.
   SourcePosition find(std::string_view path) const;
+  /// The keys that are given a value, in alphabetical order. A list is one value, that of its key.
+  std::vector<std::string> given() const;
   const std::string& file() const { return file_; }
 
  private:

@@ -1,4 +1,5 @@
 // Every configuration of configs/ and its folders runs, on a small picture of a small scene.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -39,16 +40,21 @@ class ExampleConfigs : public testing::TestWithParam<fs::path> {};
 TEST_P(ExampleConfigs, Run) {
   const Program program;
   std::vector<std::string> arguments{"run", GetParam().string(), "--json", "--quiet", "--no-html", "--out", "out"};
-  for (const char* set : {"engine.what_if=false", "image.width=12", "image.height=8", "image.samples=1",
-                          "image.max_depth=2", "scene.triangles=1000", "scene.instances=50"})
-    arguments.insert(arguments.end(), {"--set", set});
+  const std::vector<std::string> small{"engine.what_if=false", "image.width=12",    "image.height=8",
+                                       "image.samples=1",      "image.max_depth=2", "scene.triangles=1000",
+                                       "scene.instances=50"};
+  for (const std::string& set : small) arguments.insert(arguments.end(), {"--set", set});
   const bool traffic = text_of(GetParam()).find("traffic:") != std::string::npos;
   if (traffic) arguments.insert(arguments.end(), {"--set", "workload.traffic.packets=1000"});
   if (!traffic) arguments.insert(arguments.end(), {"--set", "verify=reference"});
   const Outcome outcome = program.run(arguments);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  if (traffic) return;
   const auto report = nlohmann::ordered_json::parse(outcome.out);
+  for (const auto& key : report["ignored_keys"])
+    EXPECT_TRUE(std::any_of(small.begin(), small.end(),
+                            [&](const std::string& set) { return set.starts_with(key.get<std::string>() + "="); }))
+        << key << " is set and does nothing";
+  if (traffic) return;
   EXPECT_GE(report["rays"]["completed"], 12 * 8);
   EXPECT_EQ(report["verify"]["mismatches"], 0);
 }

@@ -2,71 +2,25 @@
 // machines are read from files by the program's own loader and run as `carousel run` runs them. A key without a row
 // fails.
 #include <algorithm>
-#include <exception>
 #include <set>
 #include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/run_command.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
 #include "core/system/error.h"
 #include "tests/app/keys/key_rows.h"
+#include "tests/app/keys/key_runs.h"
 
 namespace carousel::key_effects_test {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = KeyOutcome::Json;
 
-struct KeyOutcome {
-  std::string refusal;  ///< of the configuration; empty if it was run
-  std::string result;   ///< the report apart from the configuration, or the error that ended the run
-  Json config;          ///< as it was run
-};
-
-/// The report without the configuration, without values that repeat it, and without times of the host.
-std::string result_of(Json report) {
-  Json host = report["host"];
-  report.erase("config");
-  report.erase("host");
-  if (report.contains("shading")) report["shading"].erase("workers");
-  if (report.contains("links") && report["links"].is_array())
-    for (Json& link : report["links"]) link.erase("depth");
-  if (report.contains("bytes"))
-    for (Json& row : report["bytes"]) row.erase("width_bytes_per_cycle");
-  if (host.contains("ray_queues"))
-    for (Json& queue : host["ray_queues"]) queue.erase("depth");
-  return report.dump() + host.value("simd", "") + host.value("threads", Json()).dump() +
-         host.value("ray_queues", Json()).dump();
-}
-
-class KeyEffects : public testing::Test {
+class KeyEffects : public KeyRuns {
  protected:
-  KeyEffects() { write_scenes_and_rays(program_); }
-
-  KeyOutcome run(BaseMachine machine, const std::vector<std::string>& sets) {
-    program_.write("machine.yaml", text(machine));
-    app::RunArguments arguments;
-    arguments.config = (program_.folder() / "machine.yaml").string();
-    arguments.sets = sets;
-    arguments.out = (program_.folder() / "out").string();
-    arguments.quiet = arguments.force = true;
-    try {
-      app::run_command(arguments);
-    } catch (const ConfigError& error) {
-      return {error.what(), "", {}};
-    } catch (const std::exception& error) {
-      return {"", error.what(), {}};
-    }
-    Json report = Json::parse(program_.read("out/report.json"));
-    Json config = report["config"];
-    const std::string picture =
-        std::filesystem::exists(program_.folder() / "out/image.png") ? program_.read("out/image.png") : std::string();
-    return {"", result_of(std::move(report)) + picture, std::move(config)};
-  }
-
   void check(const KeyRow& row) {
     SCOPED_TRACE(row.key + " of " + text(row.machine) + testing::PrintToString(row.sets));
     const KeyOutcome base = run(row.machine, row.sets);
@@ -75,7 +29,7 @@ class KeyEffects : public testing::Test {
       ASSERT_EQ(run(row.machine, row.sets).result, base.result) << "two runs differ";
     }
     const std::string own = value_at(base.config, row.key);
-    for (const std::string& value : values(row)) {
+    for (const std::string& value : values_of(row)) {
       if (value == own) {
         EXPECT_TRUE(row.values.empty()) << value << " is the machine's own value";
         continue;
@@ -102,12 +56,6 @@ class KeyEffects : public testing::Test {
     return config[at].is_string() ? config[at].get<std::string>() : config[at].dump();
   }
 
-  static std::vector<std::string> values(const KeyRow& row) {
-    if (!row.values.empty()) return row.values;
-    const std::vector<std::string> names = config::enum_values(row.key);
-    return names.empty() ? std::vector<std::string>{"true", "false"} : names;
-  }
-
   /// By the table of what the engine does not have; an instruction set that this machine does not have;
   /// ranks, which mpirun starts; and less memory than the program has.
   static bool may_be_refused(const KeyRow& row, const std::string& value, const Json& config,
@@ -120,20 +68,8 @@ class KeyEffects : public testing::Test {
     return having.empty() && engine && refusal.find("is not built yet") != refusal.npos;
   }
 
-  Program program_;
   std::set<std::pair<BaseMachine, std::vector<std::string>>> checked_;
 };
-
-/// The keys that have a value of their own.
-std::vector<std::string> leaves() {
-  std::vector<std::string> paths, out;
-  for (const std::string& path : config::config_key_paths())
-    if (path.find(".0.") == path.npos) paths.push_back(path);
-  for (const std::string& path : paths)
-    if (std::none_of(paths.begin(), paths.end(), [&](const auto& other) { return other.starts_with(path + "."); }))
-      out.push_back(path);
-  return out;
-}
 
 const std::vector<std::string> kScene{"scene.",  "camera.",   "image.", "engine.",  "primary",
                                       "report.", "sampling.", "verify", "workload."};
@@ -153,12 +89,12 @@ TEST(KeyRows, AreThereForEveryKeyAndNoOther) {
     EXPECT_EQ(is_of(row.key, kScene) + is_of(row.key, kMachine) + is_of(row.key, kTests), 1) << row.key;
   }
   for (const std::string& key : keys_without_a_row()) EXPECT_TRUE(with_row.insert(key).second) << key;
-  const std::vector<std::string> keys = leaves();
+  const std::vector<std::string> keys = key_leaves();
   EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()), with_row);
 }
 
 TEST(KeyRows, AreThereForEveryNameOfAnEnumeration) {
-  for (const std::string& key : leaves()) {
+  for (const std::string& key : key_leaves()) {
     const std::vector<std::string> names = config::enum_values(key);
     std::set<std::string> tried;
     for (const KeyRow& row : key_rows()) {

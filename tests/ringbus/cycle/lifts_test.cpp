@@ -176,12 +176,14 @@ TEST(WhatIf, DoublesTheUnitsOfEachKind) {
   c.bundles.size = 4;
   accel::Accel accel;
   accel.procedural_primitives = true;
+  accel.planes.emplace_back();
+  accel.instances.emplace_back().transform.identity = false;
   c.topology.overrides.push_back({1, c.testers});
-  const RunFeatures features = features_of(c, accel);
+  const SceneFacts scene = scene_facts(accel);
   const std::vector<WhatIf> all = what_ifs(c, accel);
   for (const UnitKindRow& row : kUnitKinds) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == row.work; });
-    ASSERT_EQ(found != all.end(), features.show(row.shown)) << row.work;
+    ASSERT_EQ(found != all.end(), has_units(c, scene, row.kind)) << row.work;
     if (found == all.end()) continue;
     const Config& relaxed = found->relaxed;
     for (const auto [kind, units] : relaxed.testers.units) {

@@ -1,0 +1,294 @@
+#include "core/config/key_conditions.h"
+
+#include <algorithm>
+#include <span>
+#include <string>
+
+#include "core/config/machine_conditions.h"
+
+namespace carousel {
+
+namespace {
+
+using namespace conditions;
+
+/// The keys at or below `key` are felt only where the condition holds. More than one row may name a key.
+struct Row {
+  std::string_view key;
+  Condition needed;
+};
+constexpr Row kRows[] = {
+    {"scene.procedural",
+     {[](const C& c, const S&) { return is_generated(c, BuiltinScene::kSpheres); },
+      "the scene is not the generated one of spheres"}},
+    {"scene.triangles", kSizedScene},
+    {"scene.instances", kInstances},
+    {"scene.levels", kInstances},
+    {"scene.seed", kSeededScene},
+    {"scene.camera", kSceneCamera},
+    {"scene.sky", kPicture},
+    {"camera", kPicture},
+    {"camera.up", kOwnCamera},
+    {"camera.focus_distance", kLens},
+    {"image.width", kPicture},
+    {"image.height", kPicture},
+    {"image.samples", kPicture},
+    {"image.max_depth", kPicture},
+    {"image.exposure", kPicture},
+    {"image.seed", kDrawn},
+    {"engine.clock_mhz", kClock},
+    {"engine.what_if", kCycle},
+    {"topology.resources", kFreeSize},
+    {"topology.rings", kMultiRing},
+    {"topology.groups", kGroups},
+    {"topology.form", kCentral},
+    {"topology.visit", kTravel},
+    {"topology.flow", kTravel},
+    {"topology.link.queue", kNative},
+    {"topology.link.depth", kTravel},
+    {"topology.link.latency_cycles", kCycle},
+    {"topology.link.bytes_per_cycle", kCycle},
+    {"topology.overrides", kCycle},
+    {"rays.reads_per_cycle", kCycle},
+    {"rays.banks", kCycle},
+    {"rays.query", kList},
+    {"rays.hits_per_ray", kQueryAll},
+    {"rays.queue", kNative},
+    {"rays.queue_depth", kNative},
+    {"packets.shapes", kPackets},
+    {"packets.carry", kPackets},
+    {"packets.carry", kCycle},
+    {"packets.results", kPackets},
+    {"packets.results", kCycle},
+    {"packets.made_per", kPackets},
+    {"packets.ids_per_cycle", kPackets},
+    {"packets.ids_per_cycle", kCycle},
+    {"collections.ready", kPackets},
+    {"collections.traversal", kPackets},
+    {"collections.order", kDepthFirst},
+    {"collections.key", kPackets},
+    {"collections.block_bytes", kBlocks},
+    {"collections.policy", kPackets},
+    {"collections.select", kPackets},
+    {"collections.partial", kPackets},
+    {"collections.partial", kCycle},
+    {"collections.partial_after_cycles", kPackets},
+    {"collections.partial_after_cycles", kWaits},
+    {"collections.sort_ids_per_cycle", kPackets},
+    {"collections.sort_ids_per_cycle", kCycle},
+    {"collections.home", kPackets},
+    {"collections.home", kManyResources},
+    {"collections.capacity", kPackets},
+    {"collections.when_full", kPackets},
+    {"bvh.treelet_triangles", kTreelets},
+    {"bvh.duplicates", kSpaceIsCut},
+    {"bvh.leaves", kCycle},
+    {"accuracy.spawn", kPicture},
+    {"accuracy.transform", kTransforms},
+    {"accuracy.transformed_ray", kTransforms},
+    {"accuracy.transformed_ray", kCycle},
+    {"accuracy.instance_data", kTransforms},
+    {"accuracy.instance_data", kCycle},
+    {"accuracy.invert", kTransforms},
+    {"accuracy.invert", kCycle},
+    {"cull_planes.object", kPlanes},
+    {"cull_planes.nodes", kPlanes},
+    {"cull_planes.shared_normals", kPlanes},
+    {"cull_planes.fit", kPlanes},
+    {"cull_planes.order", kPlanes},
+    {"cull_planes.levels", kPlanes},
+    {"cull_planes.depth", kPlanes},
+    {"bundles.form", kBundles},
+    {"bundles.edges", kBundles},
+    {"bundles.edges", kCycle},
+    {"bundles.order", kBundles},
+    {"bundles.strict", kBundles},
+    {"bundles.lifetime", kBundles},
+    {"bundles.builder", kBundles},
+    {"bundles.builder.rays_per_cycle", kCycle},
+    {"bundles.sources", kBundles},
+    {"bundles.split", kBundles},
+    {"bundles.min_rays", kBundles},
+    {"bundles.split_below", kBundles},
+    {"bundles.split_above", kBundles},
+    {"bundles.at_instances", kBundles},
+    {"bundles.leaf", kBundles},
+    {"bundles.hint", kBundles},
+    {"testers.box", kCycle},
+    {"testers.triangle", kCycle},
+    {"testers.plane", kCycle},
+    {"testers.bundle", kCycle},
+    {"testers.transform", kCycle},
+    {"testers.procedural", kCycle},
+    {"testers.any_hit_unit", kCycle},
+    {"testers.simd", kCycle},
+    {"testers.simd.map", kVectors},
+    {"testers.simd.reformat_cycles", kVectors},
+    {"testers.distributor", kCycle},
+    {"testers.distributor", kDistributor},
+    {"testers.contexts", kCycle},
+    {"testers.contexts", kPackets},
+    {"testers.window", kCycle},
+    {"testers.window", kTravel},
+    {"testers.own_rays", kTravel},
+    {"testers.any_hit", kCycle},
+    {"testers.any_hit", kAnyHit},
+    {"testers.bundle_blocks", kCycle},
+    {"testers.bundle_blocks", kBundles},
+    {"memory", kCycle},
+    {"memory.shared_by", kManyResources},
+    {"memory.l1_ways", kOwnCaches},
+    {"memory.l1_lines_per_cycle", kOwnCaches},
+    {"memory.l1_mshrs", kOwnCaches},
+    {"memory.l1_latency_cycles", kOwnCaches},
+    {"memory.dram_latency_cycles", kLatency},
+    {"memory.dram_bytes_per_cycle", kPipe},
+    {"memory.fetch", kPackets},
+    {"memory.fetch_ahead", kPackets},
+    {"memory.strip_ahead", kEndFlags},
+    {"memory.dram.channels", kBanks},
+    {"memory.dram.interleave_bytes", kBanks},
+    {"memory.dram.mapping", kBanks},
+    {"memory.dram.queue", kBanks},
+    {"memory.dram.period_ps", kBanks},
+    {"memory.dram.refresh", kBanks},
+    {"memory.dram.refresh_cycles", kBanks},
+    {"memory.dram.refresh_cycles", kRefresh},
+    {"shading.effects", kPicture},
+    {"shading.idle_resources_shade", kCycle},
+    {"shading.cycles_per_shade", kCycle},
+    {"shading.cycles_per_lookup", kCycle},
+    {"shading.cycles_per_any_hit", kCycle},
+    {"shading.cycles_per_any_hit", kAnyHitShaders},
+    {"shading.products_per_cycle", kCycle},
+    {"shading.products_per_cycle", kPicture},
+    {"shading.lanes", kCycle},
+    {"shading.sort", kCycle},
+    {"shading.sort_rays_per_cycle", kSorted},
+    {"shading.camera_rays", kFlags},
+    {"shading.bounce_rays", kFlags},
+    {"shading.shadow_rays", kFlags},
+    {"shading.camera_rays.force_opaque", kAnyHit},
+    {"shading.bounce_rays.force_opaque", kAnyHit},
+    {"shading.shadow_rays.force_opaque", kAnyHit},
+    {"shading.distribute", kCycle},
+    {"shading.queue", kNative},
+    {"shading.queue_depth", kNative},
+    {"faults.seed", kLinkFaults},
+    {"faults.links.delay_cycles", kDelays},
+    {"faults.resource.number", kFault},
+    {"faults.resource.after_rays", kFault},
+    {"faults.resource.cycles", kPause},
+    {"faults.resource.factor", kSlow},
+    {"faults.resource.recover", kStop},
+    {"faults.resource.silence_cycles", kStop},
+    {"faults.resource.silence_cycles", kCycle},
+    {"faults.compare", kCycle},
+    {"sampling.strata", kSampled},
+    {"sampling.seed", kSampled},
+    {"area.fit", kBudget},
+    {"area.link_mm", kProfile},
+    {"energy.dram", kNoHbm},
+    {"energy.dram_activation", kNoHbm},
+    {"energy.dram_activation", kBanks},
+    {"energy.hbm", kHbm},
+    {"energy.hbm_activation", kHbm},
+    {"report.samples", kCycle},
+    {"workload.traffic.hotspot", kTrafficHotspot},
+    {"workload.traffic.hotspot_fraction", kTrafficHotspot},
+    {"workload.traffic.burst_packets", kTrafficBursts},
+};
+
+/// The keys that a workload without rays feels; its machine has no other parts.
+struct Workloads {
+  Workload kind;
+  std::string_view otherwise;
+  std::span<const std::string_view> keys;
+};
+constexpr std::string_view kOfTraffic[] = {"schema_version",
+                                           "engine.kind",
+                                           "engine.threads",
+                                           "engine.memory_limit_mib",
+                                           "topology.resources",
+                                           "topology.shape",
+                                           "topology.rings",
+                                           "topology.flow",
+                                           "topology.link.depth",
+                                           "topology.link.latency_cycles",
+                                           "image.seed",
+                                           "topology.link.bytes_per_cycle",
+                                           "workload",
+                                           "vary",
+                                           "verify"};
+constexpr std::string_view kOfMemoryTrace[] = {
+    "schema_version", "engine.kind", "engine.memory_limit_mib",    "engine.clock_mhz",
+    "memory.dram",    "workload",    "memory.dram_latency_cycles", "memory.dram_bytes_per_cycle",
+    "vary",           "verify"};
+constexpr Workloads kWithoutRays[] = {{Workload::kTraffic, "synthetic traffic does not meet it", kOfTraffic},
+                                      {Workload::kMemoryTrace, "requests to memory do not meet it", kOfMemoryTrace}};
+
+/// True if `key` is `section` or lies below it.
+bool lies_in(std::string_view key, std::string_view section) {
+  return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
+}
+
+/// The tests of a unit of this kind.
+constexpr const Condition* condition_of(UnitKind kind) {
+  switch (kind) {
+    case UnitKind::kPlane:
+      return &kPlaneUnits;
+    case UnitKind::kBundle:
+      return &kBundleUnits;
+    case UnitKind::kTransform:
+      return &kTransforms;
+    case UnitKind::kProcedural:
+      return &kProcedural;
+    case UnitKind::kAnyHit:
+      return &kAnyHitUnits;
+    case UnitKind::kBox:
+    case UnitKind::kTriangle:
+      break;
+  }
+  return nullptr;
+}
+
+/// The name below a section; empty if the key does not lie there.
+std::string_view name_in(std::string_view key, std::string_view section) {
+  if (!lies_in(key, section) || key.size() == section.size()) return {};
+  key.remove_prefix(section.size() + 1);
+  return key.substr(0, key.find('.'));
+}
+
+/// Of units, and of what a test or a unit costs.
+std::optional<std::string_view> units_unused(const C& c, const S& s, std::string_view key) {
+  const bool cost = lies_in(key, "energy") || lies_in(key, "area");
+  const std::string_view name = name_in(key, cost ? key.substr(0, key.find('.')) : "testers");
+  const auto row =
+      std::find_if(kCostTable.begin(), kCostTable.end(), [&](const CostRow& of) { return of.key == name; });
+  if (cost && row != kCostTable.end() && !kProfile.holds(c, s)) return kProfile.otherwise;
+  for (const UnitKindRow& unit : kUnitKinds)
+    if (const Condition* needed = condition_of(unit.kind); unit.key == name && needed != nullptr &&
+                                                           !needed->holds(c, s) &&
+                                                           !(lies_in(key, "energy.bundle") && has_bundles(c)))
+      return needed->otherwise;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string_view> unused_because(const Config& c, const SceneFacts& scene, std::string_view key) {
+  const auto felt = [&](std::string_view section) { return lies_in(key, section); };
+  for (const Workloads& workload : kWithoutRays)
+    if (c.workload.kind == workload.kind && std::none_of(workload.keys.begin(), workload.keys.end(), felt))
+      return workload.otherwise;
+  for (const Row& row : kRows)
+    if (lies_in(key, row.key) && !row.needed.holds(c, scene)) return row.needed.otherwise;
+  return units_unused(c, scene, key);
+}
+
+bool has_units(const Config& config, const SceneFacts& scene, UnitKind kind) {
+  const Condition* needed = condition_of(kind);
+  return needed == nullptr || needed->holds(config, scene);
+}
+
+}  // namespace carousel

@@ -1,0 +1,83 @@
+#include "core/config/load/ignored_keys.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "core/config/differences.h"
+#include "core/config/write.h"
+#include "core/system/error.h"
+
+namespace carousel {
+
+namespace {
+
+/// Calls `visit` with the path of each value that is no section.
+void walk(const nlohmann::ordered_json& value, const std::string& path,
+          const std::function<void(const std::string&)>& visit) {
+  if (!value.is_object() || value.empty()) return visit(path);
+  for (const auto& [name, below] : value.items()) walk(below, path.empty() ? name : path + "." + name, visit);
+}
+
+/// True if the configuration gives each key that a resolved one has.
+bool gives_all(const Config& config, const std::vector<std::string>& given) {
+  bool all = true;
+  walk(config_json(config), "", [&](const std::string& key) {
+    const auto is_given = [&](const std::string& one) { return one == key || key.starts_with(one + "."); };
+    all = all && (key == "vary" || std::any_of(given.begin(), given.end(), is_given));
+  });
+  return all;
+}
+
+bool is_set_by_option(const SourcePosition& position) {
+  return position.file.starts_with("--set ");
+}
+
+}  // namespace
+
+std::vector<IgnoredKey> ignored_keys(const LocatedConfig& located, const SceneFacts& scene) {
+  const std::vector<std::string> given = located.positions.given();
+  std::vector<std::string> differing;
+  const bool resolved = gives_all(located.config, given);
+  if (resolved)
+    for (const std::string& set : config_differences(Config{}, located.config))
+      differing.push_back(set.substr(0, set.find('=')));
+  std::vector<IgnoredKey> out;
+  for (const std::string& key : given) {
+    const auto why = unused_because(located.config, scene, key);
+    if (!why) continue;
+    const SourcePosition position = located.positions.find(key);
+    const bool differs = std::find(differing.begin(), differing.end(), key) != differing.end();
+    if (!resolved || differs || is_set_by_option(position)) out.push_back({key, *why, position});
+  }
+  return out;
+}
+
+std::string ignored_text(std::span<const IgnoredKey> keys) {
+  std::vector<std::pair<std::string_view, std::vector<std::string_view>>> by_reason;
+  for (const IgnoredKey& key : keys) {
+    const auto known =
+        std::find_if(by_reason.begin(), by_reason.end(), [&](const auto& reason) { return reason.first == key.why; });
+    (known == by_reason.end() ? by_reason.emplace_back(key.why, std::vector<std::string_view>{}) : *known)
+        .second.push_back(key.key);
+  }
+  std::string out;
+  for (const auto& [why, names] : by_reason)
+    out += fmt::format("{}{} ({})", out.empty() ? "" : ", ", fmt::join(names, ", "), why);
+  return out;
+}
+
+void refuse_ignored(std::span<const IgnoredKey> keys) {
+  std::vector<ConfigIssue> issues;
+  for (const IgnoredKey& key : keys)
+    issues.push_back({key.position, key.key,
+                      fmt::format("the machine cannot feel this key, since {}; expected a configuration without it, or "
+                                  "a run without --strict",
+                                  key.why)});
+  if (!issues.empty()) throw ConfigError(std::move(issues));
+}
+
+}  // namespace carousel

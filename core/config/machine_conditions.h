@@ -1,0 +1,192 @@
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+#include "core/config/config.h"
+#include "core/config/key_conditions.h"
+
+// The conditions under which parts of a machine are in use, for the table of key_conditions.cpp.
+
+namespace carousel::conditions {
+
+using C = Config;
+using S = SceneFacts;
+using Workload = WorkloadConfig::Kind;
+using Fault = FaultsConfig::Resource::Kind;
+
+/// A condition on a machine, and the clause that says why a machine does not meet it.
+struct Condition {
+  bool (*holds)(const C&, const S&);
+  std::string_view otherwise;
+};
+
+constexpr bool meets_rays(const C& c) {
+  return c.workload.kind == Workload::kRays || c.workload.kind == Workload::kRaysFrom;
+}
+constexpr bool exchanges_packets(const C& c) {
+  return properties_of(c.topology.shape).has_packets;
+}
+constexpr bool rays_travel(const C& c) {
+  return c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed;
+}
+constexpr bool packets_travel(const C& c) {
+  return exchanges_packets(c) && c.topology.resources > 1 && (c.collections.home != Home::kLocal || rays_travel(c));
+}
+constexpr bool has_pipe(const C& c) {
+  return c.memory.dram.preset == DramConfig::Preset::kPipe;
+}
+constexpr bool has_hbm(const C& c) {
+  return c.memory.dram.preset == DramConfig::Preset::kHbm2;
+}
+constexpr bool has_bundles(const C& c) {
+  return c.bundles.size > 0;
+}
+constexpr bool has_planes(const C& c, const S& s) {
+  return c.cull_planes.count > 0 && s.planes;
+}
+constexpr bool asks_units(const C& c, const S& s) {
+  return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kInline;
+}
+constexpr bool is_generated(const C& c, BuiltinScene scene) {
+  return c.scene.builtin == scene;
+}
+constexpr bool has_many_lanes(const TestersConfig& testers) {
+  return testers.simd.lanes > 1;
+}
+
+inline constexpr Condition kCycle{[](const C& c, const S&) { return c.engine.kind == EngineKind::kCycle; },
+                                  "the native engine has no clock"};
+inline constexpr Condition kNative{[](const C& c, const S&) { return c.engine.kind == EngineKind::kNative; },
+                                   "the cycle engine has no real queues"};
+inline constexpr Condition kClock{
+    [](const C& c, const S&) { return c.engine.kind == EngineKind::kCycle || c.faults.any(); },
+    "the native engine has no clock"};
+inline constexpr Condition kPicture{[](const C& c, const S&) { return c.workload.kind == Workload::kRays; },
+                                    "the workload has no picture"};
+inline constexpr Condition kFlags{[](const C& c, const S&) { return c.workload.kind == Workload::kRays; },
+                                  "rays of a file carry no flags"};
+inline constexpr Condition kDrawn{[](const C& c, const S&) { return c.workload.kind != Workload::kRaysFrom; },
+                                  "rays of a file are not drawn at random"};
+inline constexpr Condition kLatency{
+    [](const C& c, const S&) { return has_pipe(c) || c.workload.kind != Workload::kMemoryTrace; },
+    "the memory alone has banks"};
+inline constexpr Condition kList{[](const C& c, const S&) { return c.workload.kind == Workload::kRaysFrom; },
+                                 "the rays are of no file"};
+inline constexpr Condition kTrafficHotspot{
+    [](const C& c, const S&) { return c.workload.traffic.pattern == TrafficConfig::Pattern::kHotspot; },
+    "the traffic has no hotspot"};
+inline constexpr Condition kTrafficBursts{
+    [](const C& c, const S&) { return c.workload.traffic.pattern == TrafficConfig::Pattern::kBursty; },
+    "the traffic has no bursts"};
+inline constexpr Condition kSeededScene{
+    [](const C& c, const S&) { return c.scene.builtin && !is_generated(c, BuiltinScene::kCornell); },
+    "the scene is not drawn at random"};
+inline constexpr Condition kSizedScene{[](const C& c, const S&) {
+                                         return is_generated(c, BuiltinScene::kSpheres) ||
+                                                is_generated(c, BuiltinScene::kTerrain) ||
+                                                is_generated(c, BuiltinScene::kSliver);
+                                       },
+                                       "the scene has as many triangles as it has"};
+inline constexpr Condition kInstances{[](const C& c, const S&) { return is_generated(c, BuiltinScene::kInstances); },
+                                      "the scene is not the generated one of instances"};
+inline constexpr Condition kOwnCamera{[](const C& c, const S&) { return c.camera.eye.has_value(); },
+                                      "the camera is the scene's"};
+inline constexpr Condition kSceneCamera{[](const C& c, const S&) { return !c.camera.eye; },
+                                        "camera.eye takes its place"};
+inline constexpr Condition kLens{[](const C& c, const S&) { return c.camera.aperture > 0; }, "the camera is a pinhole"};
+
+inline constexpr Condition kPackets{[](const C& c, const S&) { return exchanges_packets(c); },
+                                    "independent resources exchange no packets"};
+inline constexpr Condition kTravel{[](const C& c, const S&) { return packets_travel(c); }, "no packet crosses a link"};
+inline constexpr Condition kManyResources{[](const C& c, const S&) { return c.topology.resources > 1; },
+                                          "there is one resource"};
+inline constexpr Condition kMultiRing{
+    [](const C& c, const S&) { return c.topology.shape == TopologyShape::kMultiRing && c.topology.resources > 1; },
+    "the topology is no multi_ring"};
+inline constexpr Condition kGroups{
+    [](const C& c, const S&) { return c.topology.shape == TopologyShape::kHierarchical && c.topology.resources > 1; },
+    "the topology is not hierarchical"};
+inline constexpr Condition kCentral{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kCentral; },
+                                    "the topology is not central"};
+inline constexpr Condition kDistributor{[](const C& c, const S&) { return has_distributor(c); },
+                                        "the machine has no distributor"};
+inline constexpr Condition kFreeSize{[](const C& c, const S&) {
+                                       return !c.area.budget_mm2 || c.area.fit != AreaConfig::Fit::kResources ||
+                                              !meets_rays(c);
+                                     },
+                                     "area.budget_mm2 decides"};
+
+inline constexpr Condition kQueryAll{[](const C& c, const S&) { return c.rays.query == Query::kAll; },
+                                     "rays.query is not all"};
+inline constexpr Condition kDepthFirst{
+    [](const C& c, const S&) { return !exchanges_packets(c) || c.collections.traversal != Traversal::kSpread; },
+    "no ray goes depth first"};
+inline constexpr Condition kTreelets{
+    [](const C& c, const S&) { return exchanges_packets(c) && c.collections.traversal == Traversal::kTreelet; },
+    "there are no treelets"};
+inline constexpr Condition kBlocks{[](const C& c, const S&) { return c.collections.key == CollectionKey::kBlock; },
+                                   "rays gather at nodes"};
+inline constexpr Condition kWaits{[](const C& c, const S&) { return c.collections.partial == Partial::kAfter; },
+                                  "collections.partial is not after"};
+inline constexpr Condition kSpaceIsCut{[](const C& c, const S&) { return c.bvh.builder != BvhConfig::Builder::kSah; },
+                                       "bvh.builder: sah cuts no triangles"};
+
+inline constexpr Condition kPlanes{[](const C& c, const S&) { return c.cull_planes.count > 0; },
+                                   "there are no cull planes"};
+inline constexpr Condition kPlaneUnits{has_planes, "no node has cull planes"};
+inline constexpr Condition kBundles{[](const C& c, const S&) { return has_bundles(c); }, "there are no bundles"};
+inline constexpr Condition kBundleUnits{[](const C& c, const S&) {
+                                          return has_bundles(c) &&
+                                                 c.testers.bundle_blocks != TestersConfig::BundleBlocks::kShared;
+                                        },
+                                        "no units test bundles only"};
+inline constexpr Condition kTransforms{[](const C&, const S& s) { return s.transforms; },
+                                       "no instance has a transform"};
+inline constexpr Condition kProcedural{[](const C&, const S& s) { return s.procedural; },
+                                       "the scene has no procedural primitives"};
+inline constexpr Condition kAnyHit{[](const C&, const S& s) { return s.any_hit; }, "every surface is opaque"};
+inline constexpr Condition kAnyHitUnits{asks_units, "no units decide any-hit calls"};
+inline constexpr Condition kAnyHitShaders{
+    [](const C& c, const S& s) { return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kShader; },
+    "no shader worker decides any-hit calls"};
+inline constexpr Condition kVectors{
+    [](const C& c, const S&) {
+      return has_many_lanes(c.testers) ||
+             std::any_of(c.topology.overrides.begin(), c.topology.overrides.end(),
+                         [](const ResourceOverride& one) { return has_many_lanes(one.testers); });
+    },
+    "units have one lane"};
+
+inline constexpr Condition kOwnCaches{[](const C& c, const S&) { return c.memory.l1_kib > 0; },
+                                      "resources have no caches of their own"};
+inline constexpr Condition kEndFlags{
+    [](const C& c, const S&) { return c.memory.strip_end == MemoryConfig::StripEnd::kFlag; },
+    "memory.strip_end is length"};
+inline constexpr Condition kPipe{[](const C& c, const S&) { return has_pipe(c); }, "the memory has banks"};
+inline constexpr Condition kBanks{[](const C& c, const S&) { return !has_pipe(c); }, "the memory is a pipe"};
+inline constexpr Condition kHbm{[](const C& c, const S&) { return has_hbm(c); }, "the memory is no HBM"};
+inline constexpr Condition kNoHbm{[](const C& c, const S&) { return !has_hbm(c); }, "the memory is HBM"};
+inline constexpr Condition kRefresh{[](const C& c, const S&) { return c.memory.dram.refresh; },
+                                    "memory.dram.refresh is off"};
+
+inline constexpr Condition kSorted{[](const C& c, const S&) { return c.shading.sort == ShadingConfig::Sort::kShader; },
+                                   "completed rays are not sorted"};
+inline constexpr Condition kLinkFaults{[](const C& c, const S&) { return c.faults.links.any(); },
+                                       "links have no faults"};
+inline constexpr Condition kDelays{[](const C& c, const S&) { return c.faults.links.delay > 0; }, "no frame is late"};
+inline constexpr Condition kFault{[](const C& c, const S&) { return c.faults.resource.kind != Fault::kNone; },
+                                  "no resource has a fault"};
+inline constexpr Condition kPause{[](const C& c, const S&) { return c.faults.resource.kind == Fault::kPause; },
+                                  "no resource pauses"};
+inline constexpr Condition kSlow{[](const C& c, const S&) { return c.faults.resource.kind == Fault::kSlow; },
+                                 "no resource is slow"};
+inline constexpr Condition kStop{[](const C& c, const S&) { return c.faults.resource.kind == Fault::kStop; },
+                                 "no resource stops"};
+inline constexpr Condition kSampled{[](const C& c, const S&) { return c.sampling.fraction < 1; }, "the frame is whole"};
+inline constexpr Condition kProfile{[](const C& c, const S&) { return c.energy.profile != CostProfile::kNone; },
+                                    "energy.profile is none"};
+inline constexpr Condition kBudget{[](const C& c, const S&) { return c.area.budget_mm2.has_value(); },
+                                   "there is no area.budget_mm2"};
+
+}  // namespace carousel::conditions
