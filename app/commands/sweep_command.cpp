@@ -22,6 +22,7 @@
 #include "app/sweep/sweep_run.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
+#include "core/system/unfinished.h"
 #include "report/html/sweep_page.h"
 #include "report/text/number_text.h"
 

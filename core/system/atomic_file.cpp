@@ -1,63 +1,77 @@
 #include "core/system/atomic_file.h"
 
-#include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
 #include <utility>
 
 #include <fcntl.h>
-#include <sys/file.h>
+#include <poll.h>
+#include <signal.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/system/error.h"
+#include "core/system/file_calls.h"
+#include "core/system/stop_request.h"
+#include "core/system/unfinished.h"
 
 namespace carousel {
 
 namespace {
 
-constexpr std::size_t kBufferBytes = 1 << 16;
+namespace fs = std::filesystem;
 
-/// Of this process and this call, so that no two writers share one.
-std::filesystem::path name_beside(const std::filesystem::path& target) {
-  static std::atomic<unsigned> number{0};
-  std::filesystem::path out = target;
-  // Relaxed: only the numbers have to differ.
-  out.replace_filename("." + target.filename().string() + "." + std::to_string(getpid()) + "." +
-                       std::to_string(number.fetch_add(1, std::memory_order_relaxed)) + ".partial");
-  return out;
-}
+constexpr std::size_t kBufferBytes = 1 << 16;
 
 /// Opens and locks a new file beside `target`; negative if it cannot be made. Between both it may have been taken for
 /// an abandoned one and removed, and is then made again.
-int open_beside(const std::filesystem::path& target, std::filesystem::path& name) {
+int open_beside(const fs::path& target, fs::path& name) {
   for (;;) {
-    name = name_beside(target);
-    const int out = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    name = unfinished_name(target, kUnfinishedFile);
+    const int out = files::open_file(name, O_WRONLY | O_CREAT | O_EXCL);
+    if (out < 0 && errno == EEXIST) continue;
     if (out < 0) return out;
-    while (flock(out, LOCK_EX) != 0 && errno == EINTR) continue;  // other errors: a file system without locks
+    files::lock_file(out, true);
     struct stat status {};
     if (fstat(out, &status) != 0 || status.st_nlink > 0) return out;
-    close(out);
+    files::close_file(out);
   }
 }
 
-/// Removes an unfinished file unless it is locked. True if it is gone.
-bool remove_unlocked(const std::filesystem::path& file) {
-  const int descriptor = open(file.c_str(), O_WRONLY | O_CLOEXEC);  // NFS locks only what may be written
-  if (descriptor < 0) return errno == ENOENT;
-  const bool ours = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
-  if (ours) unlink(file.c_str());
-  close(descriptor);
-  return ours;
+/// Opens a pipe or a device. A reader of a pipe is waited for.
+int open_directly(const fs::path& target) {
+  for (;;) {
+    const int out = files::open_file(target, O_WRONLY | O_NONBLOCK);
+    std::error_code ignored;
+    if (out >= 0 || errno != ENXIO || !fs::is_fifo(target, ignored)) return out;
+    constexpr int kPauseMs = 20;
+    poll(nullptr, 0, kPauseMs);
+    throw_if_stopped("a reader of " + target.string());
+  }
 }
+
+/// While it lives, a pipe that nobody reads any more is an error of write and no signal for this thread.
+class NoPipeSignal {
+ public:
+  NoPipeSignal() {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~NoPipeSignal() {
+    const timespec now{};
+    while (sigismember(&before_, SIGPIPE) == 0 && sigtimedwait(&pipe_, nullptr, &now) > 0) continue;
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  NoPipeSignal(const NoPipeSignal&) = delete;
+  NoPipeSignal& operator=(const NoPipeSignal&) = delete;
+
+ private:
+  sigset_t pipe_{}, before_{};
+};
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(target) {
-  namespace fs = std::filesystem;
+AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
   std::error_code error;
   // A link keeps pointing to what it points to: that is replaced, not the link.
   if (fs::is_symlink(target_, error)) {
@@ -66,20 +80,27 @@ AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(target) {
   const fs::file_status status = fs::status(target_, error);
   if (fs::is_directory(status)) fail(EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    descriptor_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
-  } else {
-    if (target_.has_parent_path()) {
-      fs::create_directories(target_.parent_path(), error);
-      if (error) fail(error.value());
-    }
-    descriptor_ = open_beside(target_, temporary_);
+    descriptor_ = open_directly(target_);
+    if (descriptor_ < 0) fail(errno);
+    return;
   }
-  if (descriptor_ < 0) fail(errno);
+  const auto made = [this](const fs::path& folder) { made_.push_back(folder); };
+  if (files::make_folders(target_.parent_path(), made) == 0) descriptor_ = open_beside(target_, unfinished_);
+  if (descriptor_ >= 0) return;
+  const int why = errno;
+  unfinished_.clear();
+  discard();
+  fail(why);
 }
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0) close(descriptor_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  discard();
+}
+
+void AtomicFile::discard() {
+  if (descriptor_ >= 0) files::close_file(std::exchange(descriptor_, -1));
+  if (!unfinished_.empty()) files::remove_file(std::exchange(unfinished_, {}));
+  for (; !made_.empty(); made_.pop_back()) files::remove_folder(made_.back());  // one that is in use stays
 }
 
 void AtomicFile::fail(int error) const {
@@ -92,46 +113,44 @@ void AtomicFile::write(std::string_view bytes) {
 }
 
 void AtomicFile::flush() {
-  for (std::size_t done = 0; done < buffer_.size();) {
-    const ssize_t count = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
-    if (count < 0 && errno == EINTR) continue;
+  const NoPipeSignal no_signal;
+  for (std::string_view rest = buffer_; !rest.empty();) {
+    if (unfinished_.empty()) wait_for(descriptor_, POLLOUT, "the reader of " + target_.string());
+    const ssize_t count = files::write_bytes(descriptor_, rest);
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (count < 0) fail(errno);
-    done += static_cast<std::size_t>(count);
+    rest.remove_prefix(static_cast<std::size_t>(count));
   }
   buffer_.clear();
 }
 
-void AtomicFile::commit() {
+void AtomicFile::finish() {
   flush();
   // A disk may accept bytes and refuse them later; only then may the old file go. Pipes have nothing to sync.
-  if (!temporary_.empty() && fsync(descriptor_) != 0) fail(errno);
-  if (!temporary_.empty()) {
-    // Before it is closed, which would unlock it. After fsync close has no more errors to tell.
-    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-    temporary_.clear();
-  }
-  if (close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
+  if (!unfinished_.empty() && !finished_ && files::sync_file(descriptor_) != 0) fail(errno);
+  finished_ = true;
 }
 
-void write_file(const std::filesystem::path& target, std::string_view bytes) {
+void AtomicFile::commit() {
+  finish();
+  if (unfinished_.empty()) {
+    if (files::close_file(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
+    return;
+  }
+  // Before it is closed, which would unlock it. After fsync close has no more errors to tell.
+  if (files::rename_file(unfinished_, target_) != 0) fail(errno);
+  unfinished_.clear();
+  files::close_file(std::exchange(descriptor_, -1));
+  if (files::sync_folder(target_.parent_path()) != 0) fail(errno);
+  for (; !made_.empty(); made_.pop_back())
+    if (files::sync_folder(made_.back().parent_path()) != 0) fail(errno);
+}
+
+void write_file(const fs::path& target, std::string_view bytes) {
+  remove_abandoned_of(target);
   AtomicFile file(target);
   file.write(bytes);
   file.commit();
-}
-
-void remove_abandoned(const std::filesystem::path& folder) {
-  constexpr int kTries = 50;
-  constexpr std::chrono::milliseconds kPause{20};
-  for (int i = 0; i < kTries; ++i) {
-    bool all_gone = true;
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-      const std::string name = entry.path().filename();
-      if (name[0] == '.' && name.ends_with(".partial")) all_gone = remove_unlocked(entry.path()) && all_gone;
-    }
-    if (all_gone) return;
-    std::this_thread::sleep_for(kPause);
-  }
 }
 
 }  // namespace carousel

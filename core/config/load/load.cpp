@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <tuple>
 
 #include "core/config/reader.h"
 #include "core/config/tree/tree.h"
+#include "core/system/input_file.h"
 
 namespace carousel {
 
@@ -88,11 +88,10 @@ ConfigText read_config_file(const std::filesystem::path& path) {
   };
   if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) fail("it is a folder");
   errno = 0;
-  std::ifstream stream(path, std::ios::binary);
+  InputFile stream(path);
   if (!stream) fail(std::strerror(errno));
   std::string text(config::kMaxBytes + 1, '\0');  // one more than allowed, so that too much is seen
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) fail(std::strerror(errno));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return {std::move(text), path.string()};
 }

@@ -1,5 +1,7 @@
 #include "core/system/atomic_file.h"
 
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -9,6 +11,8 @@
 #include <unistd.h>
 
 #include "core/system/error.h"
+#include "core/system/file_calls.h"
+#include "core/system/unfinished.h"
 #include "tests/support/full_disk.h"
 
 namespace carousel {
@@ -112,6 +116,76 @@ TEST_F(AtomicFileTest, WhatKilledWritersLeaveIsRemovedAndNothingElse) {
   live.commit();
   EXPECT_EQ(content(folder_ / "live.txt"), "live");
   EXPECT_EQ(content(folder_ / "kept.txt"), "kept");
+}
+
+// Each call of the system fails once, and each from then on where it needs room: the file is new or as it was.
+TEST_F(AtomicFileTest, IsWholeOrAsItWasWhateverCallFails) {
+  using files::Call;
+  const fs::path path = folder_ / "made/a.txt";
+  const std::string text(200'000, 'x');
+  for (const bool had_old : {false, true})
+    for (const bool for_ever : {false, true})
+      for (int n = 0;; ++n) {
+        fs::remove_all(folder_ / "made");
+        if (had_old) write_file(path, "old");
+        int calls = 0;
+        Call failed = Call::kLock;
+        std::string error;
+        {
+          const files::FaultScope fault([&](Call call, const fs::path&) {
+            const bool needs_room = call != Call::kRemove && call != Call::kClose && call != Call::kLock;
+            const bool now = calls++ == n;
+            if (now) failed = call;
+            return now || (for_ever && calls > n && needs_room) ? ENOSPC : 0;
+          });
+          try {
+            write_file(path, text);
+          } catch (const FileError& e) {
+            error = e.what();
+          }
+        }
+        if (calls <= n) break;
+        const std::string found = content(path);
+        EXPECT_TRUE(found == text || found == (had_old ? "old" : "")) << "call " << n;
+        EXPECT_EQ(fs::exists(path), had_old || !found.empty());
+        if (error.empty())
+          EXPECT_EQ(found, text) << "call " << n << " failed, and nobody said so";
+        else
+          EXPECT_NE(error.find(path.string()), std::string::npos) << error;
+        if (failed == Call::kRemove) continue;
+        for (const auto& entry : fs::directory_iterator(fs::exists(folder_ / "made") ? folder_ / "made" : folder_))
+          EXPECT_NE(entry.path().filename().string()[0], '.') << "call " << n << " leaves " << entry.path();
+      }
+}
+
+TEST_F(AtomicFileTest, AWriterRemovesWhatAKilledOneLeftOfTheSameFile) {
+  const auto partial = [&](const std::string& host, pid_t process, const std::string& target = "a.txt") {
+    const fs::path out = folder_ / ("." + target + ".carousel-" + host + "." + std::to_string(process) + ".0.partial");
+    std::ofstream(out) << "part";
+    return out;
+  };
+  char host[65] = {};
+  gethostname(host, sizeof host - 1);
+  const pid_t dead = fork();
+  if (dead == 0) _exit(0);
+  waitpid(dead, nullptr, 0);
+  const fs::path ours = partial(host, dead), others = partial("elsewhere", dead), of_b = partial(host, dead, "b.txt"),
+                 old = partial("forgotten", dead);
+  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(24 * 31));
+  write_file(folder_ / "a.txt", "whole");
+  EXPECT_FALSE(fs::exists(ours));
+  EXPECT_FALSE(fs::exists(old)) << "nobody has touched it for a month";
+  EXPECT_TRUE(fs::exists(others)) << "whether a process of another host lives, cannot be known from here";
+  EXPECT_TRUE(fs::exists(of_b));
+
+  // Without locks the number of the process decides.
+  const files::FaultScope no_locks(
+      [](files::Call call, const fs::path&) { return call == files::Call::kLock ? ENOSYS : 0; });
+  const fs::path again = partial(host, dead), living = partial(host, getpid());
+  write_file(folder_ / "a.txt", "whole");
+  EXPECT_FALSE(fs::exists(again));
+  EXPECT_TRUE(fs::exists(living));
+  EXPECT_EQ(content(folder_ / "a.txt"), "whole");
 }
 
 }  // namespace
