@@ -78,8 +78,14 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   return result;
 }
 
+/// A signal to one rank ends all of them, with its status.
+void share_signal(ringbus::Transport& ranks) {
+  for (const std::string& number : ranks.gather(std::to_string(interrupting_signal()))) adopt_signal(std::stoi(number));
+}
+
 void write_trace(TraceFile& trace, const ringbus::RunResult& result) {
-  const TraceFile::Written written = trace.write(*result.timeline, result.series ? &*result.series : nullptr);
+  const TraceFile::Written written =
+      trace.write(*result.timeline, result.series ? &*result.series : nullptr, result.complete);
   if (written.cut)
     spdlog::warn("{} has {} events and ends before the run; --trace-window, --trace-sample and --trace-events choose",
                  trace.name(), written.events);
@@ -137,6 +143,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   const ringbus::RunResult result =
       simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory);
   if (job.ranks() != nullptr) {
+    share_signal(*job.ranks());
     job.join();
     census.join(*job.ranks());
     if (job.ranks()->rank() != 0) {

@@ -1,6 +1,7 @@
 #include "app/command_line/command_line.h"
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <new>
 #include <string>
@@ -27,12 +28,14 @@
 #include "app/commands/stress_command.h"
 #include "app/commands/sweep_command.h"
 #include "app/host/exit_status.h"
+#include "app/host/interrupt.h"
 #include "app/host/log.h"
 #include "app/host/output.h"
 #include "app/host/version_text.h"
 #include "app/usage/examples.h"
 #include "core/system/error.h"
 #include "core/system/process_memory.h"
+#include "core/system/stop_request.h"
 #include "core/text/edit_distance.h"
 
 namespace carousel::app {
@@ -182,10 +185,7 @@ ExitStatus no_thread() {
   return kUsage;
 }
 
-}  // namespace
-
-int main(int argc, const char* const* argv) {
-  start_log({}, false);
+int guarded(int argc, const char* const* argv) {
   try {
     return run_command_line(argc, argv);
   } catch (const ConfigError& error) {
@@ -197,6 +197,9 @@ int main(int argc, const char* const* argv) {
   } catch (const FileError& error) {
     spdlog::error("{}", error.what());
     return kUsage;
+  } catch (const Interrupted& error) {
+    spdlog::warn("interrupted: {}", error.what());
+    return interrupted_status();
   } catch (const std::bad_alloc&) {
     return no_memory();
   } catch (const std::system_error& error) {
@@ -212,6 +215,14 @@ int main(int argc, const char* const* argv) {
     spdlog::error("internal error: {}", error.what());
     return kBroken;
   }
+}
+
+}  // namespace
+
+int main(int argc, const char* const* argv) {
+  start_log({}, false);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
+  return end_log(guarded(argc, argv));
 }
 
 }  // namespace carousel::app

@@ -15,6 +15,7 @@
 #include "app/run/hit_recorder.h"
 #include "app/run/render_job.h"
 #include "core/system/error.h"
+#include "core/system/stop_request.h"
 #include "core/types/enum_names.h"
 #include "report/csv/ray_csv_columns.h"
 #include "report/run/ray_life_table.h"
@@ -34,15 +35,22 @@ std::optional<std::uint32_t> number(std::string_view text) {
   return value;
 }
 
+/// True where an interrupt ended the run: nothing is known then of rays that it has not come to.
+bool was_cut(const ringbus::RunResult& run, const InterruptScope& interrupt) {
+  return !run.complete && interrupt.interrupted();
+}
+
 /// Row `row` of hits.csv, found by a run of its own, as only all rays together have an order.
-RayPlace place_of_row(const Prepared& p, std::uint64_t row) {
+RayPlace place_of_row(const Prepared& p, std::uint64_t row, const InterruptScope& interrupt) {
   RenderJob job(p);
   HitRecorder recorder(static_cast<std::size_t>(shader_workers(p.config())));
   job.set_recorder(&recorder);
   ringbus::RunOptions options;
   options.threads = p.threads;
+  options.stop = interrupt.token();
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
-  run(p.config(), p.accel, p.scene_size(), job.workload(), options);
+  const ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), job.workload(), options);
+  if (was_cut(result, interrupt)) throw Interrupted("the run that numbers the rays had not come to its end");
   const std::vector<report::HitRow> rows = recorder.take();
   if (row >= rows.size())
     throw ConfigError("--ray", fmt::format("found {}; expected at most {}", row, rows.size() - 1));
@@ -50,16 +58,16 @@ RayPlace place_of_row(const Prepared& p, std::uint64_t row) {
   return {rows[row].pixel, rows[row].sample, tag.kind, tag.bounce, tag.index};
 }
 
-RayPlace place_of(const Prepared& p, const FollowArguments& arguments) {
+RayPlace place_of(const Prepared& p, const FollowArguments& arguments, const InterruptScope& interrupt) {
   const Config& config = p.config();
   if (arguments.ray && !arguments.pixel.empty())
     throw ConfigError("--ray", "expected either a pixel or the number of a ray");
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     if (!arguments.ray)
       throw ConfigError("--pixel", "the rays of a list have no pixels; expected --ray with a number of the list");
-    return place_of_row(p, *arguments.ray);
+    return place_of_row(p, *arguments.ray, interrupt);
   }
-  if (arguments.ray) return place_of_row(p, *arguments.ray);
+  if (arguments.ray) return place_of_row(p, *arguments.ray, interrupt);
   const std::size_t comma = arguments.pixel.find(',');
   const auto x = number(std::string_view(arguments.pixel).substr(0, comma)),
              y = comma == std::string::npos ? std::nullopt
@@ -188,7 +196,7 @@ int follow_command(const FollowArguments& arguments) {
                       fmt::format("found {}; follow does not see new rays on their way to a slot; expected "
                                   "balanced or round_robin",
                                   enum_name(placement)));
-  const RayPlace place = place_of(p, arguments);
+  const RayPlace place = place_of(p, arguments, interrupt);
   RenderJob job(p);
   ringbus::FollowedRay ray;
   FollowingWorkload workload(
@@ -200,14 +208,19 @@ int follow_command(const FollowArguments& arguments) {
   const bool native = p.config().engine.kind == EngineKind::kNative;
   ringbus::RunResult result =
       (native ? ringbus::run_native : ringbus::run_cycle)(p.config(), p.accel, p.scene_size(), workload, options);
+  const bool cut = was_cut(result, interrupt);
+  if (cut && !workload.request()) throw Interrupted("the ray had not been made");
   if (!workload.request()) throw ConfigError(arguments.shadow ? "--shadow" : "--bounce", absent_text(workload));
   if (native) workload.add_times(result.start, result.facts);
   const std::optional<ringbus::RayLife> life = ringbus::ray_life(result.facts, *result.timeline, p.accel);
+  if (cut && !life) throw Interrupted("the ray had just been made");
   if (!life) throw SimulationError("the followed ray left no trace");
   const report::RayLife section = LifeReport(p, *life).section(place, workload);
   print_result(arguments.json ? report::json_text(report::ray_life_json(section)) + "\n"
                               : report::ray_life_table(section));
-  return life->complete ? kDone : interrupt.status();
+  if (life->complete) return kDone;
+  spdlog::warn("interrupted; the life of the ray is told as far as it had come");
+  return interrupt.status();
 }
 
 }  // namespace carousel::app

@@ -11,10 +11,10 @@
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
 #include "app/commands/report_command.h"
+#include "app/commands/run_outputs.h"
 #include "app/host/interrupt.h"
 #include "app/host/log.h"
 #include "app/host/output.h"
-#include "app/host/output_folder.h"
 #include "app/host/rank_scope.h"
 #include "app/run/hit_recorder.h"
 #include "app/run/render_job.h"
@@ -35,11 +35,6 @@ namespace carousel::app {
 
 namespace {
 
-std::filesystem::path out_folder(const RunArguments& arguments) {
-  if (!arguments.out.empty()) return arguments.out;
-  return std::filesystem::path("out") / std::filesystem::path(arguments.config).stem();
-}
-
 void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
                   const std::string& files) {
   if (arguments.json)
@@ -48,17 +43,21 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
     print_text(table + "files        " + files + "\n");
 }
 
-/// Makes the files of a run appear, and prints its result: also where the files cannot be written, which is an error
-/// after that.
+/// Makes the files of a run appear, and prints its result: also where files cannot be written, which is an error after
+/// that. Returns the exit status.
 template <class WriteFiles>
-void finish(const RunArguments& arguments, const report::Report& report, const std::string& table, OutputFolder& output,
-            const WriteFiles& write_files) {
-  const std::exception_ptr failure = output.write([&](const std::filesystem::path&) {
+int finish(const RunArguments& arguments, const report::Report& report, const std::string& table, RunOutputs& outputs,
+           const InterruptScope& interrupt, const WriteFiles& write_files) {
+  const std::exception_ptr failure = outputs.folder().write([&](const std::filesystem::path& folder) {
     const Phase phase("files");
-    write_files();
+    write_files(folder);
+    outputs.publish_extras();
   });
-  print_report(arguments, report, table, failure ? "none, they cannot be written" : output.folder().string());
+  outputs.publish_extras();  // also where the folder cannot be written: each is whole by itself
+  print_report(arguments, report, table, failure ? "none, they cannot be written" : outputs.folder().folder().string());
+  const int status = outputs.tell_errors(verdict(report, interrupt.status()));
   if (failure) std::rethrow_exception(failure);
+  return status;
 }
 
 /// The report is written last, so that the files it names exist before it does; the page shows the picture beside it.
@@ -83,15 +82,15 @@ void require_no_hits(const RunArguments& arguments, std::string_view workload) {
 
 /// Runs a workload without rays: the network or the memory alone.
 int run_without_rays_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
-                             OutputFolder& output) {
+                             RunOutputs& outputs) {
   const bool traffic = p.config().workload.kind == WorkloadConfig::Kind::kTraffic;
   require_no_hits(arguments, traffic ? "synthetic traffic has" : "memory requests have");
   const report::Report report = run_without_rays(p, interrupt, arguments.quiet);
-  finish(arguments, report, traffic ? report::traffic_table(report) : report::memory_table(report), output, [&] {
-    write_file(output.staging() / "config.resolved.yaml", resolved_yaml(p.config()));
-    write_report(output.staging(), arguments, report);
-  });
-  return verdict(report, interrupt.status());
+  return finish(arguments, report, traffic ? report::traffic_table(report) : report::memory_table(report), outputs,
+                interrupt, [&](const std::filesystem::path& folder) {
+                  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
+                  write_report(folder, arguments, report);
+                });
 }
 
 /// Refuses what would need the rays of all ranks in one place.
@@ -142,13 +141,17 @@ std::string scene_digest(const Prepared& p) {
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
-                 const RenderJob& job, const report::Report& report, HitRecorder* recorder) {
+                 const RenderJob& job, const report::Report& report, HitRecorder* recorder, ExtraFile* rays) {
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
   job.write_images(folder);
   if (recorder) {
     const std::vector<report::HitRow> rows = recorder->take();
-    if (arguments.hits) report::write_hits_csv(folder / "hits.csv", rows);
-    if (!arguments.dump_rays.empty()) report::write_rays_csv(arguments.dump_rays, rows);
+    if (rays) rays->write([&](AtomicFile& file) { report::write_rays_csv(file, rows, !report.incomplete); });
+    if (arguments.hits) {
+      AtomicFile file(folder / "hits.csv");
+      report::write_hits_csv(file, rows, !report.incomplete);
+      file.commit();
+    }
   }
   write_report(folder, arguments, report);
 }
@@ -158,7 +161,7 @@ void write_files(const std::filesystem::path& folder, const RunArguments& argume
 int run_command(const RunArguments& arguments) {
   const InterruptScope interrupt;
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
-  std::optional<OutputFolder> output;
+  std::optional<RunOutputs> outputs;
   std::optional<RankScope> ranks;
   const Prepared p = prepare(
       arguments, {.force = arguments.force, .ranks = true}, keep_hits,
@@ -171,15 +174,14 @@ int run_command(const RunArguments& arguments) {
               [&] { return ContentDigests(std::filesystem::path(arguments.config).parent_path()).of(config); });
           if (ranks->rank() != 0) return;  // one writes the files
         }
-        output.emplace(out_folder(arguments), &config, arguments.force,
-                       Results::kRun);  // before any work that could be lost
+        outputs.emplace(arguments, config);
       },
       [&] { return ranks ? &ranks->transport() : nullptr; });
   if (!p.config().vary.empty())
     spdlog::warn("run ignores vary, which is for sweeps, and uses the values of the other keys");
   if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty() && (!ranks || ranks->rank() == 0))
     spdlog::warn("this machine ignores {}", ignored_text(ignored));
-  if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *output);
+  if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *outputs);
   require_memory(arguments, p.config());
   require_estimates(arguments, p.config());
 
@@ -192,7 +194,7 @@ int run_command(const RunArguments& arguments) {
   if (keep_hits) job.set_recorder(&recorder.emplace(static_cast<std::size_t>(shader_workers(p.config()))));
   std::optional<TraceFile> trace;
   if (!arguments.trace.file.empty())
-    trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative, !ranks || ranks->rank() == 0);
+    trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative, outputs ? outputs->trace() : nullptr);
   ringbus::MemoryLog memory;
   const bool quiet = arguments.quiet || (ranks && ranks->rank() != 0);
   report::Report report = run_rays(arguments, p, job, interrupt, quiet, trace ? &*trace : nullptr,
@@ -202,11 +204,14 @@ int run_command(const RunArguments& arguments) {
     return report.incomplete ? interrupt.status() : kDone;
   }
   if (arguments.audit) audit(p, job, interrupt.token(), arguments.quiet, report);
-  if (!arguments.dump_memory.empty()) write_memory_csv(arguments.dump_memory, memory);
-  finish(arguments, report, report::report_table(report), *output,
-         [&] { write_files(output->staging(), arguments, p, job, report, recorder ? &*recorder : nullptr); });
+  if (ExtraFile* const file = outputs->memory())
+    file->write([&](AtomicFile& to) { write_memory_csv(to, memory, !report.incomplete); });
+  const int status = finish(
+      arguments, report, report::report_table(report), *outputs, interrupt, [&](const std::filesystem::path& folder) {
+        write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr, outputs->rays());
+      });
   if (ranks) ranks->leave();
-  return verdict(report, interrupt.status());
+  return status;
 }
 
 }  // namespace carousel::app

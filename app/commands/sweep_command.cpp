@@ -1,7 +1,6 @@
 #include "app/commands/sweep_command.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -241,7 +240,6 @@ int ask_command(const SweepArguments& arguments, const SweepSetup& setup, const 
 
 int sweep_command(const SweepArguments& arguments) {
   const InterruptScope interrupt;
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
   SweepSetup setup{arguments.config, read_config_file(arguments.config), out_folder(arguments)};
   const Config base = load_config(setup.source, arguments.sets, {.fields_only = true}).config;
   const Shard shard = parse_shard(arguments.shard);

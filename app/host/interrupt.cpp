@@ -54,8 +54,17 @@ bool InterruptScope::interrupted() const {
   return g_signal.load(std::memory_order_relaxed) != 0;
 }
 
-ExitStatus InterruptScope::status() const {
-  const int number = g_signal.load(std::memory_order_relaxed);
+int interrupting_signal() {
+  return g_signal.load(std::memory_order_relaxed);
+}
+
+void adopt_signal(int number) {
+  int none = 0;
+  g_signal.compare_exchange_strong(none, number, std::memory_order_relaxed);
+}
+
+ExitStatus interrupted_status() {
+  const int number = interrupting_signal();
   return number == 0 ? kInterrupted : static_cast<ExitStatus>(128 + number);
 }
 

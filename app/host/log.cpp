@@ -1,14 +1,21 @@
 #include "app/host/log.h"
 
+#include <cerrno>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <memory>
+#include <mutex>
 #include <utility>
 
-#include <spdlog/sinks/basic_file_sink.h>
+#include <fcntl.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "app/host/exit_status.h"
 #include "core/system/error.h"
+#include "core/system/file_calls.h"
 #include "core/system/plain_text.h"
 #include "report/text/number_text.h"
 
@@ -28,6 +35,51 @@ class PlainLogger final : public spdlog::logger {
     spdlog::logger::sink_it_(plain);
   }
 };
+
+/// A file that shows each message at once. A message that cannot be written is lost, and the first error is kept.
+class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  /// Throws FileError.
+  explicit LogFile(std::string name) : name_(std::move(name)) {
+    const std::filesystem::path folder = std::filesystem::path(name_).parent_path();
+    std::vector<std::filesystem::path> made;
+    if (files::make_folders(folder, [&](const std::filesystem::path& each) { made.push_back(each); }) == 0)
+      descriptor_ = files::open_file(name_, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
+    const int why = errno;
+    for (; descriptor_ < 0 && !made.empty(); made.pop_back()) files::remove_folder(made.back());
+    if (descriptor_ < 0) throw FileError(text_of(why));
+  }
+  ~LogFile() override {
+    if (descriptor_ >= 0) files::close_file(descriptor_);
+  }
+  LogFile(const LogFile&) = delete;
+  LogFile& operator=(const LogFile&) = delete;
+
+  /// Empty if there is none. Called when all messages are written.
+  const std::string& error() const { return error_; }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    for (std::string_view rest(line.data(), line.size()); !rest.empty();) {
+      const ssize_t count = files::write_bytes(descriptor_, rest);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0 && error_.empty()) error_ = text_of(errno);
+      if (count < 0) return;
+      rest.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+  void flush_() override {}
+
+ private:
+  std::string text_of(int error) const { return "--log-file: cannot write " + name_ + ": " + std::strerror(error); }
+
+  std::string name_, error_;
+  int descriptor_ = -1;
+};
+
+std::shared_ptr<LogFile> g_file;  // of the default logger; null if messages go to the terminal only
 
 }  // namespace
 
@@ -49,14 +101,22 @@ void start_log(const LogArguments& arguments, bool quiet) {
   spdlog::set_default_logger(logger);
   if (!to_file) return;
   // After the terminal's, which tells that the file cannot be written.
-  try {
-    auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(arguments.file, true);
-    file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l: %v");
-    file->set_level(level);
-    logger->sinks().push_back(std::move(file));
-  } catch (const spdlog::spdlog_ex&) {
-    throw FileError("--log-file: cannot write " + arguments.file);
-  }
+  g_file = std::make_shared<LogFile>(arguments.file);
+  g_file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l: %v");
+  g_file->set_level(level);
+  logger->sinks().push_back(g_file);
+}
+
+int end_log(int status) {
+  if (!g_file) return status;
+  g_file->log({"carousel", spdlog::level::info, fmt::format("the program ends with status {}", status)});
+  const std::string error = g_file->error();
+  auto& sinks = spdlog::default_logger()->sinks();
+  std::erase(sinks, g_file);
+  g_file.reset();
+  if (error.empty()) return status;
+  spdlog::error("{}", error);
+  return status == kDone ? kUsage : status;
 }
 
 Phase::Phase(std::string name) : name_(std::move(name)), exceptions_(std::uncaught_exceptions()) {

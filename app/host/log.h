@@ -19,6 +19,10 @@ const std::vector<std::string>& log_levels();
 /// characters. `quiet` leaves only errors on the terminal. Throws FileError if the file cannot be written.
 void start_log(const LogArguments& arguments, bool quiet);
 
+/// Ends the file of messages with the exit status, which a file of a killed program lacks. Returns the status: also
+/// that of a file error if messages could not be written and the command found no worse.
+int end_log(int status);
+
 /// A phase of a command. Its beginning is a message of level debug, its end with the time one of level info.
 class Phase {
  public:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <optional>
 #include <system_error>
@@ -11,13 +10,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/config/differences.h"
 #include "core/config/load/load.h"
 #include "core/system/error.h"
+#include "core/system/file_calls.h"
+#include "core/system/unfinished.h"
 
 namespace carousel::app {
 
@@ -52,9 +52,9 @@ bool is_file_of_any(std::string_view name) {
   throw FileError("cannot write " + path.string() + ": " + why);
 }
 
-/// Moves a file or folder over another, in one step.
-void move_to(const fs::path& from, const fs::path& to) {
-  if (std::rename(from.c_str(), to.c_str()) != 0) fail(to, std::strerror(errno));
+/// Fails with errno unless a call has returned 0.
+void require(int result, const fs::path& path) {
+  if (result != 0) fail(path, std::strerror(errno));
 }
 
 /// The configuration of the results in a folder; empty if there is none that can be read.
@@ -107,70 +107,60 @@ OutputFolder::OutputFolder(const fs::path& folder, const Config* config, bool fo
     throw ConfigError("--out",
                       fmt::format("{} holds {}; expected a folder of its own (--out DIR), or --force to replace them",
                                   folder.string(), others));
-  const fs::path parent = target_.parent_path();
-  make_parents();
-  prefix_ = "." + target_.filename().string() + ".carousel-";
-  if (fs::is_directory(status)) {
+  const auto made = [this](const fs::path& above) { made_.push_back(above); };
+  bool ready = files::make_folders(target_.parent_path(), made) == 0;
+  if (ready && fs::is_directory(status)) {
     if (access(target_.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
-    remove_left_overs(target_);
+    remove_abandoned_of(target_ / target_.filename());
   }
-  remove_left_overs(parent);
-  if (make_staging(parent) || (fs::is_directory(status) && make_staging(target_))) return;
+  if (ready) remove_abandoned_of(target_);
+  ready = ready && (make_staging(target_) || (fs::is_directory(status) && make_staging(target_ / target_.filename())));
   const int why = errno;
-  for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, error);
-  fail(folder, std::strerror(why));
-}
-
-void OutputFolder::make_parents() {
-  std::error_code error;
-  std::vector<fs::path> missing;
-  for (fs::path at = target_.parent_path(); !fs::exists(at, error); at = at.parent_path()) missing.push_back(at);
-  for (auto at = missing.rbegin(); at != missing.rend(); ++at) {
-    if (fs::create_directory(*at, error)) made_.push_back(*at);
-    if (error) fail(folder_, error.message());
-  }
+  if (!ready) remove_made();
+  if (!ready) fail(folder, std::strerror(why));
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  if (!staging_.empty()) fs::remove_all(staging_, ignored);
-  if (lock_ >= 0) close(lock_);
-  // Only folders that are empty are removed: a run that ended without a result leaves nothing.
-  for (auto made = made_.rbegin(); made != made_.rend(); ++made) fs::remove(*made, ignored);
+  if (!staging_.empty()) files::remove_tree(staging_);
+  if (lock_ >= 0) files::close_file(lock_);
+  remove_made();
 }
 
-/// Makes the hidden folder in the folder `in`, and locks it. A lock ends with its process, however that ends.
-bool OutputFolder::make_staging(const fs::path& in) {
-  std::string name = (in / (prefix_ + "XXXXXX")).string();
-  if (mkdtemp(name.data()) == nullptr) return false;
-  staging_ = name;
-  const int lock = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock < 0 || flock(lock, LOCK_EX | LOCK_NB) != 0) {
-    const int why = errno;
-    if (lock >= 0) close(lock);
-    std::error_code ignored;
-    fs::remove_all(std::exchange(staging_, {}), ignored);
-    errno = why;
-    return false;
-  }
-  lock_ = lock;
-  const mode_t mask = umask(0);
-  umask(mask);
-  std::error_code ignored;
-  fs::permissions(staging_, static_cast<fs::perms>(0777 & ~mask), ignored);  // mkdtemp makes it private
-  return true;
+/// Only folders that are empty are removed: a run that ended without a result leaves nothing.
+void OutputFolder::remove_made() {
+  for (; !made_.empty(); made_.pop_back()) files::remove_folder(made_.back());
 }
 
-void OutputFolder::remove_left_overs(const fs::path& in) const {
-  std::error_code error;
-  for (fs::directory_iterator at(in, error), end; !error && at != end; at.increment(error)) {
-    std::error_code ignored;
-    if (!at->path().filename().string().starts_with(prefix_) || !at->is_directory(ignored)) continue;
-    const int lock = open(at->path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock < 0) continue;
-    if (flock(lock, LOCK_EX | LOCK_NB) == 0) fs::remove_all(at->path(), ignored);  // no run holds it any more
-    close(lock);
+/// Makes the hidden folder beside `target`, and locks it. A lock ends with its process, however that ends. Before it is
+/// locked, the folder may have been taken for an abandoned one and removed, and is then made again.
+bool OutputFolder::make_staging(const fs::path& target) {
+  for (;;) {
+    staging_ = unfinished_name(target, "");
+    if (files::make_folder(staging_) != 0) {
+      if (errno == EEXIST) continue;
+      staging_.clear();
+      return false;
+    }
+    lock_ = files::open_file(staging_, O_RDONLY | O_DIRECTORY);
+    if (lock_ < 0 && errno == ENOENT) continue;
+    if (lock_ < 0) return fail_staging();
+    files::lock_file(lock_, true);
+    struct stat opened {
+    }, named{};
+    if (fstat(lock_, &opened) == 0 && stat(staging_.c_str(), &named) == 0 && opened.st_ino == named.st_ino) return true;
+    files::close_file(std::exchange(lock_, -1));
   }
+}
+
+bool OutputFolder::fail_staging() {
+  const int why = errno;
+  files::remove_folder(std::exchange(staging_, {}));
+  errno = why;
+  return false;
+}
+
+bool OutputFolder::holds_result(const fs::path& file) const {
+  return file.parent_path() == target_ && is_file_of_any(file.filename().string());
 }
 
 /// True for files that are not there any more after commit(), unless they have been made anew.
@@ -188,40 +178,50 @@ bool OutputFolder::holds_only_replaced() const {
 void OutputFolder::move_each() const {
   std::error_code error;
   const fs::path result = result_of(results_);
-  fs::remove(target_ / result, error);
+  const auto remove = [&](const fs::path& name) {
+    if (files::remove_file(target_ / name) != 0 && errno != ENOENT) fail(folder_ / name, std::strerror(errno));
+  };
+  remove(result);
   std::vector<fs::path> old, names;
   for (const fs::directory_entry& entry : fs::directory_iterator(target_)) old.push_back(entry.path().filename());
   for (const fs::path& name : old)
-    if (is_replaced(name.string()) && !fs::exists(staging_ / name, error)) fs::remove(target_ / name, error);
+    if (is_replaced(name.string()) && !fs::exists(staging_ / name, error)) remove(name);
   for (const fs::directory_entry& entry : fs::directory_iterator(staging_)) names.push_back(entry.path().filename());
   std::stable_partition(names.begin(), names.end(), [&](const fs::path& name) { return name != result; });
-  for (const fs::path& name : names) move_to(staging_ / name, target_ / name);
+  for (const fs::path& name : names) require(files::rename_file(staging_ / name, target_ / name), folder_ / name);
+  require(files::sync_folder(target_), folder_);
 }
 
 void OutputFolder::commit() {
   try {
     const bool beside = staging_.parent_path() == target_.parent_path();
     if (!fs::exists(target_) && beside) {
-      move_to(staging_, target_);
+      require(files::rename_file(staging_, target_), folder_);
       staging_.clear();
     } else if (beside && holds_only_replaced() && !is_current(target_) &&
-               renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+               files::exchange_names(staging_, target_) == 0) {
       // staging_ is now the old folder, which the destructor removes.
     } else {
-      fs::create_directories(target_);
+      require(files::make_folders(target_, [](const fs::path&) {}), folder_);
       move_each();
     }
   } catch (const fs::filesystem_error& error) {
     fail(folder_, error.code().message());
   }
+  require(files::sync_folder(target_.parent_path()), folder_);
+  for (; !made_.empty(); made_.pop_back()) require(files::sync_folder(made_.back().parent_path()), folder_);
 }
 
 std::exception_ptr OutputFolder::write(const std::function<void(const fs::path&)>& write) {
   try {
     write(staging_);
     commit();
-  } catch (const FileError&) {
-    return std::current_exception();
+  } catch (const FileError& error) {
+    // The user knows the folder by its own name.
+    std::string text = error.what();
+    if (const std::size_t at = text.find(staging_.string()); !staging_.empty() && at != text.npos)
+      text.replace(at, staging_.string().size(), folder_.string());
+    return std::make_exception_ptr(FileError(text));
   }
   return nullptr;
 }

@@ -4,7 +4,6 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "core/config/config.h"
@@ -31,6 +30,8 @@ class OutputFolder {
   const std::filesystem::path& staging() const { return staging_; }
   /// The folder where they will be.
   const std::filesystem::path& folder() const { return folder_; }
+  /// True for the name of a file that a command writes to this folder.
+  bool holds_result(const std::filesystem::path& file) const;
   /// Makes the files appear, and those of an earlier run of the command disappear; those of other commands too, if
   /// they are of another configuration. Throws FileError.
   void commit();
@@ -39,9 +40,9 @@ class OutputFolder {
   std::exception_ptr write(const std::function<void(const std::filesystem::path& staging)>& write);
 
  private:
-  bool make_staging(const std::filesystem::path& in);
-  void remove_left_overs(const std::filesystem::path& in) const;
-  void make_parents();
+  bool make_staging(const std::filesystem::path& target);
+  bool fail_staging();
+  void remove_made();
   bool is_replaced(const std::string& name) const;
   bool holds_only_replaced() const;
   void move_each() const;
@@ -49,7 +50,6 @@ class OutputFolder {
   std::filesystem::path folder_, target_;  // target_: folder_ without symbolic links
   Results results_;
   bool of_another_ = false;  // the folder holds results of another configuration
-  std::string prefix_;       // of the names of hidden folders
   std::filesystem::path staging_;
   int lock_ = -1;                            // is held as long as the run lives
   std::vector<std::filesystem::path> made_;  // folders above, innermost last

@@ -16,13 +16,14 @@ using ringbus::SliceKind;
 
 class ChromeTrace final : public TraceWriter {
  public:
-  ChromeTrace(AtomicFile& file, const ringbus::Timeline& timeline, bool native)
+  ChromeTrace(AtomicFile& file, const ringbus::Timeline& timeline, bool native, bool complete)
       : file_(file), timeline_(timeline), native_(native) {
     file_.write("{\"displayTimeUnit\":\"ns\",\"otherData\":{\"time\":\"");
     file_.write(!native                   ? "1 us stands for 1 cycle"
                 : timeline.clocks.empty() ? "time of the host since the start"
                                           : "time of the host of rank 0 since the start");
     file_.write("\"");
+    if (!complete) file_.write(fmt::format(",\"incomplete\":\"{}\"", kIncomplete));
     write_clocks();
     file_.write("},\"traceEvents\":[\n");
   }
@@ -73,7 +74,6 @@ class ChromeTrace final : public TraceWriter {
 
   std::size_t finish() override {
     file_.write("\n]}\n");
-    file_.commit();
     return events_;
   }
 
@@ -117,8 +117,9 @@ class ChromeTrace final : public TraceWriter {
 
 }  // namespace
 
-std::unique_ptr<TraceWriter> chrome_trace(AtomicFile& file, const ringbus::Timeline& timeline, bool native) {
-  return std::make_unique<ChromeTrace>(file, timeline, native);
+std::unique_ptr<TraceWriter> chrome_trace(AtomicFile& file, const ringbus::Timeline& timeline, bool native,
+                                          bool complete) {
+  return std::make_unique<ChromeTrace>(file, timeline, native, complete);
 }
 
 }  // namespace carousel::app

@@ -8,6 +8,7 @@
 namespace carousel::app {
 
 /// Chrome's JSON. A cycle stands for a microsecond; `native`: times are nanoseconds of the host. Keeps references.
-std::unique_ptr<TraceWriter> chrome_trace(AtomicFile& file, const ringbus::Timeline& timeline, bool native);
+std::unique_ptr<TraceWriter> chrome_trace(AtomicFile& file, const ringbus::Timeline& timeline, bool native,
+                                          bool complete);
 
 }  // namespace carousel::app

@@ -2,13 +2,13 @@
 
 #include <array>
 #include <charconv>
-#include <fstream>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "core/system/atomic_file.h"
 #include "core/system/error.h"
+#include "core/system/input_file.h"
+#include "core/text/list_end.h"
 
 namespace carousel::app {
 
@@ -27,9 +27,10 @@ class MemoryReader {
     for (line_ = 1; std::getline(in, line) && issues_.size() < kMostIssues; ++line_) {
       if (!line.empty() && line.back() == '\r') line.pop_back();
       if (line_ == 1 && line != kHeader) issue(1, fmt::format("expected the header {}, found '{}'", kHeader, line));
-      if (line_ > 1 && !line.empty()) read_request(line);
+      if (line_ > 1 && !line.empty()) read_line(line);
     }
     if (line_ == 1) issue(0, fmt::format("expected the header {}", kHeader));
+    if (requests_.empty() && issues_.empty()) issue(0, end_.fault(0, "request"));
     if (in.bad()) throw FileError("cannot read " + name_);
     if (!issues_.empty()) throw ConfigError(std::move(issues_));
     return std::move(requests_);
@@ -37,6 +38,16 @@ class MemoryReader {
 
  private:
   void issue(int column, std::string message) { issues_.push_back({{name_, line_, column}, "", std::move(message)}); }
+
+  void read_line(std::string_view line) {
+    if (end_.take(line)) {
+      if (const std::string fault = end_.fault(requests_.size(), "request"); !fault.empty() && issues_.empty())
+        issue(1, fault);
+      return;
+    }
+    if (end_.found()) issue(1, "expected no request behind the line that counts them");
+    read_request(line);
+  }
 
   void read_request(std::string_view line) {
     std::array<std::string_view, kColumns> cells;
@@ -75,18 +86,18 @@ class MemoryReader {
   const std::string& name_;
   int line_ = 1;
   std::vector<ConfigIssue> issues_;
+  ListEnd end_;
   ringbus::MemoryLog requests_;
 };
 
 }  // namespace
 
-void write_memory_csv(const std::filesystem::path& path, const ringbus::MemoryLog& requests) {
-  std::string text(kHeader);
-  text += '\n';
+void write_memory_csv(AtomicFile& file, const ringbus::MemoryLog& requests, bool complete) {
+  file.write(std::string(kHeader) + "\n");
   for (const ringbus::MemoryRequest& request : requests)
-    fmt::format_to(std::back_inserter(text), "{},{},{},{}\n", request.cycle, request.write ? "write" : "read",
-                   request.address, request.bytes);
-  write_file(path, text);
+    file.write(
+        fmt::format("{},{},{},{}\n", request.cycle, request.write ? "write" : "read", request.address, request.bytes));
+  file.write(list_end(requests.size(), complete) + "\n");
 }
 
 ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name) {
@@ -94,7 +105,7 @@ ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name) {
 }
 
 ringbus::MemoryLog read_memory_csv(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
+  InputFile in(path);
   if (!in) throw FileError("cannot read " + path.string());
   return read_memory_csv(in, path.string());
 }

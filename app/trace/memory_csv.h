@@ -4,16 +4,19 @@
 #include <istream>
 #include <string>
 
+#include "core/system/atomic_file.h"
 #include "ringbus/results/memory_request.h"
 
 namespace carousel::app {
 
 /// Requests to the memory as CSV, one a row, in the order of their cycles: cycle,kind,address,bytes. The cycle is one
-/// of the engine, the kind `read` or `write`, the address is in bytes, and a request has 1 to 65,536 bytes. Throws
+/// of the engine, the kind `read` or `write`, the address is in bytes, and a request has 1 to 65,536 bytes. The last
+/// line counts the requests, and says so if the run was interrupted (not `complete`; core/text/list_end.h). Throws
 /// FileError.
-void write_memory_csv(const std::filesystem::path& path, const ringbus::MemoryLog& requests);
+void write_memory_csv(AtomicFile& file, const ringbus::MemoryLog& requests, bool complete);
 
-/// Throws a ConfigError with the positions of the first problems, and FileError when the file cannot be read.
+/// A list without a last line that counts is read as it is. Throws a ConfigError with the positions of the first
+/// problems, also for an empty list and one of an interrupted run, and FileError when the file cannot be read.
 ringbus::MemoryLog read_memory_csv(const std::filesystem::path& path);
 ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name);
 

@@ -18,8 +18,8 @@ using ringbus::SliceKind;
 
 class PerfettoTrace final : public TraceWriter {
  public:
-  PerfettoTrace(AtomicFile& file, const ringbus::Timeline& timeline, bool native)
-      : file_(file), timeline_(timeline), scale_(native ? 1 : 1000) {}
+  PerfettoTrace(AtomicFile& file, const ringbus::Timeline& timeline, bool native, bool complete)
+      : file_(file), timeline_(timeline), scale_(native ? 1 : 1000), complete_(complete) {}
 
   std::size_t events_of(const Slice&) const override { return 2; }
 
@@ -73,10 +73,7 @@ class PerfettoTrace final : public TraceWriter {
     write();
   }
 
-  std::size_t finish() override {
-    file_.commit();
-    return packets_;
-  }
+  std::size_t finish() override { return packets_; }
 
  private:
   // Tracks have numbers that are unique in the file: parts from 1, and far above them slices and counters.
@@ -94,6 +91,7 @@ class PerfettoTrace final : public TraceWriter {
       track.mutable_process()->set_process_name(part);
       if (std::string clock = clock_text(timeline_, part); !clock.empty())
         track.mutable_process()->add_process_labels(std::move(clock));
+      if (!complete_) track.mutable_process()->add_process_labels(kIncomplete);
       write();
     }
     return found->second;
@@ -129,6 +127,7 @@ class PerfettoTrace final : public TraceWriter {
   AtomicFile& file_;
   const ringbus::Timeline& timeline_;
   double scale_;
+  bool complete_;
   perfetto::Trace trace_;
   std::size_t packets_ = 0;
   std::map<std::string, std::uint64_t> parts_;
@@ -141,8 +140,9 @@ bool has_perfetto_trace() {
   return true;
 }
 
-std::unique_ptr<TraceWriter> perfetto_trace(AtomicFile& file, const ringbus::Timeline& timeline, bool native) {
-  return std::make_unique<PerfettoTrace>(file, timeline, native);
+std::unique_ptr<TraceWriter> perfetto_trace(AtomicFile& file, const ringbus::Timeline& timeline, bool native,
+                                            bool complete) {
+  return std::make_unique<PerfettoTrace>(file, timeline, native, complete);
 }
 
 }  // namespace carousel::app
@@ -155,7 +155,7 @@ bool has_perfetto_trace() {
   return false;
 }
 
-std::unique_ptr<TraceWriter> perfetto_trace(AtomicFile&, const ringbus::Timeline&, bool) {
+std::unique_ptr<TraceWriter> perfetto_trace(AtomicFile&, const ringbus::Timeline&, bool, bool) {
   return nullptr;
 }
 

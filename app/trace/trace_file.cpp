@@ -68,20 +68,27 @@ bool is_perfetto(const std::string& file) {
 
 }  // namespace
 
-TraceFile::TraceFile(const TraceArguments& arguments, bool native, bool writes)
+TraceFile::TraceFile(const TraceArguments& arguments, bool native, ExtraFile* file)
     : name_(arguments.file),
       perfetto_(is_perfetto(arguments.file)),
+      file_(file),
       wanted_(options_of(arguments, native)),
       most_(arguments.events),
-      native_(native) {
-  if (writes) file_.emplace(arguments.file);
-}
+      native_(native) {}
 
 ringbus::TimelineOptions TraceFile::wanted() const {
   return wanted_;
 }
 
-TraceFile::Written TraceFile::write(const ringbus::Timeline& timeline, const ringbus::TimeSeries* series) {
+TraceFile::Written TraceFile::write(const ringbus::Timeline& timeline, const ringbus::TimeSeries* series,
+                                    bool complete) {
+  Written out;
+  file_->write([&](AtomicFile& file) { out = write_events(file, timeline, series, complete); });
+  return out;
+}
+
+TraceFile::Written TraceFile::write_events(AtomicFile& file, const ringbus::Timeline& timeline,
+                                           const ringbus::TimeSeries* series, bool complete) const {
   Written out{0, timeline.cut};
   // Names and counters, which say most, go first; the rest is left to slices, each with its point of a flow.
   const double scale = native_ ? 1e9 : 1;
@@ -96,7 +103,7 @@ TraceFile::Written TraceFile::write(const ringbus::Timeline& timeline, const rin
       }
   if (counters.size() > most_ / 4) counters.resize(most_ / 4);
   const std::unique_ptr<TraceWriter> writer =
-      perfetto_ ? perfetto_trace(*file_, timeline, native_) : chrome_trace(*file_, timeline, native_);
+      perfetto_ ? perfetto_trace(file, timeline, native_, complete) : chrome_trace(file, timeline, native_, complete);
   const std::size_t names = 5 * timeline.tracks.size() + 2;
   std::size_t budget = most_ - std::min(most_, names + counters.size());
   std::size_t slices = 0;

@@ -2,11 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <string>
 
-#include "core/system/atomic_file.h"
+#include "app/host/extra_file.h"
 #include "ringbus/results/slice_log.h"
 #include "ringbus/results/time_series.h"
 
@@ -24,10 +22,9 @@ struct TraceArguments {
 /// Chrome's JSON, which chrome://tracing opens as well. A cycle stands for a microsecond.
 class TraceFile {
  public:
-  /// Makes the file, so that nothing is simulated for a file that cannot be written. Throws FileError, and a
-  /// ConfigError for a window that is none or a format that this build does not write. `native`: times are nanoseconds
-  /// of the host. `writes`: false at a rank that only records, for rank 0's file.
-  TraceFile(const TraceArguments& arguments, bool native, bool writes = true);
+  /// Throws a ConfigError for a window that is none or a format that this build does not write. `native`: times are
+  /// nanoseconds of the host. `file`: null at a rank that only records, for rank 0's file.
+  TraceFile(const TraceArguments& arguments, bool native, ExtraFile* file);
 
   const std::string& name() const { return name_; }
   /// For the engine.
@@ -37,13 +34,17 @@ class TraceFile {
     std::size_t events = 0;
     bool cut = false;  ///< events were left out, for there were too many
   };
-  /// Only where it writes. `series` may be null. Occupancies become counters, packets flows from part to part.
-  Written write(const ringbus::Timeline& timeline, const ringbus::TimeSeries* series);
+  /// Only where it writes. `series` may be null. Occupancies become counters, packets flows from part to part. The
+  /// trace of a run that was interrupted (not `complete`) says so. The file keeps an error.
+  Written write(const ringbus::Timeline& timeline, const ringbus::TimeSeries* series, bool complete);
 
  private:
+  Written write_events(AtomicFile& file, const ringbus::Timeline& timeline, const ringbus::TimeSeries* series,
+                       bool complete) const;
+
   std::string name_;
   bool perfetto_;
-  std::optional<AtomicFile> file_;
+  ExtraFile* file_;
   ringbus::TimelineOptions wanted_;
   std::size_t most_;
   bool native_;

@@ -26,9 +26,12 @@ class TraceWriter {
   virtual void name_tracks(const std::vector<bool>& used, bool counters) = 0;
   virtual void counter(const std::string& part, const std::string& name, double at, double value) = 0;
   virtual void slice(const ringbus::Slice& slice, OnWay way) = 0;
-  /// Completes the file. Returns the events in it.
+  /// Ends the events. Returns the events in it.
   virtual std::size_t finish() = 0;
 };
+
+/// Marks the trace of a run that was interrupted.
+inline constexpr const char* kIncomplete = "incomplete: the run was interrupted";
 
 /// Numbers that tell more of a slice, with their names.
 struct SliceArguments {

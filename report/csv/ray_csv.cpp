@@ -4,6 +4,7 @@
 #include <array>
 #include <tuple>
 
+#include "core/text/list_end.h"
 #include "report/csv/ray_csv_columns.h"
 #include "report/text/number_text.h"
 
@@ -47,8 +48,8 @@ void append_hit(std::string& line, const RayResult& result) {
   }
 }
 
-void write_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows, bool hits) {
-  AtomicFile file(path);
+void write_csv(AtomicFile& file, const std::vector<HitRow>& rows, bool hits, bool complete) {
+  std::uint64_t written = 0;
   std::string line;
   const std::size_t columns = hits ? kColumns.size() : kRayColumns;
   for (std::size_t i = 0; i < columns; ++i) line += (i == 0 ? "" : ",") + std::string(kColumns[i]);
@@ -65,8 +66,10 @@ void write_csv(const std::filesystem::path& path, const std::vector<HitRow>& row
     if (flags) append_flags(line, rows[i].result.tag.flags);
     line += '\n';
     file.write(line);
+    ++written;
   }
-  file.commit();
+  // The columns of whole hits are read by programs that know no such line.
+  if (!hits || !complete) file.write(list_end(written, complete) + "\n");
 }
 
 }  // namespace
@@ -79,12 +82,12 @@ void sort_rows(std::vector<HitRow>& rows) {
   std::sort(rows.begin(), rows.end(), [&](const HitRow& a, const HitRow& b) { return key(a) < key(b); });
 }
 
-void write_hits_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows) {
-  write_csv(path, rows, true);
+void write_hits_csv(AtomicFile& file, const std::vector<HitRow>& rows, bool complete) {
+  write_csv(file, rows, true, complete);
 }
 
-void write_rays_csv(const std::filesystem::path& path, const std::vector<HitRow>& rows) {
-  write_csv(path, rows, false);
+void write_rays_csv(AtomicFile& file, const std::vector<HitRow>& rows, bool complete) {
+  write_csv(file, rows, false, complete);
 }
 
 }  // namespace carousel::report

@@ -2,13 +2,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "core/system/error.h"
+#include "core/system/input_file.h"
 #include "core/text/line_reader.h"
+#include "core/text/list_end.h"
 #include "report/csv/ray_csv.h"
 #include "report/csv/ray_csv_columns.h"
 
@@ -63,17 +64,22 @@ class RayReader {
       const std::string& line = lines.line();
       if (lines.too_long()) {
         issue(0, fmt::format("expected a line of CSV, found one of more than {} bytes", kLongestLine));
-      } else if (rays_.size() == most_) {
-        issue(0, fmt::format("expected at most {} rays, found more", most_));
-        break;
       } else if (line_ == 1) {
         read_header(line);
         if (!issues_.empty()) break;  // the rest would only repeat it
+      } else if (end_.take(line)) {
+        if (const std::string fault = end_.fault(rays_.size(), "ray"); !fault.empty() && issues_.empty())
+          issue(1, fault);
+      } else if (rays_.size() == most_) {
+        issue(0, fmt::format("expected at most {} rays, found more", most_));
+        break;
       } else if (!line.empty()) {
+        if (end_.found()) issue(1, "expected no ray behind the line that counts them");
         read_ray(line);
       }
     }
     if (line_ == 1 && issues_.empty()) issue(0, "expected the header " + header());
+    if (rays_.empty() && issues_.empty()) issue(0, end_.fault(0, "ray"));
     if (in.bad()) throw FileError("cannot read " + name_);
     if (!issues_.empty()) throw ConfigError(std::move(issues_));
     return std::move(rays_);
@@ -171,6 +177,7 @@ class RayReader {
   const std::size_t most_;
   int line_ = 1;
   std::size_t flags_ = kNowhere;  // the cell of the flags
+  ListEnd end_;
   RayBatch rays_;
   std::vector<ConfigIssue> issues_;
 };
@@ -183,7 +190,7 @@ RayBatch read_rays_csv(std::istream& in, const std::string& name, std::size_t mo
 
 RayBatch read_rays_csv(const std::filesystem::path& path) {
   std::error_code ignored;
-  std::ifstream in(path, std::ios::binary);
+  InputFile in(path);
   if (!in || std::filesystem::is_directory(path, ignored)) throw FileError("cannot read " + path.string());
   return read_rays_csv(in, path.string());
 }

@@ -464,6 +464,13 @@ class Failures(Ranks):
         os.kill(ranks[1], signal.SIGKILL)
         self.assertIn("rank 1", self.ended(run, 30))
 
+    def test_a_signal_to_one_rank_ends_all_with_its_status(self):
+        run, ranks = self.begin(seconds=1)
+        os.kill(ranks[1], signal.SIGTERM)
+        _, text = run.communicate(timeout=60)
+        self.assertEqual(run.returncode, 128 + signal.SIGTERM, text)
+        self.assertTrue(self.report("ranks")["incomplete"])
+
     def test_a_rank_that_hangs(self):
         run, ranks = self.begin()
         os.kill(ranks[2], signal.SIGSTOP)

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 
 #include <nlohmann/json.hpp>
@@ -11,18 +10,16 @@
 #include "app/run/prepare.h"
 #include "core/numeric/bytes_digest.h"
 #include "core/system/error.h"
+#include "core/system/input_file.h"
 
 namespace carousel::app {
 
 namespace {
 
 std::string read_all(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad() || std::filesystem::is_directory(path))
-    throw FileError("cannot read " + path.string() + ": " + std::strerror(errno != 0 ? errno : EISDIR));
-  return bytes;
+  InputFile in(path);
+  if (!in) throw FileError("cannot read " + path.string() + ": " + std::strerror(errno));
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string percent_decoded(const std::string& text) {

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 #include <sys/types.h>
 
 #include "tests/app/support/program.h"
@@ -43,16 +44,21 @@ class InterruptedRun : public testing::Test {
 
   InterruptedRun() { program_.write("a.yaml", kMachine); }
 
+  /// Starts the program, and sends it a signal some time after it catches that.
+  Outcome signalled(const std::vector<std::string>& words, std::chrono::duration<double> after, int number) const {
+    const pid_t pid = program_.start(words);
+    for (int i = 0; i < 3000 && !catches(pid, number); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(after);
+    kill(pid, number);
+    return program_.wait(pid);
+  }
+
   /// Starts a run, and interrupts it after some time.
   Interrupted interrupt(const std::vector<std::string>& sets, std::chrono::duration<double> after, int number) const {
     std::vector<std::string> run{"run", "a.yaml", "--out", "out"};
     for (const std::string& set : sets) run.insert(run.end(), {"--set", set});
     std::filesystem::remove_all(program_.folder() / "out");
-    const pid_t pid = program_.start(run);
-    for (int i = 0; i < 3000 && !catches(pid, number); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    std::this_thread::sleep_for(after);
-    kill(pid, number);
-    Interrupted out{program_.wait(pid), {}};
+    Interrupted out{signalled(run, after, number), {}};
     const std::string text = program_.read("out/report.json");
     if (!text.empty()) out.report = Json::parse(text);
     return out;
@@ -115,6 +121,55 @@ TEST_F(InterruptedRun, TermAndHangUpEndARunAsInterruptDoes) {
     ASSERT_FALSE(run.report.is_null());
     EXPECT_EQ(run.report["incomplete"], true);
   }
+}
+
+// The ray of the last pixel is made at the end of a run, which here never comes.
+TEST_F(InterruptedRun, FollowSaysThatItWasInterruptedAndNothingOfTheRay) {
+  const std::vector<std::string> begin{"follow", "a.yaml", "--set", "image.samples=4096"};
+  const std::vector<std::vector<std::string>> rays{
+      {"--pixel", "95,63", "--sample", "4095"}, {"--ray", "5"}, {"--pixel", "95,63", "--bounce", "1", "--shadow"}};
+  std::size_t i = 0;
+  for (const auto& [number, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGHUP, 129}})
+    for (const char* engine : {"engine.kind=cycle", "engine.kind=native"}) {
+      std::vector<std::string> words = begin;
+      const std::vector<std::string>& ray = rays[i++ % rays.size()];
+      words.insert(words.end(), ray.begin(), ray.end());
+      words.insert(words.end(), {"--set", engine});
+      const Outcome outcome = signalled(words, std::chrono::milliseconds(i % 2 == 0 ? 0 : 80), number);
+      EXPECT_EQ(outcome.status, status) << outcome.err;
+      EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
+      EXPECT_THAT(outcome.err, testing::Not(HasSubstr("error")));
+    }
+}
+
+// What is read may never come: a pipe without a writer.
+TEST_F(InterruptedRun, TheFirstSignalEndsTheWaitForAPipe) {
+  ASSERT_EQ(mkfifo((program_.folder() / "pipe").c_str(), 0600), 0);
+  program_.write("rays.yaml", std::string(kMachine) + "workload: {rays_from: pipe}\n");
+  program_.write("memory.yaml", "engine: {kind: cycle}\nworkload: {memory_trace: pipe}\n");
+  const std::vector<std::vector<std::string>> commands{{"run", "rays.yaml"},
+                                                       {"run", "memory.yaml"},
+                                                       {"run", "pipe"},
+                                                       {"sweep", "pipe", "--ask", "--tell"},
+                                                       {"run", "a.yaml", "--trace", "pipe"},
+                                                       {"follow", "rays.yaml", "--ray", "0"}};
+  for (const std::vector<std::string>& words : commands) {
+    const auto start = Clock::now();
+    const Outcome outcome = signalled(words, std::chrono::milliseconds(100), SIGTERM);
+    EXPECT_EQ(outcome.status, 143) << words[1] << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("interrupted: waited for "));
+    EXPECT_LT(Clock::now() - start, std::chrono::seconds(15));
+  }
+}
+
+TEST_F(InterruptedRun, ItsRaysAreMarkedAndRefused) {
+  const Outcome run = signalled({"run", "a.yaml", "--set", "image.samples=4096", "--dump-rays", "rays.csv"},
+                                std::chrono::milliseconds(200), SIGINT);
+  EXPECT_EQ(run.status, 130) << run.err;
+  program_.write("rays.yaml", std::string(kMachine) + "workload: {rays_from: rays.csv}\n");
+  const Outcome refused = program_.run({"run", "rays.yaml"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("the run that wrote this list was interrupted"));
 }
 
 TEST_F(InterruptedRun, ASecondSignalEndsItAtOnce) {

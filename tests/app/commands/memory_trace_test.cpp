@@ -87,6 +87,11 @@ TEST(MemoryTrace, RefusesBadFilesByTheirPlaces) {
   EXPECT_THAT(error_of(header + "1,read,0,0\n"), HasSubstr("memory.csv:2:10: expected a whole number from 1 to 65536"));
   EXPECT_THAT(error_of(header + "2,read,0,32\n1,read,0,32\n"),
               HasSubstr("memory.csv:3:1: requests stand in the order"));
+  EXPECT_THAT(error_of(header), HasSubstr("memory.csv:2: expected at least one request, found none"));
+  EXPECT_THAT(error_of(header + "1,read,0,32\n# rows: 2\n"),
+              HasSubstr("memory.csv:3:1: this line says that the list holds 2 requests; expected as many, found 1"));
+  EXPECT_THAT(error_of(header + "1,read,0,32\n# rows: 1, incomplete\n"),
+              HasSubstr("memory.csv:3:1: the run that wrote this list was interrupted"));
   program.write("native.yaml", "scene: {builtin: cornell}\n");
   EXPECT_THAT(program.run({"run", "native.yaml", "--dump-memory", "a.csv"}).err,
               HasSubstr("--dump-memory: the native engine has no simulated memory"));

@@ -97,6 +97,12 @@ std::string rays_through(const Aabb& bounds, int count) {
   return out;
 }
 
+void write_hits(const std::filesystem::path& path, const std::vector<report::HitRow>& rows) {
+  AtomicFile file(path);
+  report::write_hits_csv(file, rows, true);
+  file.commit();
+}
+
 /// hits.csv as it has to be, from every primitive tested in turn.
 std::string every_hit(const scene::Scene& scene, const RayBatch& rays, std::size_t& most) {
   std::vector<report::HitRow> rows;
@@ -114,7 +120,7 @@ std::string every_hit(const scene::Scene& scene, const RayBatch& rays, std::size
       rows.push_back({ray.tag.path, static_cast<std::uint32_t>(&hit - hits.data()), {ray.ray, hit, ray.tag}});
   }
   const auto file = std::filesystem::temp_directory_path() / fmt::format("every_hit_{}.csv", ::getpid());
-  report::write_hits_csv(file, rows);
+  write_hits(file, rows);
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   std::filesystem::remove(file);
@@ -145,7 +151,7 @@ TEST(Query, EachRayOfAFileHasItsFlags) {
   std::vector<report::HitRow> expected;
   for (const RayRequest& ray : report::read_rays_csv(program.folder() / "rays.csv"))
     expected.push_back({ray.tag.path, 0, {ray.ray, accel::brute_force(scene, ray), ray.tag}});
-  report::write_hits_csv(program.folder() / "expected.csv", expected);
+  write_hits(program.folder() / "expected.csv", expected);
   int fewer = 0, none = 0;
   for (std::size_t i = 0; i < expected.size(); i += flags.size()) {
     const auto t = [&](std::size_t k) { return expected[i + k].result.hit.t; };

@@ -62,10 +62,20 @@ TEST(RayCsv, ListsHaveABound) {
   }
 }
 
+/// Writes a list with one of the two functions.
+template <class Write>
+void write_list(const Write& write, const std::filesystem::path& path, const std::vector<HitRow>& rows,
+                bool complete = true) {
+  AtomicFile file(path);
+  write(file, rows, complete);
+  file.commit();
+}
+
 TEST(RayCsv, WritesTheColumnsOfTheContract) {
   const auto path = temporary("hits.csv");
-  write_hits_csv(path, {row(0, 0, RayKind::kCamera, 0, true), row(0, 0, RayKind::kBounce, 1, false),
-                        row(0, 0, RayKind::kShadow, 1, true)});
+  write_list(write_hits_csv, path,
+             {row(0, 0, RayKind::kCamera, 0, true), row(0, 0, RayKind::kBounce, 1, false),
+              row(0, 0, RayKind::kShadow, 1, true)});
   EXPECT_EQ(content(path),
             "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax,hit,t,instance,primitive,u,v\n"
             "0,camera,1,0.1,-2.5,0,0,1,0,inf,1,1.5,3,7,0.25,0.5\n"
@@ -105,7 +115,7 @@ TEST(RayCsv, RaysReadBackToTheSameBits) {
   }
   const auto path = temporary("rays.csv");
   for (const auto write : {write_rays_csv, write_hits_csv}) {
-    write(path, rows);
+    write_list(write, path, rows);
     const RayBatch rays = read_rays_csv(path);
     ASSERT_EQ(rays.size(), rows.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -151,7 +161,7 @@ TEST(RayCsv, EachRayHasItsFlags) {
   rows[2].result.tag.flags = kRayCullBack;
   const auto path = temporary("flags.csv");
   for (const auto write : {write_rays_csv, write_hits_csv}) {
-    write(path, rows);
+    write_list(write, path, rows);
     EXPECT_THAT(content(path), HasSubstr(",flags\n"));
     EXPECT_THAT(content(path), HasSubstr(",cull_front+force_opaque\n"));
     const RayBatch rays = read_rays_csv(path);
@@ -171,6 +181,27 @@ TEST(RayCsv, EachRayHasItsFlags) {
                           "r.csv:5:40: expected cull_back, cull_front or force_opaque, joined by +, found ''"));
   EXPECT_THAT(problems("ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax,flags,flags\n"),
               ElementsAre("r.csv:1:44: there is a column flags already"));
+}
+
+TEST(RayCsv, TheLastLineOfAListCountsItsRays) {
+  const auto path = temporary("counted.csv");
+  const std::vector<HitRow> rows(3, row(0, 0, RayKind::kCamera, 0, true));
+  write_list(write_rays_csv, path, rows);
+  const std::string whole = content(path);
+  EXPECT_TRUE(whole.ends_with("\n# rows: 3\n")) << whole;
+  const std::size_t second = whole.find("\n1,") + 1;
+  EXPECT_THAT(problems(whole.substr(0, second) + whole.substr(whole.find("\n2,") + 1)),
+              ElementsAre("r.csv:4:1: this line says that the list holds 3 rays; expected as many, found 2"));
+  EXPECT_THAT(problems(whole + "3,camera,0,0,0,0,0,1,0,inf\n"),
+              ElementsAre("r.csv:6:1: expected no ray behind the line that counts them"));
+  EXPECT_THAT(problems(kHeader), ElementsAre(HasSubstr("expected at least one ray, found none")));
+  EXPECT_THAT(problems(kHeader + "# rows: 0\n"), ElementsAre(HasSubstr("expected at least one ray, found none")));
+  for (const auto write : {write_rays_csv, write_hits_csv}) {
+    write_list(write, path, rows, false);
+    EXPECT_THAT(problems(content(path)),
+                ElementsAre(HasSubstr("r.csv:5:1: the run that wrote this list was interrupted")));
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(RayCsv, RefusesAMissingHeader) {
