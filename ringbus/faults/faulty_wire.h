@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ringbus/faults/fault_injector.h"
+#include "ringbus/schedule/schedule.h"
 
 namespace carousel::ringbus {
 
@@ -13,7 +14,7 @@ namespace carousel::ringbus {
 template <class Queue, class LinkFrame>
 class FaultyWire {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ScheduleClock;
 
   FaultyWire(Queue& queue, const FaultInjector& injector, std::chrono::nanoseconds delay)
       : queue_(queue), injector_(injector), delay_(delay) {}

@@ -6,6 +6,7 @@
 
 #include "core/config/config.h"
 #include "core/types/ids.h"
+#include "ringbus/schedule/schedule.h"
 
 namespace carousel::ringbus {
 
@@ -38,7 +39,7 @@ class ResourceFault {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ScheduleClock;
   ResourceFault(const FaultsConfig::Resource& fault, std::int64_t clock_mhz)
       : kind_(fault.kind),
         after_(static_cast<std::uint64_t>(fault.after_rays)),

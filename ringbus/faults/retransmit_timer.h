@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstdint>
 
+#include "ringbus/schedule/schedule.h"
+
 namespace carousel::ringbus {
 
 /// Decides for how many turns a sender waits for an acknowledgement before it sends again: twice as many as one takes
@@ -14,7 +16,7 @@ namespace carousel::ringbus {
 /// enough.
 class RetransmitTimer {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ScheduleClock;
   /// Frame `sequence` goes on the wire for the first time.
   void sent(std::uint64_t sequence) {
     if (timed_) return;

@@ -21,6 +21,7 @@
 #include "ringbus/native/native_series.h"
 #include "ringbus/native/shader_worker.h"
 #include "ringbus/ranks/gather_result.h"
+#include "ringbus/schedule/schedule.h"
 
 namespace carousel::ringbus {
 
@@ -46,8 +47,11 @@ class NativeRun {
         options.transport == nullptr
             ? config.topology.resources
             : RankShare(options.transport->rank(), options.transport->ranks(), config.topology.resources).arc_size();
-    threads_ = std::clamp<std::size_t>(options.threads, 1,
-                                       static_cast<std::size_t>(std::max(resources, shader_workers(config))));
+    // Agents of a schedule share one thread, so that each resource and each worker may be one.
+    const std::int64_t workers = shader_workers(config), agents = resources + workers;
+    const std::int64_t most = Schedule::current() == nullptr ? std::max(resources, workers) : agents;
+    threads_ = std::clamp<std::size_t>(options.threads, 1, static_cast<std::size_t>(most));
+    if (Schedule::current() != nullptr) first_worker_ = static_cast<std::size_t>(resources) % threads_;
     build();
     progress_ = std::make_unique<Progress[]>(threads_);
   }
@@ -61,14 +65,13 @@ class NativeRun {
       if (machine_->gate) machine_->gate->part(error_, stuck_ ? describe_stuck() : "");
       if (error_) std::rethrow_exception(error_);
       if (stuck_) throw SimulationError(describe_stuck());
-      if (!excluded_ || given_up_) break;
-      if (!config_.faults.resource.recover)
-        throw SimulationError(unfinished_rays(*excluded_, ledger_->open(), count_.completed.load()));
+      if (!excluded_ || given_up_ || options_.stop.stop_requested()) break;
       restart();
     }
     const std::chrono::duration<double> wall = Clock::now() - start_;
     look();
-    const bool complete = count_.done() && !(machine_->gate && machine_->gate->stopped());
+    // A run that is interrupted when all rays have been shaded may leave packets on their way.
+    const bool complete = at_rest() && !(machine_->gate && machine_->gate->stopped());
     if (complete) check_drained();
     RunResult out = result(complete, wall.count());
     if (machine_->gate) gather_result(*options_.transport, machine_->shared.share, out);
@@ -82,7 +85,7 @@ class NativeRun {
     std::chrono::nanoseconds waited{0};   // among ranks: without anything to do
   };
 
-  using Clock = std::chrono::steady_clock;
+  using Clock = ScheduleClock;
   // A resource is given up when it has taken no step for so long while its thread has.
   static constexpr std::chrono::milliseconds kSilence{100};
 
@@ -113,6 +116,10 @@ class NativeRun {
   void run_threads() {
     ended_ = 0;
     end_ = false;
+    if (Schedule* const schedule = Schedule::current(); schedule != nullptr) {
+      for (std::size_t t = 0; t < threads_; ++t) schedule->start([this, t] { work(t); });
+      return watch();
+    }
     std::vector<std::jthread> threads;
     try {
       for (std::size_t t = 0; t < threads_; ++t) threads.emplace_back([this, t] { work(t); });
@@ -129,6 +136,10 @@ class NativeRun {
   void restart() {
     std::vector<HitBatch> handed_over;
     while (HitBatch* const batch = machine_->completed.try_pop()) handed_over.push_back(std::move(*batch));
+    const RayBatch rays = ledger_->open(handed_over);
+    if (!config_.faults.resource.recover && !rays.empty())
+      throw SimulationError(unfinished_rays(*excluded_, rays, count_.completed.load()));
+    schedule_point();
     for (const auto& port : ports_) packets_discarded_ += port->resource().packets_in_flight();
     series_.carry(ports_);
     carry_links();
@@ -137,8 +148,8 @@ class NativeRun {
     slots_used_ += machine_->shared.control.slots_used();
     slot_waits_ += machine_->shared.control.slot_waits();
     build();
+    schedule_point();
     for (HitBatch& batch : handed_over) {
-      ledger_->remove(batch);
       HitBatch* const place = machine_->completed.try_take();
       place->swap(batch);
       machine_->completed.push(place, place->size());
@@ -147,11 +158,12 @@ class NativeRun {
     for (const auto& port : ports_) port->exclude(*excluded_);
     ports_[excluded_->value]->stop();
     given_up_ = true;
-    const RayBatch rays = ledger_->open();
     rays_restarted_ += rays.size();
     paths_restarted_ += OutstandingRays::paths_of(rays);
     recovery_seconds_ = std::chrono::duration<double>(Clock::now() - last_beat_).count();
+    schedule_point();
     if (!rays.empty()) machine_->shared.control.submit(rays);
+    schedule_point();
   }
 
   /// Keeps the counts of the links, which are about to be made anew.
@@ -192,7 +204,8 @@ class NativeRun {
         if (ledger_ && thread == static_cast<std::size_t>(config_.faults.resource.number) % threads_)
           turns_.store(turns_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
         for (std::size_t r = thread; r < ports_.size(); r += threads_) moved |= ports_[r]->step();
-        for (std::size_t w = thread; w < workers_.size(); w += threads_) moved |= workers_[w]->step();
+        for (std::size_t w = (thread + threads_ - first_worker_) % threads_; w < workers_.size(); w += threads_)
+          moved |= workers_[w]->step();
         if (machine_->gate && !moved) machine_->gate->found_nothing();
         if (machine_->gate && thread == 0) moved |= machine_->gate->step(at_rest());
         if (moved) {
@@ -202,7 +215,8 @@ class NativeRun {
         } else if (machine_->gate ? machine_->gate->ended() : at_rest()) {
           break;
         }
-        if (moved) continue;
+        schedule_point();
+        if (moved || Schedule::current() != nullptr) continue;
         if (idle == 0 && machine_->gate) idle_since = Clock::now();
         if (++idle < patience) {
           // Two threads on one core must not wait out each other's time slices.
@@ -239,7 +253,7 @@ class NativeRun {
     const std::chrono::milliseconds interval(ledger_ ? 10 : 100);
     const auto pause = series_.on() ? std::min(interval, NativeSeries::kLook) : interval;
     Clock::time_point next_check = Clock::now() + interval;
-    while (!ended_changed_.wait_for(lock, pause, [this] { return ended_ == threads_; })) {
+    while (!schedule_wait(ended_changed_, lock, pause, [this] { return ended_ == threads_; })) {
       look();
       if (Clock::now() < next_check) continue;
       next_check = Clock::now() + interval;
@@ -342,6 +356,7 @@ class NativeRun {
   std::vector<std::unique_ptr<NativePort>> ports_;
   std::vector<std::unique_ptr<ShaderWorker>> workers_;
   std::size_t threads_;
+  std::size_t first_worker_ = 0;  // the thread that plays worker 0
   Clock::time_point start_{};
   NativeSeries series_;
   std::unique_ptr<NativeRecorder> recorder_;  // null: nothing is recorded

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "ringbus/schedule/schedule.h"
+
 namespace carousel::ringbus {
 
 namespace {
@@ -45,7 +47,9 @@ bool NativePort::step() {
   if (stops_after_ && rays_completed_ >= *stops_after_) stop();
   if (logic_.stopped()) {
     bool moved = tick_links();
+    schedule_point();
     moved |= send_egress();
+    schedule_point();
     return receive() || moved;
   }
   // Relaxed, and no read-modify-write: it has one writer.
@@ -65,11 +69,16 @@ bool NativePort::tick_links() {
 bool NativePort::step_now() {
   bool moved = tick_links();
   moved |= send_egress();
+  schedule_point();
   moved |= receive();
+  schedule_point();
   moved |= admit();
+  schedule_point();
   moved |= issue(false);
   if (!moved) moved = issue(true);  // only when there is nothing better to do: waiting fills collections
+  schedule_point();
   moved |= send_egress();
+  schedule_point();
   flush_completed(!moved);
   visits_.store(visits_now_, std::memory_order_relaxed);  // as for beats_
   return moved;
@@ -289,6 +298,7 @@ void NativePort::flush_completed(bool all) {
   if (done.empty() || (!all && done.size() < enough)) return;
   HitBatch* const batch = completed_.try_take();
   if (batch == nullptr) return;  // more may complete meanwhile
+  schedule_point();
   if (sink_ != nullptr)
     sink_->record(
         {.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
@@ -298,6 +308,7 @@ void NativePort::flush_completed(bool all) {
   if (gate_ != nullptr) gate_->send_results(resource_.id(), done, resource_.freed_slots());
   machine_.control.free(resource_.id(), resource_.freed_slots());
   resource_.freed_slots().clear();
+  schedule_point();
   done.swap(*batch);
   completed_.push(batch, batch->size());
 }

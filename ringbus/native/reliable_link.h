@@ -14,6 +14,7 @@
 #include "ringbus/native/link.h"
 #include "ringbus/packets/packet_image.h"
 #include "ringbus/queues/spsc_ring.h"
+#include "ringbus/schedule/schedule.h"
 
 namespace carousel::ringbus {
 
@@ -146,6 +147,7 @@ class ReliableLink final : public Link {
         once_sent_ = sent_ + 1;
         retransmit_.sent(sent_);
       }
+      schedule_point();
     }
   }
   void go_back() {
@@ -201,6 +203,7 @@ class ReliableLink final : public Link {
         ++discarded_;
       }
       frame.drop();
+      schedule_point();
     }
     if (heard) {
       Ack ack{expected_, 0};

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ringbus/schedule/schedule.h"
+
 namespace carousel::ringbus {
 
 namespace {
@@ -29,20 +31,24 @@ bool ShaderWorker::shade() {
   HitBatch* const batch = completed_.try_pop();
   if (batch == nullptr) return false;
   rays_.clear();
+  // Before they are shaded: their paths' numbers may then be in use for new rays of any worker.
+  if (ledger_ != nullptr) ledger_->remove(*batch);
+  schedule_point();
   workload_.shade(id_, *batch, rays_);
+  schedule_point();
   const std::int64_t made = static_cast<std::int64_t>(rays_.size()), shaded = static_cast<std::int64_t>(batch->size());
   // Relaxed: sums for the report and the progress bar.
   count_.emitted.fetch_add(rays_.size(), std::memory_order_relaxed);
   count_.completed.fetch_add(batch->size(), std::memory_order_relaxed);
+  schedule_point();
   // One addition for both: the count cannot pass through zero while rays are about to be submitted. Release:
   // pairs with the acquire in done(); a thread that sees zero sees the shading finished.
   count_.outstanding.fetch_add(made - shaded, std::memory_order_release);
-  if (ledger_ != nullptr) {
-    ledger_->remove(*batch);
-    ledger_->add(rays_);
-  }
+  if (ledger_ != nullptr) ledger_->add(rays_);
+  schedule_point();
   batch->clear();
   completed_.give_back(batch);
+  schedule_point();
   if (made > 0) control_.submit(rays_);
   return true;
 }
@@ -59,12 +65,17 @@ bool ShaderWorker::generate() {
     // Counted before they exist, so that no thread sees the source finished with the last rays not yet counted.
     count_.outstanding.fetch_add(wanted, std::memory_order_relaxed);
     rays_.clear();
+    schedule_point();
     const Workload::Generated made = workload_.generate(id_, static_cast<std::size_t>(wanted), rays_);
+    schedule_point();
     count_.outstanding.fetch_add(static_cast<std::int64_t>(made.rays) - wanted, std::memory_order_release);
     count_.emitted.fetch_add(made.rays, std::memory_order_relaxed);
+    schedule_point();
     // Release: pairs with the acquire in done().
     if (made.finished) count_.source_finished.store(true, std::memory_order_release);
+    schedule_point();
     if (ledger_ != nullptr) ledger_->add(rays_);
+    schedule_point();
     if (made.rays > 0) control_.submit(rays_);
     any |= made.rays > 0;
     if (made.finished || static_cast<std::int64_t>(made.rays) < wanted) break;

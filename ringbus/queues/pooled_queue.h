@@ -3,11 +3,11 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <thread>
 #include <vector>
 
 #include "core/statistics/queue_use.h"
 #include "ringbus/queues/index_queue.h"
+#include "ringbus/schedule/schedule.h"
 
 namespace carousel::ringbus {
 
@@ -65,7 +65,7 @@ class PooledQueue {
   std::uint32_t index_of(const T* piece) const { return static_cast<std::uint32_t>(piece - pieces_.data()); }
   // There is a place for every index. A queue may still refuse one while another thread's pop is not over.
   static void insist(IndexQueue& queue, std::uint32_t index) {
-    while (!queue.try_push(index)) std::this_thread::yield();
+    while (!queue.try_push(index)) schedule_pause();
   }
 
   std::vector<T> pieces_;

@@ -226,6 +226,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
       group.ids.reserve(next.size());
       placed = local_ ? load_some(issuer, next, group.ids) : place_spread(next, group.ids);
     }
+    schedule_point();
     if (placed == 0) break;
     done += placed;
     turn = turn_;

@@ -18,6 +18,7 @@
 #include "ringbus/rays/ray_group.h"
 #include "ringbus/rays/ray_store.h"
 #include "ringbus/rays/remote_placing.h"
+#include "ringbus/schedule/schedule.h"
 
 namespace carousel::ringbus {
 
@@ -147,8 +148,8 @@ class RayControl {
   std::unique_ptr<Inbox[]> inboxes_;
   std::atomic<std::uint64_t> slot_waits_{0}, slots_used_{0};
 
-  std::mutex waiting_mutex_;  // guards the members below
-  RayBatch waiting_;          // oldest at waiting_head_
+  ScheduleMutex waiting_mutex_;  // guards the members below
+  RayBatch waiting_;             // oldest at waiting_head_
   std::size_t waiting_head_ = 0;
   std::optional<BundleBuilder> builder_;
   std::vector<std::uint8_t> waiting_bundles_;  // the number of rays of each bundle; 1 for a single ray

@@ -69,6 +69,7 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
       }
       done += load_bundle(owner, rays.subspan(done, size), group.ids);
       ++bundle;
+      schedule_point();
     }
     if (group.ids.empty())
       turn_ = turn;

@@ -292,6 +292,20 @@ TEST(OutstandingRays, HoldsWhatHasNotBeenShaded) {
   ASSERT_EQ(open.size(), 2u);
   EXPECT_EQ(open[0].tag.path, 0u);
   EXPECT_EQ(open[1].tag.path, 2u);
+  HitBatch handed_over(1);
+  handed_over[0].tag = rays[0].tag;
+  EXPECT_EQ(ledger.open({&handed_over, 1}).size(), 1u);
+}
+
+TEST(OutstandingRays, RefusesARayThatIsOpenAndOneThatIsNot) {
+  OutstandingRays ledger;
+  const RayBatch rays(1);
+  const HitBatch done(1);
+  EXPECT_THROW(ledger.remove(done), SimulationError);
+  ledger.add(rays);
+  EXPECT_THROW(ledger.add(rays), SimulationError);
+  ledger.remove(done);
+  ledger.add(rays);
 }
 
 }  // namespace

@@ -41,11 +41,8 @@ struct Outcome {
   std::uint64_t spilled = 0, refusals = 0;
 };
 
-/// Runs the cell with its storage, and with room for the largest strip in its shape buffers, and compares digest,
-/// counts and conservation with the reference tracer's run at the cell's level of accuracy.
-inline Outcome run_cell(TestScene& scene, Cell cell) {
-  const accel::Accel& accel = scene.accel(cell.config.bvh, cell.config.cull_planes, cell.config.accuracy);
-  const TestScene::Reference& reference = scene.reference(cell.config.accuracy);
+/// Gives a cell its storage, and room for the largest strip in its shape buffers.
+inline void give_room(Cell& cell, const accel::Accel& accel) {
   Config& c = cell.config;
   if (c.collections.when_full == WhenFull::kSpill)
     c.collections.capacity = 4 * c.packets.rays;
@@ -54,23 +51,12 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   c.collections.capacity = std::max(c.collections.capacity, c.packets.rays);
   c.memory.shape_buffer_kib =
       std::max(c.memory.shape_buffer_kib, cycle::least_shape_buffer_kib(accel, c.accuracy, {}, {}, c.collections));
-  ScatterWorkload workload = scene.workload();
-  RunOptions options;
-  options.threads = cell.threads;
-  options.trace = cell.trace;
-  options.samples = cell.samples;
-  options.timeline = cell.timeline;
-  options.stop = cell.stop;
-  Outcome out;
-  try {
-    accel::select_simd_target(c.engine.simd);
-    const auto run = c.engine.kind == EngineKind::kCycle ? run_cycle : run_native;
-    out.result = run(c, accel, scene.size(), workload, options);
-  } catch (const std::exception& error) {
-    out.fault = error.what();
-  }
-  accel::select_simd_target(SimdTarget::kAuto);
-  if (!out.fault.empty()) return out;
+}
+
+/// Writes into a complete run's fault where digest, counts and conservation differ from the reference tracer's run.
+/// `workload` has shaded the rays.
+template <class Scattering>
+void check_outcome(Outcome& out, const Config& c, const TestScene::Reference& reference, const Scattering& workload) {
   for (const ResourceStatistics& r : out.result.resources) out.sum += r;
   for (const auto& s : out.result.collections) out.spilled += s.spilled;
   for (const LinkResult& l : out.result.links) out.refusals += l.statistics.refusals;
@@ -93,10 +79,35 @@ inline Outcome run_cell(TestScene& scene, Cell cell) {
   expect("handed over", out.sum.rays_completed, reference.rays);
   expect("packets retired or discarded", out.sum.packets_retired + out.result.packets_discarded,
          out.sum.packets_issued);
-  if (c.bundles.size > 0) return out;  // counts by depth are of rays by themselves
+  if (c.bundles.size > 0) return;  // counts by depth are of rays by themselves
   const CullLevel culled = out.sum.culls.sum();
   expect("boxes culled at all depths", culled.culled(), out.sum.tests.culled);
   expect("plane tests at all depths", culled.plane_tests, out.sum.tests.plane);
+}
+
+/// Runs the cell in its room, and compares it with the reference tracer's run at the cell's level of accuracy.
+inline Outcome run_cell(TestScene& scene, Cell cell) {
+  const accel::Accel& accel = scene.accel(cell.config.bvh, cell.config.cull_planes, cell.config.accuracy);
+  const TestScene::Reference& reference = scene.reference(cell.config.accuracy);
+  Config& c = cell.config;
+  give_room(cell, accel);
+  ScatterWorkload workload = scene.workload();
+  RunOptions options;
+  options.threads = cell.threads;
+  options.trace = cell.trace;
+  options.samples = cell.samples;
+  options.timeline = cell.timeline;
+  options.stop = cell.stop;
+  Outcome out;
+  try {
+    accel::select_simd_target(c.engine.simd);
+    const auto run = c.engine.kind == EngineKind::kCycle ? run_cycle : run_native;
+    out.result = run(c, accel, scene.size(), workload, options);
+  } catch (const std::exception& error) {
+    out.fault = error.what();
+  }
+  accel::select_simd_target(SimdTarget::kAuto);
+  if (out.fault.empty()) check_outcome(out, c, reference, workload);
   return out;
 }
 
