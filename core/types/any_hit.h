@@ -9,8 +9,8 @@ namespace carousel {
 /// Decides if a ray hits a non-opaque primitive that it crosses: an alpha-masked one, or an alpha-blended one, which
 /// accepts hits by chance. The owner of the ray calls it wherever the ray happens to be tested, perhaps more than once,
 /// or not at all if a nearer hit is known: so the answer must be a pure function of its arguments. Chance is keyed by
-/// the bits of the ray, which no other ray of the picture shares (DESIGN.md section 3 keys it by the path, which has an
-/// ID only in shading). Any thread may call.
+/// the bits of the ray, which no other ray of the picture shares; the path would serve as well, but has an ID only in
+/// shading. Any thread may call.
 class AnyHit {
  public:
   virtual ~AnyHit() = default;

@@ -9,7 +9,7 @@
 
 namespace carousel::ringbus {
 
-/// Tells before a run whether the links of a machine can fill up and stop (DESIGN.md section 4).
+/// Tells before a run whether the links of a machine can fill up and stop (docs/design.md, Deadlock and the end).
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
 
 /// Ray IDs of collection storage a resource needs so that bounded storage (`when_full: reserve`) cannot block:

@@ -10,7 +10,8 @@
 namespace carousel::ringbus {
 
 /// The rules of `topology.flow` for one port: when a packet of the resource's own may enter the network, and when
-/// packets may come in (DESIGN.md section 4). Holds no state; ports, queues and clocks belong to the engines.
+/// packets may come in (docs/design.md, Deadlock and the end). Holds no state; ports, queues and clocks belong to the
+/// engines.
 class FlowRules {
  public:
   /// `direct`: packets are sent straight to their next stop, so no ring of queues can close and no rule is needed.

@@ -8,7 +8,8 @@
 
 namespace carousel::ringbus {
 
-/// Tells, before a run, whether the queues of a network can all be full at once and stay so (DESIGN.md section 4).
+/// Tells, before a run, whether the queues of a network can all be full at once and stay so (docs/design.md, Deadlock
+/// and the end).
 struct DeadlockVerdict {
   bool can_deadlock = false;
   std::string rule;  ///< the rule that protects the network, with its numbers; or what is missing

@@ -45,7 +45,7 @@ inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, c
 /// packets that stay here. A queue has no bound and is first in, first out, and one flit a cycle leaves it. One flit a
 /// cycle gets out to the sink.
 ///
-/// Packets that go only part of the way round a ring cannot stop it (DESIGN.md section 4):
+/// Packets that go only part of the way round a ring cannot stop it (docs/design.md, Deadlock and the end):
 /// - `bubble`: a packet is injected only if it leaves a free place in the next queue, so injecting never fills a round
 ///   of queues, and moving on does not change how many are full. Some packet always has a free place ahead
 ///   (V. Puente et al., The adaptive bubble router, J. Parallel and Distributed Computing 61 (2001)).
