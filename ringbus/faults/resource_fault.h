@@ -25,18 +25,22 @@ class ResourceFault {
   template <class Step>
   bool step(std::uint64_t rays_completed, const Step& take) {
     using Kind = FaultsConfig::Resource::Kind;
+    rests_ = false;
     if (rays_completed < after_ || (kind_ == Kind::kPause && paused_ && Clock::now() >= until_)) return take();
     if (kind_ == Kind::kPause) {
       if (!paused_) until_ = Clock::now() + pause_;
-      paused_ = true;
+      paused_ = rests_ = true;
       return false;
     }
     const Clock::time_point begin = Clock::now();
-    if (begin < until_) return false;
+    rests_ = begin < until_;
+    if (rests_) return false;
     const bool moved = take();
     if (moved) until_ = begin + factor_ * (Clock::now() - begin);
     return moved;
   }
+  /// The last step was not taken since the resource rests. Its rest ends by itself.
+  bool rests() const { return rests_; }
 
  private:
   using Clock = ScheduleClock;
@@ -50,7 +54,7 @@ class ResourceFault {
   std::uint64_t after_;
   std::chrono::nanoseconds pause_;
   std::int64_t factor_;
-  bool paused_ = false;
+  bool paused_ = false, rests_ = false;
   Clock::time_point until_{};  // the resource rests until then
 };
 

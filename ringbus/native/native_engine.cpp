@@ -199,19 +199,22 @@ class NativeRun {
       };
       // Acquire: pairs with the release that asks everyone to end.
       while (!end_.load(std::memory_order_acquire)) {
-        bool moved = false;
+        bool moved = false, rests = false;
         // Relaxed: the watcher only wants to see it change.
         if (ledger_ && thread == static_cast<std::size_t>(config_.faults.resource.number) % threads_)
           turns_.store(turns_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-        for (std::size_t r = thread; r < ports_.size(); r += threads_) moved |= ports_[r]->step();
+        for (std::size_t r = thread; r < ports_.size(); r += threads_) {
+          moved |= ports_[r]->step();
+          rests |= ports_[r]->rests();
+        }
         for (std::size_t w = (thread + threads_ - first_worker_) % threads_; w < workers_.size(); w += threads_)
           moved |= workers_[w]->step();
         if (machine_->gate && !moved) machine_->gate->found_nothing();
         if (machine_->gate && thread == 0) moved |= machine_->gate->step(at_rest());
+        // Relaxed: the watcher only wants to see it change. A rest that was asked for ends by itself, so it is no halt.
+        if (moved || rests) progress_[thread].steps.fetch_add(1, std::memory_order_relaxed);
         if (moved) {
           end_wait();
-          // Relaxed: the watcher only wants to see it change.
-          progress_[thread].steps.fetch_add(1, std::memory_order_relaxed);
         } else if (machine_->gate ? machine_->gate->ended() : at_rest()) {
           break;
         }

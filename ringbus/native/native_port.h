@@ -58,6 +58,8 @@ class NativePort {
   // Relaxed: the watcher draws them over time.
   std::uint64_t visits() const { return visits_.load(std::memory_order_relaxed); }
   /// One line that says what it waits for, with packet and ray IDs. Call when nothing steps.
+  /// Its resource rests by request (`faults.resource`), for a time that ends by itself.
+  bool rests() const { return fault_ && fault_->rests(); }
   std::string describe() const;
 
  private:

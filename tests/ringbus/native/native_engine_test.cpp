@@ -266,5 +266,18 @@ TEST(NativeEngine, StuckRingSaysWhoWaitsForWhom) {
   }
 }
 
+// A rest that was asked for ends by itself, however long nobody gets on meanwhile.
+TEST(NativeEngine, APauseIsNotTakenForAHalt) {
+  TestScene scene(builtin_scene(BuiltinScene::kCornell, 0, 0), 200, 2);
+  Config c = small_config();
+  c.engine.clock_mhz = 1000;
+  c.faults.resource = {FaultsConfig::Resource::Kind::kPause, 0, 20, 400'000'000, 4};  // 400 ms
+  ScatterWorkload workload = scene.workload();
+  RunOptions options = on_threads(2);
+  options.stuck_after = std::chrono::milliseconds(100);
+  const RunResult result = run_native(c, scene.accel(BvhConfig{}), scene.size(), workload, options);
+  EXPECT_EQ(result.rays_emitted, result.rays_completed);
+}
+
 }  // namespace
 }  // namespace carousel::ringbus

@@ -100,8 +100,6 @@ class Trials {
     RunOptions options;
     options.threads = cell.threads;
     options.stop = schedule_.stop();
-    // A slow resource rests for several times as long as a step takes, in which others may have been at work.
-    options.stuck_after = std::chrono::seconds(60);
     Outcome out;
     try {
       out.result = run_native(cell.config, accel, scene_.size(), workload, options);
