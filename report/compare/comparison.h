@@ -57,6 +57,9 @@ Comparison compare_runs(const std::vector<ComparedRun>& runs, const std::string&
 
 nlohmann::ordered_json comparison_json(const Comparison& comparison, bool all);
 
+/// The name of a run in tables: A to Z, and from there on its number.
+std::string letter(std::size_t run);
+
 /// For a terminal: first whether the answers are the same, then numbers side by side, then the configuration; with
 /// `all` every value that differs.
 std::string comparison_table(const Comparison& comparison, bool all);

@@ -11,10 +11,6 @@ namespace carousel::report {
 
 namespace {
 
-std::string letter(std::size_t run) {
-  return run < 26 ? std::string(1, static_cast<char>('A' + run)) : fmt::format("#{}", run + 1);
-}
-
 std::string padded(const std::string& text, std::size_t width, bool right = false) {
   const std::string space(width - std::min(width, columns_of(text)), ' ');
   return right ? space + text : text + space;
@@ -87,6 +83,10 @@ std::string keys_text(std::size_t shown, std::size_t hidden) {
 }
 
 }  // namespace
+
+std::string letter(std::size_t run) {
+  return run < 26 ? std::string(1, static_cast<char>('A' + run)) : fmt::format("#{}", run + 1);
+}
 
 std::string comparison_table(const Comparison& c, bool all) {
   constexpr std::size_t kMostUnexpected = 20;

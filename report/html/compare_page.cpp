@@ -12,10 +12,6 @@ namespace carousel::report::html {
 
 namespace {
 
-std::string letter(std::size_t run) {
-  return std::string(1, static_cast<char>('A' + run));
-}
-
 /// "the same in all runs", or the runs that differ from the first.
 std::string sameness(const std::vector<bool>& same) {
   std::string others;
@@ -24,18 +20,18 @@ std::string sameness(const std::vector<bool>& same) {
   return others.empty() ? "the same in all runs" : "of " + others + " different from A's";
 }
 
-std::string at_a_glance(const Comparison& c) {
-  std::string out = "<p class=\"verdict\">";
+Html at_a_glance(const Comparison& c) {
+  Html out = markup("<p class=\"verdict\">");
   if (c.identical)
-    out += "The runs are identical.</p>\n";
+    out += markup("The runs are identical.</p>\n");
   else
-    out += fmt::format("Hits are {}, the picture is {}.</p>\n", sameness(c.same_hits), sameness(c.same_picture));
+    out += markup("Hits are {}, the picture is {}.</p>\n", sameness(c.same_hits), sameness(c.same_picture));
   if (!c.same_configuration)
-    out += fmt::format("<p>The configurations differ in {} {}.</p>\n", c.configuration.size(),
-                       c.configuration.size() == 1 ? "key" : "keys");
+    out += markup("<p>The configurations differ in {} {}.</p>\n", c.configuration.size(),
+                  c.configuration.size() == 1 ? "key" : "keys");
   else
-    out += fmt::format("<p>The configuration is the same{}.</p>\n",
-                       c.deterministic ? "" : "; counts and times depend on the timing of threads");
+    out += markup("<p>The configuration is the same{}.</p>\n",
+                  c.deterministic ? "" : "; counts and times depend on the timing of threads");
   Table table{"runs", "The runs", {{"letter"}, {"run"}}};
   for (const ComparedText& text : c.texts) table.columns.push_back({text.name});
   for (std::size_t r = 0; r < c.runs.size(); ++r) {
@@ -77,7 +73,7 @@ Section section_of(const ComparedSection& section, std::size_t number, std::size
     }
     shares &= row.unit == "share";
   }
-  std::string body;
+  Html body;
   if (shares || any_ratio)
     body = Figure{.id = "fig-" + table.id,
                   .kind = shares ? "shares" : "ratios",
@@ -91,8 +87,8 @@ Section section_of(const ComparedSection& section, std::size_t number, std::size
   return {fmt::format("part-{}", number), title, body + table.html()};
 }
 
-std::string texts_of(const std::string& id, const std::string& caption, const std::vector<ComparedText>& list,
-                     std::size_t runs) {
+Html texts_of(const std::string& id, const std::string& caption, const std::vector<ComparedText>& list,
+              std::size_t runs) {
   Table table{id, caption, {{"key"}}};
   for (std::size_t r = 0; r < runs; ++r) table.columns.push_back({letter(r)});
   for (const ComparedText& text : list) {
@@ -110,17 +106,16 @@ std::string compare_page(const Comparison& c, bool all) {
   for (std::size_t i = 0; i < c.sections.size(); ++i) sections.push_back(section_of(c.sections[i], i, runs));
   sections.push_back({"configuration", "Configuration",
                       texts_of("configuration", "Keys of the configurations that differ", c.configuration, runs)});
-  std::string rest;
+  Html rest;
   if (all)
     rest = texts_of("differences", "All other values that differ", c.differences, runs);
   else if (!c.differences.empty())
-    rest =
-        fmt::format("<p>{} more values differ; <code>carousel compare --all --html FILE</code> lists them here.</p>\n",
-                    c.differences.size());
+    rest = markup("<p>{} more values differ; <code>carousel compare --all --html FILE</code> lists them here.</p>\n",
+                  c.differences.size());
   sections.push_back({"differences", "Every other value", rest});
   std::string names;
   for (std::size_t r = 0; r < runs; ++r) names += (r == 0 ? "" : ", ") + letter(r) + " " + c.runs[r];
-  return page_of("Carousel: runs side by side", "carousel compare, " + names, sections, Json::object(), "");
+  return page_of("Carousel: runs side by side", "carousel compare, " + names, sections, Json::object(), {});
 }
 
 }  // namespace carousel::report::html

@@ -24,19 +24,19 @@ void add_differences(Table& table, const std::string& path, const Json& config, 
 
 }  // namespace
 
-std::string configuration_section(const Json& report) {
+Html configuration_section(const Json& report) {
   const Json* config = find(report, "config");
-  if (!config || config->empty()) return "";
+  if (!config || config->empty()) return {};
   const Json defaults = config_json(Config{});
   Table table{"config-table", "Keys that differ from their defaults", {{"key"}, {"value"}, {"default"}}};
   add_differences(table, "", *config, &defaults);
-  std::string out = table.rows.empty() ? "<p>All keys have their defaults.</p>\n" : table.html();
+  Html out = table.rows.empty() ? markup("<p>All keys have their defaults.</p>\n") : table.html();
   const std::string json = config->dump(2);
-  out += fmt::format(
+  out += markup(
       "<p><a download=\"config.resolved.json\" href=\"data:application/json;base64,{}\">Save the resolved configuration"
       "</a>, which <code>carousel run</code> reads.</p>\n<details><summary>The whole resolved "
       "configuration</summary><pre tabindex=\"0\"><code>{}</code></pre></details>\n",
-      base64(json), escaped(json));
+      base64(json), json);
   return out;
 }
 

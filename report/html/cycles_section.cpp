@@ -77,10 +77,10 @@ void add_units(Table& table, const Json& resources, double cycles) {
 
 }  // namespace
 
-std::string cycles_section(const Json& report) {
+Html cycles_section(const Json& report) {
   const double cycles = number_at(report, "engine.cycles");
   const Json* resources = find(report, "resources");
-  if (cycles <= 0) return "";
+  if (cycles <= 0) return {};
   Table parts = table_of_uses("cycles-by-part", "Use of the cycles by kind of part", "part");
   Table each = table_of_uses("cycles-by-resource", "Use of the cycles of the box units, by resource", "resource");
   if (resources && !resources->empty() && resources->front().contains("units")) {
@@ -106,9 +106,9 @@ std::string cycles_section(const Json& report) {
   if (find(report, "memory")) add(parts, "DRAM", busy_and_idle(number_at(report, "memory.dram_utilisation")));
   if (find(report, "shading.utilisation"))
     add(parts, "shader workers", busy_and_idle(number_at(report, "shading.utilisation")));
-  if (parts.rows.empty()) return "";
-  std::string out =
-      "<p>Each line adds up to all cycles of the run. A unit that waits shows the part that kept it.</p>\n";
+  if (parts.rows.empty()) return {};
+  Html out =
+      markup("<p>Each line adds up to all cycles of the run. A unit that waits shows the part that kept it.</p>\n");
   const auto height = [](const Table& t) {
     return 110 + 30 * static_cast<int>(std::min<std::size_t>(t.rows.size(), 32));
   };
@@ -177,11 +177,11 @@ void add_waits(std::vector<Wait>& out, const Json& report, double cycles) {
 
 }  // namespace
 
-std::string waits_section(const Json& report) {
+Html waits_section(const Json& report) {
   const double cycles = number_at(report, "engine.cycles");
   std::vector<Wait> waits;
   add_waits(waits, report, cycles);
-  if (waits.empty()) return "";
+  if (waits.empty()) return {};
   constexpr std::size_t kMost = 40;
   const bool timed = cycles > 0;
   std::map<std::string, double> keepers;
@@ -200,10 +200,10 @@ std::string waits_section(const Json& report) {
     each.rows.push_back({cell(wait.waiting), cell(wait.keeper), cell(Json(static_cast<std::uint64_t>(wait.amount)))});
     if (timed) each.rows.back().push_back(share(wait.share));
   }
-  std::string out = timed
-                        ? "<p>Cycles in which a part had work and could not go on.</p>\n"
-                        : "<p>Attempts of worker threads that could not go on. They are counts of this host, not times "
-                          "of the simulated machine.</p>\n";
+  Html out = timed ? markup("<p>Cycles in which a part had work and could not go on.</p>\n")
+                   : markup(
+                         "<p>Attempts of worker threads that could not go on. They are counts of this host, not times "
+                         "of the simulated machine.</p>\n");
   out += Figure{.id = "fig-waits",
                 .kind = "bars",
                 .tables = sums.id,

@@ -8,11 +8,11 @@ namespace carousel::report::html {
 namespace {
 
 /// The parts of energy or area as one bar, and a table of them.
-std::string parts_of(const Json& report, const Json& schema, const std::string& section, const char* value,
-                     const char* title) {
+Html parts_of(const Json& report, const Json& schema, const std::string& section, const char* value,
+              const char* title) {
   const double all = number_at(report, section + "." + value);
   const Json* parts = find(report, section + ".parts");
-  if (!parts || all <= 0) return "";
+  if (!parts || all <= 0) return {};
   Table shares{section + "-shares", std::string("Shares: ") + title, {{"of"}}},
       table{section + "-parts", title, {{"part"}}};
   const Json& meanings = schema_at(schema, "properties." + section + ".properties.parts");
@@ -47,9 +47,9 @@ std::string parts_of(const Json& report, const Json& schema, const std::string& 
 
 }  // namespace
 
-std::string energy_section(const Json& report, const Json& schema) {
-  if (!find(report, "energy")) return "";
-  std::string out = fmt::format(
+Html energy_section(const Json& report, const Json& schema) {
+  if (!find(report, "energy")) return {};
+  Html out = markup(
       "<p>A completed ray costs {:.4g} nJ: {:.4g} mJ for the run and {:.4g} W at the clock, which is {:.4g} Mrays a "
       "joule. The machine has {:.4g} mm², and {:.4g} Mrays/s on each of them. Leakage, clocks and the memory's area "
       "are "

@@ -15,11 +15,13 @@ namespace {
 constexpr std::size_t kFoldedRows = 12;
 
 std::string with_sign(std::int64_t value) {
-  return value < 0 ? "−" + grouped(static_cast<std::uint64_t>(-value)) : grouped(static_cast<std::uint64_t>(value));
+  // Without an overflow for the least number.
+  return value < 0 ? "−" + grouped(-static_cast<std::uint64_t>(value)) : grouped(static_cast<std::uint64_t>(value));
 }
 
 std::string real_text(double value) {
   const double size = std::abs(value);
+  if (!(size < 0x1p53)) return fmt::format("{:.4g}", value);
   if (size >= 1000) return with_sign(std::llround(value));
   return fmt::format("{:.{}f}", value, size >= 100 || size == 0 ? 1 : size >= 0.1 ? 2 : 5);
 }
@@ -38,24 +40,6 @@ void add_values(Table& table, const std::string& path, const Json& value, const 
 }
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n')
-      out += c;
-  }
-  return out;
-}
 
 std::string words(std::string_view key) {
   std::string out(key);
@@ -109,41 +93,41 @@ Cell share(double fraction) {
   return {percent(fraction), fraction};
 }
 
-std::string Table::html() const {
-  if (rows.empty()) return "";
+bool Table::folded() const {
+  return rows.size() > kFoldedRows;
+}
+
+Html Table::html() const {
+  if (rows.empty()) return {};
   std::vector<bool> numbers(columns.size(), false);
   for (std::size_t c = 0; c < columns.size(); ++c)
-    for (const auto& row : rows) numbers[c] = numbers[c] || !row[c].number.is_null();
-  const std::string name = escaped(caption);
-  std::string out;
-  const bool folded = rows.size() > kFoldedRows;
-  if (folded) out += fmt::format("<details><summary>Table: {} ({} rows)</summary>\n", name, rows.size());
-  out += fmt::format(
+    for (const auto& row : rows) numbers[c] = numbers[c] || (c < row.size() && !row[c].number.is_null());
+  const auto number_class = [](bool number) { return number ? markup(" class=\"n\"") : Html(); };
+  Html out;
+  if (folded()) out += markup("<details><summary>Table: {} ({} rows)</summary>\n", caption, rows.size());
+  out += markup(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table "
       "id=\"table-{}\"><caption>{}</caption>\n"
       "<thead><tr>",
-      name, id, name);
+      caption, id, caption);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const Column& column = columns[c];
-    out +=
-        fmt::format("<th scope=\"col\"{}{}>{}", numbers[c] ? " class=\"n\"" : "",
-                    column.meaning.empty() ? "" : " title=\"" + escaped(column.meaning) + "\"", escaped(column.title));
-    if (!column.unit.empty()) out += " <small>" + escaped(column.unit) + "</small>";
-    out += "</th>";
+    out += markup("<th scope=\"col\"{}{}>{}{}</th>", number_class(numbers[c]),
+                  column.meaning.empty() ? Html() : markup(" title=\"{}\"", column.meaning), column.title,
+                  column.unit.empty() ? Html() : markup(" <small>{}</small>", column.unit));
   }
-  out += "</tr></thead>\n<tbody>\n";
+  out += markup("</tr></thead>\n<tbody>\n");
   for (const auto& row : rows) {
-    out += "<tr>";
+    out += markup("<tr>");
     for (std::size_t c = 0; c < row.size(); ++c) {
-      const char* tag = c == 0 ? "th" : "td";
-      out += fmt::format("<{}{}", tag, c == 0 ? " scope=\"row\"" : "");
-      if (!row[c].number.is_null()) out += " class=\"n\" data-v=\"" + row[c].number.dump() + "\"";
-      out += fmt::format(">{}</{}>", escaped(row[c].text), tag);
+      const Html number = row[c].number.is_null() ? Html() : markup(" class=\"n\" data-v=\"{}\"", row[c].number.dump());
+      out += c == 0 ? markup("<th scope=\"row\"{}>{}</th>", number, row[c].text)
+                    : markup("<td{}>{}</td>", number, row[c].text);
     }
-    out += "</tr>\n";
+    out += markup("</tr>\n");
   }
-  out += "</tbody></table></div>\n";
-  if (folded) out += "</details>\n";
+  out += markup("</tbody></table></div>\n");
+  if (folded()) out += markup("</details>\n");
   return out;
 }
 
@@ -185,12 +169,11 @@ int bars_height(const Table& table) {
   return 90 + 30 * static_cast<int>(std::min<std::size_t>(table.rows.size(), 24));
 }
 
-std::string Figure::html() const {
-  return fmt::format(
+Html Figure::html() const {
+  return markup(
       "<figure id=\"{}\" data-chart=\"{}\" data-tables=\"{}\"><figcaption>{}{}</figcaption>"
       "<div class=\"plot\" role=\"img\" aria-label=\"{}\" style=\"height:{}px\"></div></figure>\n",
-      id, kind, tables, escaped(title), note.empty() ? "" : " <small>" + escaped(note) + "</small>", escaped(label),
-      height);
+      id, kind, tables, title, note.empty() ? Html() : markup(" <small>{}</small>", note), label, height);
 }
 
 }  // namespace carousel::report::html

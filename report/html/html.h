@@ -7,12 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/markup/markup.h"
+
 namespace carousel::report::html {
 
 using Json = nlohmann::ordered_json;
-
-/// Text with the characters that HTML gives a meaning replaced.
-std::string escaped(std::string_view text);
 
 /// `memory_latency` as "memory latency".
 std::string words(std::string_view key);
@@ -51,8 +50,10 @@ struct Table {
   std::vector<Column> columns{};
   std::vector<std::vector<Cell>> rows{};
 
-  /// More than a dozen rows are folded away until they are asked for. Nothing if there are no rows.
-  std::string html() const;
+  /// More than a dozen rows are folded away until they are asked for.
+  bool folded() const;
+  /// Nothing if there are no rows.
+  Html html() const;
 };
 
 /// A table of the numbers and texts of a list of objects, with units and meanings from the schema of an item. Columns
@@ -75,7 +76,7 @@ struct Figure {
   std::string id, kind, tables, title, label;
   std::string note{};
   int height = 320;  ///< pixels
-  std::string html() const;
+  Html html() const;
 };
 
 }  // namespace carousel::report::html

@@ -27,22 +27,22 @@ const Json& greatest(const Json& rows, const char* key) {
 }
 
 /// The rank and the way between ranks to look at first.
-std::string rank_words(const Json& report) {
+Html rank_words(const Json& report) {
   const Json &rank = greatest(report.at("ranks"), "waiting"), &held = greatest(report.at("rank_links"), "held"),
              &full = greatest(report.at("rank_links"), "full");
-  std::string out = fmt::format("<p>Of the ranks, {} waited most, for {} of its threads' time. ",
-                                rank.at("rank").dump(), share(number_at(rank, "waiting")).text);
-  out += fmt::format("Messages from rank {} to {} waited most for earlier ones to leave, for {} of the run. ",
-                     held.at("from").dump(), held.at("to").dump(), share(number_at(held, "held")).text);
+  Html out = markup("<p>Of the ranks, {} waited most, for {} of its threads' time. ", rank.at("rank").dump(),
+                    share(number_at(rank, "waiting")).text);
+  out += markup("Messages from rank {} to {} waited most for earlier ones to leave, for {} of the run. ",
+                held.at("from").dump(), held.at("to").dump(), share(number_at(held, "held")).text);
   if (number_at(full, "full") > 0)
-    out += fmt::format("Back-pressure was greatest from rank {} to {}, where links were full {} times.",
-                       full.at("from").dump(), full.at("to").dump(), value_text(full.at("full")));
-  return out + "</p>\n";
+    out += markup("Back-pressure was greatest from rank {} to {}, where links were full {} times.",
+                  full.at("from").dump(), full.at("to").dump(), value_text(full.at("full")));
+  return out + markup("</p>\n");
 }
 
 /// Without the columns that only some runs have, where they are zero; and without nanoseconds of which the share is
 /// there.
-std::string rank_table(const char* key, const char* title, const Json& report, const Json& schema) {
+Html rank_table(const char* key, const char* title, const Json& report, const Json& schema) {
   const Json& rows = report.at(key);
   std::vector<std::string> left_out{"hold_ns"};
   for (const char* rare : {"guest_bytes", "heartbeats", "shapes", "shape_bytes"})
@@ -52,12 +52,11 @@ std::string rank_table(const char* key, const char* title, const Json& report, c
 
 }  // namespace
 
-std::string machine_section(const Json& report, const Json& schema) {
+Html machine_section(const Json& report, const Json& schema) {
   const Json* resources = find(report, "resources");
   const Json* links = find(report, "links");
   const double cycles = number_at(report, "engine.cycles");
-  std::string out;
-  std::string tables;
+  Html out, tables;
   double most = 0;
   std::string busiest;
   if (resources && !resources->empty()) {
@@ -75,10 +74,10 @@ std::string machine_section(const Json& report, const Json& schema) {
       if (use > most) busiest = fmt::format("resource {}", table.rows[i][0].text);
       most = std::max(most, use);
     }
-    out += fmt::format("<p>The colour of a resource is {}. Of all, {} is highest, with {}.</p>\n",
-                       timed ? "the share of the cycles in which its busiest kind of unit was testing"
-                             : "the number of rays that it tested, over that of the resource that tested most",
-                       busiest.empty() ? "none" : busiest, share(most).text);
+    out += markup("<p>The colour of a resource is {}. Of all, {} is highest, with {}.</p>\n",
+                  timed ? "the share of the cycles in which its busiest kind of unit was testing"
+                        : "the number of rays that it tested, over that of the resource that tested most",
+                  busiest.empty() ? "none" : busiest, share(most).text);
     tables += table.html();
   }
   if (report.contains("ranks")) {
@@ -104,7 +103,7 @@ std::string machine_section(const Json& report, const Json& schema) {
     }
     tables += table.html();
   }
-  if (tables.empty()) return "";
+  if (tables.empty()) return {};
   out += Figure{.id = "fig-machine",
                 .kind = "machine",
                 .tables = "resources links",

@@ -7,7 +7,6 @@
 
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
-#include <fmt/format.h>
 #include <zlib.h>
 
 #include "core/system/error.h"
@@ -67,7 +66,7 @@ std::string gzipped(std::string_view bytes) {
   return out;
 }
 
-std::string packed_series(const Json& time_series) {
+Html packed_series(const Json& time_series) {
   Json head = time_series;
   std::string block;
   for (Json& row : head["rows"]) {
@@ -77,12 +76,8 @@ std::string packed_series(const Json& time_series) {
     row.erase("values");
     row["words"] = ints ? "int" : "float";
   }
-  std::string json = head.dump();
-  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos; at += 6) json.replace(at, 1, "\\u003c");
-  return fmt::format(
-      "<script type=\"application/json\" id=\"series-head\">{}</script>\n"
-      "<script type=\"application/octet-stream\" id=\"series-words\">{}</script>\n",
-      json, base64(gzipped(block)));
+  return json_script("series-head", head) +
+         markup("<script type=\"application/octet-stream\" id=\"series-words\">{}</script>\n", base64(gzipped(block)));
 }
 
 }  // namespace carousel::report::html

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/markup/markup.h"
+
 namespace carousel::report::html {
 
 /// RFC 4648.
@@ -17,6 +19,6 @@ std::string gzipped(std::string_view bytes);
 /// base64. A row is `samples` words of 32 bits, each the difference from the word before it (modulo 2^32), with the
 /// lowest bytes of all words first, then the next ones: equal bytes then stand together. The words are whole numbers
 /// (`int`) if all of the row are, otherwise floats (`float`). web/src/series.js unpacks it.
-std::string packed_series(const nlohmann::ordered_json& time_series);
+Html packed_series(const nlohmann::ordered_json& time_series);
 
 }  // namespace carousel::report::html

@@ -2,52 +2,75 @@
 
 #include <fmt/format.h>
 
+#include "core/numeric/sha256.h"
 #include "report/html/bundle.h"
 #include "report/html/html.h"
+#include "report/html/packed_series.h"
 
 namespace carousel::report::html {
 
 namespace {
 
-constexpr const char* kNoCharts =
-    "<p class=\"notice\">This page has no charts, because the program that wrote it was built without npm's packages. "
-    "Every number stands in the tables. To get the charts, install npm, run <code>script/bootstrap</code>, build "
-    "again, "
-    "and run <code>carousel report DIR</code> on this folder.</p>\n";
-constexpr const char* kNoScripts =
-    "<noscript><p class=\"notice\">Charts need scripts, which this browser does not run. Every number of the charts "
-    "stands in the tables.</p></noscript>\n";
+Html no_charts() {
+  return markup(
+      "<p class=\"notice\">This page has no charts, because the program that wrote it was built without npm's "
+      "packages. "
+      "Every number stands in the tables. To get the charts, install npm, run <code>script/bootstrap</code>, build "
+      "again, and run <code>carousel report DIR</code> on this folder.</p>\n");
+}
+
+Html no_scripts() {
+  return markup(
+      "<noscript><p class=\"notice\">Charts need scripts, which this browser does not run. Every number of the charts "
+      "stands in the tables.</p></noscript>\n");
+}
+
+std::string source_of(std::string_view text) {
+  const auto digest = sha256(text);
+  return "'sha256-" + base64({reinterpret_cast<const char*>(digest.data()), digest.size()}) + "'";
+}
+
+/// Charts set style attributes of their own elements, which a hash cannot name.
+std::string policy(std::string_view style, std::string_view script) {
+  return fmt::format(
+      "default-src 'none'; script-src {}; style-src-elem {}; style-src-attr 'unsafe-inline'; img-src data:; "
+      "base-uri 'none'; form-action 'none'",
+      script.empty() ? "'none'" : source_of(script), source_of(style));
+}
 
 }  // namespace
 
 std::string page_of(const std::string& title, const std::string& subtitle, const std::vector<Section>& sections,
-                    const Json& facts, const std::string& data) {
+                    const Json& facts, const Html& data) {
   const std::string_view script = script_bundle();
-  std::string out = fmt::format(
+  const std::string style = "\n" + std::string(style_sheet());
+  static const std::string kPolicy = policy(style, script);
+  Html head = markup(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#content\">Skip to the "
+      "<title>{}</title>\n",
+      kPolicy, title);
+  Html body = markup(
+      "</head>\n<body>\n<a class=\"skip\" href=\"#content\">Skip to the "
       "report</a>\n<header><h1>{}</h1>\n<p>{}</p>\n<nav aria-label=\"Sections\"><ul>\n",
-      escaped(title), style_sheet(), escaped(title), escaped(subtitle));
+      title, subtitle);
+  for (const Section& section : sections)
+    if (!section.body.empty()) body += markup("<li><a href=\"#{}\">{}</a></li>\n", section.id, section.title);
+  body += markup("</ul></nav></header>\n<main id=\"content\" tabindex=\"-1\">\n");
+  body += script.empty() ? no_charts() : no_scripts();
   for (const Section& section : sections)
     if (!section.body.empty())
-      out += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section.id, escaped(section.title));
-  out += "</ul></nav></header>\n<main id=\"content\" tabindex=\"-1\">\n";
-  out += script.empty() ? kNoCharts : kNoScripts;
-  for (const Section& section : sections)
-    if (!section.body.empty())
-      out += fmt::format(
-          "<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
-          section.id, escaped(section.title), section.body);
-  out += "</main>\n<footer><p>Written by Carousel. The page needs no network.</p></footer>\n";
-  if (!script.empty()) {
-    std::string json = facts.dump();
-    for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos; at += 6) json.replace(at, 1, "\\u003c");
-    out += fmt::format("<script type=\"application/json\" id=\"facts\">{}</script>\n{}<script>{}</script>\n", json,
-                       data, script);
-  }
-  return out + "</body>\n</html>\n";
+      body += markup("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
+                     section.id, section.title, section.body);
+  body += markup("</main>\n<footer><p>Written by Carousel. The page needs no network.</p></footer>\n");
+  if (!script.empty()) body += json_script("facts", facts) + data;
+  // The program's own style and scripts are the only text that goes into a page without being escaped.
+  std::string out = head.str();
+  out.append("<style>").append(style).append("</style>\n").append(body.str());
+  if (!script.empty()) out.append("<script>").append(script).append("</script>\n");
+  return out.append("</body>\n</html>\n");
 }
 
 }  // namespace carousel::report::html

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/markup/markup.h"
+
 namespace carousel::report::html {
 
 /// A picture to put into a page.
@@ -15,12 +17,15 @@ struct Picture {
 
 /// A part of a page, with a heading of its own.
 struct Section {
-  std::string id, title, body;  ///< the body is HTML; a section with an empty body is left out
+  std::string id, title;
+  Html body;  ///< a section with an empty one is left out
 };
 
 /// A whole page in one file: head, style, navigation, sections, data, scripts. `facts` is what the scripts need beside
-/// the tables. `data` is HTML with the script elements of further data, or nothing.
+/// the tables. `data` holds the script elements of further data, or nothing. The page carries a policy (Content
+/// Security Policy Level 3, W3C) by which a browser runs no script but the program's own, known by its hash, and loads
+/// nothing.
 std::string page_of(const std::string& title, const std::string& subtitle, const std::vector<Section>& sections,
-                    const nlohmann::ordered_json& facts, const std::string& data);
+                    const nlohmann::ordered_json& facts, const Html& data);
 
 }  // namespace carousel::report::html

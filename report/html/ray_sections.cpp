@@ -10,9 +10,9 @@ namespace carousel::report::html {
 namespace {
 
 /// A table by depth with a heat map above it.
-std::string depths(const std::string& id, const std::string& caption, const Json* list, const Json& item_schema,
-                   const std::string& label) {
-  if (!list || list->empty()) return "";
+Html depths(const std::string& id, const std::string& caption, const Json* list, const Json& item_schema,
+            const std::string& label) {
+  if (!list || list->empty()) return {};
   const Table table = table_of(id, caption, *list, item_schema);
   return Figure{.id = "fig-" + id,
                 .kind = "heat",
@@ -76,12 +76,12 @@ class Flow {
 
 }  // namespace
 
-std::string depth_section(const Json& report, const Json& schema) {
-  std::string out = depths("node-depths", "Nodes by depth, and the work at them", find(report, "nodes.by_depth"),
-                           schema_at(schema, "properties.nodes.properties.by_depth.items"),
-                           "Heat map of nodes, visits, tests, hits and misses, by depth.");
+Html depth_section(const Json& report, const Json& schema) {
+  Html out = depths("node-depths", "Nodes by depth, and the work at them", find(report, "nodes.by_depth"),
+                    schema_at(schema, "properties.nodes.properties.by_depth.items"),
+                    "Heat map of nodes, visits, tests, hits and misses, by depth.");
   if (!out.empty() && text_at(report, "config.collections.traversal") == "treelet")
-    out = "<p>A treelet is gone through in one visit: its tests stand at the depth of its root.</p>\n" + out;
+    out = markup("<p>A treelet is gone through in one visit: its tests stand at the depth of its root.</p>\n") + out;
   out += depths("bundle-depths", "Bundles by depth", find(report, "tests.bundles.by_depth"),
                 schema_at(schema, "properties.tests.properties.bundles.properties.by_depth.items"),
                 "Heat map of the outcomes of bundles, by depth.");
@@ -90,9 +90,9 @@ std::string depth_section(const Json& report, const Json& schema) {
                       "Heat map of the work that cull planes spare, by depth.");
 }
 
-std::string rays_section(const Json& report, const Json& schema) {
+Html rays_section(const Json& report, const Json& schema) {
   const Json* bounces = find(report, "rays.by_bounce");
-  if (!bounces || bounces->empty()) return "";
+  if (!bounces || bounces->empty()) return {};
   Flow links(find(report, "raster")                                   ? "raster pass"
              : text_at(report, "config.workload.kind") == "rays_from" ? "file"
                                                                       : "camera");
@@ -102,12 +102,12 @@ std::string rays_section(const Json& report, const Json& schema) {
     passed += number_at(row, "passed");
   }
   const Table flow = links.table();
-  if (flow.rows.empty()) return "";
-  std::string out =
+  if (flow.rows.empty()) return {};
+  Html out = markup(
       "<p>A hit may send out a ray of the next bounce and a shadow ray, so more rays may leave a place than come to "
-      "it.";
-  if (passed > 0) out += fmt::format(" {} shadow rays went on behind a pane.", value_text(Json(passed)));
-  return out + "</p>\n" +
+      "it.");
+  if (passed > 0) out += markup(" {} shadow rays went on behind a pane.", value_text(Json(passed)));
+  return out + markup("</p>\n") +
          Figure{.id = "fig-rays",
                 .kind = "flow",
                 .tables = flow.id,
@@ -121,9 +121,9 @@ std::string rays_section(const Json& report, const Json& schema) {
              .html();
 }
 
-std::string tests_section(const Json& report, const Json& schema) {
+Html tests_section(const Json& report, const Json& schema) {
   const Json* tests = find(report, "tests");
-  if (!tests) return "";
+  if (!tests) return {};
   Table table{"tests-table",
               "Tests and other work for each completed ray",
               {{"work"}, {"this machine"}, {"depth first"}, {"ratio"}, {"in all"}, {"meaning"}}};
@@ -136,11 +136,11 @@ std::string tests_section(const Json& report, const Json& schema) {
                           cell(there > 0 ? fmt::format("{:.2f} times", here / there) : "–"), cell(value["count"]),
                           cell(text_at(schema, "properties.tests.properties." + key + ".description"))});
   }
-  if (table.rows.empty()) return "";
-  std::string out;
+  if (table.rows.empty()) return {};
+  Html out;
   if (const double rays = number_at(*tests, "depth_first.rays"), one_in = number_at(*tests, "depth_first.one_in");
       rays > 0)
-    out = fmt::format(
+    out = markup(
         "<p>Depth first: a tracer that takes one ray after another down the same structure, nearest child first. It "
         "traced {} of the run.</p>\n",
         one_in > 1 ? fmt::format("{} rays, one in {}", value_text((*tests)["depth_first"]["rays"]), one_in)

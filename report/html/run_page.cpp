@@ -37,7 +37,7 @@ std::string run_page(const Json& report, const Picture& picture) {
   const Json* series = find(report, "time_series");
   const std::string scene = text_at(report, "scene.name");
   return page_of(scene.empty() ? "Carousel: synthetic traffic" : "Carousel: " + scene, machine_words(report), sections,
-                 facts, series ? packed_series(*series) : "");
+                 facts, series ? packed_series(*series) : Html());
 }
 
 }  // namespace carousel::report::html

@@ -6,9 +6,9 @@
 
 namespace carousel::report::html {
 
-std::string sampled_section(const Json& report, const Json& schema) {
+Html sampled_section(const Json& report, const Json& schema) {
   const Json* sampled = find(report, "sampled");
-  if (!sampled) return "";
+  if (!sampled) return {};
   const bool audited = sampled->at("cycles_per_ray").contains("whole");
   Table table{"sampled", "Estimates for the whole frame", {{"value"}, {"unit"}, {"estimate"}, {"from"}, {"to"}}};
   if (audited) table.columns.insert(table.columns.end(), {{"whole frame"}, {"error", "fraction"}});
@@ -24,15 +24,15 @@ std::string sampled_section(const Json& report, const Json& schema) {
       add(words(key), value,
           text_at(schema_at(schema, "properties.sampled.properties." + key + ".properties.estimate"), "unit"));
   for (const Json& use : (*sampled)["uses"]) add("use of " + words(text_at(use, "name")), use, "fraction");
-  std::string out = fmt::format(
+  Html out = markup(
       "<p class=\"notice\"><strong>Sampled:</strong> {} of {} paths were simulated, in {} places drawn over the frame. "
       "The picture holds only these; all other sections are about them alone.</p>\n",
       value_text((*sampled)["paths"]), value_text((*sampled)["frame_paths"]), value_text((*sampled)["strata"]));
   if (sampled->value("too_small", false))
-    out +=
+    out += markup(
         "<p class=\"notice\">The sample is too small for this machine: it is mostly fill and drain, and the intervals "
         "are "
-        "wide.</p>\n";
+        "wide.</p>\n");
   return out + table.html();
 }
 

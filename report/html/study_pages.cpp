@@ -51,8 +51,8 @@ Table table_of_rows(std::string id, std::string caption, const Json& list,
   return table;
 }
 
-std::string bars_of(const Table& table, const std::string& title) {
-  if (table.rows.empty()) return "";
+Html bars_of(const Table& table, const std::string& title) {
+  if (table.rows.empty()) return {};
   return Figure{.id = "fig-" + table.id,
                 .kind = "bars",
                 .tables = table.id,
@@ -63,10 +63,10 @@ std::string bars_of(const Table& table, const std::string& title) {
          table.html();
 }
 
-std::string interrupted(const Json& report) {
+Html interrupted(const Json& report) {
   return report.value("incomplete", false)
-             ? "<p class=\"notice\"><strong>Incomplete:</strong> it was interrupted.</p>\n"
-             : "";
+             ? markup("<p class=\"notice\"><strong>Incomplete:</strong> it was interrupted.</p>\n")
+             : Html();
 }
 
 }  // namespace
@@ -86,19 +86,19 @@ std::string stress_page(const Json& stress) {
       {"rate_median", "rate_least", "rate_most"});
   std::uint64_t faulty = 0;
   for (const Json& row : stress["rows"]) faulty += text_at(row, "found").empty() ? 0 : 1;
-  std::string glance = interrupted(stress);
-  glance += fmt::format("<p class=\"verdict\">{}</p>\n",
-                        faulty == 0 ? "No queue lost, doubled, reordered or tore a message."
-                                    : fmt::format("{} rows of the table show faults of queues.", faulty));
+  Html glance = interrupted(stress);
+  glance += markup("<p class=\"verdict\">{}</p>\n",
+                   faulty == 0 ? "No queue lost, doubled, reordered or tore a message."
+                               : fmt::format("{} rows of the table show faults of queues.", faulty));
   if (const std::string verdict = text_at(stress, "ring_verdict"); !verdict.empty())
-    glance += fmt::format("<p>{}</p>\n", escaped(verdict));
-  glance += fmt::format("<p>{} repetitions on a host of {} hardware threads. Rates of queues are the host's.</p>\n",
-                        number_at(stress, "repetitions"), number_at(stress, "cores"));
+    glance += markup("<p>{}</p>\n", verdict);
+  glance += markup("<p>{} repetitions on a host of {} hardware threads. Rates of queues are the host's.</p>\n",
+                   number_at(stress, "repetitions"), number_at(stress, "cores"));
   return page_of("Carousel: stress of queues", "carousel stress",
                  {{"verdict", "At a glance", glance},
                   {"alone", "Queues by themselves", bars_of(rows, rows.caption)},
                   {"inside", "Queues in the machine", bars_of(ring, ring.caption)}},
-                 Json::object(), "");
+                 Json::object(), {});
 }
 
 std::string accuracy_page(const Json& accuracy) {
@@ -120,21 +120,20 @@ std::string accuracy_page(const Json& accuracy) {
   const Table sampling =
       table_of_rows("sampling", "Error of the picture over the number of samples", accuracy["sampling"]["rows"],
                     [](const Json& row) { return fmt::format("{} samples", number_at(row, "samples")); }, {"rmse"});
-  std::string glance = interrupted(accuracy);
-  glance += fmt::format("<p class=\"verdict\">{}</p>\n", escaped(text_at(accuracy, "verdict")));
-  glance += fmt::format(
-      "<p>{} rays of the scene {} were compared with exact arithmetic, each time measured {} times.</p>\n",
-      value_text(accuracy["rays"]), escaped(text_at(accuracy, "scene")), number_at(accuracy, "repetitions"));
-  std::string body = Figure{.id = "fig-levels",
-                            .kind = "scatter",
-                            .tables = "levels",
-                            .title = "Wrong answers against time a ray on the host",
-                            .label =
-                                "Scatter plot of the levels: time a ray against wrong answers. The table below "
-                                "has the numbers.",
-                            .height = 420}
-                         .html() +
-                     table.html();
+  Html glance = interrupted(accuracy);
+  glance += markup("<p class=\"verdict\">{}</p>\n", text_at(accuracy, "verdict"));
+  glance += markup("<p>{} rays of the scene {} were compared with exact arithmetic, each time measured {} times.</p>\n",
+                   value_text(accuracy["rays"]), text_at(accuracy, "scene"), number_at(accuracy, "repetitions"));
+  Html body = Figure{.id = "fig-levels",
+                     .kind = "scatter",
+                     .tables = "levels",
+                     .title = "Wrong answers against time a ray on the host",
+                     .label =
+                         "Scatter plot of the levels: time a ray against wrong answers. The table below "
+                         "has the numbers.",
+                     .height = 420}
+                  .html() +
+              table.html();
   Table hardware = table_of_rows("levels-on-hardware", "Levels of accuracy on a machine that its testers limit", levels,
                                  name, {"tester_limited_cycles_per_ray", "wrong_answers", "unit_area_over_default"});
   hardware.columns.resize(4);
@@ -153,7 +152,7 @@ std::string accuracy_page(const Json& accuracy) {
                   {"levels", "Time and errors of the levels", body},
                   {"spawn", "Where new rays start", spawn.html()},
                   {"sampling", "Samples", bars_of(sampling, sampling.caption)}},
-                 Json::object(), "");
+                 Json::object(), {});
 }
 
 std::string ray_life_page(const Json& life) {
@@ -170,25 +169,24 @@ std::string ray_life_page(const Json& life) {
       table_of_rows("tests", "Tests", list("tests"), [&](const Json&) { return std::to_string(++number); }, {});
   const Table caused = table_of_rows("caused", "Rays that came of it", list("caused"),
                                      [](const Json& row) { return text_at(row, "kind"); }, {});
-  std::string glance = fmt::format(
-      "<p class=\"verdict\">The ray took {} {}{}.</p>\n", value_text(life.value("latency", Json(0))), unit,
-      stages.rows.empty() ? ""
-                          : fmt::format(", most of it in the stage: {}", escaped(stages.rows.front().front().text)));
+  Html glance =
+      markup("<p class=\"verdict\">The ray took {} {}{}.</p>\n", value_text(life.value("latency", Json(0))), unit,
+             stages.rows.empty() ? "" : fmt::format(", most of it in the stage: {}", stages.rows.front().front().text));
   glance += values_of("ray", "The ray", life, Json::object()).html();
-  std::string where = Figure{.id = "fig-spans",
-                             .kind = "spans",
-                             .tables = "spans",
-                             .title = "Its time, stage by stage",
-                             .label = "Bars over time, a line a stage; the table below has each stretch.",
-                             .height = 320}
-                          .html();
+  Html where = Figure{.id = "fig-spans",
+                      .kind = "spans",
+                      .tables = "spans",
+                      .title = "Its time, stage by stage",
+                      .label = "Bars over time, a line a stage; the table below has each stretch.",
+                      .height = 320}
+                   .html();
   return page_of("Carousel: the life of a ray", "carousel follow, " + text_at(life, "engine") + " engine",
                  {{"verdict", "At a glance", glance},
                   {"where", "Use of its time", bars_of(stages, stages.caption)},
-                  {"stretches", "Its time in order", spans.rows.empty() ? "" : where + spans.html()},
+                  {"stretches", "Its time in order", spans.rows.empty() ? Html() : where + spans.html()},
                   {"tested", "Tests of the ray", tests.html()},
                   {"next", "Rays it caused", caused.html()}},
-                 Json::object(), "");
+                 Json::object(), {});
 }
 
 }  // namespace carousel::report::html

@@ -80,32 +80,32 @@ std::string keys_text(const Json& point) {
   return out;
 }
 
-std::string glance_of(const Json& sweep) {
+Html glance_of(const Json& sweep) {
   std::size_t done = 0, failed = 0, missing = 0;
   for (const Json& point : sweep["points"]) {
     const std::string status = text_at(point, "status");
     ++(status == "done" ? done : status == "failed" ? failed : missing);
   }
-  std::string out;
+  Html out;
   if (missing > 0)
-    out += fmt::format("<p class=\"notice\"><strong>Incomplete:</strong> {} points have not run.</p>\n", missing);
+    out += markup("<p class=\"notice\"><strong>Incomplete:</strong> {} points have not run.</p>\n", missing);
   for (const Json& name : list_at(sweep, "results")) {
     const std::string result = name.get<std::string>();
     const Json* best = best_in(sweep, result);
     if (best == nullptr) continue;
-    out += fmt::format("<p class=\"verdict\">The {} {}, {}, are those of {}.</p>\n",
-                       greater_is_better(sweep, result) ? "most" : "least", escaped(result),
-                       value_text((*best)["results"][result]), escaped(keys_text(*best)));
+    out += markup("<p class=\"verdict\">The {} {}, {}, are those of {}.</p>\n",
+                  greater_is_better(sweep, result) ? "most" : "least", result, value_text((*best)["results"][result]),
+                  keys_text(*best));
     break;
   }
-  out += fmt::format(
+  out += markup(
       "<p>{} points: {} done, {} failed, {} to run. Configuration: <code>{}</code>. The numbers as <a "
       "href=\"sweep.csv\">CSV</a> and <a href=\"sweep.json\">JSON</a>.</p>\n",
-      sweep["points"].size(), done, failed, missing, escaped(text_at(sweep, "config")));
+      sweep["points"].size(), done, failed, missing, text_at(sweep, "config"));
   return out;
 }
 
-std::string failures_of(const Json& sweep) {
+Html failures_of(const Json& sweep) {
   Table table{"failures", "Points without a result", {{"point"}, {"keys"}, {"kind"}, {"error"}}};
   for (const Json& point : sweep["points"])
     if (point.contains("error"))
@@ -121,25 +121,24 @@ std::string sweep_page(const Json& sweep, const std::string& folder) {
   const auto figure = [](const char* id, const char* kind, const char* tables, const char* title, const char* label) {
     return Figure{.id = id, .kind = kind, .tables = tables, .title = title, .label = label, .height = 420}.html();
   };
-  const std::string plot =
-      figure("fig-sweep", "sweep_plot", "points", "Any key or result over any other",
-             "Scatter or line plot of two columns of the table of all points, chosen above the plot.");
-  const std::string pareto =
+  const Html plot = figure("fig-sweep", "sweep_plot", "points", "Any key or result over any other",
+                           "Scatter or line plot of two columns of the table of all points, chosen above the plot.");
+  const Html pareto =
       figure("fig-pareto", "sweep_pareto", "points", "Pareto front of two results",
              "Scatter plot of two results, with a line through the points that no other point betters in one of them "
              "without being worse in the other.");
-  const std::string means =
+  const Html means =
       figure("fig-effects", "sweep_effects", "effects", "Main effects on a result",
              "Dots with intervals of 95 percent, a line a value of a key: the difference of its points from the mean.");
-  const std::string about =
+  const Html about = markup(
       "<p>An effect is the difference of a value's mean from the mean of all points, the other keys accounted for. Its "
-      "interval (95 %) comes from the part that the additive model leaves unexplained.</p>\n";
+      "interval (95 %) comes from the part that the additive model leaves unexplained.</p>\n");
   const bool any = !points.rows.empty() && !list_at(sweep, "results").empty();
   return page_of("Carousel: sweep of " + text_at(sweep, "config"), "carousel sweep",
                  {{"glance", "At a glance", glance_of(sweep)},
-                  {"plots", "Keys and results", any ? plot : ""},
-                  {"pareto", "Pareto front", any && sweep["results"].size() > 1 ? pareto : ""},
-                  {"effects", "Main effects", effects.rows.empty() ? "" : about + means + effects.html()},
+                  {"plots", "Keys and results", any ? plot : Html()},
+                  {"pareto", "Pareto front", any && sweep["results"].size() > 1 ? pareto : Html()},
+                  {"effects", "Main effects", effects.rows.empty() ? Html() : about + means + effects.html()},
                   {"points", "Points", points.html()},
                   {"failures", "Failures", failures_of(sweep)}},
                  {{"sweep",
@@ -147,7 +146,7 @@ std::string sweep_page(const Json& sweep, const std::string& folder) {
                     {"keys", list_at(sweep, "keys")},
                     {"results", list_at(sweep, "results")},
                     {"greater_is_better", list_at(sweep, "greater_is_better")}}}},
-                 "");
+                 {});
 }
 
 }  // namespace carousel::report::html

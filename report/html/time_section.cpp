@@ -20,14 +20,13 @@ std::map<std::string, std::vector<std::string>> charts_of(const Json& rows) {
 
 }  // namespace
 
-std::string time_section(const Json& report) {
+Html time_section(const Json& report) {
   const Json* series = find(report, "time_series");
   const Json* rows = find(report, "time_series.rows");
-  if (!rows || rows->empty()) return "";
+  if (!rows || rows->empty()) return {};
   const std::string unit = text_at(*series, "unit");
   const Json& interval = (*series)["interval"];
-  std::string out =
-      fmt::format("<p>{} samples of {} {} each.</p>\n", value_text((*series)["samples"]), value_text(interval), unit);
+  Html out = markup("<p>{} samples of {} {} each.</p>\n", value_text((*series)["samples"]), value_text(interval), unit);
   int number = 0;
   for (const auto& [of, quantities] : charts_of(*rows))
     out += Figure{.id = fmt::format("fig-time-{}", number++),

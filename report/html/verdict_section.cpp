@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cctype>
+
 #include <fmt/format.h>
 
 #include "report/html/html.h"
@@ -50,8 +53,8 @@ std::string verdict_sentence(const Json& report) {
          "can be named as its limit. The cycle engine names it: --set engine.kind=cycle.";
 }
 
-void fact(std::string& out, std::string_view name, const std::string& value) {
-  if (!value.empty()) out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(name), escaped(value));
+void fact(Html& out, std::string_view name, const std::string& value) {
+  if (!value.empty()) out += markup("<div><dt>{}</dt><dd>{}</dd></div>\n", name, value);
 }
 
 std::string throughput_text(const Json& report) {
@@ -68,16 +71,16 @@ std::string throughput_text(const Json& report) {
   return scaled(number_at(report, "host.rays_per_second")) + "rays/s on this host";
 }
 
-std::string picture_html(const Json& report, const Picture& picture) {
-  if (picture.mime_type.empty()) return "";
+Html picture_html(const Json& report, const Picture& picture) {
+  if (picture.mime_type.empty()) return {};
   const auto side = [&](const char* key) {
-    return static_cast<int>(number_at(report, std::string("config.image.") + key));
+    return static_cast<int>(std::clamp(number_at(report, std::string("config.image.") + key), 0.0, 1e6));
   };
-  return fmt::format(
+  return markup(
       "<img src=\"data:{};base64,{}\" width=\"{}\" height=\"{}\" alt=\"Picture of the scene {} that this run rendered, "
       "{} "
       "by {} pixels with {} samples each\">\n",
-      picture.mime_type, base64(picture.bytes), side("width"), side("height"), escaped(text_at(report, "scene.name")),
+      picture.mime_type, base64(picture.bytes), side("width"), side("height"), text_at(report, "scene.name"),
       side("width"), side("height"), side("samples"));
 }
 
@@ -85,20 +88,20 @@ std::string picture_html(const Json& report, const Picture& picture) {
 
 std::string machine_words(const Json& report) {
   const std::string shape = words(text_at(report, "config.topology.shape", "ring"));
-  const auto count = static_cast<std::uint64_t>(number_at(report, "config.topology.resources"));
-  std::string out = fmt::format("{} resources, {}", grouped(count), shape);
+  const Json* count = find(report, "config.topology.resources");
+  std::string out = fmt::format("{} resources, {}", count ? value_text(*count) : "0", shape);
   if (shape == "multi ring") out += fmt::format(" of {}", number_at(report, "config.topology.rings"));
   if (shape == "hierarchical") out += fmt::format(" of {} groups", number_at(report, "config.topology.groups"));
   return out + fmt::format(", {} engine", text_at(report, "engine.kind"));
 }
 
-std::string verdict_section(const Json& report, const Picture& picture) {
-  std::string out;
+Html verdict_section(const Json& report, const Picture& picture) {
+  Html out;
   if (report.value("incomplete", false))
-    out +=
-        "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n";
-  out += "<div class=\"glance\">\n" + picture_html(report, picture) + "<div>\n";
-  out += fmt::format("<p class=\"verdict\">{}</p>\n<dl>\n", escaped(verdict_sentence(report)));
+    out += markup(
+        "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n");
+  out += markup("<div class=\"glance\">\n{}<div>\n<p class=\"verdict\">{}</p>\n<dl>\n", picture_html(report, picture),
+                verdict_sentence(report));
   fact(out, "Throughput", throughput_text(report));
   if (const Json* cycles = find(report, "engine.cycles"))
     fact(out, "Simulated", fmt::format("{} cycles", value_text(*cycles)));
@@ -126,14 +129,17 @@ std::string verdict_section(const Json& report, const Picture& picture) {
   fact(out, "Program",
        fmt::format("Carousel {} ({}, {})", text_at(report, "carousel.version"), text_at(report, "carousel.commit"),
                    text_at(report, "carousel.compiler")));
-  out += "</dl>\n</div>\n</div>\n<h3>To reproduce this run</h3>\n";
-  out +=
-      "<pre tabindex=\"0\"><code>carousel run config.resolved.yaml --out again\ncarousel compare . "
-      "again</code></pre>\n";
+  out += markup(
+      "</dl>\n</div>\n</div>\n<h3>To reproduce this run</h3>\n<pre tabindex=\"0\"><code>carousel run "
+      "config.resolved.yaml --out again\ncarousel compare . "
+      "again</code></pre>\n");
   out += find(report, "engine.deterministic") && report["engine"].value("deterministic", false)
-             ? "<p>Everything outside of the section <i>host</i> is the same in every run of this configuration.</p>\n"
-             : "<p>Rays, hits and picture are the same in every run of this configuration; counts that depend on the "
-               "timing of threads are not.</p>\n";
+             ? markup(
+                   "<p>Everything outside of the section <i>host</i> is the same in every run of this "
+                   "configuration.</p>\n")
+             : markup(
+                   "<p>Rays, hits and picture are the same in every run of this configuration; counts that depend on "
+                   "the timing of threads are not.</p>\n");
   return out;
 }
 

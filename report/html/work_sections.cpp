@@ -11,17 +11,17 @@ namespace carousel::report::html {
 namespace {
 
 /// A distribution of report.json as a table and bars; nothing if it is absent or empty. `counted` names its values.
-std::string distribution(const Json& report, const std::string& path, const std::string& id, const std::string& title,
-                         const std::string& counted) {
+Html distribution(const Json& report, const std::string& path, const std::string& id, const std::string& title,
+                  const std::string& counted) {
   const Json* found = find(report, path);
-  if (!found || number_at(*found, "count") == 0) return "";
+  if (!found || number_at(*found, "count") == 0) return {};
   Table table{id, title, {{"cycles"}, {counted}, {"share"}}};
   for (const Json& row : (*found)["classes"])
     table.rows.push_back({cell(row["from"] == row["to"] ? value_text(row["from"])
                                                         : value_text(row["from"]) + " to " + value_text(row["to"])),
                           cell(row["count"]), share(number_at(row, "count") / number_at(*found, "count"))});
-  return fmt::format("<p>{}: the mean is {:.1f} cycles, the greatest {}.</p>\n", title, number_at(*found, "mean"),
-                     value_text((*found)["max"])) +
+  return markup("<p>{}: the mean is {:.1f} cycles, the greatest {}.</p>\n", title, number_at(*found, "mean"),
+                value_text((*found)["max"])) +
          Figure{.id = "fig-" + id,
                 .kind = "histogram",
                 .tables = id,
@@ -34,10 +34,10 @@ std::string distribution(const Json& report, const std::string& path, const std:
 
 }  // namespace
 
-std::string gains_section(const Json& report, const Json& schema) {
+Html gains_section(const Json& report, const Json& schema) {
   const Json* gains = find(report, "bottleneck.gains");
   const Json* classes = find(report, "bound.classes");
-  std::string out;
+  Html out;
   if (gains && !gains->empty()) {
     Table table{"gains",
                 "Gain of relaxing one class of parts",
@@ -49,10 +49,10 @@ std::string gains_section(const Json& report, const Json& schema) {
                             cell(gain["low"], "fraction"), cell(gain["high"], "fraction"),
                             cell(gain["together"], "classes"), cell(text_at(gain, "action")), cell(sets)});
     }
-    out +=
+    out += markup(
         "<p>The classes of parts were relaxed, alone or with as many others as the table says, and the machine "
         "simulated "
-        "again; low and high are the ends of the interval of 95 % of confidence.</p>\n";
+        "again; low and high are the ends of the interval of 95 % of confidence.</p>\n");
     out += Figure{.id = "fig-gains",
                   .kind = "intervals",
                   .tables = table.id,
@@ -67,22 +67,22 @@ std::string gains_section(const Json& report, const Json& schema) {
     Table table = table_of("bound", "Rate that each class of parts alone would allow", *classes,
                            schema_at(schema, "properties.bound.properties.classes.items"));
     for (auto& row : table.rows) row[0].text = words(row[0].text);
-    out += fmt::format("<p>The run reached {} of the rate of the tightest class.</p>\n",
-                       percent(number_at(report, "bound.reached")));
+    out += markup("<p>The run reached {} of the rate of the tightest class.</p>\n",
+                  percent(number_at(report, "bound.reached")));
     out += table.html();
   }
   return out;
 }
 
-std::string bytes_section(const Json& report, const Json& schema) {
+Html bytes_section(const Json& report, const Json& schema) {
   const Json* bytes = find(report, "bytes");
-  if (!bytes || bytes->empty()) return "";
+  if (!bytes || bytes->empty()) return {};
   Json sorted = Json::array();
   for (const Json& row : *bytes)
     if (number_at(row, "bytes") > 0) sorted.push_back(row);
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Json& a, const Json& b) { return number_at(a, "bytes") > number_at(b, "bytes"); });
-  if (sorted.empty()) return "";
+  if (sorted.empty()) return {};
   Table table =
       table_of("bytes-table", "Bytes by kind of message", sorted, schema_at(schema, "properties.bytes.items"));
   const double rays = number_at(report, "rays.completed");
@@ -99,8 +99,8 @@ std::string bytes_section(const Json& report, const Json& schema) {
          table.html();
 }
 
-std::string latency_section(const Json& report) {
-  std::string out;
+Html latency_section(const Json& report) {
+  Html out;
   for (const auto& [path, title] : {std::pair{"packets.latency", "Latency of packets, from issue to retirement"},
                                     std::pair{"traffic.latency", "Latency of packets of the network"}}) {
     const Json* latency = find(report, path);
@@ -109,8 +109,8 @@ std::string latency_section(const Json& report) {
     if (const Json* quantiles = find(*latency, "quantiles"))
       for (const Json& q : *quantiles)
         table.rows.push_back({Cell{percent(number_at(q, "part")), q["part"]}, cell(q["cycles"])});
-    out += fmt::format("<p>The mean is {:.1f} cycles, the median {}, and 1 of 100 packets took more than {}.</p>\n",
-                       number_at(*latency, "mean"), value_text((*latency)["p50"]), value_text((*latency)["p99"]));
+    out += markup("<p>The mean is {:.1f} cycles, the median {}, and 1 of 100 packets took more than {}.</p>\n",
+                  number_at(*latency, "mean"), value_text((*latency)["p50"]), value_text((*latency)["p99"]));
     if (!table.rows.empty())
       out += Figure{.id = "fig-latency",
                     .kind = "quantiles",
@@ -124,12 +124,12 @@ std::string latency_section(const Json& report) {
                             "Residence of rays, from their slot until their hit is at shading", "rays");
 }
 
-std::string collections_section(const Json& report, const Json& schema) {
+Html collections_section(const Json& report, const Json& schema) {
   const Json* collections = find(report, "collections");
-  if (!collections) return "";
-  std::string out;
+  if (!collections) return {};
+  Html out;
   if (const Json* fullness = find(*collections, "fullness_mean"))
-    out += fmt::format("<p>A packet was {} full when it was issued.</p>\n", percent(fullness->get<double>()));
+    out += markup("<p>A packet was {} full when it was issued.</p>\n", percent(fullness->get<double>()));
   out += values_of("collections-table", "Collections of all resources", *collections,
                    schema_at(schema, "properties.collections"))
              .html();
@@ -154,9 +154,9 @@ std::string collections_section(const Json& report, const Json& schema) {
                       "Age of collections when a packet was taken from them", "packets");
 }
 
-std::string effects_section(const Json& report) {
+Html effects_section(const Json& report) {
   const Json* effects = find(report, "shading.effects");
-  if (!effects || effects->empty()) return "";
+  if (!effects || effects->empty()) return {};
   std::string on;
   Table table{
       "effects-table", "Effects of light", {{"effect"}, {"computed"}, {"callers"}, {"reason"}, {"cycles a hit"}}};
@@ -168,21 +168,21 @@ std::string effects_section(const Json& report) {
   }
   std::stable_sort(table.rows.begin(), table.rows.end(),
                    [](const auto& a, const auto& b) { return (a[1].text == "yes") > (b[1].text == "yes"); });
-  std::string out = fmt::format("<p>Effects that the scene calls for and that were computed: {}.</p>\n",
-                                on.empty() ? "none" : escaped(on));
+  Html out = markup("<p>Effects that the scene calls for and that were computed: {}.</p>\n", on.empty() ? "none" : on);
   if (const Json* saved = find(report, "shading.saved"))
-    out += fmt::format("<p>Those that were not computed spare {} bytes of state a path and {} images.</p>\n",
-                       value_text((*saved)["path_state_bytes"]), value_text((*saved)["images_not_decoded"]));
+    out += markup("<p>Those that were not computed spare {} bytes of state a path and {} images.</p>\n",
+                  value_text((*saved)["path_state_bytes"]), value_text((*saved)["images_not_decoded"]));
   return out + table.html();
 }
 
-std::string accuracy_section(const Json& report, const Json& schema) {
-  std::string out;
+Html accuracy_section(const Json& report, const Json& schema) {
+  Html out;
   if (const Json* verify = find(report, "verify")) {
-    out += fmt::format("<p>{} rays were traced again, depth first; {} of them differ.</p>\n",
-                       value_text((*verify)["compared"]), value_text((*verify)["mismatches"]));
+    out += markup("<p>{} rays were traced again, depth first; {} of them differ.</p>\n",
+                  value_text((*verify)["compared"]), value_text((*verify)["mismatches"]));
   } else if (find(report, "digest.hits") && number_at(report, "rays.emitted") > 0) {
-    out += "<p>This run was not compared with the reference tracer; <code>--set verify=reference</code> does so.</p>\n";
+    out += markup(
+        "<p>This run was not compared with the reference tracer; <code>--set verify=reference</code> does so.</p>\n");
   }
   if (const Json* faults = find(report, "faults"))
     out += values_of("faults-table", "Faults", *faults, schema_at(schema, "properties.faults")).html();
@@ -195,17 +195,15 @@ std::string accuracy_section(const Json& report, const Json& schema) {
   return out;
 }
 
-std::string values_section(const Json& report, const Json& schema) {
-  std::string out = "<p>Each value of report.json that is not in a list, with its meaning.</p>\n";
+Html values_section(const Json& report, const Json& schema) {
+  Html out = markup("<p>Each value of report.json that is not in a list, with its meaning.</p>\n");
   for (const auto& [key, value] : report.items()) {
     if (key == "config" || !value.is_object()) continue;
     const Table table = values_of("values-" + key, key, value, schema_at(schema, "properties." + key));
     if (table.rows.empty()) continue;
-    const std::string html = table.html();
-    const bool folded = html.starts_with("<details");
-    out += folded ? html
-                  : fmt::format("<details><summary>Table: {} ({} rows)</summary>\n{}</details>\n", key,
-                                table.rows.size(), html);
+    out += table.folded() ? table.html()
+                          : markup("<details><summary>Table: {} ({} rows)</summary>\n{}</details>\n", key,
+                                   table.rows.size(), table.html());
   }
   return out;
 }
