@@ -23,6 +23,7 @@
 #include "core/types/enum_names.h"
 #include "report/accuracy/accuracy_table.h"
 #include "report/html/study_pages.h"
+#include "report/read/document.h"
 #include "report/text/progress_line.h"
 #include "ringbus/cycle/what_if.h"
 
@@ -229,7 +230,7 @@ int accuracy_command(const AccuracyArguments& arguments) {
     throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});
   const report::Accuracy accuracy = Trial(p, arguments, interrupt).run();
   const nlohmann::ordered_json result = report::accuracy_json(accuracy);
-  const std::string json = result.dump(2) + "\n";
+  const std::string json = report::sealed(result).dump(2) + "\n";
   const std::exception_ptr failure = output->write([&](const std::filesystem::path& staging) {
     write_file(staging / "config.resolved.yaml", resolved_yaml(p.config()));
     write_file(staging / "accuracy.html", report::html::accuracy_page(result));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -14,6 +13,7 @@
 #include "core/system/error.h"
 #include "report/compare/comparison.h"
 #include "report/html/compare_page.h"
+#include "report/read/document.h"
 #include "report/run/report_difference.h"
 #include "ringbus/cycle/cycle_engine.h"
 
@@ -26,12 +26,10 @@ using Json = nlohmann::ordered_json;
 Json read_report(const std::string& name) {
   std::filesystem::path path = name;
   if (std::filesystem::is_directory(path)) path /= "report.json";
-  std::ifstream in(path);
-  if (!in) throw FileError(path.string() + ": cannot be read");
-  Json json = Json::parse(in, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || !json.contains("config") || !json.contains("digest"))
+  report::Document document = report::read_document(path);
+  if (document.kind != report::DocumentKind::kRun)
     throw FileError(path.string() + ": expected a report of carousel run");
-  return json;
+  return std::move(document.json);
 }
 
 /// The steps of a report's machine in a range of cycles.

@@ -18,6 +18,7 @@
 #include "core/system/stop_request.h"
 #include "core/types/enum_names.h"
 #include "report/csv/ray_csv_columns.h"
+#include "report/read/document.h"
 #include "report/run/ray_life_table.h"
 #include "report/run/report_json.h"
 #include "ringbus/cycle/cycle_engine.h"
@@ -216,7 +217,7 @@ int follow_command(const FollowArguments& arguments) {
   if (cut && !life) throw Interrupted("the ray had just been made");
   if (!life) throw SimulationError("the followed ray left no trace");
   const report::RayLife section = LifeReport(p, *life).section(place, workload);
-  print_result(arguments.json ? report::json_text(report::ray_life_json(section)) + "\n"
+  print_result(arguments.json ? report::json_text(report::sealed(report::ray_life_json(section))) + "\n"
                               : report::ray_life_table(section));
   if (life->complete) return kDone;
   spdlog::warn("interrupted; the life of the ray is told as far as it had come");

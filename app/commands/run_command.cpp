@@ -26,6 +26,7 @@
 #include "core/numeric/bytes_digest.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
+#include "report/read/document.h"
 #include "report/run/memory_table.h"
 #include "report/run/report_json.h"
 #include "report/run/report_table.h"
@@ -38,7 +39,7 @@ namespace {
 void print_report(const RunArguments& arguments, const report::Report& report, const std::string& table,
                   const std::string& files) {
   if (arguments.json)
-    print_result(report::json_text(report::report_json(report)) + "\n");
+    print_result(report::json_text(report::sealed(report::report_json(report))) + "\n");
   else if (!arguments.quiet)
     print_text(table + "files        " + files + "\n");
 }
@@ -64,7 +65,7 @@ int finish(const RunArguments& arguments, const report::Report& report, const st
 void write_report(const std::filesystem::path& folder, const RunArguments& arguments, const report::Report& report) {
   const nlohmann::ordered_json json = report::report_json(report);
   if (!arguments.no_html) write_file(folder / "report.html", run_page_of(json, folder));
-  write_file(folder / "report.json", report::json_text(json) + "\n");
+  write_file(folder / "report.json", report::json_text(report::sealed(json)) + "\n");
 }
 
 /// A workload without rays has no hits that could be written.

@@ -23,6 +23,7 @@
 #include "core/text/edit_distance.h"
 #include "core/types/enum_names.h"
 #include "report/html/study_pages.h"
+#include "report/read/document.h"
 #include "report/run/report_json.h"
 #include "report/stress/stress_table.h"
 #include "report/text/progress_line.h"
@@ -200,7 +201,7 @@ int stress_command(const StressArguments& arguments) {
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   const nlohmann::ordered_json result = report::stress_json(out);
-  const std::string json = result.dump(2) + "\n";
+  const std::string json = report::sealed(result).dump(2) + "\n";
   const std::exception_ptr failure = output->write([&](const std::filesystem::path& staging) {
     if (prepared) write_file(staging / "config.resolved.yaml", resolved_yaml(prepared->config()));
     write_file(staging / "stress.html", report::html::stress_page(result));

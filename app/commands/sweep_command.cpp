@@ -23,6 +23,7 @@
 #include "core/system/error.h"
 #include "core/system/unfinished.h"
 #include "report/html/sweep_page.h"
+#include "report/read/document.h"
 #include "report/text/number_text.h"
 
 namespace carousel::app {
@@ -208,7 +209,7 @@ void give_results(const SweepArguments& arguments, const SweepSetup& setup, Swee
   rows.drop_empty();
   const std::vector<Goal> goals = arguments.pareto.empty() ? std::vector<Goal>{} : parse_goals(rows, arguments.pareto);
   const nlohmann::ordered_json sweep = sweep_json(rows, goals, arguments.config);
-  const std::string json = sweep.dump(1) + "\n";
+  const std::string json = report::sealed(sweep).dump(1) + "\n";
   if (write) {
     write_file(setup.out / "sweep.csv", sweep_csv(rows));
     write_file(setup.out / "sweep.json", json);

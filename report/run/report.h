@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/statistics/raster_counts.h"
+#include "report/schema/checksum.h"
 #include "report/sections/bottleneck.h"
 #include "report/sections/bytes.h"
 #include "report/sections/costs.h"
@@ -73,6 +74,7 @@ struct Report {
   std::optional<Verify> verify;
   Digest digest;
   Host host;
+  std::optional<std::string> checksum;  ///< set where the text is written (report/read/document.h)
 };
 
 template <class V>
@@ -121,6 +123,7 @@ void describe(V& v, const Report& r) {
   v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
   v.section("digest", r.digest, "digests of the result: equal digests mean equal hits and an equal picture");
   v.section("host", r.host, "everything that depends on the host and on time");
+  v.field("checksum", r.checksum, "", kChecksumMeaning);
 }
 
 }  // namespace carousel::report

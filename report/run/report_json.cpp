@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/accuracy/accuracy_schema.h"
+#include "report/schema/parts.h"
+#include "report/sweep/sweep_schema.h"
+
 namespace carousel::report {
 
 using Json = nlohmann::ordered_json;
@@ -73,7 +77,7 @@ Json schema_of(double) {
   return {{"type", "number"}};
 }
 Json schema_of(std::uint64_t) {
-  return {{"type", "integer"}, {"minimum", 0}};
+  return {{"type", "integer"}, {"minimum", 0}, {"maximum", schema::kMostCount}};
 }
 Json schema_of(std::int64_t) {
   return {{"type", "integer"}};
@@ -182,7 +186,12 @@ Json report_schema() {
                "Two runs are identical when all outside of host is equal. Where engine.deterministic is false, "
                "throughput, tests, nodes, packets, collections, resources and links count what the threads happened to "
                "do and may differ between runs; rays, shading, verify and digest may not."}};
-  schema.update(SchemaWriter::schema_for(Report{}));
+  Json run = SchemaWriter::schema_for(Report{});
+  schema.update(run);
+  schema["$defs"]["sweep"] = sweep_schema();
+  run.erase("description");
+  schema["$defs"]["point"] = point_schema(std::move(run));
+  schema["$defs"]["accuracy"] = accuracy_schema();
   schema["$defs"]["stress"] = SchemaWriter::schema_for(Stress{});
   schema["$defs"]["stress"]["description"] = "stress.json of carousel stress";
   schema["$defs"]["ray_life"] = SchemaWriter::schema_for(RayLife{});

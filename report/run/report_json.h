@@ -18,7 +18,8 @@ std::string json_text(const nlohmann::ordered_json& json);
 /// stress.json of `carousel stress`.
 nlohmann::ordered_json stress_json(const Stress& stress);
 
-/// JSON Schema (draft 2020-12) of the report, and of stress.json under $defs.stress: types, units, meanings.
+/// JSON Schema (draft 2020-12) of the report: types, units, meanings. Those of the other documents that are read back
+/// (report/read/document.h) stand under $defs: sweep, point, accuracy, stress, ray_life.
 nlohmann::ordered_json report_schema();
 
 /// What `carousel follow --json` prints, under $defs.ray_life of the schema.

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "report/schema/checksum.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -106,6 +107,7 @@ struct RayLife {
   std::vector<RaySpan> spans{};
   std::vector<RayTest> tests{};
   std::vector<RayName> caused{};
+  std::optional<std::string> checksum{};  ///< set where the text is written (report/read/document.h)
 };
 
 template <class V>
@@ -129,6 +131,7 @@ void describe(V& v, const RayLife& r) {
   v.section("spans", r.spans, "its time, stretch by stretch, without a gap");
   v.section("tests", r.tests, "its tests, in their order");
   v.section("caused", r.caused, "rays that came of it");
+  v.field("checksum", r.checksum, "", kChecksumMeaning);
 }
 
 }  // namespace carousel::report

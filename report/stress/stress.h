@@ -1,5 +1,6 @@
 #pragma once
 
+#include "report/schema/checksum.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -128,6 +129,7 @@ struct Stress {
   std::vector<StressRingRow> ring;
   std::optional<StressPairs> ring_pairs;
   std::string ring_verdict;
+  std::optional<std::string> checksum{};  ///< set where the text is written (report/read/document.h)
 
   bool broken() const {
     for (const StressRow& row : rows)
@@ -150,6 +152,7 @@ void describe(V& v, const Stress& r) {
   v.section("ring_pairs", r.ring_pairs,
             "the best choice of queue and depth against the worst of its depth, in pairs of runs");
   v.field("ring_verdict", r.ring_verdict, "", "the difference that the pairs show, in words; empty without pairs");
+  v.field("checksum", r.checksum, "", kChecksumMeaning);
 }
 
 }  // namespace carousel::report

@@ -1,11 +1,10 @@
 #include "app/sweep/process/point_file.h"
 
-#include <fstream>
-#include <iterator>
-
 #include <spdlog/spdlog.h>
 
 #include "core/system/atomic_file.h"
+#include "core/system/error.h"
+#include "report/read/document.h"
 
 namespace carousel::app {
 
@@ -36,27 +35,32 @@ void write_point(const std::filesystem::path& out, const SweepPoint& point, doub
   if (!report.is_null()) json["report"] = report;
   // A text of a scene or a signal's name may be no UTF-8: it must not lose the point.
   AtomicFile file(point_path(out, point.digest));  // what killed writers left in the folder is removed for all at once
-  file.write(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+  file.write(report::sealed(json).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   file.commit();
 }
 
 std::optional<PointFile> read_point(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (std::error_code ignored; !std::filesystem::exists(file, ignored)) return std::nullopt;
   try {
-    Json json = Json::parse(text);
+    report::Document document = report::read_document(file);
+    const auto fail = [&](const char* expected) { throw FileError(file.string() + ": expected " + expected); };
+    Json& json = document.json;
+    if (document.kind != report::DocumentKind::kPoint) fail("the point of a sweep");
     PointFile out;
-    out.digest = json.at("point");
-    out.keys = json.at("keys");
-    out.seconds = json.at("host").at("seconds");
-    if (json.at("status") != "done") out.error = PointError{json.at("error").at("kind"), json.at("error").at("text")};
+    out.digest = json["point"];
+    out.keys = json["keys"];
+    out.seconds = json["host"]["seconds"];
+    if (json["status"] != "done") {
+      if (!json.contains("error")) fail("the error of a point that failed");
+      out.error = PointError{json["error"]["kind"], json["error"]["text"]};
+    }
     if (json.contains("report")) out.report = std::move(json["report"]);
-    if (out.done() && !out.report.is_object()) throw std::runtime_error("no report");
-    if (file.stem() == out.digest) return out;
-  } catch (const std::exception&) {
+    if (out.done() && !out.report.is_object()) fail("the report of a point that is done");
+    if (file.stem() != out.digest) fail("the point that the file is named after");
+    return out;
+  } catch (const FileError& error) {
+    spdlog::warn("{}; its point runs again", error.what());
   }
-  spdlog::warn("{} is damaged; its point runs again", file.string());
   return std::nullopt;
 }
 

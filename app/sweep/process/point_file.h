@@ -33,7 +33,7 @@ std::filesystem::path point_path(const std::filesystem::path& out, const std::st
 void write_point(const std::filesystem::path& out, const SweepPoint& point, double seconds,
                  const std::optional<PointError>& error, const nlohmann::ordered_json& report);
 
-/// Absent if there is no such file, or one that holds something else, which is then run again.
+/// Absent if there is no such file, or one that is not believed (report/read/document.h), whose point then runs again.
 std::optional<PointFile> read_point(const std::filesystem::path& file);
 
 /// A value of a key as JSON: a number or a switch where the text is one.

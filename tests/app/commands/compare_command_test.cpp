@@ -52,6 +52,11 @@ TEST(CompareCommand, SaysWhenAReportIsAnotherProgramsWork) {
   nlohmann::ordered_json report = nlohmann::ordered_json::parse(program.read("one/report.json"));
   report["engine"]["epochs"]["digests"][0] = "0123456789abcdef";
   program.write("changed.json", report.dump());
+  Outcome refused = program.run({"compare", a, "changed.json"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("changed.json: checksum: expected "));
+  report.erase("checksum");
+  program.write("changed.json", report.dump());
   const Outcome outcome = program.run({"compare", a, "changed.json"});
   EXPECT_THAT(outcome.out, HasSubstr("engine.epochs.digests.0"));
   EXPECT_THAT(outcome.out, HasSubstr("one of the reports was written by another program"));

@@ -62,12 +62,29 @@ TEST_F(RunPage, TextOfAReportIsNoMarkup) {
   auto report = nlohmann::ordered_json::parse(program_.read("out/report.json"));
   report["scene"]["name"] = "<script>alert(1)</script>";
   report["time_series"]["rows"][0]["quantity"] = "</script><b>";
+  report["time_series"]["rows"][0]["unit"] = "\"><img src=x onerror=alert(1)>";
+  report.erase("checksum");
   program_.write("out/report.json", report.dump());
   ASSERT_EQ(program_.run({"report", "out"}).status, 0);
   const std::string page = program_.read("out/report.html");
   EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(1)"));
   EXPECT_THAT(page, Not(HasSubstr("<script>alert(1)")));
   EXPECT_THAT(page, Not(HasSubstr("</script><b>")));
+  EXPECT_THAT(page, Not(HasSubstr("<img src=x")));
+}
+
+TEST_F(RunPage, OfAReportWithoutItsShapeIsRefused) {
+  ASSERT_EQ(run({}).status, 0);
+  auto report = nlohmann::ordered_json::parse(program_.read("out/report.json"));
+  report["links"] = nlohmann::ordered_json::parse("[{}]");
+  report.erase("checksum");
+  program_.write("out/broken.json", report.dump());
+  for (const auto& words :
+       {std::vector<std::string>{"report", "out/broken.json"}, {"compare", "out", "out/broken.json"}}) {
+    const Outcome outcome = program_.run(words);
+    EXPECT_EQ(outcome.status, 2) << words[0];
+    EXPECT_THAT(outcome.err, HasSubstr("out/broken.json: links[0].from: expected a whole number, found nothing"));
+  }
 }
 
 TEST_F(RunPage, NeedsAReport) {

@@ -27,6 +27,7 @@ inline std::map<std::string, nlohmann::json> points_of(const std::filesystem::pa
     std::ifstream in(entry.path());
     nlohmann::json json = nlohmann::json::parse(in);
     json.erase("host");
+    json.erase("checksum");
     if (json.contains("report")) json["report"].erase("host");
     out[entry.path().filename()] = std::move(json);
   }
