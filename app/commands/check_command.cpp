@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "app/host/exit_status.h"
 #include "app/host/machine_info.h"
@@ -54,7 +55,10 @@ int check_command(const CheckArguments& arguments) {
     text += fmt::format("ignored: {}\n", ignored_text(ignored));
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
   print_result(resolved_yaml(p.config()) + "\n" + commented(text));
-  return verdict.can_deadlock ? kUsage : kDone;
+  if (!verdict.can_deadlock) return kDone;
+  spdlog::error("{}: topology.flow: the links of this machine can fill up and stop, and run refuses it without --force",
+                arguments.config);
+  return kUsage;
 }
 
 }  // namespace carousel::app

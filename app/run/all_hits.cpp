@@ -24,8 +24,8 @@ void AllHits::add(std::uint32_t path, const Hit& hit) {
   const auto at = std::lower_bound(hits.begin(), hits.end(), hit, nearer);
   if (at != hits.end() && !nearer(hit, *at)) return;
   if (hits.size() == most_)
-    throw SimulationError(
-        fmt::format("a ray of the file has more than {} hits; expected a larger rays.hits_per_ray", most_));
+    throw ConfigError("rays.hits_per_ray",
+                      fmt::format("a ray of the file has more than {} hits; expected a larger number", most_));
   hits.insert(at, hit);
 }
 

@@ -10,6 +10,7 @@
 #include "app/host/output.h"
 #include "app/sweep/sweep_files.h"
 #include "core/system/error.h"
+#include "report/read/strict_json.h"
 
 namespace carousel::app {
 
@@ -47,14 +48,27 @@ void tell(const Json& json) {
   print_result(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-/// The point of a line. Throws ConfigError.
-SweepPoint asked(const std::string& line, PointMaker& maker, SweepRows& rows) {
-  const Json json = Json::parse(line, nullptr, false);
-  const auto fail = [&](const std::string& message) { throw ConfigError({{{"--ask", 0, 0}, "", message}}); };
-  if (!json.is_object()) fail("expected a JSON object of keys and values in a line");
+/// The keys and values of a line. Throws ConfigError.
+Json parsed(const std::string& line) {
+  try {
+    Json json = report::strict_json(line);
+    if (json.is_object()) return json;
+  } catch (const report::JsonFault& fault) {
+    throw ConfigError({{{"--ask", 0, 0}, fault.path(), fault.message()}});
+  }
+  throw ConfigError({{{"--ask", 0, 0}, "", "expected a JSON object of keys and values in a line"}});
+}
+
+/// The point of a line. Throws ConfigError, or FileError for a file that it names.
+SweepPoint asked(const Json& json, PointMaker& maker, SweepRows& rows) {
+  const auto fail = [&](const std::string& message, const std::string& key = "") {
+    throw ConfigError({{{"--ask", 0, 0}, key, message}});
+  };
   Choice choice;
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) {
+    if (key == "scene" && !value.is_string())
+      fail("expected a file or builtin:NAME, found " + report::found_text(value), key);
     choice.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
     keys.push_back(key);
   }
@@ -77,14 +91,13 @@ void ask_and_tell(const SweepSetup& setup, const SweepOptions& options, PointMak
   std::map<std::string, std::size_t> by_digest;
   const auto ask = [&](const std::string& line) {
     SweepPoint point;
+    Json keys = line;
     try {
-      point = asked(line, maker, rows);
-    } catch (const ConfigError&) {
+      keys = parsed(line);
+      point = asked(keys, maker, rows);
+    } catch (const std::exception&) {  // whatever a line asks for, the next one is answered
       const PointError error = current_error();
-      const Json keys = Json::parse(line, nullptr, false);
-      return tell({{"status", "invalid"},
-                   {"keys", keys.is_discarded() ? Json(line) : keys},
-                   {"error", {{"kind", error.kind}, {"text", error.text}}}});
+      return tell({{"status", "invalid"}, {"keys", keys}, {"error", {{"kind", error.kind}, {"text", error.text}}}});
     }
     const auto [at, is_new] = by_digest.emplace(point.digest, rows.rows.size());
     if (is_new) {

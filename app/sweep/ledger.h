@@ -12,7 +12,7 @@ struct sqlite3;
 namespace carousel::app {
 
 /// `sweep.sqlite`: the state of every point of the folder, for whoever asks while a sweep runs. Only the coordinator of
-/// a sweep writes it. The files of the points are the truth: a ledger that is lost is made again from them.
+/// a sweep writes it. The files of the points are the truth: a ledger that is lost or broken is made anew from them.
 class Ledger {
  public:
   /// Opens or makes it. Throws FileError. Warns where the folder lies on a network, on which SQLite's write-ahead log
@@ -31,10 +31,21 @@ class Ledger {
 
  private:
   struct Statement;
-  void execute(const char* sql);
+  struct Row {
+    std::string digest, keys, state;
+    double seconds = 0;
+    const PointError* error = nullptr;
+  };
+  bool open();
+  void close();
+  void make_anew();
+  bool broken() const;
+  bool execute(const char* sql);
+  /// False if the file is broken.
+  bool write(const Row& row);
   [[noreturn]] void fail() const;
 
-  std::filesystem::path file_;
+  std::filesystem::path folder_, file_;
   sqlite3* database_ = nullptr;
   std::unique_ptr<Statement> upsert_;
 };

@@ -50,6 +50,19 @@ std::string join(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// The keys of a section; of a long one those that are nearest to the unknown key.
+std::string known_text(const std::string& unknown, std::vector<std::string> known) {
+  constexpr std::size_t kShown = 12, kLongest = 64;
+  if (known.size() <= kShown) return "known here: " + join(known);
+  const std::size_t all = known.size();
+  const std::string_view name = std::string_view(unknown).substr(0, kLongest);
+  std::stable_sort(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+    return edit_distance(name, a) < edit_distance(name, b);
+  });
+  known.resize(kShown);
+  return fmt::format("of the {} keys known here the nearest are {}", all, join(known));
+}
+
 bool is_scalar(const Node& node) {
   return node.kind != Node::Kind::kSeq && node.kind != Node::Kind::kMap && node.kind != Node::Kind::kNull;
 }
@@ -283,7 +296,7 @@ void Reader::report_unknown(const Scope& frame) {
     } else if (const auto elsewhere = config_path_ending_in(member.key)) {
       message += fmt::format("; did you mean '{}'?", *elsewhere);
     } else {
-      message += "; known here: " + join(frame.known);
+      message += "; " + known_text(member.key, frame.known);
     }
     issues_.push_back({member.key_position, path(), std::move(message)});
     path_.pop_back();

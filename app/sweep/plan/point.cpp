@@ -16,7 +16,7 @@ namespace carousel::app {
 
 namespace {
 
-constexpr std::size_t kShownErrors = 10;
+constexpr std::size_t kShownErrors = 10, kShownKeys = 8;
 
 /// The assignments of one key. A scene replaces the whole section, since file and builtin exclude each other.
 std::string assignment(const KeyValue& key) {
@@ -30,7 +30,9 @@ std::string assignment(const KeyValue& key) {
 
 std::string SweepPoint::text() const {
   std::string out;
-  for (const KeyValue& key : keys) out += (out.empty() ? "" : ", ") + key.first + "=" + key.second;
+  for (std::size_t i = 0; i < std::min(keys.size(), kShownKeys); ++i)
+    out += (out.empty() ? "" : ", ") + keys[i].first + "=" + keys[i].second;
+  if (keys.size() > kShownKeys) out += fmt::format(" and {} more keys", keys.size() - kShownKeys);
   return out.empty() ? "the configuration itself" : out;
 }
 

@@ -18,7 +18,7 @@ struct SweepPoint {
   std::string group;              ///< equal for points that share scene and acceleration structure
   std::size_t threads = 1;        ///< that its simulation uses
 
-  /// "key=value, key=value".
+  /// "key=value, key=value", of the first eight keys.
   std::string text() const;
 };
 

@@ -1,7 +1,10 @@
 #include "app/sweep/process/point_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <new>
+
+#include <fmt/format.h>
 
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
@@ -15,8 +18,11 @@ PointError current_error() {
   try {
     throw;
   } catch (const ConfigError& error) {
+    constexpr std::size_t kShown = 10;
     std::string text;
-    for (const ConfigIssue& issue : error.issues()) text += (text.empty() ? "" : "\n") + issue.text();
+    for (std::size_t i = 0; i < std::min(error.issues().size(), kShown); ++i)
+      text += (text.empty() ? "" : "\n") + error.issues()[i].text();
+    if (error.issues().size() > kShown) text += fmt::format("\n{} more errors", error.issues().size() - kShown);
     return {"config", text};
   } catch (const SceneError& error) {
     return {"scene", error.what()};

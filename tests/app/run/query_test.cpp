@@ -213,8 +213,9 @@ TEST(Query, AllFindsEveryHitInOrder) {
       const std::string limit = fmt::format("rays.hits_per_ray={}", most - 1);
       const Outcome outcome = program.run({"run", "rays.yaml", "--hits", "--out", "out", "--force", "--quiet", "--set",
                                            "engine.kind=" + engine, "--set", limit});
-      EXPECT_EQ(outcome.status, 1);
-      EXPECT_THAT(outcome.err, testing::HasSubstr(fmt::format("more than {} hits", most - 1)));
+      EXPECT_EQ(outcome.status, 2);
+      EXPECT_THAT(outcome.err, testing::HasSubstr(fmt::format(
+                                   "rays.hits_per_ray: a ray of the file has more than {} hits", most - 1)));
     }
   }
 }
