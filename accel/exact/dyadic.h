@@ -27,6 +27,8 @@ class Dyadic {
     exponent_ += zeros - 53;
   }
 
+  Dyadic(Int integer, int exponent) : integer_(std::move(integer)), exponent_(exponent) {}
+
   int sign() const { return integer_.sign(); }
   const Int& integer() const { return integer_; }
   int exponent() const { return exponent_; }
@@ -44,8 +46,6 @@ class Dyadic {
   friend Dyadic operator-(const Dyadic& a, const Dyadic& b) { return a + -b; }
 
  private:
-  Dyadic(Int integer, int exponent) : integer_(std::move(integer)), exponent_(exponent) {}
-
   Int integer_ = 0;
   int exponent_ = 0;
 };

@@ -12,10 +12,6 @@ DyadicVec cross(const DyadicVec& a, const DyadicVec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Dyadic dot(const DyadicVec& a, const DyadicVec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 }  // namespace
 
 std::optional<ExactCrossing> exact_crossing(const Ray& ray, const std::array<Vec3, 3>& model, const scene::Affine& m) {
@@ -40,6 +36,7 @@ std::optional<ExactCrossing> exact_crossing(const Ray& ray, const std::array<Vec
     if (facing < 0) w = -w;
     if (w.sign() < 0) return std::nullopt;
   }
+  out.front = facing < 0;
   out.numerator = dot(p[0], n12);
   if (facing < 0) {
     out.numerator = -out.numerator;

@@ -4,19 +4,19 @@
 #include <optional>
 
 #include "accel/exact/dyadic.h"
+#include "accel/exact/exact_matrix.h"
 #include "core/types/ray.h"
 #include "core/types/vec.h"
 #include "scene/model/scene.h"
 
 namespace carousel::accel {
 
-using DyadicVec = std::array<Dyadic, 3>;
-
 /// The crossing of a ray's line with a triangle, without rounding: t = numerator / denominator with denominator > 0;
 /// the vertices' weights are weight[k] / denominator.
 struct ExactCrossing {
   Dyadic numerator, denominator;
   std::array<Dyadic, 3> weight;
+  bool front = false;  ///< the ray sees the vertices, as they stand in the world, counter-clockwise
 
   /// Sign of t - x.
   int compare(double x) const { return (numerator - Dyadic(x) * denominator).sign(); }

@@ -23,8 +23,35 @@ HitList trace(const accel::Accel& accel, const RayBatch& rays) {
 
 std::vector<accel::ExactHit> exact_answers(const accel::ExactReference& reference, const RayBatch& rays) {
   std::vector<accel::ExactHit> out(rays.size());
-  tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) { out[i] = reference.closest(rays[i].ray); });
+  tbb::parallel_for(std::size_t{0}, rays.size(),
+                    [&](std::size_t i) { out[i] = reference.closest(rays[i].ray, rays[i].tag.flags); });
   return out;
+}
+
+namespace {
+
+bool same_primitive(const Hit& a, const Hit& b) {
+  return a.instance == b.instance && (!a.valid() || a.primitive == b.primitive);
+}
+
+}  // namespace
+
+std::uint64_t settle_opacity(const accel::Accel& accel, const RayBatch& rays, const std::vector<accel::ExactHit>& exact,
+                             HitList& hits) {
+  RayBatch others;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (same_primitive(hits[i], exact[i].hit)) continue;
+    others.push_back(rays[i]);
+    places.push_back(i);
+  }
+  const HitList again = trace(accel, others);
+  std::uint64_t settled = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    settled += !same_primitive(again[k], hits[places[k]]);
+    hits[places[k]] = again[k];
+  }
+  return settled;
 }
 
 report::HitErrors compare(const RayBatch& rays, const HitList& hits, const std::vector<accel::ExactHit>& exact) {
@@ -37,7 +64,7 @@ report::HitErrors compare(const RayBatch& rays, const HitList& hits, const std::
     errors.missed += truth.hit.valid() && !hit.valid();
     errors.extra += hit.valid() && !truth.hit.valid();
     if (!hit.valid() || !truth.hit.valid() || rays[i].tag.kind == RayKind::kShadow) continue;
-    if (hit.instance != truth.hit.instance || hit.primitive != truth.hit.primitive) {
+    if (!same_primitive(hit, truth.hit)) {
       errors.other += !truth.tie;
       continue;
     }

@@ -60,16 +60,16 @@ bool planes_fit(const Config& config, const AccuracyConfig& levels) {
   return validate_config(level, {}, {.force = true}).empty();
 }
 
-const accel::Accel& LevelledAccel::at(const AccuracyConfig& levels) {
+const accel::Accel& LevelledAccel::at(const AccuracyConfig& levels, const AnyHit* any_hit) {
   const bool planes = planes_fit(config_, levels);
   const auto [place, missing] = built_.try_emplace({levels.transform, planes});
   if (missing) {
     const auto executor = make_sequential_executor();
     place->second = accel::build(scene_, bvh_, *executor, levels);
-    if (place->second.has_non_opaque) place->second.any_hit = any_hit_;
     if (planes) accel::add_cull_planes(place->second, scene_, config_.cull_planes, *executor);
   }
   place->second.accuracy = levels;
+  if (place->second.has_non_opaque) place->second.any_hit = any_hit != nullptr ? any_hit : any_hit_;
   return place->second;
 }
 

@@ -22,16 +22,16 @@ bool planes_fit(const Config& config, const AccuracyConfig& levels);
 class LevelledAccel {
  public:
   /// `any_hit` answers any-hit calls; null where every material is opaque.
-  LevelledAccel(const scene::Scene& scene, const Config& config, const BvhConfig& bvh,
-                const decltype(accel::Accel::any_hit)& any_hit)
+  LevelledAccel(const scene::Scene& scene, const Config& config, const BvhConfig& bvh, const AnyHit* any_hit)
       : scene_(scene), config_(config), bvh_(bvh), any_hit_(any_hit) {}
-  const accel::Accel& at(const AccuracyConfig& levels);
+  /// Valid until the next call. `any_hit`, if not null, answers in place of the scene's own.
+  const accel::Accel& at(const AccuracyConfig& levels, const AnyHit* any_hit = nullptr);
 
  private:
   const scene::Scene& scene_;
   const Config& config_;
   BvhConfig bvh_;
-  decltype(accel::Accel::any_hit) any_hit_;
+  const AnyHit* any_hit_;
   std::map<std::pair<TransformLevel, bool>, accel::Accel> built_;  // true: with planes
 };
 

@@ -69,13 +69,17 @@ double noise(const Picture& picture, const Picture& truth) {
   return squares.empty() ? 0 : std::sqrt(sum / static_cast<double>(squares.size()));
 }
 
-SelfHits count_self_hits(std::vector<report::HitRow> rows) {
+SelfHits count_self_hits(const scene::Scene& scene, std::vector<report::HitRow> rows) {
   std::erase_if(rows, [](const report::HitRow& row) { return row.result.tag.kind == RayKind::kShadow; });
   report::sort_rows(rows);  // the rays of a path one after the other
+  const auto is_flat = [&](const Hit& hit) {
+    return hit.primitive < scene.meshes[scene.instances[hit.instance].mesh.value].triangle_count();
+  };
   SelfHits out;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const report::HitRow &from = rows[i - 1], &to = rows[i];
     if (to.result.tag.kind != RayKind::kBounce || from.pixel != to.pixel || from.sample != to.sample) continue;
+    if (from.result.hit.valid() && !is_flat(from.result.hit)) continue;
     ++out.bounces;
     out.self_hits += to.result.hit.valid() && to.result.hit.instance == from.result.hit.instance &&
                      to.result.hit.primitive == from.result.hit.primitive;

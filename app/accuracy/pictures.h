@@ -29,10 +29,11 @@ report::PictureErrors compare(const Picture& picture, const Picture& exact);
 double noise(const Picture& picture, const Picture& truth);
 
 /// Counts in `rows` as render() returns them: rays that left a triangle, and rays that hit the same triangle again,
-/// which is impossible for a flat triangle.
+/// which is impossible for a flat triangle. Rays that leave a sphere are not counted: one that goes through it meets it
+/// again.
 struct SelfHits {
   std::uint64_t bounces = 0, self_hits = 0;
 };
-SelfHits count_self_hits(std::vector<report::HitRow> rows);
+SelfHits count_self_hits(const scene::Scene& scene, std::vector<report::HitRow> rows);
 
 }  // namespace carousel::app

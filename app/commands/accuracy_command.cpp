@@ -66,10 +66,11 @@ class Trial {
         small_(prepared.config()),
         accel_(p_.scene, p_.config(), small_.bvh, p_.accel.any_hit),
         lifted_(ringbus::tester_limited(p_.config())),
-        exact_(p_.scene, p_.accel) {
+        exact_(p_.scene, p_.accel.any_hit) {
     if (!arguments.quiet) progress_.emplace(stderr);
     small_.image.samples = std::min<std::int64_t>(small_.image.samples, 4);
     shrink(small_.image, kCameraRays / small_.image.samples);
+    if (p_.accel.any_hit != nullptr) exact_opacity_.emplace(p_.scene, *p_.accel.any_hit);
     out_.scene = p_.scene.name;
     out_.triangles = p_.scene.instanced_triangle_count();
     out_.instances = p_.scene.instances.size();
@@ -117,9 +118,8 @@ class Trial {
     hard_ = hard_scenes(arguments_.hard_rays, arguments_.seed);
     for (const HardScene& scene : hard_) {
       out_.hard.push_back(scene.about);
-      LevelledAccel& structures = hard_accels_.emplace_back(scene.scene, p_.config(), BvhConfig{}, nullptr);
-      const accel::ExactReference reference(scene.scene, structures.at({}));
-      hard_exact_.push_back(exact_answers(reference, scene.rays));
+      hard_accels_.emplace_back(scene.scene, p_.config(), BvhConfig{}, nullptr);
+      hard_exact_.push_back(exact_answers(accel::ExactReference(scene.scene), scene.rays));
     }
     done();
   }
@@ -138,7 +138,12 @@ class Trial {
       row.transform = enum_name(levels.transform);
       row.ns_per_ray = times[i];
       const accel::Accel& accel = accel_.at(levels);
-      row.scene = compare(rays_, trace(accel, rays_), exact);
+      HitList hits = trace(accel, rays_);
+      std::uint64_t of_opacity = 0;
+      if (exact_opacity_) of_opacity = settle_opacity(accel_.at(levels, &*exact_opacity_), rays_, exact, hits);
+      row.scene = compare(rays_, hits, exact);
+      row.scene.opacity = of_opacity;
+      accel_.at(levels);
       row.picture = compare(render(p_.scene, small_, accel), exact_picture);
       done();
       row.modelled = modelled_cost(p_.config(), lifted_, accel, p_.scene_size(), modelled);
@@ -161,7 +166,7 @@ class Trial {
       config.accuracy.spawn = spawn;
       std::vector<report::HitRow> rows;
       const Picture picture = render(p_.scene, config, accel_.at(small_.accuracy), &rows);
-      const SelfHits here = count_self_hits(std::move(rows));
+      const SelfHits here = count_self_hits(p_.scene, std::move(rows));
       const SelfHits far = self_hits_far_away(spawn, arguments_.hard_rays, arguments_.seed);
       out_.spawn.push_back({std::string(enum_name(spawn)), here.bounces, here.self_hits, far.bounces, far.self_hits,
                             compare(picture, exact_picture)});
@@ -201,6 +206,7 @@ class Trial {
   LevelledAccel accel_;
   Config lifted_;  ///< the machine in which the testers limit
   accel::ExactReference exact_;
+  std::optional<accel::ExactOpacity> exact_opacity_;  ///< if the scene is not all opaque
   std::vector<AccuracyConfig> levels_;
   RayBatch rays_;
   std::vector<HardScene> hard_;

@@ -19,8 +19,11 @@ struct HitErrors {
   std::uint64_t rays = 0;
   std::uint64_t missed = 0;  ///< a miss where the exact ray hits
   std::uint64_t extra = 0;   ///< a hit where the exact ray misses
-  std::uint64_t other = 0;   ///< another triangle, and no exact tie: at an edge, a neighbour as a rule
-  double ulp_median = 0, ulp_p99 = 0, ulp_max = 0;  ///< of t, where both hit the same triangle
+  std::uint64_t other = 0;   ///< another primitive, and no exact tie: at an edge, a neighbour as a rule
+  /// Rays that stop at, or pass, a non-opaque surface only because u and v are rounded where its opacity is looked up:
+  /// those above are counted as if it had been looked up at the exact point.
+  std::uint64_t opacity = 0;
+  double ulp_median = 0, ulp_p99 = 0, ulp_max = 0;  ///< of t, where both hit the same primitive
 
   std::uint64_t wrong() const { return missed + extra; }
 };

@@ -77,7 +77,7 @@ void level_lines(const Accuracy& a, std::string& out) {
       "energy\n"
       "of the tests' products and sums (45 nm). missed, extra, other: rays of the scene that miss where exact "
       "arithmetic\n"
-      "hits, hit where it misses, hit another triangle; t error: median/p99/max; leaks: rays that get out of closed\n"
+      "hits, hit where it misses, hit another primitive; t error: median/p99/max; leaks: rays that get out of closed\n"
       "surfaces; hard: missed and extra hits of the hard cases; pixels that differ from the exact picture. safe: "
       "nothing\n"
       "missed or extra, in the scene and in the hard cases.\n";
@@ -120,6 +120,7 @@ nlohmann::ordered_json errors_json(const HitErrors& e) {
           {"missed", e.missed},
           {"extra", e.extra},
           {"other", e.other},
+          {"opacity", e.opacity},
           {"t_error_ulp_median", e.ulp_median},
           {"t_error_ulp_p99", e.ulp_p99},
           {"t_error_ulp_max", e.ulp_max}};

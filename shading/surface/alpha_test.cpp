@@ -2,9 +2,12 @@
 
 #include <bit>
 
+#include <glm/geometric.hpp>
+
 #include "core/numeric/rng.h"
 #include "scene/model/opacity.h"
 #include "shading/surface/surface.h"
+#include "shading/surface/triangle_geometry.h"
 
 namespace carousel::shading {
 
@@ -26,10 +29,12 @@ bool AlphaTest::accepts(const Ray& ray, std::uint32_t instance, std::uint32_t pr
       break;
   }
   const float blended = alpha(scene_, point);
-  // A ray meets a sphere twice under the same primitive number; the position tells the two hits apart.
-  const bool sphere = point.mesh->positions.empty();
-  const std::uint32_t meeting =
-      sphere ? std::bit_cast<std::uint32_t>(u) ^ 0x9e3779b9u * std::bit_cast<std::uint32_t>(v) : 0;
+  // A ray meets a sphere twice under the same primitive number. The side tells the two hits apart: unlike the position,
+  // it is the same at every level of accuracy.
+  const bool sphere = primitive >= point.mesh->triangle_count();
+  const bool back =
+      sphere && glm::dot(triangle_geometry(scene_, instance, primitive, u, v).normal, DVec3(ray.direction)) > 0;
+  const std::uint32_t meeting = back ? 0x9e3779b9u : 0;
   return blended >= 1.0f - scene::kAlphaTolerance || blend_chance(ray, instance, primitive ^ meeting) < blended;
 }
 

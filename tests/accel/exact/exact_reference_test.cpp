@@ -160,8 +160,7 @@ TEST(ExactReference, AgreesWithFractions) {
     for (scene::Mesh& mesh : scene.meshes) mesh.indices.resize(std::min<std::size_t>(mesh.indices.size(), 3 * 40));
     if (builtin.value == BuiltinScene::kInstances)  // one that is baked
       scene.instances[1].world_from_model.linear[2] = scene.instances[1].world_from_model.linear[0];
-    const Accel accel = build_sequential(scene);
-    const ExactReference reference(scene, accel);
+    const ExactReference reference(scene);
     const SlowReference slow_reference(scene);
     for (const RayRequest& r : mixed_rays(scene, 60, run_seed() + 710)) {
       const SlowReference::Answer slow = slow_reference.closest(r.ray);
@@ -228,7 +227,7 @@ TEST(ExactReference, OracleExplainsWhereTheTracerDiffers) {
   scenes.back().second.instances[0].world_from_model = patent_placements()[1];
   for (const auto& [name, scene] : scenes) {
     const Accel accel = build_sequential(scene);
-    const ExactReference reference(scene, accel);
+    const ExactReference reference(scene);
     const ExactOracle oracle(scene);
     RayBatch rays;  // the oracle knows whole rays from outside the surface
     for (const RayRequest& r : whole_rays(scene, static_cast<std::size_t>(scaled(4000)), run_seed() + 730))
@@ -261,8 +260,7 @@ TEST(ExactReference, OracleExplainsWhereTheTracerDiffers) {
 TEST(ExactReference, StatesItsCost) {
   for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kInstances}) {
     const scene::Scene scene = small_builtin(builtin, 20000, 100);
-    const Accel accel = build_sequential(scene);
-    const ExactReference reference(scene, accel);
+    const ExactReference reference(scene);
     const RayBatch rays = whole_rays(scene, 3000, run_seed() + 740);
     std::size_t hits = 0;
     const auto start = std::chrono::steady_clock::now();

@@ -34,7 +34,7 @@ double worst_on_floor(double degrees, TriangleLevel level) {
   AccuracyConfig accuracy;
   accuracy.triangle = level;
   const Accel accel = build_sequential(scene, 8, 4, accuracy);
-  const ExactReference reference(scene, accel);
+  const ExactReference reference(scene);
   Random random(run_seed() + 900);
   double worst = 0;
   for (int i = 0; i < scaled(5000, 1000); ++i) {

@@ -56,7 +56,7 @@ struct Compared {
 
 Compared compare(const scene::Scene& scene, TransformLevel level, const RayBatch& rays) {
   const Accel accel = build_at(scene, level);
-  const ExactReference reference(scene, accel);
+  const ExactReference reference(scene);
   Compared out;
   for (const RayResult& r : trace(accel, rays)) {
     const ExactHit exact = reference.closest(r.ray);
@@ -110,7 +110,7 @@ TEST(HardInstance, SingularInstancesAreBakedAndHit) {
   for (const auto& level : kEnumNames<TransformLevel>) {
     const Accel accel = build_at(scene, level.value);
     EXPECT_EQ(accel.baked_instances, 1u);
-    const ExactReference reference(scene, accel);
+    const ExactReference reference(scene);
     std::size_t hits = 0;
     Random random(run_seed() + 550);
     for (int i = 0; i < 2000; ++i) {
@@ -135,7 +135,7 @@ TEST(HardInstance, CoincidentInstancesGiveTheFirst) {
   for (int i = 0; i < 3; ++i) add_instance(scene, 0, patent_placements()[0]);
   for (const auto& level : kEnumNames<TransformLevel>) {
     const Accel accel = build_at(scene, level.value);
-    const ExactReference reference(scene, accel);
+    const ExactReference reference(scene);
     std::size_t hits = 0;
     for (const RayResult& r : trace(accel, whole_rays(scene, 600, run_seed() + 560))) {
       const ExactHit exact = reference.closest(r.ray);

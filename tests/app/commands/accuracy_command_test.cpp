@@ -4,6 +4,7 @@
 
 #include "app/accuracy/unit_cost.h"
 #include "tests/app/support/program.h"
+#include "tests/scene/gltf/gltf_builder.h"
 
 namespace carousel::accuracy_command_test {
 namespace {
@@ -165,6 +166,79 @@ TEST(AccuracyCommand, HonoursTheConfiguredPlanesAndBundles) {
   EXPECT_EQ(fast.at("cull_planes"), false);
   EXPECT_EQ(fast.at("plane_tests_per_ray"), 0);
   EXPECT_THAT(outcome.out, HasSubstr("without cull planes"));
+}
+
+/// Before a floor: a mask whose alpha runs from corner to corner, a lens that half of the light passes, and a ball of
+/// which as much passes, stretched and moved.
+std::string surfaces_that_let_light_through() {
+  scene::GltfBuilder b;
+  b.json["materials"] = Json::parse(R"([
+    {"doubleSided": true},
+    {"doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.5},
+    {"doubleSided": true, "alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}}])");
+  const int positions = b.square_positions();
+  const int colors = b.floats({1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 0}, "VEC4", 4);
+  const int indices = b.accessor(b.view(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}), 5123, 6, "SCALAR");
+  const auto square = [&](int material, Json translation, bool colored) {
+    Json attributes = {{"POSITION", positions}};
+    if (colored) attributes["COLOR_0"] = colors;
+    b.mesh(attributes, indices, {{"material", material}});
+    b.json["nodes"].back().update(
+        {{"translation", std::move(translation)}, {"rotation", {0.1826, 0.3651, 0.5477, 0.7303}}});
+  };
+  square(0, {0.1, -0.2, -3}, false);
+  square(1, {0, 0, -0.3}, true);
+  square(2, {0.2, 0.1, 0.4}, false);
+  for (const double x : {-0.6, 0.7})
+    b.node({{"translation", {x, 0.3, 0.1}},
+            {"scale", {0.5, 0.31, 0.27}},
+            {"extras", {{"carousel_sphere", {{"radius", 1.3}, {"material", 2}}}}}});
+  return b.text();
+}
+
+/// Nothing is lost or met too much where no triangle is aimed at on purpose, at any level: so all but `fast` are safe.
+void expect_levels_judged_as_on_opaque_scenes(const Json& report, bool flat_scene_is_exact) {
+  for (const Json& row : report.at("levels")) {
+    const std::string name = row.at("triangle").get<std::string>() + " " + row.at("box").get<std::string>();
+    const Json& scene = row.at("scene");
+    EXPECT_EQ(scene.at("missed").get<int>() + scene.at("extra").get<int>(), 0) << name;
+    if (row.at("triangle") != "exact" || row.at("transform") == "inverse_matrix") continue;
+    EXPECT_EQ(scene.at("other"), 0) << name;
+    EXPECT_EQ(row.at("safe"), true) << name;
+    EXPECT_TRUE(!flat_scene_is_exact || row.at("picture").at("differ") == 0) << name;
+  }
+  for (const char* clock : {"host", "hardware"}) EXPECT_TRUE(report.at("recommended").at(clock).is_object()) << clock;
+}
+
+Json accuracy_of(const Program& program, const std::string& scene) {
+  program.write("a.yaml", scene +
+                              "image: {width: 24, height: 24, samples: 2, max_depth: 4}\n"
+                              "topology: {resources: 2}\nrays: {slots_per_resource: 64}\n");
+  const Outcome outcome =
+      program.run({"accuracy", "a.yaml", "--rays", "2000", "--hard-rays", "200", "--repetitions", "1"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return Json::parse(program.read("out/a/accuracy.json"));
+}
+
+TEST(AccuracyCommand, JudgesMasksAndBlendedSurfacesAtTheirExactPoints) {
+  const Program program;
+  program.write("veils.gltf", surfaces_that_let_light_through());
+  expect_levels_judged_as_on_opaque_scenes(accuracy_of(program, "scene: {file: veils.gltf}\n"), false);
+}
+
+TEST(AccuracyCommand, KnowsSpheres) {
+  const Program program;
+  const Json report = accuracy_of(program, "scene: {builtin: spheres, procedural: true, triangles: 2000}\n");
+  expect_levels_judged_as_on_opaque_scenes(report, true);
+}
+
+// The exact answers heed what rays wish: with culled backs they are those of the same picture, and nothing is extra.
+TEST(AccuracyCommand, HeedsTheFlagsOfRays) {
+  const Program program;
+  const Json report = accuracy_of(program,
+                                  "scene: {builtin: spheres, triangles: 2000}\n"
+                                  "shading: {camera_rays: {cull: front}, bounce_rays: {cull: back}}\n");
+  expect_levels_judged_as_on_opaque_scenes(report, true);
 }
 
 TEST(AccuracyCommandErrors, TrafficHasNoPictures) {

@@ -51,7 +51,7 @@ bool same(const Hit& a, const Hit& b) {
 /// rays' single precision was wrong.
 void expect_same_first_hits(const scene::Scene& scene, const Config& config, const std::string& name) {
   const accel::Accel accel = accel::build(scene, BvhConfig{}, *make_sequential_executor());
-  const accel::ExactReference exact(scene, accel);
+  const accel::ExactReference exact(scene);
   const auto threads = make_jthread_executor(2);
   const shading::FirstHits raster = shading::rasterize_first_hits(scene, config, nullptr, *threads);
   const std::vector<Ray> rays = camera_rays(scene, config);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/numeric/octahedral.h"
 #include "scene/model/opacity.h"
 #include "tests/shading/path/small_scenes.h"
 #include "tests/support/random_runs.h"
@@ -106,6 +107,34 @@ TEST(AlphaTest, NothingAndEverythingAreExact) {
   for (float x = 0.501f; x < 1; x += 0.001f) EXPECT_FALSE(accepts(scene, x, 0.3f));
   scene = cut_square(scene::AlphaMode::kBlend, 1.0f);
   for (float x = 0.501f; x < 1; x += 0.001f) EXPECT_TRUE(accepts(scene, x, 0.3f));
+}
+
+// A ray meets a blended sphere twice. Levels of accuracy give the points other last bits, which must not draw other
+// numbers; the way in and the way out have a number each.
+TEST(AlphaTest, ASphereIsMetByItsSideNotByTheBitsOfThePoint) {
+  scene::Scene scene;
+  scene.materials.emplace_back().alpha_mode = scene::AlphaMode::kBlend;
+  scene.materials.back().base_color.a = 0.5f;
+  scene.meshes.emplace_back().spheres.push_back({Vec3{0}, 1, MaterialId(0)});
+  scene.instances.push_back({MeshId(0), {Mat3(Vec3{-1, 0.2f, 0}, Vec3{0, 0.7f, 0.1f}, Vec3{0.3f, 0, 1.3f}), Vec3{4}}});
+  const AlphaTest alpha(scene);
+  std::mt19937 random(run_seed() * 100 + 13);
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  int in = 0, both = 0;
+  constexpr int kRays = 4000;
+  for (int i = 0; i < kRays; ++i) {
+    Ray ray;
+    ray.direction = {0.1f * uniform(random), 0.1f * uniform(random), 1};
+    const Vec2 front = octahedral(DVec3(0.1 * uniform(random), 0, -1)), back = octahedral(DVec3(0, 0, 1));
+    const auto accepts_at = [&](const Vec2& at) { return alpha.accepts(ray, 0, 0, at.x, at.y); };
+    const bool first = accepts_at(front), second = accepts_at(back);
+    ASSERT_EQ(accepts_at({std::nextafter(front.x, 2.0f), std::nextafter(front.y, -1.0f)}), first);
+    ASSERT_EQ(accepts_at({std::nextafter(back.x, 2.0f), back.y}), second);
+    in += first;
+    both += first && second;
+  }
+  EXPECT_NEAR(in / double(kRays), 0.5, 0.05);
+  EXPECT_NEAR(both / double(kRays), 0.25, 0.05);
 }
 
 TEST(Opacity, AsksOnlyWhereARayMayPass) {
