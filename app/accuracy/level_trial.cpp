@@ -86,32 +86,44 @@ std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<
     }
   }
   std::vector<report::Spread> out;
-  for (std::vector<double>& t : times) {
-    std::sort(t.begin(), t.end());
-    out.push_back(t.empty() ? report::Spread{} : report::Spread{t[t.size() / 2], t.front(), t.back()});
-  }
+  for (std::vector<double>& t : times) out.push_back(report::Spread::of(std::move(t)));
   return out;
 }
 
 std::optional<report::ModelledCost> modelled_cost(const Config& machine, const Config& lifted,
-                                                  const accel::Accel& accel, float scene_size, const RayBatch& rays) {
-  const std::optional<ringbus::RunResult> configured = simulate(machine, accel, scene_size, rays);
-  if (!configured) return std::nullopt;
+                                                  const accel::Accel& accel, float scene_size,
+                                                  const std::vector<RayBatch>& pictures) {
   report::ModelledCost cost;
-  const UnitUse use = unit_use(*configured->cycle);
-  cost.cycles_per_ray = report::ratio(configured->cycle->cycles, rays.size());
-  cost.tester_cycles_per_ray = report::ratio(use.busy, rays.size());
+  report::TesterLimited limited;
+  std::uint64_t rays = 0, busy = 0, cycles = 0, limited_cycles = 0;
+  double busy_fraction = 0;
   IntersectionCounts tests;
-  for (const ringbus::ResourceStatistics& resource : configured->resources) tests += resource.tests;
-  const double count = static_cast<double>(rays.size());
-  cost.energy_pj_per_ray = report::ratio(test_energy_pj(tests, accel.accuracy), count);
-  cost.exact_volumes_per_ray = report::ratio(tests.exact_volumes, rays.size());
-  cost.bundle_tests_per_ray = report::ratio(tests.bundle, rays.size());
-  cost.plane_tests_per_ray = report::ratio(tests.plane, rays.size());
-  if (const std::optional<ringbus::RunResult> limited = simulate(lifted, accel, scene_size, rays)) {
-    const UnitUse limit = unit_use(*limited->cycle);
-    cost.tester_limited = {report::ratio(limited->cycle->cycles, rays.size()), unit_row(limit.busiest).name,
-                           limit.busiest_fraction};
+  for (const RayBatch& picture : pictures) {
+    const std::optional<ringbus::RunResult> configured = simulate(machine, accel, scene_size, picture);
+    if (!configured) return std::nullopt;
+    rays += picture.size();
+    cycles += configured->cycle->cycles;
+    busy += unit_use(*configured->cycle).busy;
+    cost.by_seed.push_back(report::ratio(configured->cycle->cycles, picture.size()));
+    for (const ringbus::ResourceStatistics& resource : configured->resources) tests += resource.tests;
+    const std::optional<ringbus::RunResult> free = simulate(lifted, accel, scene_size, picture);
+    if (!free) continue;
+    const UnitUse use = unit_use(*free->cycle);
+    limited_cycles += free->cycle->cycles;
+    limited.by_seed.push_back(report::ratio(free->cycle->cycles, picture.size()));
+    limited.busiest = unit_row(use.busiest).name;
+    busy_fraction += use.busiest_fraction;
+  }
+  cost.cycles_per_ray = report::ratio(cycles, rays);
+  cost.tester_cycles_per_ray = report::ratio(busy, rays);
+  cost.energy_pj_per_ray = report::ratio(test_energy_pj(tests, accel.accuracy), static_cast<double>(rays));
+  cost.exact_volumes_per_ray = report::ratio(tests.exact_volumes, rays);
+  cost.bundle_tests_per_ray = report::ratio(tests.bundle, rays);
+  cost.plane_tests_per_ray = report::ratio(tests.plane, rays);
+  if (limited.by_seed.size() == pictures.size()) {
+    limited.cycles_per_ray = report::ratio(limited_cycles, rays);
+    limited.busy_fraction = busy_fraction / static_cast<double>(pictures.size());
+    cost.tester_limited = limited;
   }
   return cost;
 }

@@ -19,6 +19,12 @@ void add_accuracy(CLI::App& program, AccuracyArguments& a) {
   accuracy->add_option("--repetitions", a.repetitions, "Number of times each timing is repeated")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  accuracy
+      ->add_option("--seeds", a.seeds,
+                   "Number of seeds of the picture; each gives its share of the rays by which simulated machines are "
+                   "compared in pairs")
+      ->check(CLI::Range(2, 64))
+      ->capture_default_str();
   accuracy->add_option("--seed", a.seed, "Seed of the hard cases")->capture_default_str();
   accuracy->add_flag("--json", a.json, kJsonHelp);
   accuracy->add_flag("--quiet", a.quiet, kQuietHelp);

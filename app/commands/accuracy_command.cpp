@@ -76,6 +76,7 @@ class Trial {
     out_.instances = p_.scene.instances.size();
     out_.seed = arguments.seed;
     out_.repetitions = arguments.repetitions;
+    out_.seeds = arguments.seeds;
     out_.width = static_cast<std::uint64_t>(small_.image.width);
     out_.height = static_cast<std::uint64_t>(small_.image.height);
     out_.samples = static_cast<std::uint64_t>(small_.image.samples);
@@ -92,12 +93,14 @@ class Trial {
     done();
     render(p_.scene, small_, accel_.at(small_.accuracy), &rows);
     rays_ = choose_rays(rows, arguments_.rays);
+    make_pictures(std::move(rows));
     out_.rays = rays_.size();
     done();
     make_hard();
     try_levels(exact_picture);
     try_spawn(exact_picture);
     try_samples();
+    report::compare_costs(out_.rows);
     report::mark_frontier(out_.rows);
     for (const report::Clock clock : report::kClocks)
       out_.recommended[static_cast<std::size_t>(clock)] = report::recommended(out_.rows, clock);
@@ -112,6 +115,21 @@ class Trial {
   void done() {
     ++step_;
     if (progress_) progress_->update(static_cast<double>(step_) / static_cast<double>(steps_), step_, "stages");
+  }
+
+  /// The rays of some seeds of the picture, for the simulated machines: together no more than of one.
+  void make_pictures(std::vector<report::HitRow> rows) {
+    const auto seeds = static_cast<std::size_t>(arguments_.seeds);
+    const std::size_t wanted = std::max<std::size_t>(1, std::min(arguments_.rays, kModelledRays) / seeds);
+    for (std::size_t seed = 0; seed < seeds && !stopped(); ++seed) {
+      if (seed > 0) {
+        Config config = small_;
+        config.image.seed += static_cast<std::int64_t>(seed);
+        rows.clear();
+        render(p_.scene, config, accel_.at(small_.accuracy), &rows);
+      }
+      pictures_.push_back(choose_rays(rows, wanted));
+    }
   }
 
   void make_hard() {
@@ -129,8 +147,6 @@ class Trial {
     const std::vector<report::Spread> times =
         time_levels(accel_, levels_, rays_, arguments_.repetitions, [&] { return stopped(); });
     done();
-    RayBatch modelled = rays_;
-    if (modelled.size() > kModelledRays) modelled.resize(kModelledRays);
     for (std::size_t i = 0; i < levels_.size() && !stopped(); ++i) {
       const AccuracyConfig& levels = levels_[i];
       report::AccuracyRow& row = out_.rows.emplace_back();
@@ -146,7 +162,7 @@ class Trial {
       accel_.at(levels);
       row.picture = compare(render(p_.scene, small_, accel), exact_picture);
       done();
-      row.modelled = modelled_cost(p_.config(), lifted_, accel, p_.scene_size(), modelled);
+      row.modelled = modelled_cost(p_.config(), lifted_, accel, p_.scene_size(), pictures_);
       row.cull_planes = planes_fit(p_.config(), levels);
       row.unit_area_mm2 = unit_area_mm2(p_.config().testers, levels);
       row.relative_area = row.unit_area_mm2 / unit_area_mm2(p_.config().testers, {});
@@ -209,6 +225,7 @@ class Trial {
   std::optional<accel::ExactOpacity> exact_opacity_;  ///< if the scene is not all opaque
   std::vector<AccuracyConfig> levels_;
   RayBatch rays_;
+  std::vector<RayBatch> pictures_;  ///< by seed: see make_pictures()
   std::vector<HardScene> hard_;
   std::deque<LevelledAccel> hard_accels_;  // one for each element of hard_, whose scenes they refer to
   std::vector<std::vector<accel::ExactHit>> hard_exact_;

@@ -9,10 +9,24 @@
 
 namespace carousel::report {
 
-/// A measurement over interleaved repetitions.
+/// A measurement over interleaved repetitions, or over seeds of the picture.
 struct Spread {
   double median = 0, least = 0, most = 0;
+  std::vector<double> samples{};  ///< in order: sample i of one level and sample i of another are a pair
+
+  static Spread of(std::vector<double> samples);
 };
+
+/// One cost over another, with an interval of 95 %.
+struct CostRatio {
+  double ratio = 1, low = 1, high = 1;
+
+  /// The costs cannot be told apart.
+  bool ties() const { return low <= 1 && high >= 1; }
+};
+/// By pairs of samples: the mean of the logarithms of their ratios, and the interval of Student's distribution. Where
+/// there are no two pairs, the ratio of the medians, and the interval that the ranges allow.
+CostRatio cost_ratio(const Spread& a, const Spread& b);
 
 /// The answers of one level compared with the exact ones.
 struct HitErrors {
@@ -46,13 +60,15 @@ struct HardCase {
 /// The configured machine with all but its test units lifted.
 struct TesterLimited {
   double cycles_per_ray = 0;
-  std::string busiest;       ///< the kind of units that was busy most
-  double busy_fraction = 0;  ///< of the cycles, in the mean of the resources
+  std::string busiest;            ///< the kind of units that was busy most
+  double busy_fraction = 0;       ///< of the cycles, in the mean of the resources
+  std::vector<double> by_seed{};  ///< cycles a ray of each seed of the picture
 };
 
 /// The cost on simulated machines, by the cycle engine.
 struct ModelledCost {
   double cycles_per_ray = 0;         ///< as configured
+  std::vector<double> by_seed{};     ///< the same of each seed of the picture
   double tester_cycles_per_ray = 0;  ///< of these, cycles in which a resource's test units of a kind were busy
   double energy_pj_per_ray = 0;      ///< of the tests' products and sums
   double exact_volumes_per_ray = 0, bundle_tests_per_ray = 0, plane_tests_per_ray = 0;
@@ -73,12 +89,13 @@ struct AccuracyRow {
   HitErrors scene;
   std::vector<HitErrors> hard;  ///< by Accuracy::hard
   PictureErrors picture;
-  std::uint64_t leaks = 0;                      ///< misses in all closed cases
-  double unit_area_mm2 = 0, relative_area = 0;  ///< of a resource's units; over those of the default levels
-  bool cull_planes = false;                     ///< the configured cull planes were tested
-  PerClock<bool> frontier{};                    ///< no other row is both cheaper and less often wrong
-  bool safe = false;                            ///< nothing missed or added, in the scene and in all hard cases
-  bool safe_but_slivers = false;                ///< the same but in the hard cases of slivers
+  std::uint64_t leaks = 0;                             ///< misses in all closed cases
+  double unit_area_mm2 = 0, relative_area = 0;         ///< of a resource's units; over those of the default levels
+  bool cull_planes = false;                            ///< the configured cull planes were tested
+  PerClock<bool> frontier{};                           ///< no other row is both cheaper and less often wrong
+  PerClock<std::optional<CostRatio>> over_cheapest{};  ///< the cost over that of the cheapest row
+  bool safe = false;                                   ///< nothing missed or added, in the scene and in all hard cases
+  bool safe_but_slivers = false;                       ///< the same but in the hard cases of slivers
 
   bool on_frontier(Clock clock) const { return frontier[static_cast<std::size_t>(clock)]; }
   /// The cost by a clock, with its range; empty if it was not measured.
@@ -110,6 +127,7 @@ struct Accuracy {
   std::uint64_t triangles = 0, instances = 0, rays = 0, seed = 0;
   std::uint64_t width = 0, height = 0, samples = 0;  ///< size of the pictures
   int repetitions = 0;
+  int seeds = 0;  ///< of the picture, over which the machines' cycles are measured
   std::vector<HardCase> hard;
   std::vector<AccuracyRow> rows;
   std::vector<SpawnRow> spawn;
@@ -125,14 +143,17 @@ struct Accuracy {
 /// Sets `safe` and `safe_but_slivers` by the row's errors.
 void judge_safety(AccuracyRow& row, const std::vector<HardCase>& hard);
 
-// Costs whose ranges overlap are equal. The range of a host's time is that of its repetitions. That of simulated cycles
-// is 1 % to either side: other samples of the rays differ by as much.
+// Costs are compared in pairs, of the same repetition or the same seed of the picture; those that cannot be told apart
+// (cost_ratio()) are equal.
 
+/// Sets `over_cheapest`.
+void compare_costs(std::vector<AccuracyRow>& rows);
 /// Marks the frontiers: rows than which no other is cheaper and not more often wrong, or less often wrong and not
 /// dearer.
 void mark_frontier(std::vector<AccuracyRow>& rows);
-/// The cheapest safe row; of those that cost the same, the one whose t is most accurate (99th percentile, in ulp), then
-/// the one with the smallest units, then the first.
+/// The cheapest safe row. Of those that cost the same: those whose t is as accurate as the best of them (99th
+/// percentile, within a tenth), of these those with the smallest units, of these the first, which is the simplest.
+/// accuracy_verdict() names the ties.
 std::optional<std::size_t> recommended(const std::vector<AccuracyRow>& rows, Clock clock);
 /// The sentences for `verdict`, for the host and for hardware: the recommended row, the price over the cheapest of all,
 /// and what that one and the cheapest that loses nothing but slivers get wrong.

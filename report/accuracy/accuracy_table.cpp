@@ -17,6 +17,17 @@ std::string limited_text(const AccuracyRow& row) {
   return cost ? fmt::format("{:.3g}", cost->median) : "-";
 }
 
+/// The testers' cycles over those of the cheapest row, percent.
+std::string limited_over_text(const AccuracyRow& row) {
+  const auto& over = row.over_cheapest[static_cast<std::size_t>(Clock::kHardware)];
+  return over ? fmt::format("{:+.1f}..{:+.1f}%", 100 * (over->low - 1), 100 * (over->high - 1)) : "-";
+}
+
+nlohmann::ordered_json range_json(const std::vector<double>& samples) {
+  const Spread spread = Spread::of(samples);
+  return {{"least", spread.least}, {"most", spread.most}};
+}
+
 std::string energy_text(const AccuracyRow& row) {
   return row.modelled ? fmt::format("{:.0f}", row.modelled->energy_pj_per_ray) : "-";
 }
@@ -52,18 +63,18 @@ void limit_lines(const Accuracy& a, std::string& out) {
 
 void level_lines(const Accuracy& a, std::string& out) {
   out += fmt::format(
-      "{:<3}{:<11}{:<13}{:<22}{:>7}{:>11}{:>9}{:>9}{:>6}{:>8}{:>8}{:>7}{:>7}  {:<20}{:>7}{:>8}{:>8}{:>9}{:>8}\n", "",
-      "triangle", "box", "transform", "ns/ray", "least-most", "testers", "machine", "area", "pJ/ray", "missed", "extra",
-      "other", "t error in ulp", "leaks", "hard", "pixels", "RMSE", "worst");
+      "{:<3}{:<11}{:<13}{:<22}{:>7}{:>11}{:>9}{:>18}{:>9}{:>6}{:>8}{:>8}{:>7}{:>7}  {:<20}{:>7}{:>8}{:>8}{:>9}{:>8}\n",
+      "", "triangle", "box", "transform", "ns/ray", "least-most", "testers", "over least", "machine", "area", "pJ/ray",
+      "missed", "extra", "other", "t error in ulp", "leaks", "hard", "pixels", "RMSE", "worst");
   for (const AccuracyRow& row : a.rows) {
     out += fmt::format(
-        "{:<3}{:<11}{:<13}{:<22}{:>7.0f}{:>11}{:>9}{:>9}{:>6.2f}{:>8}{:>8}{:>7}{:>7}  "
+        "{:<3}{:<11}{:<13}{:<22}{:>7.0f}{:>11}{:>9}{:>18}{:>9}{:>6.2f}{:>8}{:>8}{:>7}{:>7}  "
         "{:<20}{:>7}{:>8}{:>8}{:>9.2g}{:>8.2g}{}{}\n",
         marks(row), row.triangle, row.box, row.transform, row.ns_per_ray.median,
-        fmt::format("{:.0f}-{:.0f}", row.ns_per_ray.least, row.ns_per_ray.most), limited_text(row), cycles_text(row),
-        row.relative_area, energy_text(row), grouped(row.scene.missed), grouped(row.scene.extra),
-        grouped(row.scene.other), ulp_text(row.scene), grouped(row.leaks), grouped(hard_wrong(row)),
-        grouped(row.picture.differ), row.picture.rmse, row.picture.worst,
+        fmt::format("{:.0f}-{:.0f}", row.ns_per_ray.least, row.ns_per_ray.most), limited_text(row),
+        limited_over_text(row), cycles_text(row), row.relative_area, energy_text(row), grouped(row.scene.missed),
+        grouped(row.scene.extra), grouped(row.scene.other), ulp_text(row.scene), grouped(row.leaks),
+        grouped(hard_wrong(row)), grouped(row.picture.differ), row.picture.rmse, row.picture.worst,
         row.safe               ? "  safe"
         : row.safe_but_slivers ? "  safe but for slivers"
                                : "",
@@ -71,7 +82,8 @@ void level_lines(const Accuracy& a, std::string& out) {
   }
   out +=
       "* on the frontier of the host's time, + of the testers' cycles: nothing is both cheaper and less often wrong;\n"
-      "costs whose ranges overlap are equal (cycles: within 1 %). ns/ray: CPU time of one thread, depth first, single\n"
+      "costs that pairs (of one repetition, of one seed of the picture) do not tell apart are equal. over least: the\n"
+      "interval (95 %) of the testers' cycles over the least. ns/ray: CPU time of one thread, depth first, single\n"
       "rays. testers: cycles a ray of the configured machine with all but its test units lifted; machine: as it is\n"
       "configured. area: box, triangle and transform units of a resource over those of the default levels; pJ/ray: "
       "energy\n"
@@ -135,9 +147,11 @@ nlohmann::ordered_json row_json(const AccuracyRow& row, const std::vector<HardCa
   j["ns_per_ray"] = {{"median", row.ns_per_ray.median}, {"least", row.ns_per_ray.least}, {"most", row.ns_per_ray.most}};
   if (row.modelled) {
     j["modelled_cycles_per_ray"] = row.modelled->cycles_per_ray;
+    j["modelled_cycles_range"] = range_json(row.modelled->by_seed);
     j["modelled_tester_cycles_per_ray"] = row.modelled->tester_cycles_per_ray;
     if (const auto& limited = row.modelled->tester_limited) {
       j["tester_limited_cycles_per_ray"] = limited->cycles_per_ray;
+      j["tester_limited_cycles_range"] = range_json(limited->by_seed);
       j["tester_limited_by"] = {{"units", limited->busiest}, {"busy_fraction", limited->busy_fraction}};
     }
     j["energy_pj_per_ray"] = row.modelled->energy_pj_per_ray;
@@ -153,6 +167,12 @@ nlohmann::ordered_json row_json(const AccuracyRow& row, const std::vector<HardCa
   j["leaks"] = row.leaks;
   j["picture"] = picture_json(row.picture);
   j["frontier"] = {{"host", row.on_frontier(Clock::kHost)}, {"hardware", row.on_frontier(Clock::kHardware)}};
+  const auto over = [&](Clock clock) -> nlohmann::ordered_json {
+    const auto& ratio = row.over_cheapest[static_cast<std::size_t>(clock)];
+    if (!ratio) return nullptr;
+    return {{"ratio", ratio->ratio}, {"low", ratio->low}, {"high", ratio->high}};
+  };
+  j["over_cheapest"] = {{"host", over(Clock::kHost)}, {"hardware", over(Clock::kHardware)}};
   j["safe"] = row.safe;
   j["safe_but_slivers"] = row.safe_but_slivers;
   return j;
@@ -162,8 +182,9 @@ nlohmann::ordered_json row_json(const AccuracyRow& row, const std::vector<HardCa
 
 std::string accuracy_table(const Accuracy& a) {
   std::string out = fmt::format(
-      "{}: {} triangles, {} instances; {} rays, {} repetitions, seed {}; pictures {} x {} x {}\n\n", a.scene,
-      grouped(a.triangles), grouped(a.instances), grouped(a.rays), a.repetitions, a.seed, a.width, a.height, a.samples);
+      "{}: {} triangles, {} instances; {} rays, {} repetitions, seed {}; pictures {} x {} x {}, {} seeds\n\n", a.scene,
+      grouped(a.triangles), grouped(a.instances), grouped(a.rays), a.repetitions, a.seed, a.width, a.height, a.samples,
+      a.seeds);
   if (a.incomplete) out = "INCOMPLETE: interrupted; what follows is what was done\n" + out;
   level_lines(a, out);
   hard_lines(a, out);
@@ -173,9 +194,9 @@ std::string accuracy_table(const Accuracy& a) {
 }
 
 nlohmann::ordered_json accuracy_json(const Accuracy& a) {
-  nlohmann::ordered_json j{{"schema_version", 1},      {"incomplete", a.incomplete},  {"scene", a.scene},
-                           {"triangles", a.triangles}, {"instances", a.instances},    {"rays", a.rays},
-                           {"seed", a.seed},           {"repetitions", a.repetitions}};
+  nlohmann::ordered_json j{{"schema_version", 1},      {"incomplete", a.incomplete},   {"scene", a.scene},
+                           {"triangles", a.triangles}, {"instances", a.instances},     {"rays", a.rays},
+                           {"seed", a.seed},           {"repetitions", a.repetitions}, {"seeds", a.seeds}};
   j["picture"] = {{"width", a.width}, {"height", a.height}, {"samples", a.samples}};
   j["levels"] = nlohmann::ordered_json::array();
   for (const AccuracyRow& row : a.rows) j["levels"].push_back(row_json(row, a.hard));

@@ -70,6 +70,15 @@ void times_modelled_cycles_and_pictures_are_there(const Json& report) {
     EXPECT_LE(row.at("ns_per_ray").at("least"), row.at("ns_per_ray").at("most"));
     EXPECT_GT(row.at("modelled_cycles_per_ray"), 0);
     EXPECT_EQ(row.at("picture").at("pixels"), 24 * 24);
+    const Json& range = row.at("tester_limited_cycles_range");
+    EXPECT_LT(range.at("least"), range.at("most")) << "four seeds of the picture take the same cycles";
+    EXPECT_LE(range.at("least"), row.at("tester_limited_cycles_per_ray"));
+    EXPECT_GE(range.at("most"), row.at("tester_limited_cycles_per_ray"));
+    for (const char* clock : {"host", "hardware"}) {
+      const Json& over = row.at("over_cheapest").at(clock);
+      EXPECT_LE(over.at("low"), over.at("ratio"));
+      EXPECT_LE(over.at("ratio"), over.at("high"));
+    }
   }
   // The machine waits for its shaders; its testers work longer all the same.
   EXPECT_GT(
