@@ -129,7 +129,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   report::Report r;
   r.incomplete = !result.complete;
   r.carousel = program_info();
-  r.config = config_json(config);
+  r.config = config_json(prepared.absolute_config());
   for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
   r.scene = summary(prepared);
   r.structure = structure(prepared);

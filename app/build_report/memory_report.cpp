@@ -33,7 +33,7 @@ report::Report memory_report(const Prepared& prepared, const ringbus::MemoryTrac
   report::Report r;
   r.incomplete = !result.complete;
   r.carousel = program_info();
-  r.config = config_json(config);
+  r.config = config_json(prepared.absolute_config());
   for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
   r.scene.name = "none";
   r.engine.kind = enum_name(config.engine.kind);

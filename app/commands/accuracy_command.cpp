@@ -243,19 +243,20 @@ int accuracy_command(const AccuracyArguments& arguments) {
     folder = std::filesystem::path("out") /
              (arguments.config.empty() ? "accuracy" : std::filesystem::path(arguments.config).stem());
   std::optional<OutputFolder> output;
-  const auto open_output = [&](const Config& config) {
+  const auto open_output = [&](const Prepared& of) {
+    const Config config = of.absolute_config();
     output.emplace(folder, &config, arguments.force, Results::kAccuracy);
   };
   const Prepared p = arguments.config.empty() ? prepare_config(kBuiltInConfig, "built-in", arguments.sets)
                                               : prepare(arguments, {}, false, open_output);
-  if (!output) open_output(p.config());
+  if (!output) open_output(p);
   if (p.config().workload.kind != WorkloadConfig::Kind::kRays)
     throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});
   const report::Accuracy accuracy = Trial(p, arguments, interrupt).run();
   const nlohmann::ordered_json result = report::accuracy_json(accuracy);
   const std::string json = report::sealed(result).dump(2) + "\n";
   const std::exception_ptr failure = output->write([&](const std::filesystem::path& staging) {
-    write_file(staging / "config.resolved.yaml", resolved_yaml(p.config()));
+    write_file(staging / "config.resolved.yaml", resolved_yaml(p.absolute_config()));
     write_file(staging / "accuracy.html", report::html::accuracy_page(result));
     write_file(staging / "accuracy.json", json);
   });

@@ -16,6 +16,7 @@
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
 #include "core/config/load/load.h"
+#include "core/text/line_reader.h"
 #include "report/text/progress_line.h"
 
 namespace carousel::app {
@@ -40,9 +41,14 @@ std::vector<CertificateCase> read_cases(const std::string& text_or_file) {
     return {parse_case(text_or_file, properties, {"--reproduce", 1, 1})};
   std::vector<CertificateCase> cases;
   std::ifstream file(text_or_file);
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+  constexpr std::size_t kLongestLine = 1 << 16;
+  LineReader lines(file, kLongestLine);
+  for (int number = 1; lines.next(); ++number) {
+    const std::string& line = lines.line();
+    if (lines.too_long())
+      throw ConfigError({{{text_or_file, number, 0},
+                          "",
+                          "expected a case, found a line of more than " + std::to_string(kLongestLine) + " bytes"}});
     if (line.find_first_not_of(' ') == std::string::npos || line.starts_with('#')) continue;
     cases.push_back(parse_case(line, properties, {text_or_file, number, 1}));
   }

@@ -14,6 +14,7 @@
 #include "app/trace/memory_csv.h"
 #include "core/config/write.h"
 #include "report/csv/ray_csv.h"
+#include "report/text/number_text.h"
 #include "ringbus/protocol/deadlock.h"
 
 namespace carousel::app {
@@ -50,11 +51,13 @@ int check_command(const CheckArguments& arguments) {
                        p.scene.instances.size());
     if (p.config().workload.kind == WorkloadConfig::Kind::kRaysFrom) text += ray_list_text(p);
     text += memory_text(estimate(p.config(), false, p.scene, p.accel), usable_memory_bytes());
+    text +=
+        fmt::format("build: about {} for the structure and the work on it\n", report::bytes_text(build_bytes(p.scene)));
   }
   if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty())
     text += fmt::format("ignored: {}\n", ignored_text(ignored));
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
-  print_result(resolved_yaml(p.config()) + "\n" + commented(text));
+  print_result(resolved_yaml(p.absolute_config()) + "\n" + commented(text));
   if (!verdict.can_deadlock) return kDone;
   spdlog::error("{}: topology.flow: the links of this machine can fill up and stop, and run refuses it without --force",
                 arguments.config);

@@ -89,7 +89,7 @@ int run_without_rays_command(const RunArguments& arguments, const Prepared& p, c
   const report::Report report = run_without_rays(p, interrupt, arguments.quiet);
   return finish(arguments, report, traffic ? report::traffic_table(report) : report::memory_table(report), outputs,
                 interrupt, [&](const std::filesystem::path& folder) {
-                  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
+                  write_file(folder / "config.resolved.yaml", resolved_yaml(p.absolute_config()));
                   write_report(folder, arguments, report);
                 });
 }
@@ -143,7 +143,7 @@ std::string scene_digest(const Prepared& p) {
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
                  const RenderJob& job, const report::Report& report, HitRecorder* recorder, ExtraFile* rays) {
-  write_file(folder / "config.resolved.yaml", resolved_yaml(p.config()));
+  write_file(folder / "config.resolved.yaml", resolved_yaml(p.absolute_config()));
   job.write_images(folder);
   if (recorder) {
     const std::vector<report::HitRow> rows = recorder->take();
@@ -166,16 +166,15 @@ int run_command(const RunArguments& arguments) {
   std::optional<RankScope> ranks;
   const Prepared p = prepare(
       arguments, {.force = arguments.force, .ranks = true}, keep_hits,
-      [&](const Config& config) {
-        if (config.engine.transport != EngineTransport::kLocal) {
+      [&](const Prepared& of) {
+        if (const Config& config = of.config(); config.engine.transport != EngineTransport::kLocal) {
           require_one_rank(arguments);
           ranks.emplace(config, program_identity());
           ranks->require_same("--trace", trace_text(arguments.trace));
-          ranks->require_files(
-              [&] { return ContentDigests(std::filesystem::path(arguments.config).parent_path()).of(config); });
+          ranks->require_files([&] { return ContentDigests(of.config_folder).of(config); });
           if (ranks->rank() != 0) return;  // one writes the files
         }
-        outputs.emplace(arguments, config);
+        outputs.emplace(arguments, of.absolute_config());
       },
       [&] { return ranks ? &ranks->transport() : nullptr; });
   if (!p.config().vary.empty())

@@ -145,7 +145,8 @@ int stress_command(const StressArguments& arguments) {
   std::optional<OutputFolder> output;
   std::unique_ptr<const Prepared> prepared;
   if (!arguments.config.empty()) {
-    prepared.reset(new Prepared(prepare(arguments, {}, false, [&](const Config& config) {
+    prepared.reset(new Prepared(prepare(arguments, {}, false, [&](const Prepared& of) {
+      const Config config = of.absolute_config();
       output.emplace(folder, &config, arguments.force, Results::kStress);
     })));
     if (prepared->config().workload.kind == WorkloadConfig::Kind::kTraffic ||
@@ -203,7 +204,7 @@ int stress_command(const StressArguments& arguments) {
   const nlohmann::ordered_json result = report::stress_json(out);
   const std::string json = report::sealed(result).dump(2) + "\n";
   const std::exception_ptr failure = output->write([&](const std::filesystem::path& staging) {
-    if (prepared) write_file(staging / "config.resolved.yaml", resolved_yaml(prepared->config()));
+    if (prepared) write_file(staging / "config.resolved.yaml", resolved_yaml(prepared->absolute_config()));
     write_file(staging / "stress.html", report::html::stress_page(result));
     write_file(staging / "stress.json", json);
   });

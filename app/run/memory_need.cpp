@@ -56,6 +56,10 @@ std::uint64_t scene_bytes(const scene::Scene& scene) {
   return bytes;
 }
 
+std::uint64_t build_bytes(const scene::Scene& scene) {
+  return scene.unique_triangle_count() * kAccelBytesPerTriangle + scene.instances.size() * kBytesPerInstance;
+}
+
 std::uint64_t paths_in_flight(const Config& config) {
   const auto slots = static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
   return std::min(slots, frame_paths(config));

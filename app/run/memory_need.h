@@ -31,6 +31,8 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
 
 /// Of a loaded scene.
 std::uint64_t scene_bytes(const scene::Scene& scene);
+/// What building the structure of a loaded scene takes at its peak, the structure included.
+std::uint64_t build_bytes(const scene::Scene& scene);
 
 /// Number of paths with rays in flight at a time: one for each slot.
 std::uint64_t paths_in_flight(const Config& config);

@@ -20,11 +20,13 @@
 #include "app/run/memory_need.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
+#include "core/system/plain_text.h"
 #include "core/system/process_memory.h"
 #include "report/text/number_text.h"
 #include "ringbus/cycle/shapes/shape_room.h"
 #include "ringbus/protocol/deadlock.h"
 #include "ringbus/results/run_features.h"
+#include "scene/model/instance_overlap.h"
 #include "shading/effects/effects_plan.h"
 
 namespace carousel::app {
@@ -100,6 +102,21 @@ void set_query(Prepared& p) {
   if (p.config().rays.query == Query::kAll)
     p.all_hits = std::make_unique<AllHits>(static_cast<std::size_t>(p.config().rays.hits_per_ray));
   p.accel.all_hits = p.all_hits.get();
+}
+
+/// Refuses a scene whose structure cannot be built here, and warns of one that every ray has to search in many places.
+void foretell(Prepared& p) {
+  constexpr double kManyInstances = 1000;
+  if (p.config().scene.placement != ScenePlacement::kPartitioned) {  // else each rank builds a part
+    const MemoryNeed need{.scene = scene_bytes(p.scene), .accel = build_bytes(p.scene), .ring = {}};
+    require_fit(need, usable_memory_bytes(), p.located.positions);
+  }
+  const double met = scene::instances_met(p.scene);
+  if (met < kManyInstances) return;
+  p.warnings.push_back(
+      fmt::format("{}: {} instances lie in each other's boxes; a ray meets about {:.0f} of them, and takes as long",
+                  p.scene.name, p.scene.instances.size(), met));
+  spdlog::warn("{}", p.warnings.back());
 }
 
 accel::BuildRanks build_ranks(ringbus::Transport* transport) {
@@ -216,6 +233,7 @@ void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport 
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
     load_scene(p);
+    foretell(p);
     build_accel(p, transport);
   });
   fit(p);
@@ -227,6 +245,17 @@ void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport 
 
 scene::View view_of(const Config& config) {
   return {config.camera, static_cast<float>(config.image.width) / static_cast<float>(config.image.height)};
+}
+
+Config Prepared::absolute_config() const {
+  Config out = config();
+  for (std::string* name : {&out.scene.file, &out.workload.rays_from, &out.workload.memory_trace}) {
+    if (name->empty()) continue;
+    std::error_code ignored;
+    const std::string path = std::filesystem::absolute(find_beside(config_folder, *name), ignored).string();
+    if (plain_text(path) == path) *name = path;  // others cannot stand in a file of text
+  }
+  return out;
 }
 
 bool Prepared::has_rays() const {
@@ -244,7 +273,7 @@ float Prepared::scene_size() const {
 }
 
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits,
-                 const std::function<void(const Config&)>& before_scene,
+                 const std::function<void(const Prepared&)>& before_scene,
                  const std::function<ringbus::Transport*()>& ranks) {
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
@@ -252,7 +281,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   const bool is_fitted = p.config().area.budget_mm2.has_value();
   const auto call = [&] {
-    if (before_scene) with_positions(p.located.positions, [&] { before_scene(p.config()); });
+    if (before_scene) with_positions(p.located.positions, [&] { before_scene(p); });
   };
   if (!is_fitted) call();
   prepare_located(p, keep_hits, ranks ? ranks() : nullptr);

@@ -42,6 +42,8 @@ struct Prepared {
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }
+  /// The configuration as files hold it, so that it runs again from any folder: the names of its files are absolute.
+  Config absolute_config() const;
   /// The keys that the user sets and the machine ignores.
   std::vector<IgnoredKey> ignored() const;
   bool has_rays() const;  ///< whether the workload is rays, for which there is a scene
@@ -50,12 +52,12 @@ struct Prepared {
 };
 
 /// Loads configuration, scene and structure; for synthetic traffic the configuration only. Refuses a scene that would
-/// not fit into the machine's memory before loading it. `before_scene` is called with the configuration first, then
-/// `ranks` for the way to the other ranks, null if there are none; where the scene decides how large the machine is,
-/// `before_scene` is called when that is known. Throws ConfigError, SceneError and FileError; logs warnings and the
+/// not fit into the machine's memory before loading it. `before_scene` is called with what has the configuration only,
+/// then `ranks` for the way to the other ranks, null if there are none; where the scene decides how large the machine
+/// is, `before_scene` is called when that is known. Throws ConfigError, SceneError and FileError; logs warnings and the
 /// times of the phases.
 Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& options, bool keep_hits,
-                 const std::function<void(const Config&)>& before_scene = {},
+                 const std::function<void(const Prepared&)>& before_scene = {},
                  const std::function<ringbus::Transport*()>& ranks = {});
 
 /// The same for a configuration given as text; files that it names are looked for in the working folder.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <map>
+#include <string_view>
 
 #include <poll.h>
 #include <unistd.h>
@@ -19,27 +20,42 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kAskWaitMs = 200;
+constexpr std::size_t kLongestAsk = 1 << 16, kShownOfLine = 1000;
 
-/// The lines of standard input, without waiting for them.
+/// The lines of standard input, without waiting for them. One of more than kLongestAsk bytes is cut to one byte more.
 class Lines {
  public:
   bool open() const { return open_; }
   std::vector<std::string> read_some() {
     std::vector<std::string> out;
-    for (pollfd in{STDIN_FILENO, POLLIN, 0}; open_ && poll(&in, 1, 0) > 0;) {
+    constexpr std::size_t kMostAtOnce = 16 * kLongestAsk;  // input without an end must not keep the points waiting
+    std::size_t taken = 0;
+    for (pollfd in{STDIN_FILENO, POLLIN, 0}; open_ && taken < kMostAtOnce && poll(&in, 1, 0) > 0;) {
       char buffer[4096];
       const ssize_t count = ::read(STDIN_FILENO, buffer, sizeof buffer);
       if (count < 0 && errno == EINTR) continue;
       open_ = count > 0;
-      if (open_) rest_.append(buffer, static_cast<std::size_t>(count));
-      if (!open_ && !rest_.empty()) rest_ += '\n';
+      if (open_) taken += static_cast<std::size_t>(count);
+      if (open_) add({buffer, static_cast<std::size_t>(count)}, out);
     }
-    for (std::size_t end; (end = rest_.find('\n')) != std::string::npos; rest_.erase(0, end + 1))
-      if (rest_.find_first_not_of(" \t\r") < end) out.push_back(rest_.substr(0, end));
+    if (!open_) end_line(out);
     return out;
   }
 
  private:
+  void add(std::string_view text, std::vector<std::string>& out) {
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      rest_.append(text.substr(0, std::min(end, kLongestAsk + 1 - rest_.size())));
+      if (end < text.size()) end_line(out);
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+  }
+  void end_line(std::vector<std::string>& out) {
+    if (rest_.find_first_not_of(" \t\r") != std::string::npos) out.push_back(std::move(rest_));
+    rest_.clear();
+  }
+
   std::string rest_;
   bool open_ = true;
 };
@@ -50,6 +66,8 @@ void tell(const Json& json) {
 
 /// The keys and values of a line. Throws ConfigError.
 Json parsed(const std::string& line) {
+  if (line.size() > kLongestAsk)
+    throw ConfigError({{{"--ask", 0, 0}, "", "expected a line of at most " + std::to_string(kLongestAsk) + " bytes"}});
   try {
     Json json = report::strict_json(line);
     if (json.is_object()) return json;
@@ -91,7 +109,7 @@ void ask_and_tell(const SweepSetup& setup, const SweepOptions& options, PointMak
   std::map<std::string, std::size_t> by_digest;
   const auto ask = [&](const std::string& line) {
     SweepPoint point;
-    Json keys = line;
+    Json keys = line.substr(0, kShownOfLine);
     try {
       keys = parsed(line);
       point = asked(keys, maker, rows);

@@ -8,6 +8,7 @@
 
 #include "core/system/error.h"
 #include "core/system/input_file.h"
+#include "core/text/line_reader.h"
 #include "core/text/list_end.h"
 
 namespace carousel::app {
@@ -15,17 +16,21 @@ namespace carousel::app {
 namespace {
 
 constexpr std::string_view kHeader = "cycle,kind,address,bytes";
-constexpr std::size_t kColumns = 4, kMostIssues = 20;
-constexpr std::uint64_t kLastCycle = 1'000'000'000'000, kLastAddress = std::uint64_t{1} << 48, kMostBytes = 65536;
+constexpr std::size_t kColumns = 4, kMostIssues = 20, kLongestLine = 256;
+constexpr std::uint64_t kLastCycle = 1'000'000'000'000, kLastAddress = ringbus::kMemoryEnd - 1, kMostBytes = 65536;
 
 class MemoryReader {
  public:
-  explicit MemoryReader(const std::string& name) : name_(name) {}
+  MemoryReader(const std::string& name, std::size_t most) : name_(name), most_(most) {}
 
   ringbus::MemoryLog read(std::istream& in) {
-    std::string line;
-    for (line_ = 1; std::getline(in, line) && issues_.size() < kMostIssues; ++line_) {
-      if (!line.empty() && line.back() == '\r') line.pop_back();
+    LineReader lines(in, kLongestLine);
+    for (line_ = 1; issues_.size() < kMostIssues && requests_.size() <= most_ && lines.next(); ++line_) {
+      const std::string& line = lines.line();
+      if (lines.too_long()) {
+        issue(0, fmt::format("expected a line of CSV, found one of more than {} bytes", kLongestLine));
+        break;
+      }
       if (line_ == 1 && line != kHeader) issue(1, fmt::format("expected the header {}, found '{}'", kHeader, line));
       if (line_ > 1 && !line.empty()) read_line(line);
     }
@@ -77,6 +82,7 @@ class MemoryReader {
       issue(columns[1], fmt::format("expected read or write, found '{}'", cells[1]));
     request.address = number(2, 0, kLastAddress);
     request.bytes = static_cast<std::uint32_t>(number(3, 1, kMostBytes));
+    if (requests_.size() == most_) issue(0, fmt::format("expected at most {} requests, found more", most_));
     if (!requests_.empty() && request.cycle < requests_.back().cycle)
       issue(columns[0], fmt::format("requests stand in the order of their cycles; expected at least {}, found {}",
                                     requests_.back().cycle, request.cycle));
@@ -84,6 +90,7 @@ class MemoryReader {
   }
 
   const std::string& name_;
+  const std::size_t most_;
   int line_ = 1;
   std::vector<ConfigIssue> issues_;
   ListEnd end_;
@@ -100,8 +107,8 @@ void write_memory_csv(AtomicFile& file, const ringbus::MemoryLog& requests, bool
   file.write(list_end(requests.size(), complete) + "\n");
 }
 
-ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name) {
-  return MemoryReader(name).read(in);
+ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name, std::size_t most) {
+  return MemoryReader(name, most).read(in);
 }
 
 ringbus::MemoryLog read_memory_csv(const std::filesystem::path& path) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <istream>
 #include <string>
@@ -15,9 +16,12 @@ namespace carousel::app {
 /// FileError.
 void write_memory_csv(AtomicFile& file, const ringbus::MemoryLog& requests, bool complete);
 
+/// Most requests that a list may have.
+inline constexpr std::size_t kMostRequests = 200'000'000;
 /// A list without a last line that counts is read as it is. Throws a ConfigError with the positions of the first
-/// problems, also for an empty list and one of an interrupted run, and FileError when the file cannot be read.
+/// problems, also for an empty list, one of more than `most` requests and one of an interrupted run, and FileError when
+/// the file cannot be read.
 ringbus::MemoryLog read_memory_csv(const std::filesystem::path& path);
-ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name);
+ringbus::MemoryLog read_memory_csv(std::istream& in, const std::string& name, std::size_t most = kMostRequests);
 
 }  // namespace carousel::app

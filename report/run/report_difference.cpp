@@ -1,6 +1,7 @@
 #include "report/run/report_difference.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 namespace carousel::report {
@@ -73,8 +74,11 @@ std::vector<ManyDifference> differences(const std::vector<const Json*>& reports)
   for (const Json* report : reports) {
     Json& copy = copies.emplace_back(*report);
     copy.erase("host");
-    // How many threads the host was to use is its affair too.
+    // How many threads the host was to use, and in which folders it has the files, is its affair too.
     if (const auto engine = Json::json_pointer("/config/engine"); copy.contains(engine)) copy[engine].erase("threads");
+    for (const char* file : {"/config/scene/file", "/config/workload/rays_from", "/config/workload/memory_trace"})
+      if (const Json::json_pointer at(file); copy.contains(at) && copy[at].is_string())
+        copy[at] = std::filesystem::path(copy[at].get<std::string>()).filename().string();
     values.push_back(&copy);
   }
   std::vector<ManyDifference> out;

@@ -20,11 +20,11 @@ struct ManyDifference {
   std::vector<std::string> values;  ///< by report
 };
 
-/// The places where reports differ outside of `host` and of config.engine.threads, in the order of the first.
+/// The places where reports differ outside of `host`, of config.engine.threads and of the folders of the files that the
+/// configuration names, in the order of the first.
 std::vector<ManyDifference> differences(const std::vector<const nlohmann::ordered_json*>& reports);
 
-/// The places where two reports differ outside of `host` and of config.engine.threads, in the order of the first. Two
-/// runs are identical when there is none.
+/// As above for two reports. The runs are identical when there is none.
 std::vector<Difference> differences(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b);
 
 /// The first epoch whose digests differ, and its length; the shorter list's end counts as a difference.

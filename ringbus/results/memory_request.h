@@ -5,6 +5,10 @@
 
 namespace carousel::ringbus {
 
+/// All addresses of the simulated memory lie below: shapes and spilled entries, records of rays, states of paths, the
+/// film (cycle/shading/ray_data.cpp).
+inline constexpr std::uint64_t kMemoryEnd = std::uint64_t{1} << 53;
+
 /// A request to the memory behind the caches, when it arrives there.
 struct MemoryRequest {
   std::uint64_t cycle = 0;  ///< of the engine

@@ -17,6 +17,9 @@ namespace carousel::app {
 namespace {
 
 std::string read_all(const std::filesystem::path& path) {
+  // A device such as /dev/zero has no end.
+  if (std::error_code ignored; std::filesystem::is_character_file(path, ignored))
+    throw FileError("cannot read " + path.string() + ": expected a plain file, found a device");
   InputFile in(path);
   if (!in) throw FileError("cannot read " + path.string() + ": " + std::strerror(errno));
   return {std::istreambuf_iterator<char>(in), {}};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "ringbus/results/memory_request.h"
+
 namespace carousel::ringbus::cycle {
 
 namespace {
@@ -11,6 +13,7 @@ namespace {
 constexpr std::uint64_t kRecords = std::uint64_t{1} << 50, kStates = std::uint64_t{1} << 51,
                         kFilm = std::uint64_t{1} << 52;
 constexpr std::uint32_t kPixelBytes = 16;  // four floats
+static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kMemoryEnd);
 
 MemoryConfig of_shared_cache(MemoryConfig memory) {
   memory.l1_kib = 0;

@@ -9,7 +9,9 @@
 namespace carousel::check_command_test {
 namespace {
 
+using testing::AnyOf;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(CheckCommand, PrintsTheResolvedConfigTheMemoryAndTheVerdict) {
   const Program program;
@@ -78,6 +80,33 @@ TEST(CheckCommand, ReadsTheListOfRays) {
   const Outcome outcome = program.run({"check", "a.yaml"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("rays.csv:2:16: expected a direction, found 0,0,0"));
+}
+
+// A million zeros need no bytes in a file, and put a million instances into one place.
+TEST(CheckCommand, ForetellsWhatInstancesInOnePlaceCost) {
+  const Program program;
+  const auto scene = [&](int instances) {
+    program.write("same.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["EXT_mesh_gpu_instancing"],
+"nodes": [{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}],
+"scenes": [{"nodes": [0]}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+{"componentType": 5126, "count": )" +
+                                   std::to_string(instances) + R"(, "type": "VEC3"}]})");
+  };
+  program.write("a.yaml", "scene: {file: same.gltf}\nimage: {width: 8, height: 8, samples: 1}\n");
+  scene(900);
+  EXPECT_THAT(program.run({"check", "a.yaml"}).err, Not(HasSubstr("a ray meets")));
+  scene(5000);
+  const Outcome outcome = program.run({"check", "a.yaml"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("same: 5000 instances lie in each other's boxes; a ray meets about 5000 of them"));
+  EXPECT_THAT(outcome.out, HasSubstr("# build: about 2.4 MiB for the structure and the work on it"));
+  scene(1'000'000);
+  const Outcome limited = program.run({"check", "a.yaml", "--set", "engine.memory_limit_mib=300"});
+  EXPECT_EQ(limited.status, 2);
+  EXPECT_THAT(limited.err, AnyOf(HasSubstr("(engine.memory_limit_mib)"), HasSubstr("scene: expected what fits")));
 }
 
 TEST(MemoryNeed, NamesTheKeyThatWeighsMost) {

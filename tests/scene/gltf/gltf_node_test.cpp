@@ -130,9 +130,9 @@ TEST(GltfNode, LongChainsOfNodesLoad) {
   GltfBuilder b = GltfBuilder::square();
   b.json["scenes"][0]["nodes"] = Json::array();
   int child = 0;
-  for (int i = 0; i < 50000; ++i) child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
+  for (int i = 0; i < 200000; ++i) child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
   b.json["scenes"][0]["nodes"].push_back(child);
-  EXPECT_EQ(b.load().instances[0].world_from_model.translation.z, 50000);
+  EXPECT_EQ(b.load().instances[0].world_from_model.translation.z, 200000);
 }
 
 TEST(GltfNode, GpuInstancingIsExpandedInPlace) {
