@@ -22,10 +22,12 @@ class Account {
   static constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
 
  public:
-  Account(const report::Report& r, const Config& config, double link_mm)
+  /// `memory_times`: the memory moves so many times the bytes of the run, and activates so many times its rows.
+  Account(const report::Report& r, const Config& config, double link_mm, double memory_times = 1)
       : r_(r),
         c_(config),
         link_mm_(link_mm),
+        memory_times_(memory_times),
         rays_kib_(static_cast<double>(config.rays.slots_per_resource) / 16 / static_cast<double>(own_testers(config))) {
   }
 
@@ -85,9 +87,9 @@ class Account {
     if (row.over == "links") return;
     if (row.from == "DRAM" || row.to == "DRAM") {
       if (row.from == "L2" && row.over == "address wires") return;  // contained in the bytes of the lines
-      if (row.to == "L2") access(EnergyPart::kL2, bytes, l2_kib());
+      if (row.to == "L2") access(EnergyPart::kL2, memory_times_ * bytes, l2_kib());
       const bool hbm = c_.memory.dram.preset == DramConfig::Preset::kHbm2;
-      parts_[EnergyPart::kDram].add(bytes, pj(hbm ? Cost::kHbm : Cost::kDram));
+      parts_[EnergyPart::kDram].add(memory_times_ * bytes, pj(hbm ? Cost::kHbm : Cost::kDram));
       return;
     }
     const std::int64_t sharing = row.from == "L2" || row.to == "L2"
@@ -108,7 +110,7 @@ class Account {
     const bool hbm = c_.memory.dram.preset == DramConfig::Preset::kHbm2;
     for (const report::DramChannel& channel : r_.memory->dram->channels)
       parts_[EnergyPart::kActivations].add(
-          static_cast<double>(channel.counts.row_misses + channel.counts.row_conflicts),
+          memory_times_ * static_cast<double>(channel.counts.row_misses + channel.counts.row_conflicts),
           pj(hbm ? Cost::kHbmActivation : Cost::kDramActivation));
   }
 
@@ -117,7 +119,7 @@ class Account {
 
   const report::Report& r_;
   const Config& c_;
-  double link_mm_, rays_kib_;
+  double link_mm_, memory_times_, rays_kib_;
   report::EnergyParts parts_;
 };
 
@@ -134,7 +136,35 @@ std::vector<report::CostConstant> constants(const Config& config) {
   return out;
 }
 
+double joules_of(const report::EnergyParts& parts) {
+  double joules = 0;
+  for (const auto [kind, part] : parts.units) joules += part.joules;
+  for (const report::EnergyOf& part : parts.others) joules += part.joules;
+  return joules;
+}
+
 }  // namespace
+
+void add_sampled_energy(report::Report& r, const Config& config) {
+  if (!r.sampled || !r.energy) return;
+  report::Sampled& s = *r.sampled;
+  double moved = 0;
+  for (const report::Bytes& row : *r.bytes)
+    if (row.what == "lines" || row.what == "written lines") moved += static_cast<double>(row.bytes);
+  const double rays = static_cast<double>(r.rays.completed), link_mm = r.area->link_mm;
+  const auto with = [&](double bytes_per_ray) {
+    const double times = moved > 0 ? bytes_per_ray * rays / moved : 1;
+    return ratio(joules_of(Account(r, config, link_mm, times).take()), rays) * 1e9;
+  };
+  const auto unsure = [](const report::SampledValue& v) { return ratio(v.high - v.low, 2 * v.estimate); };
+  const double error =
+      with(0) * std::max({unsure(s.box_tests_per_ray), unsure(s.triangle_tests_per_ray), unsure(s.link_bytes_per_ray)});
+  const report::SampledValue& bytes = s.memory_bytes_per_ray;
+  report::SampledEnergy& energy = s.nj_per_ray.emplace();
+  energy.estimate = with(bytes.estimate);
+  energy.low = std::max(0.0, with(bytes.low) - error);
+  energy.high = with(bytes.high) + error;
+}
 
 void add_energy(report::Report& r, const Config& config, const SceneFacts& scene) {
   if (config.energy.profile == CostProfile::kNone || !r.engine.cycles || !r.bytes || !r.memory || !r.resources) return;
@@ -142,8 +172,7 @@ void add_energy(report::Report& r, const Config& config, const SceneFacts& scene
   report::Energy& energy = r.energy.emplace();
   energy.profile = enum_name(config.energy.profile);
   energy.parts = Account(r, config, area.link_mm).take();
-  for (const auto [kind, part] : std::as_const(energy.parts.units)) energy.joules += part.joules;
-  for (const report::EnergyOf& part : energy.parts.others) energy.joules += part.joules;
+  energy.joules = joules_of(energy.parts);
   const double rays = static_cast<double>(r.rays.completed);
   const double seconds = static_cast<double>(*r.engine.cycles) / (static_cast<double>(config.engine.clock_mhz) * 1e6);
   energy.nj_per_ray = ratio(energy.joules, rays) * 1e9;

@@ -10,4 +10,8 @@ namespace carousel::app {
 /// Nothing without energy.profile.
 void add_energy(report::Report& r, const Config& config, const SceneFacts& scene);
 
+/// Adds the energy of a ray of the whole frame to the estimates of a sample: that of the sample, but with the estimated
+/// bytes from and to the memory. Nothing without energy or estimates.
+void add_sampled_energy(report::Report& r, const Config& config);
+
 }  // namespace carousel::app

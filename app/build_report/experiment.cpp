@@ -10,6 +10,7 @@
 #include "accel/traverse/hit_oracle.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"
+#include "app/build_report/energy_report.h"
 #include "app/build_report/memory_report.h"
 #include "app/build_report/ring_sections.h"
 #include "app/build_report/traffic_report.h"
@@ -156,7 +157,10 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   add_census(report, census, p.accel);
   report.host.draw_seconds = job.draw_seconds();
-  if (places && result.complete) report.sampled = estimates(p, job, *places, result, *memory);
+  if (places && result.complete) {
+    report.sampled = estimates(p, job, *places, result, *memory);
+    add_sampled_energy(report, p.config());
+  }
   if (result.cycle) find_limits(p, job, result, interrupt, quiet, report);
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, quiet, report);

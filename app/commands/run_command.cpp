@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "app/build_report/build_report.h"
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
 #include "app/commands/report_command.h"
@@ -203,7 +204,13 @@ int run_command(const RunArguments& arguments) {
     ranks->leave();
     return report.incomplete ? interrupt.status() : kDone;
   }
-  if (arguments.audit) audit(p, job, interrupt.token(), arguments.quiet, report);
+  if (arguments.audit)
+    audit(
+        p, job, interrupt.token(), arguments.quiet,
+        [&](const RenderJob& whole, const ringbus::RunResult& result) {
+          return build_report(p, whole, result, nullptr).energy->nj_per_ray;
+        },
+        report);
   if (ExtraFile* const file = outputs->memory())
     file->write([&](AtomicFile& to) { write_memory_csv(to, memory, !report.incomplete); });
   const int status = finish(

@@ -9,6 +9,7 @@
 #include "report/text/number_text.h"
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/cycle/sample_estimate.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
 
 namespace carousel::app {
 
@@ -34,14 +35,16 @@ void for_each(report::Sampled& to, const ringbus::FrameValues& from, const Body&
 
 report::Sampled estimates(const Prepared& prepared, const RenderJob& job, const PlaceCensus& places,
                           const ringbus::RunResult& result, const ringbus::MemoryLog& memory) {
+  const Config& config = prepared.config();
+  const ringbus::cycle::ShapeMemory shapes(prepared.accel, config.accuracy, config.bvh, config.memory);
   const ringbus::FrameValues values = ringbus::estimate_frame(
-      prepared.config(), {result, memory, job.first_rays(), job.frame_rays(), places.paths(), places.rays()});
+      config, {result, memory, shapes.size_bytes(), job.first_rays(), job.frame_rays(), places.paths(), places.rays()});
   report::Sampled out{.paths = job.first_rays(),
                       .frame_paths = job.frame_rays(),
                       .strata = places.paths().size(),
                       .steady = values.steady,
                       .too_small = values.too_small};
-  if (prepared.config().workload.kind == WorkloadConfig::Kind::kRays)
+  if (config.workload.kind == WorkloadConfig::Kind::kRays)
     out.picture = "the tiles that were drawn; the other pixels are black";
   for (const ringbus::ClassEstimate& use : values.uses) out.uses.push_back({.name = std::string(use.name)});
   for_each(out, values, [](report::SampledValue& to, const ringbus::Estimate& from) {
@@ -52,7 +55,8 @@ report::Sampled estimates(const Prepared& prepared, const RenderJob& job, const 
   return out;
 }
 
-void audit(const Prepared& prepared, const RenderJob& job, std::stop_token stop, bool quiet, report::Report& report) {
+void audit(const Prepared& prepared, const RenderJob& job, std::stop_token stop, bool quiet, const NjPerRay& nj_per_ray,
+           report::Report& report) {
   if (report.incomplete || !report.sampled) return;
   Config config = prepared.config();
   config.sampling = {};
@@ -72,11 +76,13 @@ void audit(const Prepared& prepared, const RenderJob& job, std::stop_token stop,
   phase.result(fmt::format("{} rays, {} cycles", report::scaled(static_cast<double>(result.rays_completed)),
                            report::grouped(result.cycle->cycles)));
   report.host.audit_seconds = result.wall_seconds;
+  const auto tell = [](report::SampledValue& to, double whole) {
+    to.whole = whole;
+    if (whole != 0) to.error = to.estimate / whole - 1;
+  };
   for_each(*report.sampled, ringbus::exact_values(config, result),
-           [](report::SampledValue& to, const ringbus::Estimate& from) {
-             to.whole = from.value;
-             if (from.value != 0) to.error = to.estimate / from.value - 1;
-           });
+           [&](report::SampledValue& to, const ringbus::Estimate& from) { tell(to, from.value); });
+  if (report.sampled->nj_per_ray) tell(*report.sampled->nj_per_ray, nj_per_ray(whole, result));
 }
 
 }  // namespace carousel::app

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <stop_token>
 
 #include "app/run/prepare.h"
@@ -15,8 +15,13 @@ namespace carousel::app {
 report::Sampled estimates(const Prepared& prepared, const RenderJob& job, const PlaceCensus& places,
                           const ringbus::RunResult& result, const ringbus::MemoryLog& memory);
 
+/// The energy of a ray of a run that is complete.
+using NjPerRay = std::function<double(const RenderJob& job, const ringbus::RunResult& result)>;
+
 /// Simulates the whole frame, too, and says how far off each estimate of `report` is. Shows its progress on a terminal
-/// unless `quiet`. Interrupted, it marks the report as incomplete.
-void audit(const Prepared& prepared, const RenderJob& job, std::stop_token stop, bool quiet, report::Report& report);
+/// unless `quiet`. Interrupted, it marks the report as incomplete. `nj_per_ray` is called if there is an estimate of
+/// it.
+void audit(const Prepared& prepared, const RenderJob& job, std::stop_token stop, bool quiet, const NjPerRay& nj_per_ray,
+           report::Report& report);
 
 }  // namespace carousel::app

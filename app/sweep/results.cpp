@@ -48,23 +48,34 @@ Json estimate_of(const std::string& column, const Json& report) {
     return at == nullptr ? Json() : *at;
   };
   if (column == "cycles") return estimate("cycles");
+  if (column == "nj_per_ray") return estimate("nj_per_ray");
   const Json rate = estimate("rays_per_kilocycle");
   if (column == "rays_per_kilocycle") return rate;
-  const Json* clock = at_path(report, "config.engine.clock_mhz");
-  if (column == "mrays_per_second" && rate.is_number() && clock != nullptr)
-    return rate.get<double>() * clock->get<double>() / 1000;
+  const Json *clock = at_path(report, "config.engine.clock_mhz"), *mm2 = at_path(report, "area.mm2");
+  if (!rate.is_number() || clock == nullptr) return nullptr;
+  const double mrays = rate.get<double>() * clock->get<double>() / 1000;
+  if (column == "mrays_per_second") return mrays;
+  if (column == "mrays_per_second_per_mm2" && mm2 != nullptr) return mrays / mm2->get<double>();
   return nullptr;
 }
 
 Json all_bytes(const Json& report) {
   const Json* bytes = at_path(report, "bytes");
   if (bytes == nullptr) return nullptr;
-  std::uint64_t sum = 0;
-  for (const Json& row : *bytes) sum += row["bytes"].get<std::uint64_t>();
-  // The frame sends as many bytes more as it has more paths.
-  if (const Json* paths = at_path(report, "sampled.paths"), *all = at_path(report, "sampled.frame_paths"); paths && all)
-    return static_cast<double>(sum) * all->get<double>() / paths->get<double>();
-  return sum;
+  std::uint64_t sum = 0, memory = 0, moved = 0;
+  for (const Json& row : *bytes) {
+    const auto sent = row["bytes"].get<std::uint64_t>();
+    sum += sent;
+    if (row["from"] == "DRAM" || row["to"] == "DRAM") memory += sent;
+    if (row["what"] == "lines" || row["what"] == "written lines") moved += sent;
+  }
+  const Json *rays = at_path(report, "sampled.rays.estimate"), *simulated = at_path(report, "rays.completed"),
+             *each = at_path(report, "sampled.memory_bytes_per_ray.estimate");
+  if (rays == nullptr || simulated == nullptr || each == nullptr) return sum;
+  // The frame sends as many bytes more as it has more rays, but those of the memory do not grow so.
+  const double frame = rays->get<double>(), times = frame / simulated->get<double>();
+  const double of_memory = moved > 0 ? each->get<double>() * frame / static_cast<double>(moved) : times;
+  return static_cast<double>(sum - memory) * times + static_cast<double>(memory) * of_memory;
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ std::string sampled_table(const Sampled& s) {
         line("", "TOO SMALL for this machine: the sample is mostly fill and drain; a larger sampling.fraction helps");
   out += line("", fmt::format("{:<23} {:>14}   interval (95 %)", "whole frame", "estimate"));
   Sampled::for_each(s, [&](const char* key, const char*, const SampledValue& value) { out += value_line(key, value); });
+  if (s.nj_per_ray) out += value_line("nj_per_ray", *s.nj_per_ray);
   for (const SampledUse& use : s.uses) out += value_line("use of " + use.name, use.use);
   return out + line("", "all lines below are about the sample alone");
 }

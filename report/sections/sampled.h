@@ -23,6 +23,11 @@ void describe(V& v, const SampledValue& r) {
   v.field("error", r.error, "fraction", "estimate over that value, less 1");
 }
 
+/// The energy of a ray.
+struct SampledEnergy : SampledValue {
+  SampledEnergy() { unit = "nJ/ray"; }
+};
+
 /// The use of a class of parts.
 struct SampledUse {
   std::string name;
@@ -45,6 +50,7 @@ struct Sampled {
       rays_per_kilocycle{.unit = "rays/1000 cycles"}, box_tests_per_ray{.unit = "tests/ray"},
       triangle_tests_per_ray{.unit = "tests/ray"}, memory_bytes_per_ray{.unit = "bytes/ray"},
       link_bytes_per_ray{.unit = "bytes/ray"};
+  std::optional<SampledEnergy> nj_per_ray{};
   std::vector<SampledUse> uses{};
 
   /// Calls `body(key, meaning, value)` for each value but those of `uses`.
@@ -73,6 +79,7 @@ void describe(V& v, const Sampled& r) {
   v.field("picture", r.picture, "", "content of image.png and image.exr; empty if there are none");
   Sampled::for_each(
       r, [&](const char* key, const char* meaning, const SampledValue& value) { v.section(key, value, meaning); });
+  v.section("nj_per_ray", r.nj_per_ray, "energy of a ray as energy.nj_per_ray, with the frame's bytes of the memory");
   v.section("uses", r.uses, "part of the frame's time in which the parts of a class work, class by class");
 }
 

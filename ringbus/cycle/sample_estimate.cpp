@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <unordered_map>
 
 #include "ringbus/cycle/bottleneck_search.h"
+#include "ringbus/cycle/frame_lines.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/progress_blocks.h"
 #include "ringbus/cycle/steady_state.h"
@@ -63,7 +63,7 @@ class Sample {
     end_ = c_.all_begun ? c_.all_begun->completed : n;
     too_small_ = end_ < begin_ + n / 4;
     if (too_small_) begin_ = 0, end_ = n;
-    count_lines();
+    lines_.emplace(config, run, FrameLines::Window{begin_, end_}, times_);
   }
 
   FrameValues estimate() const {
@@ -84,7 +84,8 @@ class Sample {
     out.box_tests_per_ray = per_ray(static_cast<double>(tests.box), "box_tests");
     out.triangle_tests_per_ray = per_ray(static_cast<double>(tests.triangle), "triangle_tests");
     out.link_bytes_per_ray = per_ray(link_bytes(run_.result), "link_bandwidth");
-    const Estimate lines = frame_lines();
+    const auto moved = class_of("memory_bandwidth");
+    const Estimate lines = lines_->frame(moved ? error_of_work(*moved, false) : 0);
     const double line = static_cast<double>(cycle::fetched_bytes(config_.memory)) / out.rays.value;
     out.memory_bytes_per_ray = {lines.value * line, lines.low * line, lines.high * line};
     for (std::size_t i = 0; i < c_.uses.size(); ++i)
@@ -120,18 +121,19 @@ class Sample {
   /// The time of a ray that the rest of the frame spares, as the testers wait less often for lines that no ray has
   /// asked for before.
   double spared_cycles_a_ray() const {
-    if (first_ <= 0) return 0;
+    const double first = lines_->first();
+    if (first <= 0) return 0;
     cycle::Cycle waits = 0;
     for (const cycle::TileResult& tile : c_.tiles) waits += tile.states[std::size_t(cycle::TileState::kMemory)];
     const double wait = double(waits) / double(c_.tiles.size());
     const auto memory = static_cast<double>(config_.memory.dram_latency_cycles);
-    double latencies = (first_ + again_) * memory;
+    double latencies = lines_->sample() * memory;
     for (const CacheCounts& cache : c_.caches)
       latencies += double(cache.requests) * double(config_.memory.l2_latency_cycles);
     if (c_.own_caches)
       latencies += static_cast<double>(c_.own_caches->requests) * static_cast<double>(config_.memory.l1_latency_cycles);
-    const double cold = latencies > 0 ? wait * first_ * memory / latencies / rays_ : 0;
-    const double fewer = 1 - std::min(1.0, (grown(power_) / first_ - 1) / std::max(1e-9, times_ - 1));
+    const double cold = latencies > 0 ? wait * first * memory / latencies / rays_ : 0;
+    const double fewer = 1 - std::min(1.0, (lines_->frame_first().value / first - 1) / std::max(1e-9, times_ - 1));
     return std::min(cold * fewer, cycles_a_ray() / 2);
   }
 
@@ -214,34 +216,6 @@ class Sample {
     return around(count / rays_, i ? count / rays_ * error_of_work(*i, false) : 0);
   }
 
-  /// The lines that the frame asks for first, if they grow by a power of its rays.
-  double grown(double by) const { return first_ * std::pow(times_, std::clamp(by, 0.0, 1.0)); }
-
-  void count_lines() {
-    const auto half = static_cast<std::uint64_t>(at_count(c_, run_.result.rays_completed / 2, cycle_of));
-    const std::size_t caches = std::max<std::size_t>(1, c_.caches.size());
-    std::unordered_map<std::uint64_t, std::size_t> seen;
-    double first_half = 0;
-    for (const MemoryRequest& request : run_.memory) {
-      if (!request.write && seen[request.address]++ < caches) {
-        ++first_;
-        first_half += request.cycle <= half;
-      } else {
-        ++again_;
-      }
-    }
-    if (first_half > 0) power_ = std::clamp(std::log2(first_ / first_half), 0.0, 1.0);
-  }
-
-  /// Lines of the frame's requests to memory.
-  Estimate frame_lines() const {
-    const auto i = class_of("memory_bandwidth");
-    const double again = times_ * again_, error = again * (i ? error_of_work(*i, false) : 0);
-    constexpr double kPowerError = 0.25;
-    return {grown(power_) + again, std::max(0.0, grown(power_ - kPowerError) + again - error),
-            grown(power_ + kPowerError) + again + error};
-  }
-
   Estimate use(std::size_t i, double cycles, const Estimate& lines) const {
     const cycle::ClassUse& use = c_.uses[i];
     const double busy = static_cast<double>(use.busy), available = use.parts * cycles;
@@ -262,8 +236,7 @@ class Sample {
   double rays_, times_, unseen_;
   std::uint64_t begin_ = 0, end_ = 0;
   bool too_small_ = false;
-  double first_ = 0, again_ = 0;  // requests to memory: those of a cache that asks for a line first, and others
-  double power_ = 0;              // of the growth of the former
+  std::optional<FrameLines> lines_;
 };
 
 Estimate exactly(double value) {

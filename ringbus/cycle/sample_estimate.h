@@ -31,7 +31,8 @@ struct FrameValues {
 /// A run over a part of a frame.
 struct SampleRun {
   const RunResult& result;
-  const MemoryLog& memory;  ///< all requests of the run
+  const MemoryLog& memory;        ///< all requests of the run
+  std::uint64_t shape_bytes = 0;  ///< of the acceleration structure, which stands at the beginning of the memory
   std::uint64_t paths = 0, frame_paths = 0;
   /// Paths and rays of each place, in the order in which they began.
   std::vector<std::uint64_t> paths_of, rays_of;
@@ -45,9 +46,12 @@ FrameValues exact_values(const Config& config, const RunResult& result);
 /// - The rays that are completed between fill and drain are cheaper than others, or dearer: m is the time there over
 ///   the part of the sample's box and triangle tests that was done there, over the sample's rays. Packets and waits
 ///   depend on which rays meet in the machine; tests hardly do.
-/// - Caches are cold. The first request of a cache for a line is one of the frame's, too; the number of such lines
-///   grows more slowly than that of the rays, by the power that it grew with in the sample's second half. All other
-///   requests are taken to be as many a ray as in the sample.
+/// - Caches are cold. The first request of a cache for a line of shapes is one of the frame's, too, and there are no
+///   more of them than lines (frame_lines.h). Other requests for shapes come again since a line has been replaced; they
+///   become more frequent as the caches fill, and are taken to be as many a ray as in the later half between fill and
+///   drain. Where lines are replaced already, what first requests become fewer by, other requests become more by in
+///   part. The interval's upper end adds all of that part, as far as the frame's lines are more than the caches hold.
+///   Requests for data of rays and paths are as many a ray as in the sample.
 ///   Of the time that testers waited, first lines have the part that the latency of the memory for them has of all
 ///   latencies: those of the caches' hits, too. The rest of the frame waits less by as many as it has fewer of them a
 ///   ray. Half of the time that it so spares is added to the interval.

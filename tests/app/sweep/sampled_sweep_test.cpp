@@ -30,11 +30,22 @@ TEST(SampledSweep, GivesEstimatesAndRunsTheFrontWhole) {
                         "topology.resources=" + point["keys"]["topology.resources"].dump()})
                   .status,
               0);
-    const double cycles = Json::parse(program.read("one/report.json"))["engine"]["cycles"];
-    if (point["keys"]["sampling.fraction"] == 1)
+    const Json whole = Json::parse(program.read("one/report.json"));
+    const double cycles = whole["engine"]["cycles"], nj_per_ray = whole["energy"]["nj_per_ray"];
+    const double per_mm2 = whole["area"]["mrays_per_second_per_mm2"];
+    double bytes = 0;
+    for (const Json& row : whole["bytes"]) bytes += row["bytes"].get<double>();
+    const auto off = [&](const char* key, double truth) { return point["results"][key].get<double>() / truth - 1; };
+    if (point["keys"]["sampling.fraction"] == 1) {
       EXPECT_EQ(point["results"]["cycles"], cycles);
-    else
-      EXPECT_NEAR(point["results"]["cycles"].get<double>(), cycles, 0.3 * cycles) << "of the frame, not of its half";
+      EXPECT_EQ(point["results"]["bytes"], bytes);
+      EXPECT_EQ(point["results"]["nj_per_ray"], nj_per_ray);
+    } else {
+      EXPECT_NEAR(off("cycles", cycles), 0, 0.3) << "of the frame, not of its half";
+      EXPECT_NEAR(off("mrays_per_second_per_mm2", per_mm2), 0, 0.3);
+      EXPECT_NEAR(off("bytes", bytes), 0, 0.1);
+      EXPECT_NEAR(off("nj_per_ray", nj_per_ray), 0, 0.1);
+    }
     if (best == nullptr || point["results"]["cycles"] < (*best)["results"]["cycles"]) best = &point;
   }
   EXPECT_EQ((*best)["keys"]["sampling.fraction"], 1) << "the fastest machine is on the front";
