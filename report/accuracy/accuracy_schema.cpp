@@ -10,14 +10,16 @@ using Json = nlohmann::ordered_json;
 using schema::checksum, schema::count, schema::list, schema::map, schema::object, schema::typed;
 
 Json errors(const char* meaning) {
-  return object({{"rays", count("rays compared", "rays")},
-                 {"missed", count("misses where the exact ray hits", "rays")},
-                 {"extra", count("hits where the exact ray misses", "rays")},
-                 {"other", count("hits of another triangle, without an exact tie", "rays")},
-                 {"t_error_ulp_median", typed("number", "median error of t, where both hit the same triangle", "ulp")},
-                 {"t_error_ulp_p99", typed("number", "99th percentile of it", "ulp")},
-                 {"t_error_ulp_max", typed("number", "greatest of it", "ulp")}},
-                meaning);
+  return object(
+      {{"rays", count("rays compared", "rays")},
+       {"missed", count("misses where the exact ray hits", "rays")},
+       {"extra", count("hits where the exact ray misses", "rays")},
+       {"other", count("hits of another primitive, without an exact tie", "rays")},
+       {"opacity", count("rays that stop or pass only since opacity is looked up at a rounded point", "rays")},
+       {"t_error_ulp_median", typed("number", "median error of t, where both hit the same triangle", "ulp")},
+       {"t_error_ulp_p99", typed("number", "99th percentile of it", "ulp")},
+       {"t_error_ulp_max", typed("number", "greatest of it", "ulp")}},
+      meaning);
 }
 
 Json picture_errors() {
@@ -30,6 +32,27 @@ Json picture_errors() {
 
 Json by_clock(const Json& of, const char* meaning) {
   return object({{"host", of}, {"hardware", of}}, meaning);
+}
+
+Json range(const char* meaning) {
+  return object(
+      {{"least", typed("number", "least of them", "cycles")}, {"most", typed("number", "greatest of them", "cycles")}},
+      meaning);
+}
+
+Json ratio() {
+  // An end of the interval may be beyond a double.
+  const auto end = [](const char* meaning) {
+    Json out = typed("number", meaning);
+    out["type"] = {"number", "null"};
+    return out;
+  };
+  Json out = object({{"ratio", end("the ratio of the costs")},
+                     {"low", end("lower end of its interval of 95 %")},
+                     {"high", end("upper end of its interval of 95 %")}},
+                    "null without a cost by this clock");
+  out["type"] = {"object", "null"};
+  return out;
 }
 
 Json level() {
@@ -46,6 +69,8 @@ Json level() {
         typed("number", "cycles of these in which test units of a kind were busy", "cycles"), false},
        {"tester_limited_cycles_per_ray", typed("number", "cost where all but the test units is relaxed", "cycles"),
         false},
+       {"modelled_cycles_range", range("cost on the configured machine over seeds of the picture"), false},
+       {"tester_limited_cycles_range", range("cost where the test units limit over seeds of the picture"), false},
        {"tester_limited_by",
         object({{"units", typed("string", "kind of units that was busy most")},
                 {"busy_fraction", typed("number", "part of the cycles", "fraction")}},
@@ -63,6 +88,7 @@ Json level() {
        {"leaks", count("misses from inside closed surfaces", "rays")},
        {"picture", picture_errors()},
        {"frontier", by_clock(typed("boolean", ""), "true if no other level is both cheaper and less often wrong")},
+       {"over_cheapest", by_clock(ratio(), "the cost over that of the cheapest levels")},
        {"safe", typed("boolean", "nothing was missed or added")},
        {"safe_but_slivers", typed("boolean", "the same but for the hard cases of slivers")}},
       "a combination of levels of the tests");
@@ -99,6 +125,7 @@ Json accuracy_schema() {
        {"rays", count("rays compared", "rays")},
        {"seed", count("seed of the hard cases")},
        {"repetitions", typed("integer", "measurements of each time")},
+       {"seeds", typed("integer", "seeds of the picture over which machines are measured")},
        {"picture", object({{"width", count("width", "pixels")},
                            {"height", count("height", "pixels")},
                            {"samples", count("samples of a pixel")}},
