@@ -21,8 +21,7 @@ void add_accuracy(CLI::App& program, AccuracyArguments& a) {
       ->capture_default_str();
   accuracy
       ->add_option("--seeds", a.seeds,
-                   "Number of seeds of the picture; each gives its share of the rays by which simulated machines are "
-                   "compared in pairs")
+                   "Number of seeds of the picture, by whose rays simulated machines are compared in pairs")
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
   accuracy->add_option("--seed", a.seed, "Seed of the hard cases")->capture_default_str();

@@ -117,10 +117,11 @@ class Trial {
     if (progress_) progress_->update(static_cast<double>(step_) / static_cast<double>(steps_), step_, "stages");
   }
 
-  /// The rays of some seeds of the picture, for the simulated machines: together no more than of one.
+  /// The rays of some seeds of the picture, for the simulated machines: together no more than kModelledRays, and of
+  /// each all that are asked for if these are few, since a machine that is hardly filled tells nothing of its testers.
   void make_pictures(std::vector<report::HitRow> rows) {
     const auto seeds = static_cast<std::size_t>(arguments_.seeds);
-    const std::size_t wanted = std::max<std::size_t>(1, std::min(arguments_.rays, kModelledRays) / seeds);
+    const std::size_t wanted = std::min(arguments_.rays, kModelledRays / seeds);
     for (std::size_t seed = 0; seed < seeds && !stopped(); ++seed) {
       if (seed > 0) {
         Config config = small_;

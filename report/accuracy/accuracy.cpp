@@ -155,6 +155,7 @@ Spread Spread::of(std::vector<double> samples) {
 }
 
 CostRatio cost_ratio(const Spread& a, const Spread& b) {
+  if (!(a.least > 0) || !(b.least > 0)) return {};  // nothing was traced
   const std::size_t pairs = std::min(a.samples.size(), b.samples.size());
   if (pairs < 2) return {a.median / b.median, a.least / b.most, a.most / b.least};
   std::vector<double> logs;

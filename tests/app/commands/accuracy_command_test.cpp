@@ -158,6 +158,8 @@ TEST(AccuracyCommand, MeasuresWhatEachLevelGetsWrongAndCosts) {
   EXPECT_THAT(outcome.out, HasSubstr("Monte Carlo: -0.50"));
   EXPECT_THAT(program.read("out/a/accuracy.html"), HasSubstr("fig-levels-on-hardware"));
   EXPECT_THAT(program.read("out/a/config.resolved.yaml"), HasSubstr("builtin: instances"));
+  const Outcome again = program.run({"report", "out/a/accuracy.json"});  // each key stands in the schema
+  EXPECT_EQ(again.status, 0) << again.err;
 }
 
 TEST(AccuracyCommand, HonoursTheConfiguredPlanesAndBundles) {
