@@ -76,9 +76,9 @@ void audit(const Prepared& prepared, const RenderJob& job, std::stop_token stop,
   phase.result(fmt::format("{} rays, {} cycles", report::scaled(static_cast<double>(result.rays_completed)),
                            report::grouped(result.cycle->cycles)));
   report.host.audit_seconds = result.wall_seconds;
-  const auto tell = [](report::SampledValue& to, double whole) {
-    to.whole = whole;
-    if (whole != 0) to.error = to.estimate / whole - 1;
+  const auto tell = [](report::SampledValue& to, double truth) {
+    to.whole = truth;
+    if (truth != 0) to.error = to.estimate / truth - 1;
   };
   for_each(*report.sampled, ringbus::exact_values(config, result),
            [&](report::SampledValue& to, const ringbus::Estimate& from) { tell(to, from.value); });
