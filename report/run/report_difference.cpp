@@ -65,6 +65,23 @@ void compare(const std::string& path, const Reports& values, std::vector<ManyDif
   for (const Json* value : values) difference.values.push_back(value != nullptr ? value->dump() : "");
 }
 
+/// A text that begins with the name of a file, without the file's folder.
+void leave_folder_out(Json& text) {
+  if (!text.is_string()) return;
+  const std::string whole = text.get<std::string>();
+  const std::size_t end = std::min(whole.find(": "), whole.size());
+  text = std::filesystem::path(whole.substr(0, end)).filename().string() + whole.substr(end);
+}
+
+/// In which folders a host has the files is its affair.
+void leave_folders_out(Json& report) {
+  for (const char* file : {"/config/scene/file", "/config/workload/rays_from", "/config/workload/memory_trace"})
+    if (const Json::json_pointer at(file); report.contains(at) && report[at].is_string())
+      report[at] = std::filesystem::path(report[at].get<std::string>()).filename().string();
+  if (const Json::json_pointer at("/scene/warnings"); report.contains(at) && report[at].is_array())
+    for (Json& warning : report[at]) leave_folder_out(warning);
+}
+
 }  // namespace
 
 std::vector<ManyDifference> differences(const std::vector<const Json*>& reports) {
@@ -74,11 +91,9 @@ std::vector<ManyDifference> differences(const std::vector<const Json*>& reports)
   for (const Json* report : reports) {
     Json& copy = copies.emplace_back(*report);
     copy.erase("host");
-    // How many threads the host was to use, and in which folders it has the files, is its affair too.
+    // How many threads the host was to use is its affair too.
     if (const auto engine = Json::json_pointer("/config/engine"); copy.contains(engine)) copy[engine].erase("threads");
-    for (const char* file : {"/config/scene/file", "/config/workload/rays_from", "/config/workload/memory_trace"})
-      if (const Json::json_pointer at(file); copy.contains(at) && copy[at].is_string())
-        copy[at] = std::filesystem::path(copy[at].get<std::string>()).filename().string();
+    leave_folders_out(copy);
     values.push_back(&copy);
   }
   std::vector<ManyDifference> out;

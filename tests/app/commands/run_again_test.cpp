@@ -73,6 +73,9 @@ TEST(RunAgain, RunsInTwoFoldersAreCompared) {
   const auto path = [](const Program& program, const char* out) { return (program.folder() / out).string(); };
   const Outcome same = elsewhere.run({"compare", path(one, "a"), path(other, "a"), "--expect", "identical"});
   EXPECT_EQ(same.status, 0) << same.out;
+  ASSERT_EQ(elsewhere.run({"run", path(one, "a/config.resolved.yaml"), "--out", "again", "--quiet"}).status, 0);
+  const Outcome again = elsewhere.run({"compare", path(one, "a"), "again", "--expect", "identical"});
+  EXPECT_EQ(again.status, 0) << again.out;
   // Both run a second time, to find where they part.
   const Outcome parted = elsewhere.run({"compare", path(one, "a"), path(one, "b"), "--all"});
   EXPECT_EQ(parted.status, 0) << parted.err;
@@ -87,8 +90,8 @@ TEST(RunAgain, OtherCommandsWriteConfigurationsThatRunToo) {
   EXPECT_EQ(checked.status, 0) << checked.err;
   EXPECT_THAT(checked.out, HasSubstr("# rays: 1 of " + program.folder().string()));
   ASSERT_EQ(program
-                .run({"stress", "in/picture.yaml", "--in", "topology", "--seconds", "0.01", "--depths", "4", "--out",
-                      "out", "--quiet"})
+                .run({"stress", "in/picture.yaml", "--in", "topology.link.queue", "--seconds", "0.01", "--depths", "4",
+                      "--out", "out", "--quiet"})
                 .status,
             0);
   const auto check = [&] {
@@ -122,7 +125,7 @@ TEST(RunAgain, RequestsToMemoryPlayWhateverIsInMemory) {
                 "rays: {slots_per_resource: 32}\ncollections: {ready: 8, capacity: 16384}\n");
   for (const std::string memory : {"path_state: memory", "film: memory", "ray_records: master",
                                    "path_state: memory, film: memory, "
-                                   "ray_records: master, writes: back, dram: {preset: gddr6_14}"}) {
+                                   "ray_records: master, l2_write: back, dram: {preset: gddr6_14}"}) {
     SCOPED_TRACE(memory);
     const std::string section = "memory={l2_kib: 4, " + memory + "}";
     const Outcome outcome = program.run(
@@ -133,7 +136,8 @@ TEST(RunAgain, RequestsToMemoryPlayWhateverIsInMemory) {
     ASSERT_EQ(played.status, 0) << played.err;
     const Json run = Json::parse(program.read("a/report.json"))["memory"];
     const Json trace = Json::parse(program.read("b/report.json"))["memory_trace"];
-    EXPECT_EQ(trace["bytes"], run["dram_bytes"]);
+    EXPECT_EQ(trace["reads"], run["dram_lines"]);
+    EXPECT_EQ(trace["writes"], run["dram_lines_written"]);
     EXPECT_GT(trace["writes"], 0);
     if (!run.contains("dram")) continue;
     for (std::size_t c = 0; c < run["dram"]["channels"].size(); ++c)
