@@ -20,6 +20,7 @@ const char* const kMachine =
     "scene: {builtin: terrain, triangles: 2000}\n"
     "image: {width: 96, height: 64, samples: 1, max_depth: 3}\n"
     "engine: {kind: cycle, threads: 1, what_if: false}\n"
+    "energy: {profile: n7}\n"
     "topology: {resources: 2}\n"
     "rays: {slots_per_resource: 32}\n"
     "packets: {rays: 8}\n"

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 
 const char* const kMachine =
     "scene: {builtin: terrain, triangles: 600}\nimage: {width: 48, height: 32, samples: 1, max_depth: 2}\n"
-    "engine: {kind: cycle, threads: 1, what_if: false}\nrays: {slots_per_resource: 16}\n";
+    "engine: {kind: cycle, threads: 1, what_if: false}\nenergy: {profile: n7}\nrays: {slots_per_resource: 16}\n";
 
 TEST(SampledSweep, GivesEstimatesAndRunsTheFrontWhole) {
   const Program program;

@@ -105,9 +105,10 @@ TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
 }
 
 TEST(PlaneUnits, AreLiftedWhereThereAreAny) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 200, 0), 1, 1);
   Config config;
   const auto has = [&] {
-    const std::vector<WhatIf> all = what_ifs(config, accel::Accel());
+    const std::vector<WhatIf> all = what_ifs(config, scene.accel(config.bvh, config.cull_planes, config.accuracy));
     return std::any_of(all.begin(), all.end(), [](const WhatIf& what_if) { return what_if.name == "plane_tests"; });
   };
   EXPECT_FALSE(has());
