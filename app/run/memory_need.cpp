@@ -117,10 +117,11 @@ void require_fit(const MemoryNeed& need, std::uint64_t usable_bytes, const KeyPo
   }};
   const auto most =
       std::max_element(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  throw ConfigError({{positions.find(most->first), most->first,
-                      fmt::format("expected what fits into the {} memory of {}, found a need of about {}, {} of it here",
-                                  data_memory_limit() > 0 ? "process's" : "machine's", report::bytes_text(usable_bytes),
-                                  report::bytes_text(need.total()), report::bytes_text(most->second))}});
+  throw ConfigError(
+      {{positions.find(most->first), most->first,
+        fmt::format("expected what fits into the {} memory of {}, found a need of about {}, {} of it here",
+                    data_memory_limit() > 0 ? "process's" : "machine's", report::bytes_text(usable_bytes),
+                    report::bytes_text(need.total()), report::bytes_text(most->second))}});
 }
 
 }  // namespace carousel::app
