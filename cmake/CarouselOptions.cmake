@@ -40,7 +40,7 @@ if(CAROUSEL_SANITIZE)
 endif()
 
 # What users run reads files of strangers: checked copies (_FORTIFY_SOURCE), a guarded stack, and tables of addresses that are
-# read-only once the program has begun. docs/performance.md says what that costs. Sanitizers bring checks of their own.
+# read-only once the program has begun. Sanitizers bring checks of their own.
 option(CAROUSEL_HARDEN "Build releases with checked copies, a guarded stack and read-only tables of addresses" ON)
 if(CAROUSEL_HARDEN AND CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CAROUSEL_SANITIZE)
   target_compile_options(carousel_options INTERFACE
