@@ -108,7 +108,7 @@ TEST(SampledRun, EstimatesBytesFromMemoryAndEnergyWhereTheSceneFitsTheCacheAndWh
   const Program program;
   program.write("machine.yaml", kMachine);
   for (const auto& [scene, l2_kib, off] :
-       {std::tuple{"cornell", "512", 0.1}, {"terrain", "512", 0.1}, {"terrain", "16", 0.3}}) {
+       {std::tuple{"cornell", "512", 0.2}, {"terrain", "512", 0.2}, {"terrain", "16", 0.3}}) {
     const std::vector<std::string> machine{"--set", std::string("scene.builtin=") + scene, "--set",
                                            std::string("memory.l2_kib=") + l2_kib};
     const Json whole = run(program, machine, "whole");

@@ -193,7 +193,7 @@ std::vector<Bomb> bombs() {
   add("instances", "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes", many);
   const Bytes jpeg = grey_jpeg(16, 0);
   const Bytes head{0xff, 0xc0};
-  const auto frame = std::ranges::search(jpeg, head).begin() - jpeg.begin();
+  const auto frame = std::search(jpeg.begin(), jpeg.end(), std::begin(head), std::end(head)) - jpeg.begin();
   add("JPEG", "/images/0", pictured(with_size(jpeg, std::size_t(frame) + 5, {0xff, 0x00, 0xff, 0x00})));
   // VP8L: 14 bits of width and of height, each less one, after the signature.
   add("WebP", "/images/0", pictured(with_size(webp(16, 16, Bytes(1024, 9)), 21, {0xff, 0xff, 0xff, 0x0f})));
