@@ -57,9 +57,11 @@ class KeyEffects : public KeyRuns {
   }
 
   /// By the table of what the engine does not have; an instruction set that this machine does not have;
-  /// ranks, which mpirun starts; and less memory than the program has.
+  /// ranks, which mpirun starts; less memory than the program has; and fewer hits than a ray has, which only tracing
+  /// tells.
   static bool may_be_refused(const KeyRow& row, const std::string& value, const Json& config,
                              const std::string& refusal) {
+    if (row.key == "rays.hits_per_ray") return refusal.starts_with(row.key + ": ");
     if (refusal.find("--set " + row.key + "=" + value + ": " + row.key + ": ") == refusal.npos) return false;
     if (row.key == "engine.simd" || row.key == "engine.transport" || row.key == "scene.placement") return true;
     if (row.key == "engine.memory_limit_mib") return true;

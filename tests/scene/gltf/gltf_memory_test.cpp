@@ -1,5 +1,6 @@
 // What a file announces is bounded by the memory of the import, and by nothing else: the densest honest files are read,
 // however few bytes they have, and files that announce more than the memory are refused before they get it.
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
