@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "tests/scene/gltf/gltf_builder.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::scene {
 namespace {
@@ -130,9 +131,10 @@ TEST(GltfNode, LongChainsOfNodesLoad) {
   GltfBuilder b = GltfBuilder::square();
   b.json["scenes"][0]["nodes"] = Json::array();
   int child = 0;
-  for (int i = 0; i < 200000; ++i) child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
+  const int nodes = scaled(200000);
+  for (int i = 0; i < nodes; ++i) child = b.push("nodes", {{"translation", {0, 0, 1}}, {"children", {child}}});
   b.json["scenes"][0]["nodes"].push_back(child);
-  EXPECT_EQ(b.load().instances[0].world_from_model.translation.z, 200000);
+  EXPECT_EQ(b.load().instances[0].world_from_model.translation.z, static_cast<float>(nodes));
 }
 
 TEST(GltfNode, GpuInstancingIsExpandedInPlace) {
