@@ -25,7 +25,7 @@ class HitOracle {
 
   /// The closest hit; of a ray that any hit ends some hit, which need not be the closest.
   Hit trace(const RayRequest& request) const;
-  /// Of the trees and the instances' records.
+  /// Bytes of the trees and of the records of instances.
   std::size_t size_bytes() const;
   /// At most so many for a scene without flattened instances.
   static std::size_t foretold_bytes(const scene::Scene& scene);

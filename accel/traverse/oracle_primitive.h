@@ -14,7 +14,7 @@
 
 namespace carousel::accel {
 
-/// What a hit is (docs/design.md, What a hit is), in scalar code for one primitive of one instance at a time. It knows
+/// The definition of a hit (docs/design.md, What a hit is) in scalar code for one primitive of one instance at a time. It knows
 /// the scene and no acceleration structure. docs/design.md lists what it shares with the kernels. Immutable; any thread
 /// may call.
 class OraclePrimitives {
