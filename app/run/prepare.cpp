@@ -208,8 +208,20 @@ void limit_memory(const Prepared& p) {
   limit_data_memory(limit);
 }
 
-/// Holds the machine to its area, now that the scene is known.
+/// Makes the storage of collections large enough for the structure where its size is left to the program.
+void adapt_storage(Prepared& p) {
+  const std::vector<std::string> given = p.located.positions.given();
+  if (std::find(given.begin(), given.end(), "collections.capacity") != given.end()) return;
+  const std::int64_t needed = ringbus::minimum_capacity(p.config(), p.accel.width, p.accel.max_depth);
+  std::int64_t& capacity = p.located.config.collections.capacity;
+  if (needed <= capacity) return;
+  spdlog::debug("collections.capacity: {}, which the reserve needs", needed);
+  capacity = needed;
+}
+
+/// Chooses what depends on the scene, and holds the machine to its area, now that the scene is known.
 void fit(Prepared& p) {
+  adapt_storage(p);
   fit_area(p.located, ringbus::scene_facts(p.accel));
 }
 

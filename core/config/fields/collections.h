@@ -111,7 +111,8 @@ void describe(V& v, CollectionsConfig& c) {
   v.choice("home", c.home, "The resource that keeps the collections of a packet's hits.");
   v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource",
           "The storage for collections. A ray takes one of them with traversal: ordered; otherwise collections take "
-          "blocks of packets.rays.");
+          "blocks of packets.rays. Without this key it is made as large as the reserve of when_full needs for the "
+          "tree, if that is more than the default.");
   v.choice("when_full", c.when_full,
            "When the storage is full, a resource keeps a reserve and holds new rays back, or it spills to memory.");
 }

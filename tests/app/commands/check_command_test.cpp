@@ -31,6 +31,21 @@ TEST(CheckCommand, ATopologyThatCanDeadlockEndsWithStatus2) {
   const Outcome outcome = program.run({"check", "a.yaml"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.out, HasSubstr("# deadlock: possible."));
+  EXPECT_THAT(outcome.err, HasSubstr("a.yaml: topology.flow: the links of this machine can fill up and stop"));
+}
+
+TEST(CheckCommand, CollectionsAreLargeEnoughForBundlesUnlessTheirSizeIsGiven) {
+  const Program program;
+  program.write("a.yaml", "scene: {builtin: cornell}\nbundles: {size: 16}\n");
+  const Outcome outcome = program.run({"check", "a.yaml"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Config resolved = load_config({outcome.out, "check's output"}).config;
+  EXPECT_GT(resolved.collections.capacity, Config{}.collections.capacity);
+  for (const char* set : {"collections.capacity=65536", "collections={capacity: 65536}"}) {
+    const Outcome given = program.run({"check", "a.yaml", "--set", set});
+    EXPECT_EQ(given.status, 2) << set;
+    EXPECT_THAT(given.err, HasSubstr("collections.capacity: expected at least"));
+  }
 }
 
 TEST(CheckCommand, WhatDoesNotFitTheMachineIsRefusedBeforeItIsLoaded) {
