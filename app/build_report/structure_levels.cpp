@@ -8,7 +8,7 @@ namespace carousel::app {
 
 namespace {
 
-enum Level : std::size_t { kTop, kGroups, kMeshes };
+enum Storey : std::size_t { kTop, kGroups, kMeshes };
 
 class LevelWalk {
  public:
@@ -35,18 +35,18 @@ class LevelWalk {
   }
 
  private:
-  void found(Level level, accel::NodeKey root) {
+  void found(Storey level, accel::NodeKey root) {
     if (seen_.insert({level, root.ref.bits()}).second) open_.push_back({level, root});
   }
 
   void enter(std::uint32_t instance) {
-    const Level level = accel_.is_group(instance) ? kGroups : kMeshes;
+    const Storey level = accel_.is_group(instance) ? kGroups : kMeshes;
     ++levels_[level].instances;
     levels_[level].record_bytes += memory_.transform(instance).bytes;
     found(level, {instance, accel_.instances[instance].root});
   }
 
-  void walk(Level level, accel::NodeKey root) {
+  void walk(Storey level, accel::NodeKey root) {
     struct Open {
       accel::NodeRef ref;
       std::uint64_t depth;
@@ -83,8 +83,8 @@ class LevelWalk {
   const accel::Accel& accel_;
   const ringbus::cycle::ShapeMemory& memory_;
   std::vector<report::StructureLevel> levels_;
-  std::vector<std::pair<Level, accel::NodeKey>> open_;
-  std::set<std::pair<Level, std::uint32_t>> seen_;
+  std::vector<std::pair<Storey, accel::NodeKey>> open_;
+  std::set<std::pair<Storey, std::uint32_t>> seen_;
 };
 
 }  // namespace
