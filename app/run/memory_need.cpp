@@ -51,6 +51,7 @@ std::uint64_t scene_bytes(const scene::Scene& scene) {
   for (const scene::Mesh& mesh : scene.meshes) {
     bytes += mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3);
     bytes += (mesh.uv0.size() + mesh.uv1.size()) * sizeof(Vec2) + mesh.colors.size() * sizeof(Vec4);
+    bytes += mesh.spheres.size() * sizeof(scene::Sphere);
     bytes += mesh.indices.size() * sizeof(std::uint32_t) + mesh.triangle_materials.size() * sizeof(MaterialId);
   }
   return bytes;

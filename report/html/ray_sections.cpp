@@ -77,11 +77,17 @@ class Flow {
 }  // namespace
 
 Html depth_section(const Json& report, const Json& schema) {
-  Html out = depths("node-depths", "Nodes by depth, and the work at them", find(report, "nodes.by_depth"),
-                    schema_at(schema, "properties.nodes.properties.by_depth.items"),
-                    "Heat map of nodes, visits, tests, hits and misses, by depth.");
-  if (!out.empty() && text_at(report, "config.collections.traversal") == "treelet")
-    out = markup("<p>A treelet is gone through in one visit: its tests stand at the depth of its root.</p>\n") + out;
+  Html out;
+  if (const Json* levels = find(report, "structure.levels"))
+    out += table_of("structure-levels", "The structure, level by level", *levels,
+                    schema_at(schema, "properties.structure.properties.levels.items"))
+               .html();
+  Html nodes = depths("node-depths", "Nodes by depth, and the work at them", find(report, "nodes.by_depth"),
+                      schema_at(schema, "properties.nodes.properties.by_depth.items"),
+                      "Heat map of nodes, visits, tests, hits and misses, by depth.");
+  if (!nodes.empty() && text_at(report, "config.collections.traversal") == "treelet")
+    out += markup("<p>A treelet is gone through in one visit: its tests stand at the depth of its root.</p>\n");
+  out += nodes;
   out += depths("bundle-depths", "Bundles by depth", find(report, "tests.bundles.by_depth"),
                 schema_at(schema, "properties.tests.properties.bundles.properties.by_depth.items"),
                 "Heat map of the outcomes of bundles, by depth.");

@@ -298,6 +298,17 @@ std::string ring_text(const nlohmann::ordered_json& config) {
   return fmt::format(": {} resources, {}", topology->value("resources", 0), topology->value("shape", ""));
 }
 
+void level_lines(Table& table, const std::vector<StructureLevel>& levels) {
+  std::string_view name = "structure";
+  for (const StructureLevel& level : levels) {
+    table.line(name, "{}: {} structures, {} strips deep   {} inner nodes of {:.1f} children   {} leaves   {}",
+               level.level, grouped(level.structures), level.depth, grouped(level.inner_nodes),
+               ratio(static_cast<double>(level.children), static_cast<double>(level.inner_nodes)),
+               grouped(level.leaves), bytes_text(level.bytes()));
+    name = "";
+  }
+}
+
 }  // namespace
 
 std::string report_table(const Report& report) {
@@ -315,6 +326,7 @@ std::string report_table(const Report& report) {
                grouped(report.structure->leaves), grouped(report.structure->inner_nodes));
   if (report.structure && report.structure->merged_meshes > 0)
     table.line("structure", "{} meshes of the world in one", grouped(report.structure->merged_meshes));
+  if (report.structure && report.structure->levels) level_lines(table, *report.structure->levels);
   const bool simulated = report.engine.cycles.has_value();
   table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
              simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);
