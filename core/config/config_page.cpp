@@ -67,7 +67,7 @@ std::string row(const std::string& path, const Json& schema) {
 std::string config_markdown() {
   std::string out(kHead);
   config::walk_schema(config_schema(), [&](const std::string& path, const Json& schema) {
-    if (path.find(".0.testers.") != path.npos) return;  // the same as testers
+    if (path.find(".0.testers.") != path.npos) return;  // an override of the testers has the keys of `testers`
     const bool section = schema.contains("properties");
     if (path.find('.') == path.npos) {
       out += fmt::format("\n## {}\n", path);

@@ -259,7 +259,7 @@ std::string_view name_in(std::string_view key, std::string_view section) {
   return key.substr(0, key.find('.'));
 }
 
-/// Of units, and of what a test or a unit costs.
+/// Tells why a key of a test unit, or of the energy or area that a test or a unit costs, has no effect.
 std::optional<std::string_view> units_unused(const C& c, const S& s, std::string_view key) {
   const bool cost = lies_in(key, "energy") || lies_in(key, "area");
   const std::string_view name = name_in(key, cost ? key.substr(0, key.find('.')) : "testers");

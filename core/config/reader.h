@@ -102,7 +102,7 @@ class Reader {
   std::string path() const;
 
   std::vector<ConfigIssue>& issues_;
-  TestersConfig base_testers_;  ///< what an override starts from
+  TestersConfig base_testers_;  ///< values that an override of the testers starts from
   std::vector<Scope> scopes_;
   std::vector<std::string> path_;
 };

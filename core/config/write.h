@@ -12,7 +12,7 @@ namespace carousel {
 /// Reads back to the same Config.
 nlohmann::ordered_json config_json(const Config& config);
 
-/// The same as YAML.
+/// The resolved configuration as YAML text: every key with its value, without optional keys that are absent.
 std::string resolved_yaml(const Config& config);
 
 /// The double whose shortest decimal form is that of `value`: how floats are put into JSON.

@@ -44,7 +44,7 @@ class LatencyHistogram {
   friend bool operator==(const LatencyHistogram&, const LatencyHistogram&) = default;
 
  private:
-  static constexpr int kBits = 10;  // of a class above the exact ones
+  static constexpr int kBits = 10;  // a doubling above the exact values has 2^kBits classes
   static constexpr std::size_t kClasses = std::size_t{1} << kBits;
 
   static std::size_t index(std::uint64_t latency) {

@@ -35,8 +35,8 @@ struct CullLevel {
   friend bool operator==(const CullLevel&, const CullLevel&) = default;
 };
 
-/// The same by depth: the distance of a node from the root of its structure, above the instances or below one. Deeper
-/// nodes count as deepest.
+/// The effect of cull planes by depth: the distance of a node from the root of its structure, above the instances or
+/// below one. Deeper nodes count as deepest.
 struct CullCounts {
   static constexpr std::size_t kDepths = 32;
   std::array<CullLevel, kDepths> above{}, below{};

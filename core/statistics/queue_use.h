@@ -5,9 +5,9 @@
 
 namespace carousel {
 
-/// What went through a queue that hands rays over in pieces, batches or groups; or through several of one design.
+/// Counts the traffic of a queue that hands rays over in pieces, batches or groups; or of several queues of one design.
 struct QueueUse {
-  std::uint64_t places = 0;        ///< of one
+  std::uint64_t places = 0;        ///< pieces that one queue holds at most
   std::uint64_t sent = 0;          ///< pieces that a producer put in
   std::uint64_t rays = 0;          ///< in them
   std::uint64_t refusals = 0;      ///< times a producer found no free place

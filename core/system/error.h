@@ -21,7 +21,7 @@ struct SourcePosition {
 struct ConfigIssue {
   SourcePosition position;
   std::string key_path;  ///< e.g. "topology.link.depth"; empty when the whole file is meant
-  std::string message;   ///< what was expected, what was found, the nearest valid name
+  std::string message;   ///< expected value, found value, and the nearest valid name
 
   std::string text() const;
 };
@@ -30,7 +30,7 @@ struct ConfigIssue {
 class ConfigError : public std::runtime_error {
  public:
   explicit ConfigError(std::vector<ConfigIssue> issues);
-  /// Of one key or option, whose place in the file is not known.
+  /// The error of one key or option whose place in the file is not known.
   ConfigError(std::string key_path, std::string message);
   const std::vector<ConfigIssue>& issues() const { return issues_; }
 

@@ -37,8 +37,8 @@ class MemoryBudget {
   MemoryBudget(const MemoryBudget&) = delete;
   MemoryBudget& operator=(const MemoryBudget&) = delete;
 
-  /// What this process may still take: the rest of its limit (`engine.memory_limit_mib`, `ulimit -d`), or 16 GiB where
-  /// there is none.
+  /// The bytes that this process may still take: the rest of its limit (`engine.memory_limit_mib`, `ulimit -d`), or 16
+  /// GiB where there is none.
   static std::uint64_t of_process();
 
   /// Takes bytes for as long as the budget lives. Throws std::length_error, whose text is that of refusal(), if fewer

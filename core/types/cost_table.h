@@ -65,7 +65,7 @@ struct CostValue {
 
 struct CostRow {
   Cost cost;
-  std::string_view section;  ///< of the configuration: energy or area
+  std::string_view section;  ///< section of the configuration: energy or area
   std::string_view key;
   const char* unit;
   const char* meaning;  ///< a sentence

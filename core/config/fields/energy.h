@@ -20,14 +20,14 @@ using OwnCosts = std::array<std::optional<float>, kCostTable.size()>;
 
 struct EnergyConfig {
   CostProfile profile = CostProfile::kNone;
-  OwnCosts own;  ///< of the rows of this section
+  OwnCosts own;  ///< values for the rows of this section, where given
 };
 
 struct AreaConfig {
   std::optional<float> budget_mm2;
   enum class Fit { kResources, kRefuse } fit = Fit::kResources;
   std::optional<float> link_mm;  ///< absent: the side of a square of a resource's area
-  OwnCosts own;                  ///< of the rows of this section
+  OwnCosts own;                  ///< values for the rows of this section, where given
 };
 
 template <>

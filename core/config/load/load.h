@@ -19,7 +19,7 @@ struct LocatedConfig {
 /// The text of a configuration: YAML, or JSON when `name` ends in .json or the text is a JSON object.
 struct ConfigText {
   std::string text;
-  std::string name;  ///< what messages call it
+  std::string name;  ///< the name of the text in messages
 };
 
 /// Reads a file. Throws a ConfigError for one that cannot be read.

@@ -99,7 +99,8 @@ class Rules {
     if (glm::dot(view, view) == 0) return issue("camera.target", "expected another point than camera.eye");
     if (glm::dot(up, up) == 0) return issue("camera.up", "expected a direction, found a vector of length 0");
     const DVec3 aside = glm::cross(view, up);
-    constexpr double kLeastSine = 1e-6;  // of the angle between up and the view; look_at() needs more than roundings
+    // The sine of the angle between up and view must be larger: look_at() needs more than roundings.
+    constexpr double kLeastSine = 1e-6;
     if (glm::dot(aside, aside) <= kLeastSine * kLeastSine * glm::dot(view, view) * glm::dot(up, up))
       issue("camera.up", "the camera looks along this direction; expected one that is not parallel to the view");
   }

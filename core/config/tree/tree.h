@@ -15,9 +15,9 @@ struct Member;
 /// "nan"), so that each reader rounds once, to the type it needs.
 struct Node {
   enum class Kind { kNull, kBool, kInt, kFloat, kString, kSeq, kMap } kind = Kind::kNull;
-  std::string text;             ///< of scalars
-  std::vector<Node> items;      ///< of kSeq
-  std::vector<Member> members;  ///< of kMap, in file order; keys are unique
+  std::string text;             ///< the text of a scalar
+  std::vector<Node> items;      ///< the items of a kSeq
+  std::vector<Member> members;  ///< the members of a kMap, in file order; keys are unique
   SourcePosition position;
 
   const Node* find(std::string_view key) const;
@@ -31,9 +31,9 @@ struct Member {
   Node value;
 };
 
-inline constexpr std::size_t kMaxBytes = 1 << 20;  ///< of a file
-inline constexpr std::size_t kMaxDepth = 32;       ///< of nested lists and maps
-inline constexpr std::size_t kMaxNodes = 1 << 15;  ///< of a tree, aliases expanded
+inline constexpr std::size_t kMaxBytes = 1 << 20;  ///< most bytes in a file
+inline constexpr std::size_t kMaxDepth = 32;       ///< most levels of lists and maps within one another
+inline constexpr std::size_t kMaxNodes = 1 << 15;  ///< most nodes in a tree, aliases expanded
 
 /// Both front ends: duplicate keys are appended to `issues` and the first value is kept; what cannot be read
 /// at all (syntax, a second document, limits above, text that is not UTF-8) is thrown as a ConfigError.
