@@ -12,8 +12,8 @@ namespace carousel::scene {
 
 namespace {
 
-constexpr std::uint32_t kVariants = 3;  // of groups at each depth
-constexpr double kSpacing = 1.0;  // of a sunflower's points, in radii of what stands there: as dense at all depths
+constexpr std::uint32_t kVariants = 3;  // number of different groups at each depth
+constexpr double kSpacing = 1.0;        // between a sunflower's points, in radii of the objects there, at all depths
 
 /// The linear part and the translation of a placement, in double: they are rounded once, when all are multiplied.
 struct Map {
@@ -28,7 +28,7 @@ struct Map {
 DVec3 sunflower(std::int64_t k, double spacing) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   const double radius = spacing * std::sqrt(double(k) + 0.5), angle = double(k) * golden;
-  // Of floats, as everywhere in built-in scenes: the same bits with any mathematical library.
+  // The angle is rounded to float, as everywhere in built-in scenes: any mathematical library gives the same bits.
   return {radius * double(std::cos(static_cast<float>(std::fmod(angle, 2 * std::numbers::pi)))), 0,
           radius * double(std::sin(static_cast<float>(std::fmod(angle, 2 * std::numbers::pi))))};
 }
@@ -124,7 +124,7 @@ class Nested {
   HashRandom random_;
   std::int64_t instances_, members_;
   std::uint32_t shapes_;
-  double radius_ = 0.5;                   // of what was defined last; shapes are about so large
+  double radius_ = 0.5;                   // radius of the groups defined last; shapes are about so large
   std::vector<std::vector<Map>> placed_;  // by group: where its members stand in it
 };
 

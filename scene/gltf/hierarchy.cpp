@@ -47,7 +47,7 @@ void Hierarchy::add_own(const DMat4& node_from_model) {
   node.places.add(node_from_model);
 }
 
-/// What is found on the way from the last node to the first, children before their parents.
+/// The results of the walk from the last node to the first, children before their parents.
 struct Hierarchy::Finding {
   struct Node {
     std::vector<std::size_t> children;  // with anything in them, in order

@@ -37,8 +37,8 @@ class Hierarchy {
     DMat4 local, world;
     std::size_t first_instance;
     std::size_t own = 0;  ///< instances
-    DMat4 only_own{1};    ///< of one
-    Digest places;        ///< of the node's own instances
+    DMat4 only_own{1};    ///< place of the node's own instance, if it has one alone
+    Digest places;        ///< digest of the places of the node's own instances
   };
   /// Everything at and below a node, as one member of a group around it.
   struct Content {

@@ -16,7 +16,8 @@ namespace carousel::scene {
 /// any contents of the file the function returns a scene or throws a SceneError that names file, JSON path and error.
 Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn = {}, const ImageChoice& images = {});
 
-/// The same from memory; `name` stands for the file in messages. Buffers and images must be embedded.
+/// Reads a glTF 2.0 file from memory, as load_gltf() does. `name` stands for the file in messages. Buffers and images
+/// must be embedded.
 Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name, const WarningSink& warn = {},
                             const ImageChoice& images = {});
 

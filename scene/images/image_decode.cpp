@@ -14,8 +14,9 @@ namespace carousel::scene {
 
 namespace {
 
-/// What a decoder keeps beside the picture while it works, for each pixel: libwebp a second picture and its transforms,
-/// libjpeg-turbo the coefficients of a progressive file (16 bits of each of up to four components).
+/// Bytes of a pixel in the picture, and those that a decoder keeps beside it while it works. libwebp keeps a second
+/// picture and its transforms. libjpeg-turbo keeps the coefficients of a progressive file (16 bits of each of up to
+/// four components).
 constexpr std::uint64_t kBytesPerPixel = 4, kWorkPerPixel = 8;
 
 enum class Format { kNone, kPng, kJpeg, kWebp };

@@ -138,7 +138,7 @@ Survey survey(const FloorPlan& plan, const DVec2& lo, const DVec2& hi) {
       const DVec2 to = direction(d, kDirections);
       const Sight sight = plan.look(place.at, to);
       lengths[d] = length_in_box(sight, place.at, to, lo, hi);
-      if (sight.front) place.area += lengths[d] * lengths[d];  // what is open is not overlooked
+      if (sight.front) place.area += lengths[d] * lengths[d];  // directions that end at no wall's front add no area
       seen += sight.front;
       hits += sight.hit();
       fronts += sight.front;

@@ -136,7 +136,7 @@ struct Instance {
   MeshId mesh;
   Affine world_from_model;
   std::uint32_t placement = kNoPlacement;  ///< in Scene::placements: of the innermost group that it belongs to
-  std::uint32_t member = 0;                ///< of that group
+  std::uint32_t member = 0;                ///< index of the member in that group
 };
 
 /// Instances and groups that are placed together. A group stands in Scene::groups before those that
@@ -156,7 +156,7 @@ struct GroupPlacement {
   std::uint32_t group = 0;              ///< in Scene::groups
   Affine world_from_group;              ///< composed as Instance::world_from_model is; may be singular
   std::uint32_t parent = kNoPlacement;  ///< in Scene::placements
-  std::uint32_t member = 0;             ///< of the parent's group
+  std::uint32_t member = 0;             ///< index of the member in the parent's group
 };
 
 struct Camera {
@@ -180,7 +180,7 @@ struct PunctualLight {
   float inner_cone_cos = 1, outer_cone_cos = 0.70710678f;
 };
 
-/// What a loader put into a scene because the file has none.
+/// Names the items that a loader added to a scene because the file has none of them.
 struct Added {
   bool camera = false;    ///< cameras[0] was made up
   bool inside = false;    ///< and stands inside the model
@@ -201,7 +201,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;         ///< all there are, also those within groups
   std::vector<Group> groups;               ///< the hierarchy beside it, which changes nothing that a ray meets
-  std::vector<GroupPlacement> placements;  ///< of groups
+  std::vector<GroupPlacement> placements;  ///< placements of groups, parents before those inside
   std::vector<PunctualLight> lights;
   std::vector<Camera> cameras;  ///< at least one: the file's, or one that was made up
   Sky sky;

@@ -170,7 +170,7 @@ void DracoReader::decode_primitive(const Json& primitive, const std::string& pat
     std::size_t accessor;
     std::int64_t id;
     std::string path;
-    std::string name;  ///< of the attribute; empty: indices
+    std::string name;  ///< name of the attribute; empty: indices
   };
   std::vector<Target> targets{{primitive["indices"].get<std::size_t>(), kIndices, json_path(path, "indices"), ""}};
   for (const auto& [name, id] : extension["attributes"].items()) {

@@ -36,7 +36,7 @@ class DracoReader {
   AccessorTable& accessors_;
   const ImportBudget& budget_;
   const bool required_;                    ///< the file requires the extension
-  std::map<std::size_t, Source> sources_;  ///< of an accessor's data
+  std::map<std::size_t, Source> sources_;  ///< the source of an accessor's data
   /// The accessors that stand for one of the file whose data has another source.
   std::map<std::pair<std::size_t, Source>, std::size_t> others_;
 };

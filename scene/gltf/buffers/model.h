@@ -17,7 +17,7 @@ namespace carousel::scene {
 struct GltfModel {
   tinygltf::Model model;
   std::vector<bool> buffer_has_data;  ///< one a buffer; a buffer without data holds one unused byte
-  std::uint64_t bytes_read = 0;       ///< of buffers
+  std::uint64_t bytes_read = 0;       ///< bytes of all buffers
 };
 
 /// Runs tinygltf over a document that passed check_schema and check_links. Carousel supplies all bytes it gets: files

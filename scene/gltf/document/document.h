@@ -23,7 +23,7 @@ struct GltfDocument {
   std::string file;  ///< its name in messages
   Json json;         ///< an object; `asset.version` is 2.x
   bool is_glb = false;
-  std::span<const std::byte> binary_chunk;  ///< of a .glb; refers to the bytes that were parsed
+  std::span<const std::byte> binary_chunk;  ///< the binary chunk of a .glb; refers to the bytes that were parsed
 
   [[noreturn]] void fail(const std::string& path, const std::string& message) const;
 };
@@ -46,7 +46,7 @@ class ImportBudget {
   /// Takes bytes for the rest of the import. Throws a SceneError at `path` that begins with `what` ("the image") if
   /// fewer are left.
   void take(std::uint64_t bytes, const std::string& path, const std::string& what) const;
-  /// The same for as long as the result lives.
+  /// Takes bytes for as long as the result lives. Throws as take() does.
   [[nodiscard]] MemoryBudget::Loan lend(std::uint64_t bytes, const std::string& path, const std::string& what) const;
   MemoryBudget& memory() const { return memory_; }
 

@@ -8,9 +8,9 @@ namespace carousel::scene {
 
 /// The entries of a file's arrays that decide what is seen: all others may have faults without harm.
 struct Uses {
-  std::vector<bool> textures, images, samplers;  ///< those that materials use, occlusion apart, which is not read
-  std::vector<bool> cameras;                     ///< those of nodes
-  std::vector<bool> accessors;                   ///< those of meshes and instances, not of animations or skins
+  std::vector<bool> textures, images, samplers;  ///< used by materials, for other than occlusion, which is not read
+  std::vector<bool> cameras;                     ///< used by nodes
+  std::vector<bool> accessors;                   ///< used by meshes and instances, not by animations or skins
 };
 
 /// For the JSON after check_schema.
