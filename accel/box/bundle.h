@@ -10,8 +10,8 @@ namespace carousel::accel {
 
 /// Similar rays, seen as one (US 11308683, fig. 2): bounds of where they start and where they go, one cache line
 /// beside the ray's own. World space, or with kInModelSpace that of the instance it stands in; every ray has tmin = 0
-/// and is valid(). Of directions, -0 counts as less than +0: the slab test goes by the sign bit, and so the bounds have
-/// the same sign exactly when all rays have it.
+/// and is valid(). Among directions, -0 counts as less than +0: the slab test goes by the sign bit, and so the bounds
+/// have the same sign exactly when all rays have it.
 struct alignas(64) BundleRecord {
   float origin_min[3], origin_max[3];
   float direction_min[3], direction_max[3];

@@ -72,9 +72,9 @@ class BundleInterval {
     return crossings.meet(crossings.near, tmax_);
   }
 
-  /// Every ray whose range ends where the bundle's does meets the box, by exact arithmetic. Of a bundle in double
-  /// without widening: of floats, its distances are off by less than 2^-51 and never overflow. (One is infinite only
-  /// where a direction may be zero, and then a finite exit along another axis contradicts it.)
+  /// Every ray whose range ends where the bundle's does meets the box, by exact arithmetic. The bundle is in double
+  /// without widening: its distances, made from floats, are off by less than 2^-51 and never overflow. (One is infinite
+  /// only where a direction may be zero, and then a finite exit along another axis contradicts it.)
   template <class V>
   requires std::is_same_v<Real, double> Mask<V> all_hit_exactly(const BoxPlanes<V>& box)
   const {

@@ -30,10 +30,10 @@ class BundleSilhouette {
     double hindmost, foremost;  ///< origins
     double slowest, fastest;    ///< sizes of directions
   };
-  /// Of a box and an axis, from an origin to a plane.
+  /// The distances from the rays' origins to the planes of a box, along each axis.
   struct Ways {
     double to_near_least[3], to_near_most[3], to_far_least[3], to_far_most[3];
-    unsigned edges;  ///< of the silhouette
+    unsigned edges;  ///< number of edges in the silhouette of the box
   };
   Ways ways(const Aabb& box) const;
 

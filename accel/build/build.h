@@ -7,8 +7,8 @@
 
 namespace carousel::accel {
 
-/// Deterministic for any executor. Of `accuracy` the transform decides what instances hold and how far their world
-/// boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
+/// Deterministic for any executor. The transform level of `accuracy` decides the contents of instances and how far
+/// their world boxes are padded. Throws SceneError when the scene has more nodes or blocks than a NodeRef can name.
 /// With `ranks` each of them calls, builds the structures of its share of the meshes, and has these and the top level
 /// (Partition); `planes`, groups, elements other than boxes, and quantised boxes are then not possible.
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy = {},

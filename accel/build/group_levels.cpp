@@ -103,7 +103,7 @@ class GroupLevels {
     Aabb box;
     int depth = 0;  // with the groups in it
   };
-  /// What the slack of a group's tests follows from, of everything below a placement.
+  /// The values that decide the slack of a group's tests, over everything below a placement.
   struct Below {
     double largest_row = 1;
     Aabb translations;

@@ -60,7 +60,7 @@ std::vector<std::uint32_t> unquantised_nodes(const Accel& accel) {
     const std::uint32_t at = open.back();
     open.pop_back();
     const Node& node = accel.nodes[at];
-    if (!node.above_instances) continue;  // of merged meshes
+    if (!node.above_instances) continue;  // the nodes of merged meshes hold no world boxes
     if (holds_world_boxes(accel, node)) out.push_back(at);
     for (int lane = 0; lane < node.count; ++lane)
       if (node.child[lane].is_inner()) open.push_back(node.child[lane].node());

@@ -10,8 +10,8 @@ namespace carousel::accel {
 
 namespace {
 
-constexpr int kTaskDepth = 2;                  // of the wide nodes whose subtrees are tasks
-constexpr int kPriceTaskDepth = 8;             // of binary nodes likewise
+constexpr int kTaskDepth = 2;                  // depth of the wide nodes whose subtrees are tasks
+constexpr int kPriceTaskDepth = 8;             // binary nodes above this depth are priced by tasks
 constexpr std::size_t kDividedTree = 1 << 15;  // places of the smallest tree that is divided into tasks
 
 std::uint32_t saturating_add(std::uint32_t a, std::uint32_t b) {

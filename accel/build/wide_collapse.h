@@ -26,7 +26,7 @@ struct WideTree {
 struct BlockPrimitives {
   std::uint32_t first, count;
 };
-/// Of consecutive blocks.
+/// The primitives of consecutive blocks, block by block.
 struct BlockRun {
   std::uint32_t first_block = 0;
   std::vector<BlockPrimitives> blocks;

@@ -79,7 +79,7 @@ CaseValues make_nested(CaseRandom& random) {
   const Vec3 size = c.box.extent();
   for (int axis = 0; axis < 3; ++axis) {
     for (int side = 0; side < 2; ++side) {
-      const std::uint32_t how = random.below(4);  // the same face, a few floats away, or anywhere
+      const std::uint32_t how = random.below(4);  // 0 keeps the face, 1 to 3 move it far, a little, or a few floats
       if (how == 0) continue;
       float& plane = side ? outer.hi[axis] : outer.lo[axis];
       const float away = how == 1 ? size[axis] : how == 2 ? std::fabs(plane) * 0x1p-10f : 0.0f;

@@ -116,7 +116,7 @@ double depth(const std::vector<Corners>& triangles, const DVec3& p) {
   return least;
 }
 
-/// Of a mesh whose size is about 1.
+/// Least depth of the ray's origin inside the mesh, whose size is about 1: nearer to the surface nothing is judged.
 constexpr double kLeastDepth = 0x1p-9;
 
 void judge_placed_mesh(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,

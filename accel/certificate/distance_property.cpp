@@ -26,7 +26,7 @@ namespace {
 
 struct DistanceBound {
   double weights;  ///< mu
-  double off;      ///< of the distance, at most
+  double off;      ///< most that the distance may be off
 
   DistanceBound(const Ray& ray, const Corners& p, const TriangleOracle& oracle) {
     constexpr double kEps = 0x1p-53;

@@ -32,10 +32,10 @@ struct Judgement {
   double error = 0;  ///< in the property's unit
 };
 
-/// The same in words.
+/// The judgement of one case in words.
 struct CaseStory {
   std::string kernel;  ///< the answer of the level's own arithmetic
-  std::string exact;   ///< what exact arithmetic says
+  std::string exact;   ///< the answer of exact arithmetic
 };
 
 /// Something that the levels of accuracy promise, or that is only counted of them, with the cases that try it.
@@ -43,7 +43,7 @@ struct Property {
   std::string_view name;
   std::uint32_t number;         ///< distinguishes its random numbers; never reused
   std::string_view says;        ///< in one line
-  std::string_view error_unit;  ///< of Judgement::error; empty when there is none
+  std::string_view error_unit;  ///< unit of Judgement::error; empty when there is none
   std::vector<AccuracyKey> keys;
   std::vector<CaseField> fields;
 
@@ -56,7 +56,7 @@ struct Property {
                 CaseStory* story);
 };
 
-/// Of every combination of the property's keys, defaults elsewhere.
+/// The levels with every combination of the property's keys; other keys have their defaults.
 std::vector<AccuracyConfig> levels_of(const Property& property);
 /// As in "watertight/conservative".
 std::string level_name(const Property& property, const AccuracyConfig& level);

@@ -26,7 +26,7 @@ class QuadInverse {
   }
 
   Vec point(const Vec3& p) const { return sum(p, false); }
-  /// The same with every term positive, which a relative error bound multiplies.
+  /// The sum of the magnitudes of the terms of point(), which a relative error bound multiplies.
   Vec terms(const Vec3& p) const { return sum(p, true); }
 
   static double norm(const Vec& v) { return static_cast<double>(Quad(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]))); }

@@ -17,7 +17,7 @@ namespace carousel::accel {
 
 namespace {
 
-/// Of a matrix whose inverse is worth judging: beyond, double arithmetic leaves too little of it.
+/// Largest condition of a matrix whose inverse is judged: beyond it, double arithmetic is too inaccurate to judge by.
 constexpr double kWorstCondition = 0x1p24;
 double condition(const Mat3& linear) {
   const DMat3 m(linear), inverse = glm::inverse(m);

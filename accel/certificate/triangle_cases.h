@@ -21,7 +21,7 @@ enum class TriangleCaseKind {
   kEdgeAimed,  ///< at a point of an edge, some ulps off
   kCornerAimed,
   kGrid,           ///< small whole numbers: on edges, in planes, without area
-  kScaledGrid,     ///< the same times powers of two, one an axis
+  kScaledGrid,     ///< as kGrid, times a power of two for each axis
   kWildExponents,  ///< anything from 2^-149 to 2^128
   kSliver,
   kDegenerate,  ///< corners that coincide or stand on a line

@@ -18,7 +18,7 @@ namespace {
 
 constexpr float kLargestFloat = std::numeric_limits<float>::max();
 
-/// Of a crossing that the oracle knows: where it lies in the ray's range.
+/// The position, in the ray's range, of a crossing that the oracle knows.
 struct Range {
   bool inside,
       at_an_end;  ///< at_an_end: outside by so little that the nearest float is the end, and either answer is right

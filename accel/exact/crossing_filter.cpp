@@ -10,7 +10,7 @@ namespace carousel::accel {
 // No bound below has to account for underflow: every vertex is a multiple of 2^-298, so volumes are of 2^-745 and
 // numerators of 2^-894, and no term of theirs is denormal. Nor does anything overflow: vertices stay below 2^258.
 FilteredCrossing filtered_crossing(const Ray& ray, const std::array<Vec3, 3>& model, const scene::Affine& m) {
-  constexpr double kEps = 0x1p-53;  // of one rounding
+  constexpr double kEps = 0x1p-53;  // relative error of one rounding
   DVec3 p[3];
   double large = 0, size = 0;
   for (int k = 0; k < 3; ++k) {
@@ -28,7 +28,7 @@ FilteredCrossing filtered_crossing(const Ray& ray, const std::array<Vec3, 3>& mo
       size = std::max(size, terms);
     }
   }
-  const double e = 5 * kEps * size;  // of a vertex's coordinate, at most
+  const double e = 5 * kEps * size;  // bounds the error of a vertex's coordinate
   const DVec3 d(ray.direction);
   const double along = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
   // A volume is six products d p p: two a component of d. Each is off by what e makes of it and by five roundings.

@@ -30,7 +30,7 @@ std::optional<ExactSphereCrossings> exact_sphere(const Ray& ray, const scene::Sp
 }
 
 DVec3 ExactSphereCrossings::normal(std::size_t k) const {
-  constexpr unsigned kBits = 256;  // what a position loses to cancellation is far less
+  constexpr unsigned kBits = 256;  // far more than a position loses to cancellation
   const Dyadic numerator = t[k].numerator(kBits), &whole = t[k].denominator, size = whole * radius;
   DVec3 out;
   for (std::size_t axis = 0; axis < 3; ++axis)

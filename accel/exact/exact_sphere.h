@@ -13,7 +13,7 @@ namespace carousel::accel {
 
 /// The crossings of a ray's line with a sphere that is placed by R x + T, an ellipsoid, without rounding.
 struct ExactSphereCrossings {
-  std::array<ExactRoot, 2> t;  ///< of the way in and of the way out; equal where the line touches
+  std::array<ExactRoot, 2> t;  ///< where the line enters and where it leaves; equal where it touches
 
   /// The outward unit normal at one of them, in model space: each coordinate is off by a rounding of double or two.
   DVec3 normal(std::size_t k) const;

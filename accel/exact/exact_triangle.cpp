@@ -53,7 +53,7 @@ Bounded volume(const double* a, const double* b, const double* c) {
   return {value, kVolumeError * magnitude};
 }
 
-/// The same exactly, added to `sum`; `a_rest` may be null.
+/// Adds the exact a . (b x c) to `sum`, where `a` is the sum of `a` and `a_rest`; `a_rest` may be null.
 void add_volume(const double* a, const double* a_rest, const Offset& b, const Offset& c, Expansion& sum) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;

@@ -139,7 +139,7 @@ class CutLines {
     const Tag d;
     const V height =
         hn::Sub(hn::Add(hn::Add(hn::Mul(p.x, from_x_), hn::Mul(p.y, from_y_)), hn::Mul(p.z, from_z_)), p.distance);
-    const V outside = hn::Sub(height, margin_);  // of the origin
+    const V outside = hn::Sub(height, margin_);  // distance of the origin beyond the plane
     const V along = hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, direction.x)), hn::Mul(p.y, hn::Set(d, direction.y))),
                             hn::Mul(p.z, hn::Set(d, direction.z)));
     const V zero = hn::Zero(d), at = hn::Div(outside, hn::Neg(along));

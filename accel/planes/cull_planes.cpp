@@ -59,7 +59,7 @@ class PlaneBuilder {
 
   /// The points that planes are fitted to.
   struct Corners {
-    std::vector<Vec3> points;  // of triangles, three by three, or of boxes
+    std::vector<Vec3> points;  // corners of triangles, three by three, or of boxes
     std::vector<BlockSphere> spheres;
 
     float distance_along(const CullPlane& plane, const Aabb& box) const {
@@ -182,7 +182,7 @@ class PlaneBuilder {
     for (std::size_t i = 0; i < lanes.size(); ++i) found_[index][lanes[i]] = std::move(planes[i]);
   }
 
-  /// Of all primitives below.
+  /// Appends the corners of all primitives below `ref`.
   void append_corners(NodeRef ref, Corners& out) const {
     if (ref.is_inner()) {
       const Node& node = accel_.nodes[ref.node()];

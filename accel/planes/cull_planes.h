@@ -12,8 +12,8 @@ namespace carousel::accel {
 /// planes. Deterministic for any executor. Without planes (count 0) nothing changes.
 void add_cull_planes(Accel& accel, const scene::Scene& scene, const CullPlanesConfig& config, Executor& executor);
 
-/// The same structure with nothing but boxes: what rays are traced through to find out what planes and bounding spheres
-/// would have lost.
+/// A copy of the structure with boxes alone. Rays are traced through it to find the hits that planes and bounding
+/// spheres would have lost.
 Accel plain_copy(const Accel& accel);
 /// True if add_cull_planes() would return the structure unchanged.
 bool is_plain(const Accel& accel);

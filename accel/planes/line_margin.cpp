@@ -34,14 +34,15 @@ constexpr double kTestRounding = 13 * kUnitRoundoff, kReserve = 32.0 / 19;
 constexpr double kKernelRounding = 6 * kUnitRoundoff;
 /// The second-order terms of the derivation, relative to the first-order ones, for a at most kMost.
 constexpr double kSecondOrder = 1.01, kMost = 0x1p-8;
-/// Of rows of R and M: within it, ray directions that CullRay takes in the world are such as it takes below.
+/// No margin is known for larger rows of R and M. Up to this size, CullRay takes a ray's direction below if it takes it
+/// in the world.
 constexpr double kLargest = 0x1p30;
 
 double largest(const DVec3& v) {
   return std::max({v.x, v.y, v.z});
 }
 
-/// Of a and b above.
+/// The margin for a and b of the derivation above, with the rounding of the test and a reserve.
 LineMargin margin(double a, double b, double least) {
   return {rounded_up(kReserve * (kTestRounding + a)), rounded_up(kReserve * b + least)};
 }

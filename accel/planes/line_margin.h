@@ -20,7 +20,7 @@ inline void widen(LineMargin& margin, const LineMargin& other) {
   margin = {std::max(margin.per_reach, other.per_reach), std::max(margin.least, other.least)};
 }
 
-/// Of every entry of a matrix.
+/// The magnitude of every entry of a matrix.
 DMat3 magnitudes(const DMat3& m);
 
 /// Below the instances, where the line is that of the ray the kernel gets.

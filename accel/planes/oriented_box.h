@@ -32,7 +32,7 @@ class OrientedBoxChoice {
  private:
   const BoxedShape& child_;
   std::array<CullPlane, 6> best_{};
-  double area_ = 0;  // of half the surface; 0: nothing has been offered
+  double area_ = 0;  // half the surface of the best box; 0: nothing has been offered
 };
 
 }  // namespace carousel::accel

@@ -24,7 +24,7 @@ bool set_normal(const DVec3& direction, CullPlane& plane);
 /// distance cuts off no point. Infinite if there is no such float.
 float distance_along(const CullPlane& plane, const Aabb& box, const std::vector<Vec3>& points);
 
-/// The same for a sphere.
+/// Distance of the farthest point of a sphere along `n`, with the same origin and rounding as that of points above.
 float distance_along(const CullPlane& plane, const Aabb& box, const Vec3& centre, float radius);
 
 /// The part of the box's volume that the plane cuts off, between 0 and 1. The estimate decides if a plane is worth it.

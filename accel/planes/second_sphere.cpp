@@ -12,9 +12,9 @@ namespace carousel::accel {
 namespace {
 
 constexpr int kSteps = 64;
-constexpr int kCells = 8;                                  // of the box along an axis, to see what the sphere cuts off
-constexpr int kLeastOff = kCells * kCells * kCells / 256;  // of its cells, as of planes
-constexpr double kDistanceRounding = 1 + 0x1p-48;          // of sums, squares and a root
+constexpr int kCells = 8;                                  // cells of the box along an axis; those outside are counted
+constexpr int kLeastOff = kCells * kCells * kCells / 256;  // cells to cut off at least, a part as for planes
+constexpr double kDistanceRounding = 1 + 0x1p-48;          // covers the rounding of sums, squares and a root
 
 class Enclosed {
  public:
@@ -23,7 +23,7 @@ class Enclosed {
 
   struct Farthest {
     double distance = 0;
-    DVec3 centre{0, 0, 0};  // of what is farthest
+    DVec3 centre{0, 0, 0};  // centre of the farthest point or sphere
   };
   Farthest farthest_from(const DVec3& from) const {
     Farthest most;

@@ -40,7 +40,7 @@ class TopPlanes {
   const scene::Scene& scene_;
   CullPlanesConfig::Fit fit_;
   const std::vector<LanePlanes>& found_;
-  std::vector<std::optional<LineMargin>> instance_margins_, node_margins_;  // of the top level, by node
+  std::vector<std::optional<LineMargin>> instance_margins_, node_margins_;  // for the top level; the latter by node
   std::vector<Aabb> model_boxes_;                                           // by instance
 };
 

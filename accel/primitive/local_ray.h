@@ -37,7 +37,7 @@ struct LocalRay {
   Slab slab;
   TriangleRay triangle;
   std::uint32_t instance;
-  float instance_entry;  ///< of the ray into the instance's world box
+  float instance_entry;  ///< distance at which the ray enters the instance's world box
   // For tests of few configurations: planes, procedural primitives, non-opaque materials.
   Vec3 origin, direction;
   const RayRecord* record;  ///< the ray in world space, and what it wants

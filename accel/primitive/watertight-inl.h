@@ -110,7 +110,8 @@ HWY_INLINE std::uint32_t watertight_lanes(D d, const TriangleBlock& block, std::
   auto outside = is_outside(u, v, w, det);
   if (hn::AllTrue(d, outside)) return 0;
   if constexpr (std::is_same_v<T, float>) {
-    // Of products that overflow or underflow neither sum nor quotient can be trusted. Unused lanes are not looked at.
+    // If products overflow or underflow, neither their sum nor their quotient can be trusted. Unused lanes are not
+    // looked at.
     const auto size = hn::Abs(det);
     const auto usual = hn::And(hn::Ge(size, hn::Set(d, kLeastEdge)), hn::Le(size, hn::Set(d, kLargestEdge)));
     const auto extreme = hn::AndNot(hn::Or(outside, usual), hn::Eq(akz, akz));

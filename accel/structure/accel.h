@@ -25,8 +25,8 @@ struct InstanceNode {
   InstanceTransform transform;
   Aabb world;                   ///< a hit has to lie in it (docs/design.md, What a hit is)
   std::uint8_t strip_size = 0;  ///< shapes below the root
-  bool group = false;           ///< of a group's structure, described by a GroupPlacement
-  bool member = false;          ///< of a group: a ray's way to it leads through a group's nodes
+  bool group = false;           ///< the root belongs to a group's structure, described by a GroupPlacement
+  bool member = false;          ///< the instance is a group's member: a ray's way to it leads through a group's nodes
   std::uint32_t triangles = 0;
 };
 
@@ -41,13 +41,13 @@ struct Accel {
   NodeArray full_nodes;                        ///< with bvh.storage: quantised the nodes as they were; else empty
   std::vector<CullPlane> planes;               ///< in order of the nodes; empty without cull_planes
   BoundingElements elements;                   ///< tested instead of nodes' boxes; empty with bvh.elements: boxes
-  bool shared_normals = false;                 ///< of siblings; `planes` repeats them
+  bool shared_normals = false;                 ///< siblings share their normals; `planes` repeats them
   bool second_spheres = false;                 ///< in place of planes, see CullPlane
   bool planes_first = false;                   ///< a child's planes are tested before its box
-  std::uint64_t plane_bytes = 0;               ///< of the planes, normals that are shared counted once
+  std::uint64_t plane_bytes = 0;               ///< bytes of the planes, with shared normals counted once
   std::vector<InstanceNode> instances;         ///< indexed as Scene::instances; behind these the placements of groups
-  std::vector<GroupPlacement> groups;          ///< of the last of the instances; empty with two levels
-  std::vector<std::uint32_t> members;          ///< of these placements: indices of instances
+  std::vector<GroupPlacement> groups;          ///< one for each placement, the last instances; empty with two levels
+  std::vector<std::uint32_t> members;          ///< instances that are the members of these placements, in their order
   MergedMeshes merged;                         ///< meshes of several instances with one structure in the top level
   NodeKey root;                                ///< as root_key()
   std::shared_ptr<const Partition> partition;  ///< null: all shapes are here
@@ -64,7 +64,7 @@ struct Accel {
 
   /// A hit that is reported costs a call.
   bool calls_any_hit() const { return (has_non_opaque && any_hit != nullptr) || all_hits != nullptr; }
-  /// Of what is here.
+  /// Bytes of the structure at this rank.
   std::size_t size_bytes() const {
     return nodes.here() * sizeof(Node) + blocks.here() * sizeof(TriangleBlock) + elements.size_bytes() + plane_bytes +
            instances.size() * sizeof(InstanceNode) + groups.size() * sizeof(GroupPlacement) +
@@ -85,7 +85,7 @@ struct Accel {
       return child.instance_index();
     return members[group(parent).first_member + child.instance_index()];
   }
-  /// Of an instance that is the placement of a group.
+  /// The placement that an instance stands for; the instance must be the placement of a group.
   const GroupPlacement& group(std::uint32_t instance) const {
     return groups[instance - (instances.size() - groups.size())];
   }

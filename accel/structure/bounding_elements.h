@@ -13,11 +13,11 @@ struct BoundingElements {
   std::vector<NodeOrientedBoxes> oriented_boxes;
 
   bool empty() const { return spheres.empty() && oriented_boxes.empty(); }
-  /// Of all of them.
+  /// Bytes of the elements of all nodes.
   std::size_t size_bytes() const {
     return spheres.size() * sizeof(NodeSpheres) + oriented_boxes.size() * sizeof(NodeOrientedBoxes);
   }
-  /// Of those of a node. Not for none.
+  /// Bytes of the elements of one node. There must be elements.
   std::size_t node_bytes() const { return spheres.empty() ? sizeof(NodeOrientedBoxes) : sizeof(NodeSpheres); }
   /// The first `count` children of a node that the ray may meet, as intersect_spheres() says. Not for none.
   std::uint32_t intersect(std::uint32_t node, int count, const Vec3& origin, const Vec3& direction, float tmin,

@@ -10,7 +10,7 @@
 
 namespace carousel::accel {
 
-/// What the placement of a group has besides its transform and its world box, the union of those below it.
+/// The facts about the placement of a group besides its transform and its world box, the union of its members' boxes.
 ///
 /// A hit does not depend on the groups around it (docs/design.md, What a hit is, knows instances and triangles only),
 /// so a group's nodes may drop no ray that hits something below them: their boxes are tested with a slack. Let R, T
@@ -25,7 +25,7 @@ namespace carousel::accel {
 struct GroupPlacement {
   std::uint32_t first_member = 0;  ///< in Accel::members: of child k of a node, first_member + its index
   std::uint32_t placement = 0;     ///< in Scene::placements
-  Vec3 slack{0};                   ///< of boxes in the group's space, for each unit of L
+  Vec3 slack{0};                   ///< added to boxes in the group's space, for each unit of L
   float beyond = 0;                ///< L is so much larger than the largest distance from the world box
   bool from_origin = false;        ///< accuracy.transform: inverse_matrix, whose errors grow with |o| as well
 
@@ -44,7 +44,7 @@ struct GroupPlacement {
 /// Bytes of hardware's record of a group's member besides its transform: the world box, and the number of the instance
 /// or of the first member's record. The members of a placement have their records one behind the other.
 inline constexpr std::uint32_t kMemberBytes = 6 * 4 + 4;
-/// Of a group's placement besides: slack and `beyond`.
+/// Bytes of the record of a group's placement besides that of a member: slack and `beyond`.
 inline constexpr std::uint32_t kGroupBytes = 4 * 4;
 
 }  // namespace carousel::accel

@@ -39,7 +39,7 @@ class NodeRef {
   constexpr std::uint32_t node() const { return bits_; }
   constexpr bool is_instance() const { return kind() == Kind::kInstance; }
   constexpr bool is_procedural() const { return kind() == Kind::kProcedural; }
-  // Of either kind of leaf.
+  // Valid for either kind of leaf.
   constexpr std::uint32_t first_block() const { return bits_ & 0x03ffffffu; }
   constexpr std::uint32_t triangles() const { return ((bits_ >> 26) & 15u) + 1; }
   constexpr std::uint32_t blocks() const { return (triangles() + 3) / 4; }

@@ -10,7 +10,7 @@ namespace carousel::accel {
 
 namespace {
 
-constexpr double kFaceSlack = 0x1p-17;       // of the reach, see the header
+constexpr double kFaceSlack = 0x1p-17;       // a part of the reach, see the header
 constexpr double kLeastFaceSlack = 0x1p-70;  // where products underflow in the kernel (accel/planes/cull_plane_clip.h)
 
 /// A ray along the normals of a lane's boxes.

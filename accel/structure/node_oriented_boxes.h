@@ -10,7 +10,7 @@ namespace carousel::accel {
 /// one another, but for rounding, and the entries of each add up to nearly 1 and not more.
 struct alignas(32) NodeOrientedBoxes {
   float normal[3][3][kMaxWidth];                     ///< [k][axis][lane]
-  float lo[3][kMaxWidth], hi[3][kMaxWidth];          ///< of n[k] . x for all points x of primitives below
+  float lo[3][kMaxWidth], hi[3][kMaxWidth];          ///< range of n[k] . x over all points x of primitives below
   float box_lo[3][kMaxWidth], box_hi[3][kMaxWidth];  ///< and for all points of their boxes
 };
 static_assert(sizeof(NodeOrientedBoxes) == 672);

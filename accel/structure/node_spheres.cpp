@@ -10,7 +10,7 @@ namespace carousel::accel {
 
 namespace {
 
-constexpr double kSlack = 0x1p-18;   // of the distance, see the header
+constexpr double kSlack = 0x1p-18;   // a part of the distance, see the header
 constexpr double kLeast = 0x1p-120;  // where reciprocals overflow
 
 }  // namespace

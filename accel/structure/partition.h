@@ -24,7 +24,7 @@ struct BuildRanks {
 struct Partition {
   std::uint32_t rank = 0;
   std::vector<std::uint32_t> node_begin, block_begin;  ///< by rank, and the end
-  std::uint32_t above_end = 0;                         ///< of the nodes that every rank has; guests begin
+  std::uint32_t above_end = 0;                         ///< the end of the nodes that every rank has, where guests begin
 
   std::uint32_t ranks() const { return static_cast<std::uint32_t>(node_begin.size() - 1); }
   /// The rank that has a shape; none: every one has it.

@@ -28,7 +28,7 @@ inline std::uint32_t promoted_bytes(AccuracyConfig c) {
   return instance_bytes(c);
 }
 
-/// Of a ray in model space, as `transformed_ray: store` keeps it beside the record: origin and direction.
+/// Bytes of a ray in model space, which `transformed_ray: store` keeps beside the record: origin and direction.
 inline constexpr std::uint32_t kTransformedRayBytes = 6 * 4;
 
 /// Transforms whose time an inversion takes in the transform unit. A transform is 18 products, R^-1 times an origin

@@ -25,8 +25,8 @@ inline Vec3 folded_translation(const DMat3& inverse, const Vec3& translation) {
   return out;
 }
 
-/// The same with fused multiply-adds that start from the translation: the fairest the traditional form can be made.
-/// For tables and tests; the kernels never fuse (docs/design.md, One arithmetic).
+/// As inverse_matrix(), but with fused multiply-adds that start from the translation: the fairest the traditional form
+/// can be made. For tables and tests; the kernels never fuse (docs/design.md, One arithmetic).
 inline Vec3 inverse_matrix_fma(const Mat3& inverse, const Vec3& folded, const Vec3& p) {
   Vec3 out;
   for (int row = 0; row < 3; ++row)

@@ -33,7 +33,7 @@ DMat3 magnitudes(const DMat3& m) {
 /// origin's difference is rounded as well, and from there to the point it is at most twice the size of the box.
 DVec3 transform_error(const scene::Affine& m, const DVec3& size, TransformLevel level) {
   const DMat3 linear = magnitudes(DMat3(m.linear)), inverse = magnitudes(glm::inverse(DMat3(m.linear)));
-  const DVec3 back = inverse * (linear * size);  // of any point of the world box
+  const DVec3 back = inverse * (linear * size);  // bound of any point of the world box, brought back into the model
   if (level == TransformLevel::kTwoStepDouble) return linear * (gamma(1 + 2 * 1) * back);
   DVec3 error = gamma(5 + 2 * 4) * back;
   if (level == TransformLevel::kTransposeIfRotation)

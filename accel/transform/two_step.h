@@ -21,8 +21,8 @@ namespace carousel::accel {
   return linear_step(inverse, offset);
 }
 
-/// The same in double with the one rounding to float at the end. `inverse` + `rest` is R^-1 to 48 bits: what two
-/// floats hold.
+/// As linear_step(), but in double with the one rounding to float at the end. `inverse` + `rest` is R^-1 to 48 bits:
+/// two floats hold so many.
 [[gnu::always_inline]] inline Vec3 linear_step_double(const Mat3& inverse, const Mat3& rest, const DVec3& v) {
   Vec3 out;
   for (int row = 0; row < 3; ++row) {

@@ -37,7 +37,7 @@ void every_hit(const scene::Scene& scene, const RayRequest& request, const Accur
 Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
                 const AnyHit* any_hit) {
   Hit best;
-  // Of two at one distance the first stays.
+  // The first of two hits at one distance stays.
   every_hit(scene, request, accuracy, any_hit, [&](const Hit& hit) {
     if (hit.t < best.t || !best.valid()) best = hit;
   });

@@ -182,8 +182,9 @@ template <Nodes kNodes, class Slab>
 HWY_NOINLINE bool trace_instance(const Accel& accel, std::uint32_t instance, RayRecord& record, TraceStacks& stacks,
                                  TraversalCounts& counts);
 
-/// The same below `root`, in the frame that was made for `record`. In the world frame, instances without a transform
-/// are entered in passing; `level` is 0 there and 1 below an instance with one.
+/// Traces `record`'s ray below `root`, in the frame that was made for it. True when a search for any hit has found one.
+/// In the world frame, instances without a transform are entered in passing; `level` is 0 there and 1 below an instance
+/// with one.
 template <Nodes kNodes, class Slab>
 HWY_NOINLINE bool trace_frame(const Accel& accel, NodeRef root, RayRecord& record, LocalRay<Slab>& frame,
                               TraceStacks& stacks, int level, TraversalCounts& counts) {

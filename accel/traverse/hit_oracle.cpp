@@ -47,7 +47,7 @@ bool HitOracle::trace_instance(const RayRequest& request, std::uint32_t instance
         for (int k = 0; k < count && !over; ++k) {
           const OraclePrimitives::Candidate& candidate = found[static_cast<std::size_t>(k)];
           const Hit& hit = candidate.hit;
-          // Of equal distances the smaller instance wins, and then the smaller primitive.
+          // At equal distances the smaller instance wins, and then the smaller primitive.
           const bool nearer = hit.t < best.t ||
                               (hit.t == best.t && (hit.instance < best.instance ||
                                                    (hit.instance == best.instance && hit.primitive < best.primitive)));

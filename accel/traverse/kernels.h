@@ -38,8 +38,8 @@ void test_strip(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
 /// Traces each member through everything below `key`, depth-first and nearest first, one ray after another.
 void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts);
 
-/// The same with several rays under way, of which one fills the waits of the others. Faster where there are rays
-/// enough and the nodes are not all in the first-level cache.
+/// Traces each member as trace_subtree() does, but with several rays under way, of which one fills the waits of the
+/// others. Faster where there are rays enough and the nodes are not all in the first-level cache.
 void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts);
 
 /// Names of the SIMD targets this program was built for and this machine has, best first.

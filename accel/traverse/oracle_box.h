@@ -40,7 +40,8 @@ class OracleBoxTest {
     for (int a = 0; a < 3; ++a) {
       const Real reciprocal = Real{1} / Real{ray.direction[a]};
       axes[a] = {Real{ray.origin[a]}, reciprocal, reciprocal * Real{widening}, std::signbit(ray.direction[a])};
-      // Of a denormal: a near plane may be entered too early, and a far one is never left.
+      // The reciprocal of a denormal overflows. A near plane may then be entered too early, and a far one is never
+      // left.
       if (ray.direction[a] != 0 && std::isinf(reciprocal)) axes[a].per_near = std::copysign(kMost, ray.direction[a]);
     }
   }

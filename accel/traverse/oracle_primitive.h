@@ -27,7 +27,7 @@ class OraclePrimitives {
     Ray ray;
     OracleBoxTest boxes;
     std::uint32_t instance;
-    float entry;  ///< of the instance's world box
+    float entry;  ///< distance at which the ray enters the instance's world box
   };
   /// A place where a ray crosses a primitive between its start and its end. It is a hit if it accepts().
   struct Candidate {

@@ -27,7 +27,7 @@ class OracleTree {
 
   /// Around all items; empty for none.
   Aabb box() const { return nodes_.empty() ? Aabb{} : nodes_[0].box; }
-  /// Of a tree over `items`: a leaf has two at least, but if it is the only one.
+  /// Most bytes of a tree over `items`: a leaf has at least two items, unless there is only one.
   static std::size_t most_bytes(std::size_t items) {
     return items * (sizeof(Node) + sizeof(std::uint32_t)) + sizeof(Node);
   }
@@ -62,7 +62,7 @@ class OracleTree {
  private:
   struct Node {
     Aabb box;
-    std::uint32_t first;  ///< of a leaf's items, or of two children
+    std::uint32_t first;  ///< first of a leaf's items, or first of two children
     std::uint32_t count;  ///< items; 0: not a leaf
   };
   static constexpr std::uint32_t kLeafItems = 4;

@@ -29,7 +29,7 @@ class PlainTree {
  public:
   struct Node {
     WideBox box;
-    std::uint32_t first = 0;  ///< of its items; of an inner node, the first of its two children
+    std::uint32_t first = 0;  ///< first of its items; for an inner node, the first of its two children
     std::uint32_t count = 0;  ///< 0: an inner node
   };
 

@@ -14,8 +14,8 @@ namespace carousel::accel {
 /// Appends one result a request. Rays must be valid (accel/traverse/ray_check.h).
 void trace_depth_first(const Accel& accel, const RayBatch& rays, HitBatch& out, IntersectionCounts& counts);
 
-/// The same with several rays under way at a time (accel/traverse/kernels.h, trace_interleaved), as the ring traces
-/// treelets.
+/// As trace_depth_first(), with several rays under way at a time (accel/traverse/kernels.h, trace_interleaved), as the
+/// ring traces treelets.
 void trace_depth_first_interleaved(const Accel& accel, const RayBatch& rays, HitBatch& out, IntersectionCounts& counts);
 
 struct ReferenceRun {
@@ -27,8 +27,8 @@ struct ReferenceRun {
 /// engine must reproduce to the bit.
 ReferenceRun run_reference(const Accel& accel, Workload& workload, std::size_t batch = 4096);
 
-/// The same, divided among `pieces` of the workload and with several rays under way at a time. `piece_of` tells the
-/// piece of a ray that has not been shaded yet.
+/// Runs the workload as run_reference() does, divided among `pieces`, with several rays under way at a time. `piece_of`
+/// tells the piece of a ray that has not been shaded yet.
 std::vector<ReferenceRun> run_reference_by_piece(const Accel& accel, Workload& workload, std::size_t pieces,
                                                  const std::function<std::size_t(const RayTag&)>& piece_of,
                                                  std::size_t batch = 4096);

@@ -34,7 +34,7 @@ HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_
   return changed;
 }
 
-/// The same for a ray that is not yet in the node's frame.
+/// Tests the primitives as above, for a ray that is not yet in the node's frame.
 template <class Slab>
 HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key, std::uint32_t lanes, RayRecord& record,
                               std::uint8_t* any_hit_calls, IntersectionCounts& counts) {

@@ -27,7 +27,7 @@ class Reinsertion {
 
   void run() {
     constexpr int kRounds = 4;
-    constexpr double kEnough = 0.001;  // of the whole area, that a round must gain
+    constexpr double kEnough = 0.001;  // a round must gain this part of the whole area
     const int deepest = std::max(kDeepest, depth_);
     double area = sum();
     for (int i = 0; i < kRounds; ++i) {
@@ -97,7 +97,7 @@ class Reinsertion {
     const float own = box.half_area();
     std::uint32_t pivot = parent_[from];
     const std::uint32_t old_sibling = sibling(from);
-    // What is gained so far: the parent goes, and ancestors that the subtree leaves shrink to `rest`.
+    // The area gained so far: the parent goes, and ancestors that the subtree leaves shrink to `rest`.
     float saved = nodes_[pivot].box.half_area();
     Aabb rest = nodes_[old_sibling].box;
     std::uint32_t side = old_sibling;

@@ -39,7 +39,7 @@ inline constexpr int kSahDepth = 40;
 struct SahSettings {
   std::uint32_t leaf_primitives = 4;   ///< at most so many in a leaf
   std::uint32_t block_primitives = 4;  ///< tested at the price of one (SIMD width of a leaf)
-  float traversal_cost = 1.0f;         ///< of a binary split, in block tests
+  float traversal_cost = 1.0f;         ///< cost of a binary split, in block tests
 };
 
 /// Binned surface-area heuristic (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies").
