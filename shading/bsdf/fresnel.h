@@ -19,7 +19,7 @@ inline float f0_of_eta(float eta) {
 /// 1823.
 struct Refraction {
   float reflected = 1;  ///< share, unpolarised; 1 beyond the critical angle
-  float cosine = 0;     ///< of the refracted direction, positive; 0 beyond the critical angle
+  float cosine = 0;     ///< cosine of the refracted direction, positive; 0 beyond the critical angle
   bool total = true;    ///< nothing is refracted
 };
 inline Refraction refraction(float cos_incident, float eta) {

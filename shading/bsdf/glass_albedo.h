@@ -18,10 +18,10 @@ class GlassAlbedo {
   /// nodes next to the critical angle, where they jump.
   struct Shares {
     float reflected = 0;    ///< by microfacets that could refract, if F' were 1
-    float reflected_w = 0;  ///< the same weighted by w
+    float reflected_w = 0;  ///< `reflected`, weighted by w
     float total = 0;        ///< reflected totally
     float through = 0;      ///< refracted, if F' were 0
-    float through_w = 0;    ///< the same weighted by w
+    float through_w = 0;    ///< `through`, weighted by w
   };
   Shares directional(float cos_theta, float alpha) const;
 

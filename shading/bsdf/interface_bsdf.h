@@ -42,7 +42,7 @@ class InterfaceBsdf {
   struct Facet {
     Vec3 reflected{0}, through{0};
     float reflected_share = 1;  ///< probability of sampling reflection
-    float cosine = 0;           ///< of the refracted direction, if there is one
+    float cosine = 0;           ///< cosine of the refracted direction, if there is one
   };
   Facet facet(float cosine) const;
   void opaque_lobes();
@@ -55,10 +55,10 @@ class InterfaceBsdf {
   Vec3 wo_;
   InterfacePoint point_;
   bool anisotropic_;
-  Vec3 tint_{0};              // of transmitted light: transmission times the base colour of the dielectric part
+  Vec3 tint_{0};              // tint of transmitted light: transmission times the base colour of the dielectric part
   Vec3 diffuse_{0};           // base / pi times the share transmitted for the view direction
-  Vec3 multiple_{0};          // of light reflected several times, likewise
-  Vec3 multiple_through_{0};  // of light transmitted after several reflections
+  Vec3 multiple_{0};          // value of light reflected several times, over pi
+  Vec3 multiple_through_{0};  // value of light transmitted after several reflections, over pi
   Vec3 returned_{0};          // reflected share of the light that single scattering loses, without glass
   float interface_share_ = 1, above_share_ = 0, below_share_ = 0;  // probabilities; the latter cosine-like
 };

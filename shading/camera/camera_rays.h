@@ -25,7 +25,7 @@ class CameraRays {
  private:
   scene::Camera camera_;
   float lens_radius_, focus_distance_;
-  float half_width_, half_height_;  // of the window: at distance 1, or in scene units if orthographic
+  float half_width_, half_height_;  // half the window's size: at distance 1, or in scene units if orthographic
   float inv_width_, inv_height_;
 };
 

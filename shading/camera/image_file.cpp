@@ -27,7 +27,7 @@ namespace {
   throw FileError(fmt::format("cannot encode {}: {}", path.string(), why));
 }
 
-/// What OpenEXR writes, in memory: AtomicFile writes the result.
+/// Keeps the file that OpenEXR writes in memory, from where AtomicFile writes it.
 class MemoryStream : public Imf::OStream {
  public:
   MemoryStream() : OStream("memory") {}

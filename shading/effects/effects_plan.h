@@ -17,9 +17,9 @@ struct EffectCost {
   std::uint32_t rays_per_path = 0;     ///< at most
   std::uint32_t texture_reads = 0;     ///< filtered lookups at a hit, at most
   std::uint32_t products = 0;          ///< at a hit, beyond those of a plain surface
-  std::uint32_t path_state_bytes = 0;  ///< of a path in flight
-  std::uint32_t cycles_per_hit = 0;    ///< of a simulated shader worker or opacity unit, at a surface with the effect
-  std::uint32_t cycles_per_path = 0;   ///< of simulated shader workers for its rays, at most, without the rays' tests
+  std::uint32_t path_state_bytes = 0;  ///< bytes in the state of a path in flight
+  std::uint32_t cycles_per_hit = 0;    ///< cycles of a simulated shader worker or opacity unit, at a surface with it
+  std::uint32_t cycles_per_path = 0;   ///< most cycles of simulated shader workers for its rays, their tests apart
 };
 
 struct PlannedEffect {

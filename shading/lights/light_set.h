@@ -15,7 +15,7 @@ namespace carousel::shading {
 
 /// One sampled light. `radiance` counts only if the shadow ray along `direction` finds no occluder.
 struct LightSample {
-  Vec3 direction{0};  ///< of the shadow ray, not normalised, from the point given to sample()
+  Vec3 direction{0};  ///< direction of the shadow ray, not normalised, from the point given to sample()
   float tmax = 0;     ///< just short of the light
   Vec3 wi{0};         ///< unit direction
   Vec3 radiance{0};   ///< arriving radiance (irradiance for punctual lights) over the density; 0: no light

@@ -27,7 +27,7 @@ class PathPool {
     return sizeof(PathState) + shadow_slots * sizeof(Vec3) + (media ? sizeof(VolumeStack) : 0) + sizeof(std::uint32_t);
   }
 
-  /// Of the paths, only so many are to be traced. Before the first admission.
+  /// Limits the number of paths that are traced. Call it before the first admission.
   void set_paths(std::uint64_t paths) { paths_ = paths; }
 
   struct Admission {

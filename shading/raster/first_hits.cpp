@@ -103,7 +103,7 @@ class Rasterizer {
   void draw(std::uint32_t tile, FirstHits::Counts& counts) {
     const std::uint32_t x0 = tile % tiles_across_ * kBinSide, y0 = tile / tiles_across_ * kBinSide;
     const PixelBox area{x0, y0, std::min(x0 + kBinSide, screen_.width()), std::min(y0 + kBinSide, screen_.height())};
-    std::vector<Ray> rays;  // of the tile, row by row, the samples of a pixel together
+    std::vector<Ray> rays;  // rays of the tile, row by row, the samples of a pixel together
     for (std::uint32_t y = area.y0; y < area.y1; ++y) {
       for (std::uint32_t x = area.x0; x < area.x1; ++x) {
         for (std::uint32_t s = 0; s < out_.samples; ++s)

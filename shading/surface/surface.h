@@ -56,7 +56,7 @@ inline bool emits(const scene::Material& material, bool front) {
 /// and turned until `wo` is above its horizon. `facing` is the geometric normal on the side of `wo`.
 Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const TriangleGeometry& geometry,
                     const Vec3& facing, bool front, const Vec3& wo);
-/// The same with another normal map, or none if `map` is null.
+/// As above, with another normal map than the material's, or with none if `map` is null.
 Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const TriangleGeometry& geometry,
                     const Vec3& facing, bool front, const Vec3& wo, const scene::TextureUse* map, float scale);
 
