@@ -37,7 +37,7 @@ struct HitErrors {
   /// Rays that stop at, or pass, a non-opaque surface only because u and v are rounded where its opacity is looked up:
   /// those above are counted as if it had been looked up at the exact point.
   std::uint64_t opacity = 0;
-  double ulp_median = 0, ulp_p99 = 0, ulp_max = 0;  ///< of t, where both hit the same primitive
+  double ulp_median = 0, ulp_p99 = 0, ulp_max = 0;  ///< error of t, where both hit the same primitive
 
   std::uint64_t wrong() const { return missed + extra; }
 };
@@ -61,16 +61,16 @@ struct HardCase {
 struct TesterLimited {
   double cycles_per_ray = 0;
   std::string busiest;            ///< the kind of units that was busy most
-  double busy_fraction = 0;       ///< of the cycles, in the mean of the resources
+  double busy_fraction = 0;       ///< part of the cycles, in the mean of the resources
   std::vector<double> by_seed{};  ///< cycles a ray of each seed of the picture
 };
 
 /// The cost on simulated machines, by the cycle engine.
 struct ModelledCost {
   double cycles_per_ray = 0;         ///< as configured
-  std::vector<double> by_seed{};     ///< the same of each seed of the picture
-  double tester_cycles_per_ray = 0;  ///< of these, cycles in which a resource's test units of a kind were busy
-  double energy_pj_per_ray = 0;      ///< of the tests' products and sums
+  std::vector<double> by_seed{};     ///< cycles a ray of each seed of the picture
+  double tester_cycles_per_ray = 0;  ///< those cycles in which a resource's test units of a kind were busy
+  double energy_pj_per_ray = 0;      ///< energy of the tests' products and sums
   double exact_volumes_per_ray = 0, bundle_tests_per_ray = 0, plane_tests_per_ray = 0;
   std::optional<TesterLimited> tester_limited{};
 };
@@ -89,13 +89,14 @@ struct AccuracyRow {
   HitErrors scene;
   std::vector<HitErrors> hard;  ///< by Accuracy::hard
   PictureErrors picture;
-  std::uint64_t leaks = 0;                             ///< misses in all closed cases
-  double unit_area_mm2 = 0, relative_area = 0;         ///< of a resource's units; over those of the default levels
+  std::uint64_t leaks = 0;  ///< misses in all closed cases
+  /// Area of a resource's units, and its ratio to that of the default levels.
+  double unit_area_mm2 = 0, relative_area = 0;
   bool cull_planes = false;                            ///< the configured cull planes were tested
   PerClock<bool> frontier{};                           ///< no other row is both cheaper and less often wrong
   PerClock<std::optional<CostRatio>> over_cheapest{};  ///< the cost over that of the cheapest row
   bool safe = false;                                   ///< nothing missed or added, in the scene and in all hard cases
-  bool safe_but_slivers = false;                       ///< the same but in the hard cases of slivers
+  bool safe_but_slivers = false;                       ///< as `safe`, but for the hard cases of slivers
 
   bool on_frontier(Clock clock) const { return frontier[static_cast<std::size_t>(clock)]; }
   /// The cost by a clock, with its range; empty if it was not measured.
@@ -112,7 +113,7 @@ struct SpawnRow {
   std::string spawn;
   std::uint64_t bounces = 0;                           ///< rays that left a triangle
   std::uint64_t self_hits = 0;                         ///< rays of these that hit the same triangle again
-  std::uint64_t hard_bounces = 0, hard_self_hits = 0;  ///< the same from instances far from the origin
+  std::uint64_t hard_bounces = 0, hard_self_hits = 0;  ///< such rays from instances far from the origin
   PictureErrors picture;
 };
 
@@ -127,12 +128,12 @@ struct Accuracy {
   std::uint64_t triangles = 0, instances = 0, rays = 0, seed = 0;
   std::uint64_t width = 0, height = 0, samples = 0;  ///< size of the pictures
   int repetitions = 0;
-  int seeds = 0;  ///< of the picture, over which the machines' cycles are measured
+  int seeds = 0;  ///< number of the picture's seeds, over which the machines' cycles are measured
   std::vector<HardCase> hard;
   std::vector<AccuracyRow> rows;
   std::vector<SpawnRow> spawn;
   std::vector<SamplingRow> sampling;
-  double sampling_slope = 0;  ///< of log RMSE over log samples; Monte Carlo has -1/2
+  double sampling_slope = 0;  ///< slope of log RMSE over log samples; Monte Carlo has -1/2
   std::string verdict;        ///< the cheapest safe level, in a sentence
   std::string machine;
   bool incomplete = false;                             ///< it was interrupted
@@ -151,8 +152,8 @@ void compare_costs(std::vector<AccuracyRow>& rows);
 /// Marks the frontiers: rows than which no other is cheaper and not more often wrong, or less often wrong and not
 /// dearer.
 void mark_frontier(std::vector<AccuracyRow>& rows);
-/// The cheapest safe row. Of those that cost the same: those whose t is as accurate as the best of them (99th
-/// percentile, within a tenth), of these those with the smallest units, of these the first, which is the simplest.
+/// The cheapest safe row. Among rows that cost the same, it is one whose t is as accurate as the best of them (99th
+/// percentile, within a tenth); of these one with the smallest units, and of these the first, which is the simplest.
 /// accuracy_verdict() names the ties.
 std::optional<std::size_t> recommended(const std::vector<AccuracyRow>& rows, Clock clock);
 /// The sentences for `verdict`, for the host and for hardware: the recommended row, the price over the cheapest of all,

@@ -21,7 +21,7 @@ struct ComparedRun {
 struct ComparedRow {
   std::string name, unit;
   std::vector<std::optional<double>> values;  ///< by run
-  std::vector<std::optional<double>> ratios;  ///< of each value to the first run's; that of the first is 1
+  std::vector<std::optional<double>> ratios;  ///< ratio of each value to the first run's; that of the first is 1
 };
 
 /// Rows that belong together: throughput, a ledger, memory.

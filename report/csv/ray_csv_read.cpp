@@ -25,7 +25,7 @@ constexpr std::size_t kNowhere = ~std::size_t{0};
 struct Cells {
   std::array<std::string_view, kRayColumns + 1> text;
   std::array<int, kRayColumns + 1> column{};
-  std::size_t count = 0;  // of all cells, kept or not
+  std::size_t count = 0;  // number of all cells, kept or not
 };
 
 /// Cell `flags` (from 0) is that of the flags.

@@ -67,7 +67,7 @@ const Json& schema_of(DocumentKind kind) {
   }
 }
 
-/// Of all but `host`: two runs that are identical have the same digest.
+/// The digest of all but `host`: two runs that are identical have the same digest.
 std::string digest_of(Json json) {
   json.erase("host");
   return bytes_digest(json.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -24,7 +24,7 @@ nlohmann::ordered_json sealed(nlohmann::ordered_json document);
 /// Reads a file of at most 512 MiB. A checksum that is there has to fit; only the point of a sweep needs one. Throws a
 /// FileError with the file, the path of the value, what was expected, and what was found.
 Document read_document(const std::filesystem::path& file);
-/// The same of a text. `name` stands for the file.
+/// Reads a document as read_document() does, from a text. `name` stands for the file.
 Document parse_document(std::string_view text, const std::string& name);
 
 }  // namespace carousel::report

@@ -18,11 +18,11 @@ std::string json_text(const nlohmann::ordered_json& json);
 /// stress.json of `carousel stress`.
 nlohmann::ordered_json stress_json(const Stress& stress);
 
-/// JSON Schema (draft 2020-12) of the report: types, units, meanings. Those of the other documents that are read back
-/// (report/read/document.h) stand under $defs: sweep, point, accuracy, stress, ray_life.
+/// JSON Schema (draft 2020-12) of the report: types, units, meanings. The schemas of the other documents that are read
+/// back (report/read/document.h) stand under $defs: sweep, point, accuracy, stress, ray_life.
 nlohmann::ordered_json report_schema();
 
-/// What `carousel follow --json` prints, under $defs.ray_life of the schema.
+/// The document that `carousel follow --json` prints, under $defs.ray_life of the schema.
 nlohmann::ordered_json ray_life_json(const RayLife& life);
 
 }  // namespace carousel::report

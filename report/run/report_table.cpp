@@ -73,7 +73,7 @@ void rank_lines(Table& table, const std::vector<Rank>& ranks, std::vector<RankLi
     table.line("", "rank {}: resources {} to {}   {} threads   {} rays shaded   waited {:.1f} %", ranks[r].rank,
                ranks[r].first_resource, ranks[r].first_resource + ranks[r].resources - 1, ranks[r].threads,
                grouped(ranks[r].rays_shaded), 100 * ranks[r].waiting);
-  // Those that carried most.
+  // The links that carried most bytes are printed.
   std::stable_sort(links.begin(), links.end(),
                    [](const RankLink& a, const RankLink& b) { return a.sent.bytes > b.sent.bytes; });
   for (std::size_t i = 0; i < std::min(kRankLinkLines, links.size()); ++i)

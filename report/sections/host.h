@@ -32,7 +32,7 @@ void describe(V& v, const LinkOccupancy& r) {
   v.field("most", r.most, "packets", "most packets waiting, sampled at every eighth send");
 }
 
-/// The same over the whole run.
+/// The occupancy of one link, part by part over the whole run.
 struct HostLink {
   std::uint64_t from = 0, to = 0;
   std::vector<LinkOccupancy> occupancy;

@@ -9,7 +9,7 @@
 namespace carousel::report {
 
 struct Packets {
-  ResourceCounts counts;  ///< of all resources
+  ResourceCounts counts;  ///< summed over all resources
   std::optional<PacketKindCounts> sent{};
   std::optional<Latency> latency{};
 
@@ -35,7 +35,7 @@ void describe(V& v, const Packets& r) {
 }
 
 struct Collections {
-  CollectionCounts counts;  ///< of all resources; of the peaks the greatest
+  CollectionCounts counts;  ///< summed over all resources; peaks are the greatest of any
   double fullness_mean = 0;
   std::optional<std::uint64_t> ids_at_once{}, ids_interval{}, spill_bytes_written{}, spill_bytes_read{};
   std::optional<Distribution> age{};

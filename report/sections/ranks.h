@@ -25,7 +25,7 @@ void describe(V& v, const Rank& r) {
   describe(v, r.memory);
 }
 
-/// What went from one rank to another.
+/// The traffic from one rank to another.
 struct RankLink {
   std::uint64_t from = 0, to = 0;
   RankCounts sent;

@@ -4,8 +4,8 @@
 
 namespace carousel::report {
 
-/// What it takes to hold instances of instances, and what it would take if each placement of a group had nodes of its
-/// own.
+/// The memory that instances of instances take, and the memory that they would take if each placement of a group had
+/// nodes of its own.
 struct Levels {
   std::uint64_t levels = 2;
   std::uint64_t groups = 0, placements = 0;

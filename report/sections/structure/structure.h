@@ -8,7 +8,7 @@ namespace carousel::report {
 struct StructureLevel {
   std::string level;
   std::uint64_t structures = 0, inner_nodes = 0, leaves = 0, instances = 0, depth = 0;
-  std::uint64_t children = 0;  ///< of all inner nodes
+  std::uint64_t children = 0;  ///< children of all inner nodes
   std::uint64_t node_bytes = 0, leaf_bytes = 0, record_bytes = 0;
 
   std::uint64_t bytes() const { return node_bytes + leaf_bytes + record_bytes; }
@@ -33,7 +33,7 @@ void describe(V& v, const StructureLevel& r) {
   v.field("bytes", r.bytes(), "bytes", "nodes, leaves and records");
 }
 
-/// What the structures over meshes hold, each counted once, and all levels of the structure.
+/// The contents of the structures over meshes, each counted once, and all levels of the structure.
 struct Structure {
   std::uint64_t primitives = 0, references = 0, duplicates = 0;
   std::uint64_t inner_nodes = 0, leaves = 0, merged_meshes = 0;
