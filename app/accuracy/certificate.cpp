@@ -11,7 +11,7 @@ namespace carousel::app {
 namespace {
 
 constexpr std::size_t kRound = 2048;  ///< cases of a property before the next has its turn
-constexpr std::size_t kPart = 64;     ///< of them one task
+constexpr std::size_t kPart = 64;     ///< cases of a round that are one task
 
 void add(LevelResult& sum, const accel::Judgement& judgement, std::uint64_t number) {
   if (!judgement.applies) return;

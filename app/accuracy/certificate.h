@@ -31,7 +31,7 @@ struct PropertyResult {
 
 struct Certificate {
   std::uint64_t seed = 0;
-  std::uint64_t cases = 0;  ///< of each property
+  std::uint64_t cases = 0;  ///< cases of each property
   double seconds = 0;
   std::vector<PropertyResult> properties;
   bool incomplete = false;  ///< stopped before its end
@@ -40,7 +40,7 @@ struct Certificate {
 };
 
 struct CertificateLimits {
-  std::optional<std::uint64_t> cases;  ///< of each property; if absent, `seconds` count
+  std::optional<std::uint64_t> cases;  ///< cases of each property; if absent, `seconds` count
   double seconds = 10;
 };
 

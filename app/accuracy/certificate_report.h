@@ -11,7 +11,7 @@ namespace carousel::app {
 
 /// A row for each property and level, then a reproducer of each broken promise.
 std::string certificate_table(const Certificate& certificate);
-/// The same as JSON, with a reproducer also of violations that are only counted.
+/// The certificate as JSON, with a reproducer also of violations that are only counted.
 nlohmann::json certificate_json(const Certificate& certificate);
 
 /// A case that is tested again.

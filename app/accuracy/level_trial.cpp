@@ -23,7 +23,7 @@ namespace {
 struct UnitUse {
   std::uint64_t busy = 0;  ///< cycles of all banks
   UnitKind busiest = UnitKind::kBox;
-  double busiest_fraction = 0;  ///< of all cycles, the mean of the resources
+  double busiest_fraction = 0;  ///< part of all cycles, in the mean of the resources
 };
 UnitUse unit_use(const ringbus::cycle::CycleResult& result) {
   PerUnit<std::uint64_t> busy;

@@ -19,7 +19,7 @@ using Picture = std::vector<float>;
 Picture render(const scene::Scene& scene, const Config& config, const accel::Accel& accel,
                std::vector<report::HitRow>* rows = nullptr);
 
-/// The same with exact hits. `config` says where rays leave surfaces.
+/// A path-traced frame with exact hits. `config` says where rays leave surfaces.
 Picture render_exact(const scene::Scene& scene, const Config& config, const accel::ExactReference& reference);
 
 report::PictureErrors compare(const Picture& picture, const Picture& exact);

@@ -13,11 +13,12 @@ struct Operations {
   double products = 0, sums = 0;
 };
 
-// Of one test; a division counts as four products (a table and two steps of Newton's method), comparisons as nothing.
+// The operations of one test. A division counts as four products (a table and two steps of Newton's method), and
+// comparisons count as nothing.
 constexpr Operations kBox{6, 6}, kPlane{6 + 4, 6}, kTransform{18, 15};
 constexpr Operations kFast{27 + 4, 23}, kWatertight{21 + 4, 22};
-/// Of a volume in exact arithmetic: 84 products of doubles with their rounding errors (ringbus/cycle/testers/
-/// unit_passes.h), each with about as many sums.
+/// The operations of a volume in exact arithmetic: 84 products of doubles with their rounding errors
+/// (ringbus/cycle/testers/unit_passes.h), each with about as many sums.
 constexpr Operations kExactVolume{168, 168};
 
 constexpr double kProductPj = 3.7, kSumPj = 0.9, kProductMm2 = 7700e-6, kSumMm2 = 4184e-6;

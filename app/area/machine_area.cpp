@@ -62,7 +62,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     add_units(parts[AreaPart::kUnits], c, scene, testers_of(c, r));
   const double slots = n * static_cast<double>(c.rays.slots_per_resource);
   store(AreaPart::kRayStores, slots * kRecordBytes / kKiB);
-  if (c.rays.banks > 0)  // of which each has two ports
+  if (c.rays.banks > 0)  // each bank has two ports
     parts[AreaPart::kRayStores].mm2 += parts[AreaPart::kRayStores].size * cost(c, Cost::kPortArea);
   if (topology.has_packets())
     store(AreaPart::kCollections, n * static_cast<double>(c.collections.capacity) * kIdBytes / kKiB);

@@ -17,7 +17,7 @@ class GroupStructures {
  public:
   explicit GroupStructures(const accel::Accel& accel) : accel_(accel) {}
 
-  /// Of an instance: a mesh is one level and has no nodes of a group.
+  /// The structure of an instance's group. A mesh is one level and has no nodes of a group.
   const GroupStructure& of(std::uint32_t instance) {
     static const GroupStructure kMesh{0, 1};
     if (!accel_.is_group(instance)) return kMesh;

@@ -5,7 +5,7 @@
 
 namespace carousel::app {
 
-/// Of a structure with groups.
+/// Makes the report's section on levels for a structure with groups.
 report::Levels levels_section(const accel::Accel& accel);
 
 }  // namespace carousel::app

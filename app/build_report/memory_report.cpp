@@ -50,7 +50,7 @@ report::Report memory_report(const Prepared& prepared, const ringbus::MemoryTrac
   m.gigabytes_per_second = m.bytes_per_cycle * static_cast<double>(config.engine.clock_mhz) / 1000;
   m.latency = {report::latency_of(result.latency)};
   if (result.dram) m.dram = dram_section(*result.dram);
-  r.digest.hits = HitsDigest().hex();  // of no rays
+  r.digest.hits = HitsDigest().hex();  // the digest of no rays
   r.host.threads = 1;
   r.host.wall_seconds = result.wall_seconds;
   r.host.peak_memory_bytes = peak_memory_bytes();

@@ -21,7 +21,7 @@ void add_census(report::Report& report, const RayCensus& census, const accel::Ac
 
 /// Fills in the section of the links.
 void add_links(report::Report& report, const ringbus::RunResult& result, const Config& config);
-/// Of the native engine.
+/// Fills in the section of the queues that hand over rays, which only the native engine measures.
 void add_ray_queues(report::Report& report, const ringbus::RunResult& result, const Config& config);
 
 }  // namespace carousel::app

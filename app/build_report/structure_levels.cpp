@@ -73,7 +73,7 @@ class LevelWalk {
         if (child.is_instance())
           enter(accel_.instance_at(root.instance, child));
         else if (level == kTop && !(child.is_inner() && accel_.nodes[child.node()].above_instances))
-          found(kMeshes, {kNoInstance, child});  // of merged meshes
+          found(kMeshes, {kNoInstance, child});  // the root of merged meshes
         else
           open.push_back({child, depth + 1});
       }

@@ -75,7 +75,7 @@ report::Report traffic_report(const Prepared& prepared, const ringbus::TrafficRe
   r.engine.reason = "virtual time: nothing depends on the host's threads";
   r.links = links(config, result);
   r.traffic = traffic(config, result);
-  r.digest.hits = HitsDigest().hex();  // of no rays
+  r.digest.hits = HitsDigest().hex();  // the digest of no rays
   r.host.threads = result.threads;
   r.host.wall_seconds = result.wall_seconds;
   r.host.peak_memory_bytes = peak_memory_bytes();

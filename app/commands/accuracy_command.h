@@ -12,10 +12,10 @@ namespace carousel::app {
 struct AccuracyArguments : ConfigArguments {  // without a configuration: kBuiltInConfig
   std::filesystem::path out;
   bool json = false, quiet = false, force = false;
-  std::size_t rays = 50000;       ///< of the scene, at most
-  std::size_t hard_rays = 20000;  ///< of each hard case
+  std::size_t rays = 50000;       ///< most rays of the scene
+  std::size_t hard_rays = 20000;  ///< rays of each hard case
   int repetitions = 5;
-  int seeds = 4;  ///< of the picture, over which the machines' cycles are measured
+  int seeds = 4;  ///< number of the picture's seeds, over which the machines' cycles are measured
   std::uint64_t seed = 1;
   bool certify = false;   ///< run certify_command() instead
   std::string reproduce;  ///< not empty: run reproduce_command() with this instead

@@ -8,8 +8,8 @@
 namespace carousel::app {
 
 struct ReportArguments {
-  std::string folder;  ///< of a run or a sweep, or a JSON file that a command wrote
-  std::string point;   ///< of the sweep in the folder, by its digest; empty: the page of the folder itself
+  std::string folder;  ///< folder of a run or a sweep, or a JSON file that a command wrote
+  std::string point;   ///< digest of a point of the sweep in the folder; empty: the page of the folder itself
   std::string out;     ///< page to write; empty: beside that file
 };
 

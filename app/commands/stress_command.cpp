@@ -183,7 +183,7 @@ int stress_command(const StressArguments& arguments) {
     const std::vector<std::int64_t> depths =
         arguments.depths.empty() ? depths_about(prepared->config(), *place) : arguments.depths;
     RingTrial trial{*place, kinds, depths, arguments.repetitions, arguments.pairs, interrupt.token()};
-    // Of all kinds, those that serve as many threads as there may be.
+    // Only the kinds that serve as many threads as there may be are tried.
     if (arguments.queues.empty() && &*place != ring_places().data())
       std::erase_if(trial.kinds, [](QueueKind kind) {
         return !ringbus::queue_fits(kind, ringbus::Parties::kMany, ringbus::Parties::kMany);

@@ -17,7 +17,7 @@ struct StressArguments : ConfigArguments {  // without a configuration the queue
   double seconds = 30;
   std::uint64_t messages = 1'000'000;
   std::size_t repetitions = 3;
-  std::size_t pairs = 12;  ///< of runs of the best and the worst choice inside the ring
+  std::size_t pairs = 12;  ///< pairs of runs of the best and the worst choice inside the ring
   std::size_t capacity = 64;
   std::uint64_t seed = 1;
   std::string out;  ///< folder; empty: out/stress, or out/<name of the configuration>

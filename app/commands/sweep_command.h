@@ -12,7 +12,7 @@ namespace carousel::app {
 
 struct SweepArguments : ConfigArguments {
   std::vector<std::string> vary, exclude, scenes;
-  std::optional<std::size_t> points;  ///< of a Latin hypercube; absent: the whole grid
+  std::optional<std::size_t> points;  ///< points of a Latin hypercube; absent: the whole grid
   std::uint64_t seed = 1;
   std::int64_t repeat = 1;
   std::size_t jobs = 0;  ///< 0: as many as cores

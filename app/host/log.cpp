@@ -79,7 +79,7 @@ class LogFile final : public spdlog::sinks::base_sink<std::mutex> {
   int descriptor_ = -1;
 };
 
-std::shared_ptr<LogFile> g_file;  // of the default logger; null if messages go to the terminal only
+std::shared_ptr<LogFile> g_file;  // the default logger's file; null if messages go to the terminal only
 
 }  // namespace
 

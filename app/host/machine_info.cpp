@@ -48,7 +48,7 @@ std::uint64_t usable_memory_bytes() {
     std::uint64_t limit = 0;  // stays 0 for "max", which is no limit
     if (in >> limit && limit > 0) bytes = std::min(bytes, limit);
   }
-  // Of a limit that was set, what the libraries have taken before there was any scene is gone.
+  // If a limit was set, the bytes that libraries took of it before there was any scene are gone.
   static const std::uint64_t taken = data_memory_bytes();
   if (const std::uint64_t limit = data_memory_limit(); limit > 0)
     bytes = std::min(bytes, std::max<std::uint64_t>(limit, taken + 1) - taken);

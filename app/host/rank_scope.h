@@ -29,8 +29,8 @@ class RankScope {
   /// Makes sure that all ranks hold the same in `what`, e.g. the scene, of which `digest` tells. Every rank calls.
   /// Throws a ConfigError.
   void require_same(const std::string& what, const std::string& digest);
-  /// The same for the files that the configuration names, of which `digest` tells. One that this rank cannot read is an
-  /// error of all ranks, before any of them begins to load.
+  /// Makes sure that all ranks hold the same files that the configuration names, of which `digest` tells. A file that
+  /// this rank cannot read is an error of all ranks, before any of them begins to load.
   void require_files(const std::function<std::string()>& digest);
   /// Waits until all ranks are done.
   void leave();

@@ -52,7 +52,7 @@ class FollowingWorkload final : public WrappedWorkload {
   Locate locate_;
   ringbus::FollowedRay& ray_;
   std::mutex mutex_;                   // guards all below
-  std::optional<std::uint32_t> path_;  // of the pixel's sample, while it is in flight
+  std::optional<std::uint32_t> path_;  // path of the pixel's sample, while it is in flight
   std::optional<RayTag> last_of_path_;
   std::optional<RayRequest> request_;
   std::optional<RayResult> result_;

@@ -29,9 +29,9 @@ MemoryNeed estimate_before_scene(const Config& config, bool keep_hits);
 /// The estimate with the loaded scene and its structure.
 MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& scene, const accel::Accel& accel);
 
-/// Of a loaded scene.
+/// Bytes of a loaded scene.
 std::uint64_t scene_bytes(const scene::Scene& scene);
-/// What building the structure of a loaded scene takes at its peak, the structure included.
+/// Bytes that the build of a loaded scene's structure takes at its peak, the structure included.
 std::uint64_t build_bytes(const scene::Scene& scene);
 
 /// Number of paths with rays in flight at a time: one for each slot.

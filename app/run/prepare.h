@@ -34,9 +34,9 @@ struct Prepared {
   std::size_t threads_beside = 1;  ///< engine.threads, or the machine's cores: for simulations beside each other
   std::unique_ptr<scene::Scene> scene_storage = std::make_unique<scene::Scene>();
   scene::Scene& scene = *scene_storage;  ///< keeps its address when the object is moved, since others refer to it
-  std::vector<std::string> warnings;     ///< of the import
+  std::vector<std::string> warnings;     ///< warnings of the import
   accel::Accel accel;
-  std::optional<accel::StructureSize> structure;   ///< of all ranks' shares; absent where all of it is here
+  std::optional<accel::StructureSize> structure;   ///< size of all ranks' shares; absent where all of it is here
   std::unique_ptr<shading::AlphaTest> alpha_test;  ///< any-hit calls of `accel`; null if every material is opaque
   std::unique_ptr<AllHits> all_hits;               ///< with rays.query: all those of `accel`; else null
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
@@ -46,7 +46,7 @@ struct Prepared {
   Config absolute_config() const;
   /// The keys that the user sets and the machine ignores.
   std::vector<IgnoredKey> ignored() const;
-  bool has_rays() const;  ///< whether the workload is rays, for which there is a scene
+  bool has_rays() const;  ///< true if the workload is rays, for which there is a scene
   /// Scale of entry distances, for the policy `nearest`.
   float scene_size() const;
 };
@@ -60,7 +60,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
                  const std::function<void(const Prepared&)>& before_scene = {},
                  const std::function<ringbus::Transport*()>& ranks = {});
 
-/// The same for a configuration given as text; files that it names are looked for in the working folder.
+/// Prepares a configuration given as text, as prepare() does. Files that it names are looked for in the working folder.
 Prepared prepare_config(const std::string& text, const std::string& name, const std::vector<std::string>& sets = {});
 
 /// Gives a prepared scene another machine, that of a configuration with the same scene and structure. Refuses one that

@@ -22,10 +22,10 @@ class RayListWorkload final : public Workload {
   RayListWorkload(RayBatch rays, std::size_t workers, const AllHits* all = nullptr)
       : rays_(std::move(rays)), workers_(workers), all_(all) {}
 
-  /// The same as PathTracer::set_recorder().
+  /// Sets the recorder, as PathTracer::set_recorder() does.
   void set_recorder(shading::RayRecorder* recorder) { recorder_ = recorder; }
 
-  /// The same as PathTracer::set_sample(), of the rays of the list.
+  /// Limits the rays of the list to a sample, as PathTracer::set_sample() limits paths.
   void set_sample(const shading::PathSample* sample) { sample_ = sample; }
 
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override;

@@ -75,11 +75,11 @@ std::vector<accel::ReferenceRun> RenderJob::survey(const accel::Accel& accel) {
                                        [this](const RayTag& tag) { return piece_of(tag.path); });
 }
 
-/// Of many samples that are drawn by position, the one is kept whose rays and tests a path, traced depth-first, are
-/// most nearly those of the frame: rejective sampling (W. A. Fuller, Some design properties of a rejective sampling
-/// procedure, Biometrika 96, 2009). That costs little beside a simulation, and what the cycles of a path owe to its
-/// rays and tests is then no error of the sample. Rays and tests of the pieces are themselves estimated, from some of
-/// the paths.
+/// Draws many samples by position, and keeps the one whose rays and tests a path, traced depth-first, are most nearly
+/// those of the frame: rejective sampling (W. A. Fuller, Some design properties of a rejective sampling procedure,
+/// Biometrika 96, 2009). That costs little beside a simulation, and the part of a path's cycles that is due to its rays
+/// and tests is then no error of the sample. Rays and tests of the pieces are themselves estimated, from some of the
+/// paths.
 void RenderJob::draw_sample(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
   constexpr std::uint64_t kDraws = 500, kOneIn = 8, kLeastPaths = 1 << 14, kMostPaths = 1 << 16;
   const auto start = std::chrono::steady_clock::now();

@@ -17,11 +17,11 @@ namespace carousel::app {
 
 /// A queue of a machine of the native engine whose design can be chosen.
 struct RingPlace {
-  std::string_view key;        ///< of its design
-  std::string_view depth_key;  ///< of the places of one
+  std::string_view key;        ///< key of the queues' design
+  std::string_view depth_key;  ///< key of the number of places in one queue
   void (*choose)(Config& config, QueueKind kind, std::int64_t depth);
   std::int64_t (*depth)(const Config& config);
-  /// What went through the queues of this place in a run.
+  /// The traffic of the queues of this place in a run.
   QueueUse (*use)(const ringbus::RunResult& result);
 };
 std::span<const RingPlace> ring_places();
@@ -31,8 +31,8 @@ struct RingTrial {
   const RingPlace& place;
   std::vector<QueueKind> kinds;
   std::vector<std::int64_t> depths;
-  std::size_t repetitions = 3;  ///< of every kind and depth
-  std::size_t pairs = 12;       ///< of runs of the best and the worst of its depth by these repetitions
+  std::size_t repetitions = 3;  ///< runs of every kind and depth
+  std::size_t pairs = 12;       ///< pairs of runs of the best and the worst of its depth by these repetitions
   std::stop_token stop{};
   std::function<void(double part)> progress{};
 };

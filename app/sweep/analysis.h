@@ -27,12 +27,12 @@ struct LevelEffect {
   std::string level;
   std::size_t points = 0;
   double effect = 0;
-  std::optional<double> half_width;  ///< of the interval of confidence (95 %); absent if nothing is left to judge by
+  std::optional<double> half_width;  ///< half the interval of confidence (95 %); absent if nothing is left to judge by
 };
 
 struct MainEffect {
   std::string key, result;
-  double mean = 0;  ///< of the result
+  double mean = 0;  ///< mean of the result
   std::vector<LevelEffect> levels;
 };
 

@@ -137,7 +137,7 @@ bool Ledger::write(const Row& row) {
 void Ledger::set(const SweepPoint& point, const char* state, double seconds, const PointError* error) {
   const Row row{point.digest, keys_json(point.keys).dump(), state, seconds, error};
   if (write(row)) return;
-  make_anew();  // what was written since the points were read is in their files
+  make_anew();  // points that were written since the ledger was read are in their files
   if (!write(row)) fail();
 }
 

@@ -14,7 +14,7 @@ namespace carousel::app {
 struct TraceArguments {
   std::string file;                ///< empty: none
   std::string window;              ///< A:B in cycles, or seconds of a native run; empty: the whole run
-  std::uint64_t every = 1;         ///< of the packets of each resource
+  std::uint64_t every = 1;         ///< one of so many packets of each resource is traced
   std::size_t events = 1'000'000;  ///< most events
 };
 

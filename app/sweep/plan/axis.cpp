@@ -16,7 +16,7 @@ namespace carousel::app {
 
 namespace {
 
-constexpr std::size_t kMostRangeValues = 100'000;  // of one range: more is a slip of the pen
+constexpr std::size_t kMostRangeValues = 100'000;  // most values of one range: more is a slip of the pen
 
 [[noreturn]] void fail(const std::string& where, const std::string& key, const std::string& message) {
   throw ConfigError({{{where, 0, 0}, key, message}});

@@ -14,7 +14,7 @@ namespace carousel::app {
 struct SweepPoint {
   Choice keys;                    ///< the varied keys
   std::vector<std::string> sets;  ///< the assignments that make its configuration
-  std::string digest;             ///< of configuration, program and files: the name of its file
+  std::string digest;             ///< digest of configuration, program and files: the name of its file
   std::string group;              ///< equal for points that share scene and acceleration structure
   std::size_t threads = 1;        ///< that its simulation uses
 

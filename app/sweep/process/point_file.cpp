@@ -34,7 +34,8 @@ void write_point(const std::filesystem::path& out, const SweepPoint& point, doub
   json["host"] = {{"seconds", seconds}};
   if (!report.is_null()) json["report"] = report;
   // A text of a scene or a signal's name may be no UTF-8: it must not lose the point.
-  AtomicFile file(point_path(out, point.digest));  // what killed writers left in the folder is removed for all at once
+  // Files that killed writers left in the folder are removed for all points at once.
+  AtomicFile file(point_path(out, point.digest));
   file.write(report::sealed(json).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   file.commit();
 }

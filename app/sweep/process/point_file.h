@@ -20,7 +20,7 @@ struct PointError {
 struct PointFile {
   std::string digest;
   nlohmann::ordered_json keys = nlohmann::ordered_json::object();
-  double seconds = 0;  ///< of the point's process, by the wall clock
+  double seconds = 0;  ///< seconds that the point's process took, by the wall clock
   std::optional<PointError> error;
   nlohmann::ordered_json report;  ///< null if there is none
 
