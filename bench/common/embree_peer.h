@@ -17,8 +17,7 @@ struct EmbreeSettings {
   int build_threads = 1;
 };
 
-/// The same scene in Embree 3. Meshes placed once are brought into world space; meshes placed several times
-/// are instanced.
+/// A scene in Embree 3. Meshes placed once are brought into world space; meshes placed several times are instanced.
 class EmbreePeer {
  public:
   /// Throws std::runtime_error with Embree's own message.
@@ -30,8 +29,8 @@ class EmbreePeer {
   /// Memory that Embree holds after the build, its copies of vertices and indices included.
   std::size_t size_bytes() const;
 
-  /// rtcIntersect1, or rtcOccluded1 for any-hit sets, on `threads` threads. Of an occluded ray only
-  /// Hit::instance is set.
+  /// rtcIntersect1, or rtcOccluded1 for any-hit sets, on `threads` threads. For an occluded ray only Hit::instance is
+  /// set.
   void trace_single(const RaySet& rays, int threads, HitList& hits) const;
   /// rtcIntersect16 or rtcOccluded16, with the flag for coherent rays if they are.
   void trace_sixteen(const RaySet& rays, int threads, HitList& hits) const;

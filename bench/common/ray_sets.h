@@ -37,7 +37,7 @@ using HitList = std::vector<Hit>;
 /// - bounce: from each primary hit to a cosine-weighted direction, in the same order;
 /// - shuffled: the same rays in random order;
 /// - shuffled-any: the same again, any hit.
-/// The same arguments give the same bits.
+/// Equal arguments give the same bits.
 std::vector<RaySet> make_ray_sets(const scene::Scene& scene, const accel::Accel& accel, std::uint32_t image_side,
                                   std::uint64_t seed);
 

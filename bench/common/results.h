@@ -34,7 +34,7 @@ struct SetResult {
   std::string name;
   bool any_hit = false;
   std::uint64_t rays = 0, hits = 0;
-  std::string digest;  ///< of the reference's hits, and so of every ring's
+  std::string digest;  ///< digest of the reference's hits, and so of every ring's
   std::vector<Measurement> measurements;
 };
 
@@ -48,7 +48,7 @@ struct BuildResult {
 
 struct SceneResult {
   std::string name;
-  std::uint64_t triangles = 0;  ///< of all meshes, each counted once
+  std::uint64_t triangles = 0;  ///< triangles of all meshes, each counted once
   std::uint64_t instances = 0;
   std::vector<BuildResult> builds;
   double to_first_packet_seconds = 0;  ///< from the loaded scene: build on all threads, then the ring set up

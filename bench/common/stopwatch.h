@@ -25,7 +25,7 @@ struct Spread {
   double median = 0, min = 0, max = 0;
 };
 
-/// Of at least one value.
+/// The spread of one value or more.
 Spread spread_of(std::vector<double> values);
 
 }  // namespace carousel::bench

@@ -19,7 +19,7 @@ namespace carousel::bench {
 /// One way to trace rays.
 struct TestVariant {
   std::string method;   ///< cull_planes, bundles
-  std::string setting;  ///< of the method, by its name in the table
+  std::string setting;  ///< name of the method's setting in the table
   /// Writes as many hits as there are rays.
   std::function<void(const RaySet&, HitList&, IntersectionCounts&)> trace;
 };

@@ -139,7 +139,7 @@ void whole_trace(benchmark::State& state, TriangleLevel triangle, BoxLevel box) 
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
 }
 
-/// The same rays in Embree, one at a time.
+/// Traces the rays of the setting in Embree, one at a time.
 void whole_trace_embree(benchmark::State& state, bool robust) {
   LevelSetting& s = LevelSetting::get();
   EmbreeSettings settings;

@@ -17,7 +17,7 @@ struct Options {
   std::vector<std::int64_t> sizes{100'000};
   std::vector<std::string> files;
   std::vector<std::string> sets;    ///< empty: all
-  std::uint32_t image_side = 1024;  ///< of the primary rays' image
+  std::uint32_t image_side = 1024;  ///< side in pixels of the primary rays' image
   std::uint64_t seed = 1;
   std::vector<int> threads{1, 2};
   int repetitions = 5;

@@ -15,8 +15,8 @@ inline constexpr std::string_view kUnfinishedFile = ".partial";
 std::filesystem::path unfinished_name(const std::filesystem::path& target, std::string_view end);
 
 /// True for an unfinished file or folder whose maker is dead. One of this host is if nobody has it locked, or, on a
-/// file system without locks, if no process has its maker's number. Whether one of another host is, cannot be known
-/// from here: it is taken to be when nothing about it has changed for thirty days.
+/// file system without locks, if no process has its maker's number. The maker of another host's file cannot be looked
+/// for: it is taken for dead when nothing about the file has changed for thirty days.
 bool is_abandoned(const std::filesystem::path& unfinished);
 
 /// Removes the abandoned files and folders that were to become `target`.

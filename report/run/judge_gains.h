@@ -7,7 +7,7 @@
 namespace carousel::report {
 
 /// Names the class of parts that limits the machine from the gains, which stand greatest first: fills in `limits`,
-/// `rivals` and `verdict`. What is not worth_naming names nothing.
+/// `rivals` and `verdict`. A gain that is not worth_naming names nothing.
 Bottleneck judge_gains(Bottleneck found);
 
 /// "+12.3 % (+10.1 to +14.5 %)", or without an interval if it is exact.
