@@ -13,8 +13,8 @@ namespace carousel::ringbus {
 /// The effect of one what-if on the frame's time.
 struct Gain {
   std::string name, action;
-  std::vector<std::string> sets;  ///< of WhatIf
-  double rays_per_kilocycle = 0;  ///< of the whole frame, foretold
+  std::vector<std::string> sets;  ///< assignments of the what-if, as values of --set
+  double rays_per_kilocycle = 0;  ///< throughput of the whole frame, foretold
   double gain = 0;                ///< over the machine as configured, as a fraction of its throughput
   double low = 0, high = 0;       ///< its interval of confidence
   /// Classes that were relaxed together in the simulation, and gained so little that none was looked at alone.
@@ -25,13 +25,13 @@ struct Gain {
 struct Bottleneck {
   bool complete = true;  ///< false: interrupted; there are no gains
   std::string unlike;    ///< how the pilot differs from the run; empty if it is like it; else there are no gains
-  double rays_per_kilocycle = 0;  ///< of the machine as configured, over the whole frame
-  std::uint64_t paths = 0;        ///< of the pilot
-  std::uint64_t rays = 0;         ///< of the pilot, simulated for each class
+  double rays_per_kilocycle = 0;  ///< throughput of the machine as configured, over the whole frame
+  std::uint64_t paths = 0;        ///< paths of the pilot
+  std::uint64_t rays = 0;         ///< rays of the pilot, simulated for each class
   std::uint64_t simulated = 0;    ///< rays of all simulations of the search
   bool whole = false;             ///< the pilot is the whole frame
-  double deviation = 0;           ///< of the run's cycles from those that the pilot foretells, as a fraction
-  double uncertainty = 0;         ///< of these, from the pilot alone, as a fraction
+  double deviation = 0;           ///< distance of the run's cycles from those that the pilot foretells, as a fraction
+  double uncertainty = 0;         ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
   std::vector<Gain> gains;        ///< greatest first
 };
 

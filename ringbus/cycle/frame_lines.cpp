@@ -11,7 +11,7 @@ namespace carousel::ringbus {
 
 namespace {
 
-/// Of the lines that the sample has not asked for.
+/// The lower bound leaves out this part of the lines that the frame touches and the sample does not.
 constexpr double kUnsureTouches = 0.4;
 
 /// a of the distribution, the sample's rays being 1: log(1 + a) / log(1 + a / 2) falls from 2 to 1.
@@ -33,7 +33,7 @@ constexpr double kRounding = 0.02;
 
 Estimate first_touches(double in_half, double in_sample, double lines, double times) {
   if (in_sample <= 0 || in_sample >= lines) return {in_sample, in_sample, in_sample};
-  const double left = -std::log1p(-in_sample / lines);  // of equal rates: touches of a line
+  const double left = -std::log1p(-in_sample / lines);  // touches of a line, if all lines have equal rates
   const double most = -lines * std::expm1(-left * times);
   const double half = -std::log1p(-std::clamp(in_half, 1.0, std::max(1.0, 0.999 * in_sample)) / lines);
   double value = most;
@@ -72,7 +72,8 @@ Estimate FrameLines::frame(double error) const {
   const double rest = (times_ - 1) * rays_, late = late_first_ + late_again_;
   const auto of_rest = [&](double count) { return late_rays_ > 0 ? rest * count / late_rays_ : 0; };
   const double again = of_rest(late_again_), steady = of_rest(late);
-  // Of `first` lines; a part of those requests of the later half that a warm cache would spare comes again, too.
+  // Requests of the frame with `first` lines. A part of those requests of the later half that a warm cache would spare
+  // comes again, too.
   const auto with = [&](double first, double part) {
     const double more = first - first_ + again;
     return first_ + again_ + more + part * std::max(0.0, steady - more);

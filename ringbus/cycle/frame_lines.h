@@ -24,10 +24,10 @@ class FrameLines {
   /// The frame has `times` as many rays as the sample.
   FrameLines(const Config& config, const SampleRun& run, Window window, double times);
 
-  /// Of the sample: requests of a cache for a line of shapes that it had not asked for, and all requests.
+  /// Requests of the sample: those of a cache for a line of shapes that it had not asked for, and all requests.
   double first() const { return first_; }
   double sample() const { return first_ + again_ + other_; }
-  /// Of the frame, likewise. `error` is the relative error of requests a ray.
+  /// Requests of the frame, likewise. `error` is the relative error of requests a ray.
   Estimate frame_first() const { return frame_first_; }
   Estimate frame(double error) const;
 

@@ -73,7 +73,7 @@ class PilotRuns {
   const RunOptions& options_;
   const SearchObserver& observe_;
   std::uint64_t paths_ = 0;
-  std::mutex mutex_;  // of the members below, and of the observer
+  std::mutex mutex_;  // guards the members below, and the observer
   SearchProgress state_;
   bool complete_ = true;
   std::uint64_t simulated_rays_ = 0;

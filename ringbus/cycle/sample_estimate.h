@@ -23,7 +23,7 @@ struct ClassEstimate {
 struct FrameValues {
   Estimate rays, cycles, cycles_per_ray, rays_per_kilocycle;
   Estimate box_tests_per_ray, triangle_tests_per_ray, memory_bytes_per_ray, link_bytes_per_ray;
-  std::vector<ClassEstimate> uses;  ///< of the classes that did anything
+  std::vector<ClassEstimate> uses;  ///< estimates for the classes that did anything
   double steady = 1;                ///< part of the rays that were completed between fill and drain
   bool too_small = false;           ///< the run is mostly fill and drain, so that the intervals are wide
 };
@@ -32,7 +32,7 @@ struct FrameValues {
 struct SampleRun {
   const RunResult& result;
   const MemoryLog& memory;        ///< all requests of the run
-  std::uint64_t shape_bytes = 0;  ///< of the acceleration structure, which stands at the beginning of the memory
+  std::uint64_t shape_bytes = 0;  ///< bytes of the acceleration structure, which stands at the beginning of the memory
   std::uint64_t paths = 0, frame_paths = 0;
   /// Paths and rays of each place, in the order in which they began.
   std::vector<std::uint64_t> paths_of, rays_of;
@@ -52,9 +52,9 @@ FrameValues exact_values(const Config& config, const RunResult& result);
 ///   drain. Where lines are replaced already, what first requests become fewer by, other requests become more by in
 ///   part. The interval's upper end adds all of that part, as far as the frame's lines are more than the caches hold.
 ///   Requests for data of rays and paths are as many a ray as in the sample.
-///   Of the time that testers waited, first lines have the part that the latency of the memory for them has of all
-///   latencies: those of the caches' hits, too. The rest of the frame waits less by as many as it has fewer of them a
-///   ray. Half of the time that it so spares is added to the interval.
+/// First lines cause a part of the time that testers waited: the part that the latency of the memory for them has of
+/// all latencies, those of the caches' hits included. The rest of the frame waits less by as many as it has fewer of
+/// them a ray. Half of the time that it so spares is added to the interval.
 /// - Errors are those of the differences between neighbouring places and between neighbouring blocks of completed rays
 ///   (foretell.h), less the part of the frame that was simulated (K. Wolter, Introduction to Variance Estimation, 2nd
 ///   edition 2007, sections 1.4 and 8.2). As samples are drawn so that their tests are the frame's (app, RenderJob),

@@ -16,7 +16,7 @@ constexpr std::uint64_t fill_rays(std::uint64_t slots) {
 /// The part of a run between fill and drain.
 struct SteadyState {
   cycle::Cycle cycles = 0;
-  double share = 0;  ///< of the frame's work, done in these cycles
+  double share = 0;  ///< part of the frame's work that was done in these cycles
 };
 
 /// The steady state begins when fill_rays() have been completed, and ends when the last ray that no other ray causes

@@ -14,7 +14,7 @@ namespace carousel::ringbus {
 struct WhatIf {
   std::string name;               ///< as in the report: box_tests, link_bandwidth, ...
   std::string action;             ///< the keys that were doubled or halved
-  std::vector<std::string> sets;  ///< the same as values of --set
+  std::vector<std::string> sets;  ///< these keys as values of --set
   std::function<void(Config&)> relax;
   Config relaxed;             ///< the machine with the class relaxed
   bool keeps_shapes = false;  ///< more room for shapes, which fills long after the machine is full of rays

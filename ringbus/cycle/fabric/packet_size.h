@@ -73,7 +73,7 @@ class PacketSize {
       load.add(message(), load.messages = messages(packet, packet, treelet), width_);
     return load;
   }
-  /// Of an answer to a packet that a resource has heard, with `rays` rays that live there: without the shapes.
+  /// The load of an answer to a packet that a resource has heard, with `rays` rays that live there: without the shapes.
   /// `answered` is the resource's copy of the packet, with their results.
   PacketLoad answer(const Packet& packet, const Packet& answered, std::uint32_t rays, const ShapeMemory& memory,
                     bool treelet) const {
@@ -156,7 +156,8 @@ class PacketSize {
       bytes += box_results(packet, n);
     return bytes;
   }
-  /// Of `rays` rays with the boxes of a strip, or with the one that the packet has in single-shape mode.
+  /// Bytes of the results of `rays` rays with the boxes of a strip, or with the one that the packet has in single-shape
+  /// mode.
   std::uint32_t box_results(const Packet& packet, std::uint32_t rays) const {
     const bool one = std::popcount(packet.lanes) == 1;
     return one ? (rays + 7) / 8 + entry_bytes() : rays + entry_bytes() * accel::kMaxWidth;

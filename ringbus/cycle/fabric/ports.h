@@ -119,7 +119,7 @@ class OutPortOf {
 
   bool empty() const { return queue_.empty(); }
   std::size_t egress() const { return queue_.size(); }
-  PacketId front() const { return queue_.front().token.packet; }  ///< of Tokens
+  PacketId front() const { return queue_.front().token.packet; }  ///< only where T is Token
   const T& first() const { return queue_.front().token; }
   /// The time from which the first packet waits for a credit, if none comes before; kNever if it need not wait.
   Cycle blocked_from() const { return awaits_credit() ? wants_to_start() : kNever; }

@@ -45,7 +45,7 @@ class MemoryAgent : public Agent {
   /// Cycles that moving the lines took, the last one rounded up.
   virtual Cycle busy() const = 0;
   virtual double peak_bytes_per_cycle() const = 0;
-  /// Of DRAM with banks, after close(): its use up to `end`.
+  /// The use of DRAM with banks up to `end`. Call it after close().
   virtual std::optional<DramUse> dram_use(Cycle end) const = 0;
 
  protected:

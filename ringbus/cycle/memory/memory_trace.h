@@ -16,7 +16,7 @@ struct MemoryTraceResult {
   std::uint64_t requests = 0, reads = 0, writes = 0, bytes = 0;
   std::uint64_t cycles = 0;      ///< to the end of the last data
   std::uint64_t last_taken = 0;  ///< the cycle in which the last request went in; with banks: took a place
-  LatencyHistogram latency;      ///< of reads, from their cycle to the end of their data
+  LatencyHistogram latency;      ///< latency of reads, from their cycle to the end of their data
   std::optional<DramUse> dram;   ///< with banks
   double wall_seconds = 0;
 };

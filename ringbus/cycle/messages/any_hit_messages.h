@@ -7,7 +7,7 @@ namespace carousel::ringbus::cycle {
 
 /// A resource asks shading, with `testers.any_hit: shader`, to run the any-hit calls of some rays.
 struct AnyHitQuestion {
-  std::vector<std::uint32_t> slots;  ///< of the rays, which are held until the answer comes
+  std::vector<std::uint32_t> slots;  ///< slots of the rays, which are held until the answer comes
   std::uint64_t times = 0;           ///< calls, all rays together
 
   /// The ID of each ray, and for each call instance, primitive, u and v.

@@ -19,7 +19,7 @@ struct NewRays {
   } order = Order::kTake;
   std::uint64_t records = 0;            ///< loaded for them into ray stores, those of bundles included
   RayBatch rays{};                      ///< instead of IDs: rays that travel to find slots
-  std::vector<ResourceId> addresses{};  ///< of `rays`, one each with `placement: addressed`, of 2 bytes
+  std::vector<ResourceId> addresses{};  ///< a resource for each of `rays` with `placement: addressed`, of 2 bytes
 
   /// An order has 4 bytes.
   std::uint64_t bytes() const {

@@ -30,7 +30,7 @@ class RayData {
   struct Settings {
     MemoryConfig memory;
     LinkConfig link;
-    std::uint32_t slots = 1;  ///< of a resource, those of bundles included
+    std::uint32_t slots = 1;  ///< slots of a resource, those of bundles included
   };
   /// A group that has slots, and waits for its records.
   struct Group {
@@ -92,9 +92,9 @@ class RayData {
   const Workload& workload_;
   std::vector<ShapePort> ports_;
   std::vector<Waiting> waiting_;
-  std::vector<std::uint32_t> free_;                   // of those
+  std::vector<std::uint32_t> free_;                   // unused places in waiting_
   std::vector<std::uint32_t> in_flight_;              // by path: rays that have not been shaded
-  std::vector<std::optional<std::uint32_t>> pixels_;  // of the rays that are being shaded
+  std::vector<std::optional<std::uint32_t>> pixels_;  // pixels of the rays that are being shaded
   RayDataUse use_;
 };
 

@@ -66,7 +66,7 @@ class ShadeHelpers {
   struct Helper {
     Channel<ShadeJob>* jobs;
     Channel<HelpNote>* notes;
-    SideWire wire;  // of the jobs
+    SideWire wire;  // carries the jobs
     bool has_job;
     RayResult ray;
   };

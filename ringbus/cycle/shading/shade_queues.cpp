@@ -47,7 +47,7 @@ void ShadeQueues::push(const RayResult& ray, std::uint32_t shader) {
   ++size_;
 }
 
-/// Of the lists with `least` rays, the one whose first ray has waited longest; null if there is none.
+/// The list, among those with `least` rays or more, whose first ray has waited longest; null if there is none.
 std::deque<ShadeQueues::Waiting>* ShadeQueues::oldest(Queue& queue, std::size_t least) {
   std::deque<Waiting>* best = nullptr;
   for (std::deque<Waiting>& list : queue.lists)

@@ -106,7 +106,7 @@ class ShadingAgent final : public Agent {
     ShadeVector vector;
     std::optional<Question> question{};
   };
-  /// Its end. Of jobs that end at one time that of the first worker goes first.
+  /// The end of a job. Among jobs that end at one time that of the first worker goes first.
   struct JobEnd {
     Cycle done = 0;
     std::uint32_t worker = 0;
@@ -209,7 +209,7 @@ class ShadingAgent final : public Agent {
   Cycle now_ = 0, busy_ = 0;
   std::uint64_t products_ = 0, lookups_ = 0;
   Recording recording_;
-  Cycle shade_began_ = 0;  // of the followed ray
+  Cycle shade_began_ = 0;  // when the shading of the followed ray began
   CounterSamples samples_;
   LevelSum waiting_, working_;                 // over time
   std::vector<Level> held_;                    // by resource: slots in use

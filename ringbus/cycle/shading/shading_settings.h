@@ -13,7 +13,7 @@ struct ShadingSettings {
   LinkConfig link;
   FaultsConfig::Resource fault;
   std::size_t workers = 1;
-  std::size_t slots = 0;        ///< of all resources
+  std::size_t slots = 0;        ///< slots of all resources
   std::size_t packet_rays = 1;  ///< new rays that make a group
   std::uint64_t seed = 1;
   bool addressed = false;  ///< rays travel to the resources that they name

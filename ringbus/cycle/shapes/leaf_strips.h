@@ -20,7 +20,7 @@ class LeafStrips {
   bool holds(accel::NodeRef leaf) const { return !bytes_.empty() && bytes_[leaf.first_block()] > 0; }
   std::uint64_t begin(accel::NodeRef leaf) const { return begin_[leaf.first_block()]; }  ///< behind the nodes
   std::uint32_t bytes(accel::NodeRef leaf) const { return bytes_[leaf.first_block()]; }
-  std::uint64_t bytes() const { return use_.bytes; }  ///< of all leaves
+  std::uint64_t bytes() const { return use_.bytes; }  ///< bytes of all leaves
   const StripUse& use() const { return use_; }
 
  private:

@@ -91,7 +91,7 @@ class LineCache {
 
   std::uint64_t ways_, sets_, parts_;
   std::vector<std::uint64_t> lines_;  // by set, most recently used first
-  std::vector<State> states_;         // of the lines; empty if a line comes as a whole and is never written here
+  std::vector<State> states_;         // by line; empty if a line comes as a whole and is never written here
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -18,7 +18,7 @@ class ShapeBlocks final : public MemoryBlocks {
   ShapeBlocks(const accel::Accel& accel, const ShapeMemory& memory, std::uint64_t bytes);
 
   accel::NodeKey name(accel::NodeKey node) const override { return {node.instance, block(node.ref).name}; }
-  /// What a visit of the block of `ref` reads.
+  /// The shapes that a visit of the block of `ref` reads.
   ShapeSpan span(accel::NodeRef ref) const { return block(ref).span; }
 
  private:

@@ -114,7 +114,7 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
     if (test && !room_.empty() && room_.front() != user) return false;
     if (!test && !room_.empty()) return false;
     const auto room = [&] {
-      std::uint64_t own = 0;  // what it needs itself cannot make room
+      std::uint64_t own = 0;  // places of shapes that the user itself needs cannot make room
       for (const std::uint32_t entry : found)
         if (entry != kNone && entries_[entry].here && entries_[entry].holders == 0) own += entries_[entry].places;
       return free_places_ + idle_places_ - own;

@@ -39,7 +39,7 @@ class ShapeBuffer {
   using User = std::uint32_t;
   static constexpr std::uint64_t kPlaceBytes = 64;
   static std::uint64_t places(const ShapeSpan& span) { return ceil_div(span.bytes, kPlaceBytes); }
-  /// Of a span that is to be fetched.
+  /// The places that a span takes which is to be fetched.
   static std::uint64_t places_to_ask(const ShapeSpan& span) {
     return ceil_div(std::max(span.bytes, span.most), kPlaceBytes);
   }
@@ -131,7 +131,7 @@ class ShapeBuffer {
 
   ShapePort port_;
   Channel<PushedShapes>* pushed_;
-  bool drops_;                                            // what nobody holds
+  bool drops_;                                            // shapes that nobody holds are dropped
   std::uint64_t places_, free_places_, idle_places_ = 0;  // idle: of spans that are here and nobody holds
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> buckets_;

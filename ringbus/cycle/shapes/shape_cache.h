@@ -79,12 +79,12 @@ class ShapeCache final : public Agent {
   struct Pending {
     std::uint32_t client = 0, tag = 0, lines_missing = 0;
     Cycle ready = 0;
-    std::uint64_t line = 0;   // of an own cache
-    std::uint32_t lines = 1;  // of the answer
+    std::uint64_t line = 0;   // the line that an own cache is asked for
+    std::uint32_t lines = 1;  // lines in the answer
     std::uint32_t push = 0;   // 1 + a place in pushes_; 0: the answer is for the client alone
     std::uint32_t walk = 0;   // 1 + a strip that ends by its flag; 0: the length was named
   };
-  /// An answer that leaves at `ready`. Of answers that leave at one time the one that was complete first goes first.
+  /// An answer that leaves at `ready`. Among answers that leave at one time the one that was complete first goes first.
   struct Answer {
     Cycle ready = 0;
     std::uint64_t turn = 0;
@@ -142,7 +142,7 @@ class ShapeCache final : public Agent {
   Cycle answer_latency_, memory_latency_;
   std::uint64_t line_bytes_, parts_;  // a line of the messages, and their number in one of the cache
   bool writes_back_;
-  std::uint64_t mshrs_;         // of a bank; 0: no bound
+  std::uint64_t mshrs_;         // registers of a bank for lines that it waits for; 0: no bound
   std::uint64_t answer_bytes_;  // a cycle; 0: no limit
   Cycle answers_free_ = 0;      // the wires of answers are taken up to this cycle
   LineCache cache_;

@@ -17,8 +17,8 @@ namespace carousel::ringbus::cycle {
 struct ShapeSpan {
   std::uint64_t address = 0;
   std::uint32_t bytes = 0;
-  /// Of a strip that ends by its flag (`memory.strip_end: flag`): the bytes that the longest of its kind has. Until its
-  /// end has been found, this is all that is known of its length. 0: who asks for it knows the length.
+  /// Bytes of the longest strip of its kind, for a strip that ends by its flag (`memory.strip_end: flag`). Until its
+  /// end has been found, this is all that is known of its length. 0: the asker knows the length.
   std::uint32_t most = 0;
   friend bool operator==(const ShapeSpan& a, const ShapeSpan& b) {
     return a.address == b.address && a.bytes == b.bytes;
@@ -88,7 +88,7 @@ class ShapeMemory {
     return {whole.address + std::min(before, whole.bytes - bytes), bytes};
   }
 
-  /// Of the whole structure, with the gaps that alignment leaves.
+  /// Bytes of the whole structure, with the gaps that alignment leaves.
   std::uint64_t size_bytes() const { return instances_at_ + accel_.instances.size() * instance_room_; }
 
   /// How many boxes of the node `key` the lanes select; at least one.

@@ -8,7 +8,7 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-/// Of `passes` of some rays those of ray `i`.
+/// The share of ray `i` in the passes of some rays.
 std::uint64_t share(std::uint64_t passes, std::size_t rays, std::size_t i) {
   return passes / rays + (i < passes % rays ? 1 : 0);
 }

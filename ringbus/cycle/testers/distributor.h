@@ -97,7 +97,7 @@ class Distributor {
   Cycle next_hand_out_ = 0;  // the earliest
   Cycle bus_free_ = 0;
   Cycle older_done_ = 0;                 // all packets so far have been decided
-  Cycle decisions_begin_ = 0;            // of decisions_[0]
+  Cycle decisions_begin_ = 0;            // the cycle of decisions_[0]
   std::deque<std::uint32_t> decisions_;  // results taken by cycle
   DistributorCounts counts_;
 };

@@ -64,7 +64,7 @@ class Tester {
     return bundles.regrouped == 0 ? end : builder_.reserve(end, bundles.regrouped).last;
   }
 
-  /// The same behind a distributor, as Distributor::test().
+  /// Tests a packet's rays behind a distributor, as Distributor::test() says.
   void distribute(Cycle at, std::span<const std::uint32_t> slots, const IntersectionCounts& counts,
                   std::uint64_t shape_bytes, std::vector<Cycle>& decided) {
     for (const UnitKindRow& row : kUnitKinds)
@@ -75,7 +75,7 @@ class Tester {
   Distributor* distributor() { return distributor_ ? &*distributor_ : nullptr; }
   const Distributor* distributor() const { return distributor_ ? &*distributor_ : nullptr; }
 
-  /// The same for a single ray, beside others.
+  /// The time of the last answer to the tests of a single ray, beside others.
   Cycle ray(Cycle at, const RayTests& ray) {
     if (ray.inversion > 0) at = invert(at, ray.inversion);
     PerUnit<std::uint64_t> vectors{};
@@ -122,7 +122,7 @@ class Tester {
     for (const auto [kind, ledger] : units_) busy[kind] = ledger.use.busy;
     return busy;
   }
-  /// Of both ports where there are banks.
+  /// Cycles in which the ray store is read: the sum of both ports where there are banks.
   Cycle busy_reads() const { return ray_reads_.use.busy + primitive_reads_.use.busy; }
 
   /// The cycles before `at` in which each bank was busy. Times of calls, also of account(), must not decrease.

@@ -36,7 +36,7 @@ class UnitBank {
     spare_ = ceil_div(tests, units_) * units_ - tests;
     return {start + latency_, free_at_ - interval_ + latency_};
   }
-  /// The same, but units that the previous tests leave idle in their last cycle are taken first, since single rays
+  /// As reserve(), but units that the previous tests leave idle in their last cycle are taken first, since single rays
   /// bring too few tests to fill a bank.
   Reservation reserve_beside(Cycle at, std::uint64_t tests) {
     const Cycle last_start = free_at_ - interval_;

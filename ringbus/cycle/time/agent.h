@@ -18,14 +18,14 @@ class Agent {
   /// Tells whether next() may change without an announcement in the WakeupTable; false if its last answer holds until
   /// something is sent on a connected channel.
   virtual bool polled() const { return true; }
-  /// The same as next() where only what is not announced has changed since the last run.
+  /// The answer of next() if only things that are not announced have changed since the last run.
   virtual Cycle unannounced() const { return next(); }
   /// Something will arrive at `at` on a channel that was connected by WakeupTable::connect_beside(). Called between
   /// windows, before run().
   virtual void hear(Cycle at) { static_cast<void>(at); }
   /// Does everything there is to do before `end`, in the order of time.
   virtual void run(Cycle end) = 0;
-  /// The same as next(), as run() has left it. Messages that have arrived since then are announced. An agent that is
+  /// The answer of next() as run() has left it. Messages that have arrived since then are announced. An agent that is
   /// polled() may leave out the changes that unannounced() will tell.
   virtual Cycle next_after_run() const { return polled() ? kNever : next(); }
   /// One line that says what it holds and waits for, for the report of a machine that got stuck; empty when it is at

@@ -209,7 +209,7 @@ class Channel {
   alignas(64) Cursor head_;
   std::atomic<std::size_t> taken_{0};
   std::uint64_t bytes_taken_ = 0;
-  mutable Cycle arrival_ = kNever;  // of the first thing, once it has been looked at
+  mutable Cycle arrival_ = kNever;  // arrival of the first thing, once it has been looked at
   Cycle last_back_ = 0;             // `back` of the last thing taken, in checked builds
   // Used by the sender, and `sent_` read by the receiver.
   alignas(64) Cursor tail_;

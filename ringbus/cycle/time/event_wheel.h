@@ -74,7 +74,7 @@ class EventWheel {
     return base_ + static_cast<Cycle>(std::countr_zero(std::rotr(filled_, static_cast<int>(base_ % kSlots))));
   }
 
-  std::array<List, kSlots> lists_;   // of the cycles from base_ on, each at its time modulo kSlots
+  std::array<List, kSlots> lists_;   // one for each cycle from base_ on, at its time modulo kSlots
   std::uint64_t filled_ = 0;         // a bit for each list that is not empty
   std::vector<std::uint32_t> link_;  // by thing: the next one in its list
   std::priority_queue<Far, std::vector<Far>, std::greater<>> far_;

@@ -35,7 +35,7 @@ class WakeupTable {
     const Place place = places_.at(&to);
     channel.wakes(row(place.thread, places_.at(&from).thread)[place.index]);
   }
-  /// The same for a channel of which `to` hears apart.
+  /// As connect(), for a channel of which `to` is told by Agent::hear().
   template <class T, bool Returns>
   void connect_beside(Channel<T, Returns>& channel, const Agent& from, const Agent& to) {
     const Place place = places_.at(&to);
@@ -46,7 +46,7 @@ class WakeupTable {
   }
   /// By agent of thread `to`.
   std::vector<Cycle>& row(std::size_t to, std::size_t from) { return rows_[to * threads_ + from]; }
-  /// The same; empty if no channel is connected so.
+  /// As row(), for connect_beside(); empty if no channel is connected so.
   std::vector<Cycle>& row_beside(std::size_t to, std::size_t from) { return beside_[to * threads_ + from]; }
 
  private:

@@ -96,7 +96,7 @@ class WindowRun {
  private:
   struct alignas(64) Next {
     Cycle cycle = kNever;
-    std::uint64_t runs = 0;  // of the thread's agents since the last look at how much they do
+    std::uint64_t runs = 0;  // runs of the thread's agents since the last look at how much they do
   };
 
   enum class Start { kNotYet, kNow, kNever };

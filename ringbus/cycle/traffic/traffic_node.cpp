@@ -69,7 +69,7 @@ Cycle TrafficNode::next_ack() const {
   return first;
 }
 
-/// Of a packet that is ready.
+/// The time at which a packet that is ready may be injected, as far as is known.
 [[gnu::always_inline]] inline Cycle TrafficNode::next_injection(const SourceQueue& queue) const {
   if (queue.route.hops == 0) return sink_free_ - (flits_ - 1u);
   if (!allowances_.empty()) {
@@ -281,7 +281,7 @@ void TrafficNode::forward_acks(std::size_t a, Cycle end) {
 
 void TrafficNode::acknowledge(const TrafficToken& token, std::size_t d, Cycle now) {
   const std::size_t a = topology_.ack_direction(d);
-  forward_acks(a, now + 1);  // those that came earlier leave earlier
+  forward_acks(a, now + 1);  // earlier acknowledgements leave earlier
   acks_out_[a]->send(now + ack_latency_, {token.source, static_cast<std::uint16_t>(d)});
 }
 

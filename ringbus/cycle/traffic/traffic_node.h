@@ -22,7 +22,7 @@ struct TrafficNodeSettings {
   Cycle inject_cycles = 0, eject_cycles = 0;
   Cycle link_latency = 1;
   std::uint32_t link_depth = 1;
-  std::uint16_t flits = 1;   ///< of a packet
+  std::uint16_t flits = 1;   ///< flits of a packet
   bool shared_queue = true;  ///< the source has one queue for all packets
 };
 
@@ -75,10 +75,10 @@ class TrafficNode final : public Agent {
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
-  /// Of `ports.out`, in their order.
+  /// The ports of `ports.out`, in their order.
   const Out& out(std::size_t port) const { return ways_[port].out; }
-  const LatencyHistogram& latency() const { return latency_; }  ///< of measured packets delivered here
-  std::uint64_t flits() const { return flits_; }                ///< of a packet
+  const LatencyHistogram& latency() const { return latency_; }  ///< latency of measured packets delivered here
+  std::uint64_t flits() const { return flits_; }                ///< flits of a packet
   std::uint64_t delivered() const { return delivered_; }
   std::uint64_t accepted() const { return accepted_; }            ///< delivered within the window
   std::uint64_t accepted_hops() const { return accepted_hops_; }  ///< links that these crossed
@@ -142,7 +142,7 @@ class TrafficNode final : public Agent {
   std::vector<Way> ways_;
   std::vector<Channel<TrafficAck>*> acks_in_, acks_out_;
   TrafficWindow window_;
-  std::size_t marks_passed_ = 0;  // of the two ends of the window
+  std::size_t marks_passed_ = 0;  // ends of the window that have passed
   Cycle inject_cycles_, eject_cycles_, ack_latency_;
   std::uint16_t flits_;
   std::uint32_t places_wanted_;  // in the next queue, to inject

@@ -15,20 +15,20 @@ struct TrafficResult {
   cycle::Cycle cycles = 0;  ///< until the last packet was delivered
   cycle::Cycle window_begin = 0, window_end = 0;
   std::uint64_t packets = 0, delivered = 0;  ///< in all
-  std::uint64_t flits = 1;                   ///< of a packet
+  std::uint64_t flits = 1;                   ///< flits of a packet
   std::uint64_t offered = 0;                 ///< packets created within the window
   std::uint64_t accepted = 0;                ///< packets delivered within the window
   std::uint64_t accepted_hops = 0;           ///< links that these crossed
   std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
   std::uint64_t hops = 0;                    ///< links crossed by packets
-  LatencyHistogram latency;                  ///< of the packets offered
+  LatencyHistogram latency;                  ///< latency of the packets offered
   std::vector<cycle::LinkUse> links;
   std::vector<std::uint64_t> link_packets;   ///< by link
   std::vector<cycle::Cycle> busy_in_window;  ///< by link: cycles of the window in which it moved a flit
   double wall_seconds = 0;
   std::size_t threads = 1;
 
-  std::uint64_t flit_hops() const { return hops * flits; }  ///< of the whole run
+  std::uint64_t flit_hops() const { return hops * flits; }  ///< summed over the whole run
   /// Part of what all links could move within the window that packets delivered in it needed.
   double accepted_of_links() const {
     const double most = static_cast<double>(links.size()) * static_cast<double>(window_end - window_begin);

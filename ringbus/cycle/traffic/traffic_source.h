@@ -23,7 +23,7 @@ class GeometricGap {
   static constexpr int kStartBits = 8;
   /// The start of the search for the gap of a random number, by its first bits.
   struct Start {
-    double power = 1;  // of (1 - rate), to the `gap`: not less than any such number
+    double power = 1;  // (1 - rate) to the power of `gap`: not less than any such number
     Cycle gap = 0;
     std::size_t levels = 0;  // powers_ that can lead from there to one of these numbers
   };

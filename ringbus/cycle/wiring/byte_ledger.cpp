@@ -17,7 +17,7 @@ void add(ByteRow& row, const Channel<T, Returns>& channel) {
   row.messages += channel.messages().sent;
 }
 
-/// Of messages that are all of one size.
+/// Adds messages that are all of one size.
 template <class T>
 void add(ByteRow& row, const Channel<T>& channel, std::uint64_t bytes_each) {
   const auto messages = channel.messages();
@@ -64,7 +64,7 @@ ByteRow ray_data(const SimulatedMachine& machine, const MemoryConfig& memory) {
   return row;
 }
 
-/// What goes from the distributor to its testers, and from them to the decision point.
+/// Adds the traffic from the distributor to its testers, and from them to the decision point.
 void add_distributor(std::vector<ByteRow>& rows, const SimulatedMachine& machine, const Config& config) {
   constexpr std::uint64_t kId = 4, kMask = 1, kNext = 12;
   const std::uint64_t result = kId + (config.collections.traversal == Traversal::kOrdered ? kNext : kMask);

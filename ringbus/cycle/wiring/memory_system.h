@@ -38,7 +38,7 @@ class MemorySystem {
   void for_each_channel(const Body& body) const {
     for (std::size_t c = 0; c < caches_.size(); ++c) body(*to_memory_[c], *from_memory_[c]);
   }
-  /// The same with those of the own caches.
+  /// Calls `body` with the channels from each resource's own cache down and back.
   template <class Body>
   void for_each_own_channel(const Body& body) const {
     for (std::size_t r = 0; r < own_.size(); ++r) body(*own_down_[r], *own_up_[r]);

@@ -19,7 +19,7 @@ class Recorder {
   Recorder(const Config& config, const Machine& machine, const Observation& observed);
 
   Recording of_resource(ResourceId id);
-  /// Of ray control and shading.
+  /// The recording of ray control and shading.
   Recording of_shading();
   LinkRecorder of_link(ResourceId from, std::uint32_t wire);
 

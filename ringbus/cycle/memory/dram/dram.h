@@ -69,7 +69,7 @@ class Dram {
   std::uint64_t clock_mhz_, factor_, divisor_;  // engine cycles to a DRAM cycle: factor / divisor
   std::vector<DramChannel> channels_;
   std::vector<Transfer> transfers_;
-  std::vector<std::uint64_t> free_;  // of the transfers
+  std::vector<std::uint64_t> free_;  // unused places in transfers_
   std::uint64_t served_ = 0;         // transactions
 };
 

@@ -47,7 +47,7 @@ const DramRequest* DramChannel::take_arrivals(DramCycle now) {
   return nullptr;
 }
 
-/// Whether writes are served next. Without a request that comes or leaves, its answer stays.
+/// True if writes are served next. The answer stays until a request comes or leaves.
 bool DramChannel::next_kind() const {
   const std::size_t reads = queues_[0].size(), writes = queues_[1].size();
   return writing_ ? writes > (reads > 0 ? low_ : 0) : writes >= high_ || (reads == 0 && writes > 0);

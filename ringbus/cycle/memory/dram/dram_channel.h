@@ -56,7 +56,7 @@ class DramChannel {
   void idle_until(DramCycle now);
 
   const DramCounts& counts() const { return counts_; }
-  /// Of reads: from the taking of a place to the end of the data.
+  /// Latencies of reads, in DRAM cycles: from the taking of a place to the end of the data.
   const LatencyHistogram& latencies() const { return latencies_; }
   /// The cycle in which the last request took a place.
   DramCycle last_taken() const { return last_taken_; }
@@ -88,7 +88,7 @@ class DramChannel {
   struct Plan {
     DramCycle at = kDramNever;
     std::uint64_t order = 0;
-    std::uint32_t index = 0, bank = 0;  // of the request, which has a place
+    std::uint32_t index = 0, bank = 0;  // place and bank of the request
     bool active = false;                // it has none: `index` is that in active_
     bool write = false;                 // the kind of the request, if it has a place
   };
@@ -96,11 +96,11 @@ class DramChannel {
   /// A request whose row has had the first of two activate commands.
   struct HalfActive {
     Entry entry;
-    DramCycle latest = 0;  // of the second
+    DramCycle latest = 0;  // latest cycle of the second command
   };
   enum class Refresh { kNone, kClose, kRefresh };
 
-  /// What took a place, if anything did.
+  /// Gives one request a place, if one has arrived and a place is free, and returns it; null otherwise.
   const DramRequest* take_arrivals(DramCycle now);
   bool next_kind() const;
   DramCycle column_time(std::uint32_t bank, bool write) const;
@@ -135,7 +135,7 @@ class DramChannel {
   std::vector<Pseudo> pseudos_;
   std::optional<HalfActive> half_;
   std::optional<Plan> behind_clock_;        // is issued in the next cycle: the data clock has been started for it
-  DramCycle clock_stops_ = 0;               // of the data
+  DramCycle clock_stops_ = 0;               // when the data clock stops
   DramCycle row_bus_ = 0, column_bus_ = 0;  // free from
   DramCycle precharge_ = 0;                 // the earliest of any bank
   DramCycle refresh_due_;

@@ -76,8 +76,8 @@ void DramChannel::consider_column(std::uint32_t bank, DramCycle from) {
 
 /// The first row command of these banks, each of which has a request of a row that is not open. There is none if all of
 /// them need an activate while the second command of another is awaited.
-/// What is compared is one number: the cycle, then the order of taking, then the bank. So there is no branch that a
-/// processor cannot foresee.
+/// One number is compared: the cycle, then the order of taking, then the bank. So there is no branch that a processor
+/// cannot foresee.
 /// The times are those of commands and a refresh, far below 2^26 cycles from now; and no request waits for 2^31 others,
 /// since the oldest goes first as soon as it can.
 void DramChannel::first_row(std::uint64_t banks, DramCycle from, Plan& row) const {

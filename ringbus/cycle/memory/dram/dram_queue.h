@@ -25,14 +25,14 @@ class DramQueue {
   struct Entry {
     DramRequest request;
     DramCycle taken = 0;
-    std::uint64_t order = 0;  // of taking
+    std::uint64_t order = 0;  // grows from one taken request to the next
     std::uint32_t before = kNone, behind = kNone;
     bool counted = false;  // as a hit, a miss or a conflict
   };
   struct Line {
     std::uint32_t first = kNone, last = kNone;
     std::uint32_t hit = kNone, other = kNone;      // the oldest of the open row, and of any other
-    std::uint64_t hit_order = 0, other_order = 0;  // of these two
+    std::uint64_t hit_order = 0, other_order = 0;  // orders of these two
   };
 
   explicit DramQueue(std::uint32_t banks) : lines_(banks) {}
@@ -59,7 +59,7 @@ class DramQueue {
   void find_other(std::uint32_t bank, std::uint32_t from, std::uint64_t open_row);
 
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> free_;  // of the entries
+  std::vector<std::uint32_t> free_;  // unused places in entries_
   std::vector<Line> lines_;
   std::uint64_t hits_ = 0, others_ = 0, taken_ = 0;
   std::size_t size_ = 0;

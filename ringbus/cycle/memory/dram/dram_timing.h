@@ -27,7 +27,7 @@ struct DramTiming {
   DramCycle read_to_write = 0;            ///< read to write of a pseudo-channel
   DramCycle refi = 0, rfc = 0;            ///< refresh to refresh, and the time of one
   DramCycle ppd = 1;                      ///< precharge to precharge
-  DramCycle activate_cycles = 1;          ///< of the command bus, taken by an activate
+  DramCycle activate_cycles = 1;          ///< cycles of the command bus that an activate takes
   bool two_buses = false;                 ///< rows and columns have a command bus each
   /// An activate is two commands, the second at most so long behind the first. 0 if it is one command.
   DramCycle aad = 0;
