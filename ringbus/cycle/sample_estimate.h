@@ -49,12 +49,12 @@ FrameValues exact_values(const Config& config, const RunResult& result);
 /// - Caches are cold. The first request of a cache for a line of shapes is one of the frame's, too, and there are no
 ///   more of them than lines (frame_lines.h). Other requests for shapes come again since a line has been replaced; they
 ///   become more frequent as the caches fill, and are taken to be as many a ray as in the later half between fill and
-///   drain. Where lines are replaced already, what first requests become fewer by, other requests become more by in
-///   part. The interval's upper end adds all of that part, as far as the frame's lines are more than the caches hold.
-///   Requests for data of rays and paths are as many a ray as in the sample.
-/// First lines cause a part of the time that testers waited: the part that the latency of the memory for them has of
-/// all latencies, those of the caches' hits included. The rest of the frame waits less by as many as it has fewer of
-/// them a ray. Half of the time that it so spares is added to the interval.
+///   drain. Where lines are replaced already, other requests increase by a part of the decrease in first requests. The
+///   interval's upper end adds all of that part, as far as the frame's lines are more than the caches hold. Requests
+///   for data of rays and paths are as many a ray as in the sample.
+///   First lines cause a part of the time that testers waited: the part that the latency of the memory for them has of
+///   all latencies, those of the caches' hits included. The rest of the frame waits less by as many as it has fewer of
+///   them a ray. Half of the time that it so spares is added to the interval.
 /// - Errors are those of the differences between neighbouring places and between neighbouring blocks of completed rays
 ///   (foretell.h), less the part of the frame that was simulated (K. Wolter, Introduction to Variance Estimation, 2nd
 ///   edition 2007, sections 1.4 and 8.2). As samples are drawn so that their tests are the frame's (app, RenderJob),

@@ -25,7 +25,7 @@ class LinkFaultTimer {
         latency_(latency) {}
 
   struct Delivery {
-    Cycle arrival = 0;    ///< of the head
+    Cycle arrival = 0;    ///< arrival of the head
     Cycle link_free = 0;  ///< when the next one may start
     Cycle busy = 0;       ///< for which the link moved something
   };
@@ -117,7 +117,7 @@ class LinkFaultTimer {
 
   FaultInjector injector_, ack_injector_;
   Cycle delay_, latency_;
-  Cycle cycles_ = 1;  // of the last packet
+  Cycle cycles_ = 1;  // length of the last packet
   Cycle last_ = 0;
   bool overtaken_ = false;     // the frame before comes after the next one
   std::deque<Cycle> overdue_;  // when the acknowledgements that are overdue come, or never

@@ -345,7 +345,7 @@ class NativeRun {
   std::unique_ptr<NativeMachine> machine_;
   RayCount count_;
   std::unique_ptr<OutstandingRays> ledger_;  // where a resource may stop
-  std::atomic<std::uint64_t> turns_{0};      // of the thread that plays it
+  std::atomic<std::uint64_t> turns_{0};      // turns of the thread that plays that resource
   std::uint64_t turns_seen_ = 0, beats_ = 0;
   Clock::time_point last_beat_{};
   std::optional<ResourceId> excluded_;  // it has stopped

@@ -16,8 +16,8 @@ namespace carousel::ringbus {
 RunResult run_native(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
                      const RunOptions& options);
 
-/// The same, with links that `links` makes in place of those of `topology.link.queue`; for queues of one's own, as in
-/// run_native_on(make_queue_link<MyQueue>, ...).
+/// As run_native(), with links that `links` makes in place of those of `topology.link.queue`; for queues of one's own,
+/// as in run_native_on(make_queue_link<MyQueue>, ...).
 RunResult run_native_on(const LinkMaker& links, const Config& config, const accel::Accel& accel, float scene_size,
                         Workload& workload, const RunOptions& options);
 

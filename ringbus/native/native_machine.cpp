@@ -28,7 +28,7 @@ NativeMachine::NativeMachine(const Config& config, const accel::Accel& accel, fl
   const std::size_t workers = static_cast<std::size_t>(shader_workers(config));
   require_both_ways(config.shading.queue.kind, "shading.queue", std::min(threads, resources),
                     std::min(threads, workers));
-  // Those who submit rays take turns. Groups that waited for other ranks come from any thread.
+  // Threads that submit rays take turns. Groups that waited for other ranks come from any thread.
   require_both_ways(config.rays.queue.kind, "rays.queue", share.alone() ? 1 : threads, 1);
   shared.control.queue_groups(config.rays.queue.kind, static_cast<std::size_t>(config.rays.queue.depth));
   if (!share.alone()) gate = std::make_unique<RankGate>(config, *transport, shared, completed);

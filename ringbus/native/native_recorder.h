@@ -47,7 +47,8 @@ class NativeRecorder {
   /// One thread at a time. `number`: of the message among those between its ends; it ends now.
   void note_message(Ends ends, SliceKind kind, std::uint64_t number, std::size_t packets, std::uint64_t begin);
 
-  /// When the threads have been joined. Of `ranks` the first gets all, and each calls, when no message is under way.
+  /// Call it when the threads have been joined. With `ranks` the first rank gets the slices of all; every rank calls,
+  /// when no message is under way.
   Timeline timeline(Transport* ranks) const;
   std::vector<RayFact> facts() const;
 

@@ -36,7 +36,7 @@ class RankGate final : public RemotePlacing {
 
   /// The link of a wire of which not both ends are here.
   std::unique_ptr<Link> make_link(std::uint32_t wire, std::size_t depth);
-  /// Whether both ends of a wire are here.
+  /// True if both ends of a wire are here.
   bool here(const Topology::Wire& wire) const { return machine_.share.here(wire.from) && machine_.share.here(wire.to); }
 
   void load(ResourceId resource, std::span<const RayId> ids, std::span<const RayRequest> rays) override;
@@ -85,7 +85,7 @@ class RankGate final : public RemotePlacing {
   static constexpr std::size_t kFull = 4096, kDepthShare = 4;
   static constexpr std::size_t kLeaving = 2;  // messages to a rank that may be on their way out
 
-  /// What concerns one other rank.
+  /// The state between this rank and one other.
   struct Peer {
     std::mutex mutex;  // guards `next` and `rays_sent`
     RankMessage next;
@@ -124,9 +124,9 @@ class RankGate final : public RemotePlacing {
   Transport& transport_;
   Machine& machine_;
   CompletedQueue& completed_;
-  HitBatch results_;  // of rays that completed at other ranks, for the shader workers here
+  HitBatch results_;  // hits of rays that completed at other ranks, for the shader workers here
   std::uint32_t rank_;
-  std::size_t depth_;  // of each link
+  std::size_t depth_;  // depth of each link
   NativeRecorder* recorder_ = nullptr;
   std::optional<ShapeTravel> shapes_;
   std::vector<std::unique_ptr<Peer>> peers_;  // by rank; this one's own is not used

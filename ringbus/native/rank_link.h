@@ -30,7 +30,7 @@ class RankLink final : public Link {
   }
   std::size_t capacity() const override { return depth_; }
 
-  // What the other rank's messages bring. One thread.
+  // The calls below bring the contents of the other rank's messages. One thread at a time makes them.
 
   /// At the sender: so many packets have been taken out of the link since the start.
   void credit(std::uint64_t taken) { taken_.store(taken, std::memory_order_release); }

@@ -23,7 +23,7 @@ struct ReliableLinkSettings {
   std::size_t depth = 16;
   FaultsConfig::Links faults;
   std::int64_t seed = 1;
-  std::chrono::nanoseconds delay{0};  ///< of a frame that is late
+  std::chrono::nanoseconds delay{0};  ///< delay of a frame that is late
 };
 
 inline ReliableLinkSettings reliable_link_settings(const LinkConfig& link, const FaultsConfig& faults,
@@ -228,7 +228,7 @@ class ReliableLink final : public Link {
   alignas(128) std::uint64_t expected_ = 0;
   std::uint64_t discarded_ = 0;
   std::optional<PacketId> held_;  // taken off the wire by tick_receiver()
-  // Of both.
+  // The state that both sides share.
   alignas(128) Queue<LinkFrame> frames_;
   SpscRing<Ack> acks_;
   alignas(128) FaultyWire<Queue<LinkFrame>, LinkFrame> out_;  // the sender's end

@@ -24,7 +24,7 @@ class ShapeTravel {
   void take_along(PacketId id, const Packet& packet, ResourceId to, RankMessage& message) const;
   /// The shapes of a packet from another rank, before the packet arrives.
   void enter(PacketId id, std::span<const std::uint64_t> shapes);
-  /// What the shape that a packet names is called here, for a test.
+  /// The key at this rank of the shape that a packet names, for a test.
   accel::NodeKey key_here(const Packet& packet) const;
   /// Memory that guests have taken.
   std::uint64_t guest_bytes() const { return machine_.accel.guests->bytes(); }

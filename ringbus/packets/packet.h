@@ -41,7 +41,7 @@ struct Packet {
   ResourceId owner, home;
   accel::NodeKey key;
   std::uint32_t lanes = ~0u;          ///< shapes of the strip to test; one bit in single-shape mode
-  std::uint16_t depth = 0;            ///< of `key`, in strips below the root
+  std::uint16_t depth = 0;            ///< depth of `key`, in strips below the root
   std::uint16_t direction = 0;        ///< that it travels round the ring
   std::uint32_t hops_left = 0;        ///< links to cross until it is back at its owner (rings)
   std::uint32_t reserved_blocks = 0;  ///< collection blocks that its retirement may take

@@ -41,7 +41,7 @@ struct Machine {
   bool home_local;                                ///< `collections.home: local`
   bool stays;                                     ///< packets are tested where they are issued and never travel
   bool own_rays_last;                             ///< `testers.own_rays: after`
-  std::uint32_t packets_per_direction;            ///< of one resource
+  std::uint32_t packets_per_direction;            ///< packets that one resource has for each direction
   std::vector<Packet> packets;                    ///< by owner, then direction
   std::vector<std::vector<Packet>> answers;       ///< by resource, then packet
   std::vector<std::unique_ptr<RayStore>> stores;  ///< by resource

@@ -78,7 +78,7 @@ class PortLogic {
     free.put(id, packet.direction);
     return joined;
   }
-  /// The same without taking anything in.
+  /// Frees a packet of its own as retire() does, without taking anything in.
   void discard(PacketId id) { free.put(id, machine_.packet(id).direction); }
 
   // A fail-stop (`faults.resource: {kind: stop}`).

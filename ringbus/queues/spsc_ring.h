@@ -70,13 +70,13 @@ class SpscRing {
 
  private:
   struct Cell {
-    std::atomic<std::size_t> run_end{0};  // of the run that began here when it was last written as a first cell
+    std::atomic<std::size_t> run_end{0};  // end of the run that began here when it was last written as a first cell
     T value{};
   };
   // A line pair each: the two sides write at the same time, and the prefetcher fetches lines in pairs.
   struct alignas(128) Side {
     std::size_t index = 0;  // how many this side has pushed, or popped
-    std::size_t other = 0;  // what it knows of the other side's index
+    std::size_t other = 0;  // the other side's index, as far as this side knows it
   };
   struct alignas(128) Shared {
     std::atomic<std::size_t> index{0};

@@ -14,7 +14,7 @@ namespace carousel::ringbus {
 /// where the host does not tell.
 std::string clock_identity();
 
-/// How far each rank's clock is ahead of rank 0's, by rank. Those of rank 0's `identity` are rank 0's own clock;
+/// The time by which each rank's clock is ahead of rank 0's, by rank. Ranks with rank 0's `identity` have its clock;
 /// the others are asked for their time, several times, and the fastest answer counts: its time lies between those of
 /// the question and of its receipt (D. L. Mills, RFC 5905, section 8; F. Cristian, "Probabilistic clock
 /// synchronization", Distributed Computing 3, 1989). `now` is this rank's clock in nanoseconds.

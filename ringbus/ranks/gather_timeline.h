@@ -7,10 +7,10 @@
 
 namespace carousel::ringbus {
 
-/// Joins the timelines of all ranks at rank 0, on rank 0's clock. Those of the others were noted from the same moment
-/// on, by clocks that were so far ahead of rank 0's at the beginning (`first`) and at the end (`last`) of the run, and
-/// are taken to have drifted evenly between. Tracks without slices are left out. Every rank calls, when no message is
-/// under way; the others keep theirs.
+/// Joins the timelines of all ranks at rank 0, on rank 0's clock. The timelines of other ranks were noted from the same
+/// moment on, by clocks that were so far ahead of rank 0's at the beginning (`first`) and at the end (`last`) of the
+/// run, and are taken to have drifted evenly between. Tracks without slices are left out. Every rank calls, when no
+/// message is under way; the others keep theirs.
 void gather_timeline(Transport& transport, const std::vector<RankClock>& first, const std::vector<RankClock>& last,
                      Timeline& timeline);
 

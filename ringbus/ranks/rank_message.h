@@ -64,10 +64,10 @@ struct RankMessage {
   std::vector<LinkCredit> credits;
   std::vector<RayOnWire> rays;
   bool hungry = false;           ///< the sender had nothing to do at times since its last message
-  std::uint64_t rays_taken = 0;  ///< of the receiver's, since the start: their data are in their slots
+  std::uint64_t rays_taken = 0;  ///< taken of the receiver's rays since the start: their data are in their slots
   std::vector<ResultOnWire> results;
   std::vector<PacketOnWire> packets;
-  std::vector<std::uint64_t> trips;  ///< of `packets`, for a timeline; empty without one
+  std::vector<std::uint64_t> trips;  ///< trips of `packets`, for a timeline; empty without one
   PacketImage images;
   std::vector<ShapesOnWire> guests;
   std::vector<std::uint64_t> shapes;  ///< as accel::pack_shapes() writes them
@@ -79,7 +79,7 @@ struct RankMessage {
   void restore_packet(std::size_t i, Packet& packet) const;
   /// The shapes of guests[i]. Throws a SimulationError where they are not in the message.
   std::span<const std::uint64_t> shapes_of(std::size_t i) const;
-  /// What EndCount counts.
+  /// The number of items in the message that EndCount counts.
   std::uint64_t items() const { return rays.size() + results.size() + packets.size(); }
   void clear();
 

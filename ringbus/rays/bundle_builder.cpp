@@ -65,7 +65,7 @@ double BundleBuilder::size_of(const Bounds& b) const {
   switch (config_.builder.similarity) {
     case Similarity::kGrowth:
       return std::max(origins, largest(range));
-    case Similarity::kSolidAngle: {  // of the box of directions, seen from the origin
+    case Similarity::kSolidAngle: {  // solid angle of the box of directions, seen from the origin
       const DVec3 along = glm::abs(0.5 * (least + most)) / b.longest;
       return along.x * range.y * range.z + along.y * range.z * range.x + along.z * range.x * range.y;
     }
@@ -97,7 +97,7 @@ void BundleBuilder::send(std::size_t place, Groups& out) {
 
 void BundleBuilder::open(std::uint32_t index, const RayRequest& request, Groups& out) {
   if (oldest_first_.size() == static_cast<std::size_t>(config_.builder.open)) {
-    // The fullest has least to gain from waiting. Of several the oldest goes.
+    // The fullest has least to gain from waiting. Among several the oldest goes.
     const auto fuller = [&](std::uint32_t a, std::uint32_t b) { return open_[a].count < open_[b].count; };
     const auto fullest = std::max_element(oldest_first_.begin(), oldest_first_.end(), fuller);
     send(static_cast<std::size_t>(fullest - oldest_first_.begin()), out);

@@ -38,10 +38,10 @@ class BundleBuilder {
   };
   struct Open {
     Bounds bounds;
-    double size;           ///< of the bounds
+    double size;           ///< size of the bounds
     std::uint64_t opened;  ///< looked_at_ when it was opened
     RayKind kind;
-    std::uint32_t signs;  ///< of the components of its directions
+    std::uint32_t signs;  ///< signs of the components of its directions
     std::size_t count;
     std::array<std::uint32_t, kMostRays> rays;
   };

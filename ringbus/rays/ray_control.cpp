@@ -163,7 +163,8 @@ void RayControl::queue_groups(QueueKind kind, std::size_t places) {
     if (share_.here(ResourceId(r))) inboxes_[r].queue = std::make_unique<PooledQueue<RayGroup>>(kind, places);
 }
 
-/// Whether the next group may go to `resource`. Other ranks' data come before groups do, which are held for so long.
+/// True if the next group may go to `resource`. With several ranks it may: groups are held until other ranks' data
+/// come.
 bool RayControl::may_send(ResourceId resource) {
   Inbox& inbox = inboxes_[resource.value];
   if (inbox.queue && inbox.next == nullptr && remote_ == nullptr) inbox.next = inbox.queue->try_take();

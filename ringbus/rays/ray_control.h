@@ -30,7 +30,7 @@ struct RayControlSettings {
   std::int32_t initial_tests = 1;  ///< that a ray waits for at the root
   BundlesConfig bundles;
   float scene_size = 1;  ///< scale of the distances between the origins of a bundle
-  RankShare share{};     ///< of the machine, that this process plays
+  RankShare share{};     ///< the part of the machine that this process plays
 };
 
 RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size);
@@ -51,8 +51,8 @@ class RayControl {
   /// Rays for resources of other ranks go to `remote`. Before the first submit(); needed with several ranks.
   void place_by(RemotePlacing& remote) { remote_ = &remote; }
   /// Groups go to each resource through a queue of this design with so many places. Needed where resources and those
-  /// who submit are on several threads; before the first submit(). Those who submit take turns, so that the queue has
-  /// one producer at a time, but with several ranks it has as many as call deliver().
+  /// who submit are on several threads; before the first submit(). Threads that submit take turns, so that the queue
+  /// has one producer at a time, but with several ranks it has as many as call deliver().
   void queue_groups(QueueKind kind, std::size_t places);
   /// Hands a group to its issuer, for RemotePlacing. False: its queue is full, and the group is as it was.
   bool deliver(ResourceId issuer, RayGroup& group);
@@ -95,7 +95,7 @@ class RayControl {
   std::uint64_t slot_waits() const { return slot_waits_.load(std::memory_order_relaxed); }
   /// Rays that travel wait where they are sent from.
   void count_slot_wait() { slot_waits_.fetch_add(1, std::memory_order_relaxed); }
-  /// What went through the queues to the resources, all together; while no other thread calls.
+  /// The traffic of the queues to the resources, all together. Call it while no other thread calls.
   QueueUse groups_sent() const;
   /// How often a slot was handed out.
   std::uint64_t slots_used() const { return slots_used_.load(std::memory_order_relaxed); }
@@ -130,7 +130,7 @@ class RayControl {
     if (excluded_ == ResourceId(turn_ % resources_)) ++turn_;
     return ResourceId(turn_++ % resources_);
   }
-  /// The same among the resources that this rank plays.
+  /// The next in turn among the resources that this rank plays.
   ResourceId next_issuer() {
     return share_.alone() ? next_resource() : ResourceId(share_.arc_begin() + turn_++ % share_.arc_size());
   }

@@ -91,7 +91,7 @@ void Offering::retire(const Packet& packet, std::size_t joined) {
 }
 
 void Offering::retire_part(const Packet& part, std::size_t joined) {
-  storage_.retire(0, part.members.size(), joined);  // what is promised to the packet stays so, until it is back
+  storage_.retire(0, part.members.size(), joined);  // blocks that are promised to the packet stay so until it is back
 }
 
 std::uint32_t Offering::discard() {

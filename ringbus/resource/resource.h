@@ -67,7 +67,8 @@ class Resource {
   /// Takes back a packet of its own: members that hit join the children's collections. Returns how many memberships
   /// that makes.
   std::size_t retire(Packet& packet);
-  /// The same for some members of a packet, `part`, which is not back yet and goes on without them.
+  /// Takes back some members of a packet, `part`, as retire() does; the packet is not back yet and goes on without
+  /// them.
   std::size_t retire_part(Packet& part);
   /// Takes the members of a membership packet that has reached its home.
   void join(Packet& packet);
@@ -105,7 +106,7 @@ class Resource {
   AnyHitHold any_hit_;
   std::unique_ptr<TraversalMethod> traversal_;
   Offering offering_;
-  LocalRays local_;         // of the visit, kept so that nothing is allocated per packet
+  LocalRays local_;         // rays of the visit, kept so that nothing is allocated per packet
   std::vector<RayId> ids_;  // scratch
 };
 

@@ -12,7 +12,7 @@ struct ResourceSettings {
   PacketsConfig packets;
   BundlesConfig bundles;
   std::int64_t treelet_triangles = 2048;  ///< treelet traversal: a subtree of so many or fewer is one test
-  std::uint32_t resources = 1;            ///< of the machine, for `home: hash`
+  std::uint32_t resources = 1;            ///< resources of the machine, for `home: hash`
   float scene_size = 1;                   ///< scale of entry distances and of boxes
 };
 

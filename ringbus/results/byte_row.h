@@ -9,7 +9,7 @@ struct ByteRow {
   const char* what;
   const char *from, *to;
   const char* over;                 ///< the wire or port that is occupied
-  std::uint64_t width = 0;          ///< of each such wire or port, in bytes a cycle
+  std::uint64_t width = 0;          ///< bytes a cycle that each such wire or port moves
   std::uint64_t bytes = 0;          ///< that senders counted
   std::uint64_t messages = 0;       ///< likewise
   std::uint64_t bytes_taken = 0;    ///< that receivers counted

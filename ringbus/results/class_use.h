@@ -20,7 +20,7 @@ struct ClassUse {
 struct ProgressSample {
   Cycle at = 0;
   std::uint64_t completed = 0;  ///< rays
-  std::vector<Cycle> busy;      ///< of each class, in the order of CycleResult::uses
+  std::vector<Cycle> busy;      ///< busy cycles of each class, in the order of CycleResult::uses
   friend bool operator==(const ProgressSample&, const ProgressSample&) = default;
 };
 

@@ -60,7 +60,7 @@ class CounterSamples {
     for (std::size_t i = 0; i < sums.size(); ++i) {
       const std::size_t reading = (i + 1) * step - 1;
       const std::uint64_t at = reading < taken_ ? values_[reading * counters_ + counter] : last_[counter];
-      const std::uint64_t value = std::max(before, at);  // what was counted ahead of time may have been taken back
+      const std::uint64_t value = std::max(before, at);  // counts that were made ahead of time may have been taken back
       sums[i] += value - std::exchange(before, value);
     }
   }
@@ -100,7 +100,7 @@ class LevelSum {
   CounterSamples::Time since_ = 0;
 };
 
-/// The same, with the level itself.
+/// A level, and its integral over time.
 class Level {
  public:
   void change(CounterSamples::Time now, std::int64_t by) {

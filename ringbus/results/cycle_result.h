@@ -64,7 +64,7 @@ struct TileResult {
   BankUse primitive_ray_reads;     ///< with `rays.banks` that to the units for primitives
   std::uint64_t second_reads = 0;  ///< records that both ports have read for one test
   Cycle bank_conflicts =
-      0;  ///< of the ports, beyond those in which the reads would be over if they were even over its banks
+      0;  ///< cycles of the ports, beyond those that the reads would take if they were even over the banks
   std::optional<DistributorCounts> distributor;  ///< of a central machine with one
   Utilisation dispatch;
   PacketKindCounts sent;
@@ -89,7 +89,7 @@ struct LinkUse {
   std::uint32_t from = 0, to = 0;
   Utilisation use;
   Occupancy queue;
-  std::uint64_t bytes = 0;  ///< of the packets; 0 for synthetic traffic
+  std::uint64_t bytes = 0;  ///< bytes of the packets; 0 for synthetic traffic
   friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
@@ -111,37 +111,37 @@ struct IdsAtOnce {
 /// The vectors in which shader workers shaded completed rays.
 struct ShadeVectorCounts {
   std::uint64_t vectors = 0, rays = 0;
-  std::uint64_t runs = 0;  ///< of a shader for its rays of a vector
+  std::uint64_t runs = 0;  ///< runs of a shader for its rays of a vector
   friend bool operator==(const ShadeVectorCounts&, const ShadeVectorCounts&) = default;
 };
 
 struct CycleResult {
   /// From cycle 0 to the last in which a resource, ray control or shading did anything.
   Cycle cycles = 0;
-  std::vector<ClassUse> uses;               ///< of each class of parts, over the whole run
+  std::vector<ClassUse> uses;               ///< one for each class of parts, over the whole run
   std::vector<ProgressSample> progress;     ///< in the order of time, at about equal numbers of rays
   std::optional<ProgressSample> all_begun;  ///< when no ray was left that no other ray causes
   std::vector<TileResult> tiles;            ///< by resource
   std::vector<LinkUse> links;
   std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
-  std::optional<CacheCounts> own_caches;                 ///< of all resources, if they have caches of their own
+  std::optional<CacheCounts> own_caches;                 ///< sum over resources, if they have caches of their own
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   std::uint64_t memory_lines = 0, memory_lines_written = 0;
   Cycle memory_busy = 0;
   std::optional<RayDataUse> ray_data;  ///< if any is in memory
   CacheDrain drain;
   std::optional<StripUse> strips;                           ///< with `bvh.leaves: strips`
-  std::optional<DramUse> dram;                              ///< of DRAM with banks
+  std::optional<DramUse> dram;                              ///< use of DRAM with banks
   Cycle shading_busy = 0;                                   ///< worker-cycles, without resources that help
-  std::uint64_t shading_products = 0, shading_lookups = 0;  ///< of ShadeWork
+  std::uint64_t shading_products = 0, shading_lookups = 0;  ///< counts of ShadeWork
   ShadeVectorCounts shading_vectors;
   std::uint64_t hops = 0;
-  Log2Histogram residence;        ///< of rays, from their slot until shading has their hit
+  Log2Histogram residence;        ///< times of rays from their slot until shading has their hit
   std::optional<IdsAtOnce> ids;   ///< where there are collections
   std::optional<StopTimes> stop;  ///< if one was excluded before the last ray was shaded
   EpochDigests epochs;
-  std::vector<Step> steps;  ///< of RunOptions::trace
+  std::vector<Step> steps;  ///< steps that RunOptions::trace asks for
   friend bool operator==(const CycleResult&, const CycleResult&) = default;
 };
 

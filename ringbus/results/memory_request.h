@@ -11,7 +11,7 @@ inline constexpr std::uint64_t kMemoryEnd = std::uint64_t{1} << 53;
 
 /// A request to the memory behind the caches, when it arrives there.
 struct MemoryRequest {
-  std::uint64_t cycle = 0;  ///< of the engine
+  std::uint64_t cycle = 0;  ///< cycle of the engine
   std::uint64_t address = 0;
   std::uint32_t bytes = 0;
   bool write = false;

@@ -11,7 +11,7 @@ struct RayDataUse {
     friend bool operator==(const Moved&, const Moved&) = default;
   };
   Moved records;  ///< master copies of rays (memory.ray_records)
-  Moved states;   ///< of paths (memory.path_state)
+  Moved states;   ///< path states (memory.path_state)
   Moved film;     ///< pixels (memory.film)
   friend bool operator==(const RayDataUse&, const RayDataUse&) = default;
 };

@@ -63,7 +63,7 @@ struct RayLife {
   std::vector<LifeSpan> spans;
   std::vector<LifeTest> tests;
   std::uint64_t packets = 0, hops = 0;
-  std::optional<std::uint32_t> resource, slot;  ///< of its record
+  std::optional<std::uint32_t> resource, slot;  ///< place of its record
   Hit hit{};
 };
 

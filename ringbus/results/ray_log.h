@@ -69,7 +69,7 @@ struct RayFact {
   };
   Kind kind = Kind::kMade;
   std::uint64_t at = 0, end = 0;
-  std::uint64_t trip = 0;  ///< of the packet, as in Slice
+  std::uint64_t trip = 0;  ///< trip of the packet, as in Slice
   std::uint32_t resource = 0, other = 0, packet = 0, rays = 0;
   accel::NodeKey key{};
   std::uint16_t depth = 0;

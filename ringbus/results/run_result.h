@@ -45,7 +45,7 @@ struct RunOptions {
   TimelineOptions timeline{};                    ///< slices of time that are recorded
   FollowedRay* ray = nullptr;                    ///< its life is recorded, in place of the timeline
   Transport* transport = nullptr;                ///< native: to the other ranks of the run
-  std::uint64_t scene_bytes = 0;                 ///< of the scene that this rank has, for its report
+  std::uint64_t scene_bytes = 0;                 ///< bytes of the scene that this rank has, for its report
   MemoryLog* memory = nullptr;                   ///< cycle: requests to the memory are appended
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start
@@ -82,7 +82,7 @@ struct RunResult {
   std::optional<TimeSeries> series;         ///< with RunOptions::samples
   std::optional<Timeline> timeline;         ///< with RunOptions::timeline; with RunOptions::ray of its packets
   std::vector<RayFact> facts;               ///< with RunOptions::ray, by time
-  std::optional<cycle::CycleResult> cycle;  ///< of the cycle engine
+  std::optional<cycle::CycleResult> cycle;  ///< results of the cycle engine
 };
 
 }  // namespace carousel::ringbus

@@ -29,7 +29,7 @@ struct Slice {
   std::uint64_t trip = 0;   ///< the way of a packet from its issue until it retires, or of a message; 0: of neither
   std::uint64_t at = 0;     ///< kTest: the beginning of its tests; kLink: its arrival at the far end
   std::uint32_t track = 0;  ///< a part of the machine that does one thing at a time
-  std::uint32_t packet = 0, rays = 0;  ///< of a message: its number among those to its rank, and its packets
+  std::uint32_t packet = 0, rays = 0;  ///< a message's number among those to its rank, and its packets
   SliceKind kind = SliceKind::kUnits;
   friend bool operator==(const Slice&, const Slice&) = default;
 };
@@ -59,16 +59,16 @@ struct RankClock {
 struct Timeline {
   std::vector<SliceTrack> tracks;
   std::vector<Slice> slices;        ///< by begin, then track
-  std::uint64_t end = 0;            ///< of the run
+  std::uint64_t end = 0;            ///< the end of the run
   bool cut = false;                 ///< recording ended before the run did, for there were too many
-  std::vector<RankClock> clocks{};  ///< of the ranks whose slices are here, on rank 0's clock; empty: of one process
+  std::vector<RankClock> clocks{};  ///< one for each rank whose slices are here, on rank 0's clock; empty: one process
   friend bool operator==(const Timeline&, const Timeline&) = default;
 };
 
 /// The slices that are wanted.
 struct TimelineOptions {
-  std::uint64_t first = 0, end = std::numeric_limits<std::uint64_t>::max();  ///< those that begin in this window
-  std::uint64_t every = 1;  ///< of the packets of each resource; units are left out unless it is 1
+  std::uint64_t first = 0, end = std::numeric_limits<std::uint64_t>::max();  ///< window in which they begin
+  std::uint64_t every = 1;  ///< one of so many packets of each resource is recorded; units only if it is 1
   std::size_t most = 0;     ///< about; 0: none is recorded
 };
 
@@ -125,7 +125,7 @@ class TripTable {
 
  private:
   struct Trip {
-    std::uint64_t count = 0;  // of its trips, from 1 on
+    std::uint64_t count = 0;  // number of the present trip, from 1 on
     bool recorded = false;
   };
   std::vector<Trip> trips_;

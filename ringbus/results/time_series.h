@@ -26,7 +26,7 @@ struct TimeSeries {
   /// The most numbers in all rows.
   static constexpr std::size_t kMostNumbers = std::size_t{1} << 18;
 
-  std::string_view unit;  ///< of `interval`: a literal
+  std::string_view unit;  ///< unit of `interval`: a literal
   double interval = 0;    ///< length of a sample
   std::size_t samples = 0;
   std::vector<SeriesRow> rows{};

@@ -42,7 +42,7 @@ inline void schedule_point() {
     schedule->yield();
 }
 
-/// The same for a caller that has nothing to do: without a schedule, other threads of the host go on.
+/// As schedule_point(), for a caller that has nothing to do: without a schedule, other threads of the host go on.
 inline void schedule_pause() {
   Schedule* const schedule = Schedule::current();
   schedule == nullptr ? std::this_thread::yield() : schedule->yield();

@@ -74,7 +74,7 @@ class Ring final : public WorkerGroup {
     std::uint64_t sent = 0, home = 0;
     bool finished = false;
     std::deque<Message<kBytes>> egress;
-    std::vector<std::int64_t> sent_at;  // of the messages that are out, by number modulo capacity
+    std::vector<std::int64_t> sent_at;  // send times of the messages that are out, by number modulo capacity
     DeliveryChecker arrivals{0, 0};
     LatencyHistogram round_trips;
     std::uint64_t push_calls = 0, push_refusals = 0, pop_calls = 0, pop_refusals = 0;

@@ -10,7 +10,7 @@ namespace carousel::ringbus::stress {
 
 enum class Pattern {
   kStream,           ///< one producer, one consumer, a message a call
-  kBatches,          ///< the same, 32 messages a call
+  kBatches,          ///< one producer, one consumer, 32 messages a call
   kBurst,            ///< 32 messages at once, then a pause
   kPingPong,         ///< one message to and fro
   kCirculation,      ///< a ring of four: each message visits every node and returns

@@ -195,7 +195,7 @@ class Stream final : public WorkerGroup {
     std::atomic<std::uint64_t> sent{0};
     std::uint64_t calls = 0, refusals = 0;
     std::int64_t blocked = 0, begin = 0, finish = 0;  // ns
-    std::vector<std::atomic<std::int64_t>> stamps;    // of every kStampEvery-th message
+    std::vector<std::atomic<std::int64_t>> stamps;    // send times of every kStampEvery-th message
   };
   struct alignas(128) Receiver {
     std::atomic<std::uint64_t> taken{0};

@@ -13,7 +13,7 @@ struct StressOptions {
   std::vector<std::size_t> message_bytes;  ///< empty: all sizes for streams, 64 for the others
   std::size_t repetitions = 3;
   double seconds = 30;                 ///< about, in all; shared out over the trials
-  std::uint64_t messages = 1'000'000;  ///< of a trial, at most
+  std::uint64_t messages = 1'000'000;  ///< most messages of a trial
   std::size_t capacity = 64;
   std::uint64_t seed = 1;
   std::chrono::milliseconds stuck_after{2000};

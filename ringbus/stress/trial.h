@@ -20,7 +20,7 @@ struct TrialOptions {
   std::uint64_t messages = 100'000;                                ///< at most, over all producers
   std::chrono::nanoseconds time = std::chrono::milliseconds(200);  ///< no message is sent later
   std::chrono::milliseconds stuck_after{2000};                     ///< without progress
-  std::uint64_t seed = 1;                                          ///< of pauses and lengths of batches
+  std::uint64_t seed = 1;                                          ///< seed of pauses and lengths of batches
   std::stop_token stop{};                                          ///< ends it early
 };
 
@@ -36,7 +36,7 @@ struct TrialResult {
   double producer_seconds = 0;  ///< producers' time, summed
   double fairness =
       1;  ///< least over most messages sent by a producer, at the time when the first one had sent its share
-  std::size_t memory_bytes = 0;  ///< of one queue that has been full once, as far as the C library's heap tells
+  std::size_t memory_bytes = 0;  ///< memory of one queue that has been full once, as far as the C library's heap tells
   Violations violations;
 };
 

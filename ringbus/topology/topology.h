@@ -81,7 +81,7 @@ class Topology {
   std::uint16_t skip(const Packet& packet, ResourceId here) const {
     return plan_.direct ? std::uint16_t{0} : skip_from(packet, round_of(packet.direction)[here.value]);
   }
-  /// The same for a packet that enters a group from its bridge.
+  /// As skip(), for a packet that enters a group from its bridge.
   std::uint16_t skip_from_entrance(const Packet& packet, std::uint32_t group) const {
     return skip_from(packet, plan_.groups[group].first);
   }

@@ -39,7 +39,7 @@ class ShapeBuffer {
   using User = std::uint32_t;
   static constexpr std::uint64_t kPlaceBytes = 64;
   static std::uint64_t places(const ShapeSpan& span) { return ceil_div(span.bytes, kPlaceBytes); }
-  /// The places that a span takes which is to be fetched.
+  /// The places that a span needs before it is fetched.
   static std::uint64_t places_to_ask(const ShapeSpan& span) {
     return ceil_div(std::max(span.bytes, span.most), kPlaceBytes);
   }

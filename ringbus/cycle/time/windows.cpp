@@ -246,7 +246,7 @@ class WindowRun {
   }
 
   static constexpr std::uint64_t kPollInterval = 64;
-  static constexpr std::uint64_t kLeastRuns = 8;  // of agents in a window, a thread; fewer are not worth two barriers
+  static constexpr std::uint64_t kLeastRuns = 8;  // runs in a window, a thread; fewer are not worth two barriers
 
   std::span<const std::vector<Agent*>> parts_;
   WakeupTable& wakeups_;

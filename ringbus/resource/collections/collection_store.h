@@ -42,10 +42,10 @@ class CollectionStore {
     Policy policy = Policy::kNearest;
     Select select = Select::kFullFirst;
     float scene_size = 1;
-    int max_depth = 1;  ///< of the structure, in strips
+    int max_depth = 1;  ///< depth of the structure, in strips
     /// A collection that has waited for so long is ready, however few rays it has; 0: it is not.
     std::uint64_t ripe_after = 0;
-    bool reports_spills = false;  ///< what is spilled is noted in spills(), for an engine that empties it
+    bool reports_spills = false;  ///< spilled entries are noted in spills(), for an engine that empties it
   };
   using Statistics = CollectionCounts;
 

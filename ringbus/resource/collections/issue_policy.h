@@ -12,13 +12,13 @@ struct CollectionFacts {
   accel::NodeKey key;
   std::uint32_t rays = 0;
   float entry = 0;          ///< the nearest entry into the node of any of the rays
-  std::uint16_t depth = 0;  ///< of the node, in strips below the root
+  std::uint16_t depth = 0;  ///< depth of the node, in strips below the root
 };
 
 /// The scale by which a policy measures collections.
 struct PolicyScale {
   std::uint32_t ready = 32;  ///< rays that make a collection ready
-  int max_depth = 1;         ///< of the structure, in strips
+  int max_depth = 1;         ///< depth of the structure, in strips
   float scene_size = 1;
 };
 

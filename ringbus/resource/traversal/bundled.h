@@ -41,7 +41,7 @@ class BundledTraversal final : public TraversalMethod {
   struct LocalBundle {
     std::uint32_t slot;
     std::uint32_t member;     // index into Packet::members
-    std::int32_t change = 0;  // of its pending count, when the visit is over
+    std::int32_t change = 0;  // change of its pending count, made when the visit is over
   };
 
   void find_bundles(LocalRays& local);
@@ -84,7 +84,7 @@ class BundledTraversal final : public TraversalMethod {
   BundleSplitRule split_;
   EjectedRays ejected_;
   std::vector<std::uint32_t> free_bundles_;  // slots of the owner's own; ray control hands out the others
-  std::vector<LocalBundle> bundles_;         // of this visit
+  std::vector<LocalBundle> bundles_;         // bundles of this visit
   BundleCounts counts_;                      // likewise
   std::uint64_t transforms_ = 0;             // likewise: of the bundles' rays, by the engine's account
   // Scratch.

@@ -61,7 +61,7 @@ std::uint32_t BundledTraversal::in_reach(accel::NodeRef leaf, const LocalBundle&
   return met;
 }
 
-/// The same for the leaves that a node holds itself: the lanes of `direct` that a ray of the bundle may hit.
+/// As in_reach(), for the leaves that a node holds itself: the lanes of `direct` that a ray of the bundle may hit.
 std::uint32_t BundledTraversal::held_in_reach(std::uint32_t direct, const LocalBundle& local, accel::NodeKey key,
                                               IntersectionCounts& counts, TestOutcome& outcome) {
   if (config_.leaf != BundlesConfig::Leaf::kPrimitives) return direct;

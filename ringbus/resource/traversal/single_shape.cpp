@@ -18,7 +18,7 @@ std::uint32_t SingleShapeTraversal::blocks_needed(accel::NodeKey key, std::uint3
 }
 
 std::int32_t SingleShapeTraversal::tests_below(accel::NodeKey key, int lane) const {
-  // Of a partitioned scene the child may be at another rank; there are no treelets then.
+  // In a partitioned scene the child may be at another rank; there are no treelets then.
   const accel::Accel& accel = context_.accel;
   return accel.partition ? accel.child_strip_size(key, lane) : tests_at(accel.child_key(key, lane));
 }

@@ -19,8 +19,8 @@ struct AnyHitCall {
 /// Passes of a packet's bundles through the units that test them (US 11308683, FIG. 11 and 12): one a test, or one an
 /// edge of a silhouette.
 struct BundlePasses {
-  std::uint32_t first = 0;      ///< of the tests that are made at once
-  std::uint32_t second = 0;     ///< of those that the answers to the first call for
+  std::uint32_t first = 0;      ///< passes of the tests that are made at once
+  std::uint32_t second = 0;     ///< passes of the tests that the answers to the first call for
   std::uint32_t at_once = 0;    ///< as `first`, where a pair of blocks makes both tests of a box at the same time
   std::uint32_t regrouped = 0;  ///< rays that the builder then puts into new bundles
 };
@@ -33,7 +33,7 @@ struct TestOutcome {
   std::uint32_t children = 0;  ///< rays that go on to a child, once for each child; not within treelets
   std::uint32_t misses = 0;    ///< rays that were tested against the children of a node and go on to none
   BundlePasses bundle_passes;
-  const BundleCounts* bundles = nullptr;  ///< what became of bundles; null when there are none
+  const BundleCounts* bundles = nullptr;  ///< counts of tests and splits of bundles; null when there are none
   /// With ResourceHooks::hold_any_hit_rays: the rays that wait for Resource::release().
   std::span<const AnyHitCall> any_hit_calls;
   /// Where rays of one packet are at several nodes: the node of each ray, and the work at each node. Otherwise empty.

@@ -74,7 +74,7 @@ class TransformAccount {
   const TransformedRayBytes& bytes() const { return bytes_; }
 
  private:
-  /// Of a copy; one in a group's space has the slack of its tests besides.
+  /// Bytes of a transformed copy of a ray. A copy in a group's space has the slack of its tests besides.
   std::uint64_t ray_bytes(std::uint32_t instance) const {
     return accel::kTransformedRayBytes + (accel_.is_group(instance) ? 3 * sizeof(float) : 0);
   }

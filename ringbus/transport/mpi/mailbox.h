@@ -24,7 +24,7 @@ class Mailbox {
  public:
   explicit Mailbox(std::size_t ranks) : leaving_(ranks) {}
 
-  /// Whether a request has been fulfilled, or there is none.
+  /// True if a request has been fulfilled, or there is none.
   static bool done(MPI_Request& request) {
     int flag = 0;
     MPI_Test(&request, &flag, MPI_STATUS_IGNORE);
@@ -61,7 +61,7 @@ class Mailbox {
     return out;
   }
 
-  /// Whether there is a message; then `coming` is the request of its contents, which go to `into`. `into` is a member,
+  /// True if there is a message; then `coming` is the request of its contents, which go to `into`. `into` is a member,
   /// so that MPI may write there also after somebody has given up waiting.
   template <class Unit>
   bool begin_to_take(int from, Tag tag, std::vector<Unit>& into, MPI_Datatype type) {
@@ -91,7 +91,7 @@ class Mailbox {
     }
   }
 
-  MPI_Request coming = MPI_REQUEST_NULL;  ///< of the message that is being taken
+  MPI_Request coming = MPI_REQUEST_NULL;  ///< request for the message that is being taken
   int coming_from = 0;                    ///< its sender
   std::vector<std::uint64_t> coming_words;
   std::vector<char> coming_bytes;

@@ -217,7 +217,7 @@ class OpenMpi final : public MpiTransport {
     for (; !ended.stop_requested(); std::this_thread::sleep_for(kLook)) {
       {
         const std::unique_lock lock(mutex_, std::try_to_lock);
-        if (!lock) continue;  // who has it tends them
+        if (!lock) continue;  // the thread that holds the lock tends the others
         const Clock::time_point now = Clock::now();
         tend(now);
         if (missing_.empty() || now - called_ < kRankSilence + kAway) continue;

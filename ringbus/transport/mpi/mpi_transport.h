@@ -16,8 +16,8 @@ namespace carousel::ringbus {
 /// a thread of its own, and looks for theirs. A thread rather than a count of progress: a rank that loads a scene for
 /// minutes, in libraries that know nothing of us, goes on to give signs, and needs no word in any loader; a process
 /// that is stopped, or whose host is gone, stops with all its threads. A rank that lives but makes no progress while
-/// rays are traced is found there (RankGate). Who finds itself late, since it was stopped with the others, forgives
-/// them.
+/// rays are traced is found there (RankGate). A rank that finds itself late, since it was stopped with the others,
+/// forgives them.
 ///
 /// A rank that waits for others throws when one of them is missing. One that is busy meanwhile, and will not wait for
 /// them soon, is ended by that thread.
@@ -29,13 +29,13 @@ class MpiTransport : public Transport {
   /// Joins the ranks that mpirun has started; without mpirun the process is the only rank. Null where the program was
   /// built without MPI (CAROUSEL_MPI). Throws a FileError where MPI lacks a thread level that it needs.
   static std::unique_ptr<MpiTransport> start(const Say& say);
-  /// Whether start() makes one.
+  /// True if the program was built with MPI, so that start() can make ranks.
   static bool built();
 
   /// Leaves the ranks: waits for all of them to leave. Throws a SimulationError where one is missing.
   virtual void leave() = 0;
-  /// The same, but gives up where others do not leave in time, or are missing. When this process ends then, mpirun ends
-  /// the others.
+  /// Leaves the ranks as leave() does, but gives up where others do not leave in time, or are missing. When this
+  /// process ends then, mpirun ends the others.
   virtual void leave_within(std::chrono::milliseconds time) = 0;
 };
 
