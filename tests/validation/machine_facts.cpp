@@ -131,7 +131,7 @@ class RecordedWorkload final : public WrappedWorkload {
   const std::vector<Name>& camera() const { return camera_; }
   /// By path.
   const std::vector<std::uint32_t>& pixels() const { return pixels_; }
-  std::uint32_t state_bytes() const { return state_bytes_; }  ///< of a path
+  std::uint32_t state_bytes() const { return state_bytes_; }  ///< bytes in the state of a path
   /// The calls of shade(), in order.
   const std::vector<std::vector<Name>>& shaded() const { return shaded_; }
 

@@ -23,7 +23,7 @@ inline BoxAnswer box_answer(BoxLevel level, const Ray& ray, const Aabb& box, flo
   return a;
 }
 
-/// The same, after making sure that every lane of every SIMD target says so, too.
+/// The answer of box_answer(), after making sure that every lane of every SIMD target gives it, too.
 inline BoxAnswer box_answer_everywhere(BoxLevel level, const Ray& ray, const Aabb& box, float tmax = kInfinity) {
   const BoxAnswer scalar = box_answer(level, ray, box, tmax);
   Accel accel;

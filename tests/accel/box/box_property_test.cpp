@@ -27,7 +27,7 @@ float down(float x) {
 struct MissCount {
   int exact = 0;
   int off = 0;         // entries of level double further from the exact one than rounding up explains
-  int early = 0;       // those before it, by the double's own rounding
+  int early = 0;       // entries before the exact one, by the double's own rounding
   int missed[3] = {};  // by level
 };
 

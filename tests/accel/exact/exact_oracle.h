@@ -53,8 +53,8 @@ class ExactOracle {
     }
   }
 
-  /// Whether `hit` is the exact closest hit of some ray within the bound of `ray` (closest hit, tmin = 0,
-  /// tmax = infinity).
+  /// True if `hit` is the exact closest hit of some ray within the bound of `ray` (closest hit, tmin = 0, tmax =
+  /// infinity).
   bool acceptable(const Ray& ray, const Hit& hit) const {
     const DVec3 o(ray.origin), d(ray.direction);
     double limit = 1e300;

@@ -106,7 +106,7 @@ TEST(HardTriangle, SpheresOfAnySizeLeakNothing) {
     for (Vec3& p : mesh.scene.meshes[0].positions) p = p * scale;
     mesh.room = mesh.room * scale;
     RayBatch rays = rays_at_edges(mesh, 1000, 61);
-    for (std::size_t i = 0; i < rays.size(); i += 2)  // of length 1, as those of a camera
+    for (std::size_t i = 0; i < rays.size(); i += 2)  // give every second ray length 1, as a camera does
       rays[i].ray.direction = Vec3(glm::normalize(DVec3(rays[i].ray.direction)));
     for (const AccuracyConfig& accuracy : safe_levels())
       EXPECT_EQ(misses(at_level(mesh.scene, accuracy), rays), 0u) << scale << " " << text(accuracy);

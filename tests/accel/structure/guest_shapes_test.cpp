@@ -124,7 +124,7 @@ TEST(GuestShapes, AreHitAsWhereTheyComeFrom) {
   int hits = 0;
   for (std::uint32_t i = 0; i < parts[0].instances.size(); ++i) {
     NodeRef root = parts[0].instances[i].root;
-    while (!parts[0].partition->home(root)) root = parts[0].nodes[root.node()].child[0];  // of a mesh that is divided
+    while (!parts[0].partition->home(root)) root = parts[0].nodes[root.node()].child[0];  // a divided mesh has no home
     const std::uint32_t home = *parts[0].partition->home(root);
     Accel& from = parts[home];
     Accel& to = parts[1 - home];

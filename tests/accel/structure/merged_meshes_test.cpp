@@ -216,7 +216,7 @@ TEST(MergedMeshes, AgreeWithTheExactReference) {
   const ExactReference reference(scene);
   const RayBatch rays = mixed_rays(scene, 1200, run_seed());
   int hits = 0;
-  for (std::size_t i = 0; i < rays.size(); i += 6) {  // those that are aimed at no edge
+  for (std::size_t i = 0; i < rays.size(); i += 6) {  // every sixth ray is aimed at no edge
     const ExactHit exact = reference.closest(rays[i].ray);
     if (!exact.hit.valid() || !merged.merged.holds(exact.hit.instance)) continue;
     RayRequest ray = rays[i];
@@ -230,7 +230,7 @@ TEST(MergedMeshes, AgreeWithTheExactReference) {
   EXPECT_GT(hits, 20);
 }
 
-// What it is for: meshes that overlap.
+// Merged structures are for meshes that overlap, among which they spare boxes.
 TEST(MergedMeshes, SpareBoxes) {
   const scene::Scene scene = overlapping(12, run_seed());
   const RayBatch rays = mixed_rays(scene, 1000, run_seed());

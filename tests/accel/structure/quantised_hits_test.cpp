@@ -97,7 +97,7 @@ TEST(QuantisedHits, AreThoseOfFullNodesInManyScenes) {
   EXPECT_EQ(others, 0u);
 }
 
-/// What the two tests above rest on: larger boxes there do let rays in that graze an instance.
+/// Larger boxes let rays in that graze an instance: otherwise the two tests above would prove nothing.
 TEST(QuantisedHits, NeedTheBoxesOfTurnedInstances) {
   const scene::Scene scene = turned_boxes(1, 40);
   const Accel full = stored(scene, Storage::kFull, {});

@@ -126,7 +126,7 @@ void expect_depth_first(const Accel& accel, NodeRef ref, std::uint32_t& node, st
   for (int lane = 0; lane < of.count; ++lane) expect_depth_first(accel, of.child[lane], node, block);
 }
 
-// Of sizes that one thread and that several threads turn into nodes.
+// The meshes have sizes that one thread and that several threads turn into nodes.
 TEST(Structure, NumbersNodesAndBlocksDepthFirst) {
   for (const std::int64_t triangles : {3, 2000, 40000}) {
     const Accel accel = build(small_builtin(BuiltinScene::kTerrain, triangles), BvhConfig{}, *make_jthread_executor(3));

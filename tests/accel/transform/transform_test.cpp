@@ -119,7 +119,7 @@ TEST(WorldBox, PrunesNoHitOfTheModel) {
     if (std::fabs(glm::determinant(DMat3(m.linear))) < 1e-3) continue;
     scene.instances[0].world_from_model = m;
     const Accel accel = build_sequential(scene);
-    Accel open = accel;  // the same with a world box no ray can miss
+    Accel open = accel;  // with a world box that no ray can miss
     for (int axis = 0; axis < 3; ++axis) {
       open.instances[0].world.lo[axis] = -std::numeric_limits<float>::max();
       open.instances[0].world.hi[axis] = std::numeric_limits<float>::max();

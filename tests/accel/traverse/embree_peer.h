@@ -11,7 +11,7 @@
 
 namespace carousel::accel {
 
-/// The same scene in Embree, robust: a tracer that shares nothing with ours.
+/// A scene in Embree, robust: a tracer that shares nothing with ours.
 class EmbreePeer {
  public:
   explicit EmbreePeer(const scene::Scene& scene) : device_(rtcNewDevice("threads=1")), scene_(new_scene()) {

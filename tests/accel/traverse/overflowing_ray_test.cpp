@@ -15,7 +15,7 @@
 namespace carousel::accel {
 namespace {
 
-/// Of every order from 10^-`orders` to 10^`orders`.
+/// A number of any order of magnitude from 10^-`orders` to 10^`orders`.
 float any_order(Random& random, float orders) {
   return std::pow(10.0f, random.uniform(-orders, orders));
 }

@@ -101,7 +101,7 @@ inline RayBatch mixed_rays(const scene::Scene& scene, std::size_t count, std::ui
   return rays;
 }
 
-/// The same without an end and from the start: at the ends of a range another tracer rounds otherwise.
+/// The rays of mixed_rays() without an end and from the start: at the ends of a range another tracer rounds otherwise.
 inline RayBatch whole_rays(const scene::Scene& scene, std::size_t count, std::uint64_t seed) {
   RayBatch rays = mixed_rays(scene, count, seed);
   for (RayRequest& r : rays) {

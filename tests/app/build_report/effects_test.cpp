@@ -12,7 +12,7 @@ TEST(Effects, TheReportNamesThemAllWithTheirReasons) {
   scene.meshes[0].triangle_materials = {MaterialId(0)};
   scene.instances.resize(1);
   scene.materials[0].emissive = {1, 1, 1};
-  scene.images.resize(1);  // of no texture
+  scene.images.resize(1);  // no texture uses the image
   Config config;
   report::Shading shading;
   add_effects(shading, scene, config);

@@ -51,7 +51,7 @@ TEST(StructureLevels, AddUpToAllNodesAndLeaves) {
     for (const BvhConfig::Storage storage : {BvhConfig::Storage::kFull, BvhConfig::Storage::kQuantised})
       for (const BvhConfig::Merge merge : {BvhConfig::Merge::kNone, BvhConfig::Merge::kWorld}) {
         scene::Scene scene = accel::small_builtin(BuiltinScene::kInstances, 0, 200, of_scene);
-        for (int i = 0; i < 2; ++i)  // of the world
+        for (int i = 0; i < 2; ++i)  // these stand in the world, not in a group
           accel::add_instance(scene, accel::add_mesh(scene, accel::icosphere_scene(2).meshes[0]));
         BvhConfig bvh;
         bvh.levels = of_scene;

@@ -89,7 +89,7 @@ void times_modelled_cycles_and_pictures_are_there(const Json& report) {
     return level(report, triangle, box, "two_step").at("tester_limited_cycles_per_ray").get<double>();
   };
   EXPECT_GT(limited("double", "double"), 2 * limited("watertight", "conservative"));
-  EXPECT_GT(limited("exact", "double"), 0.95 * limited("double", "double"));  // the same tests, in another order
+  EXPECT_GT(limited("exact", "double"), 0.95 * limited("double", "double"));  // equal tests, in another order
   EXPECT_GE(report.at("sampling").at("rows").size(), 6u);
   EXPECT_NEAR(report.at("sampling").at("slope").get<double>(), -0.5, 0.2);
 }

@@ -49,7 +49,7 @@ TEST(CaseRuns, PacketsOfOneToManyBytes) {
     const Json traffic = Json::parse(program.read("out/a/report.json"))["traffic"];
     const std::uint64_t flits = (bytes + 31) / 32;
     EXPECT_EQ(traffic["delivered"], 80);
-    EXPECT_LE(traffic["flit_hops"], 80 * flits);  // those that are on links when the window closes do not count
+    EXPECT_LE(traffic["flit_hops"], 80 * flits);  // flits that are on links when the window closes do not count
     EXPECT_GE(traffic["flit_hops"], 77 * flits);
     const double alone = 4 + static_cast<double>(flits - 1);
     EXPECT_NEAR(traffic["latency"]["quantiles"][0]["cycles"].get<double>(), alone, alone / 1000);

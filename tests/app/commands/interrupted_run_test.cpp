@@ -142,7 +142,7 @@ TEST_F(InterruptedRun, FollowSaysThatItWasInterruptedAndNothingOfTheRay) {
     }
 }
 
-// What is read may never come: a pipe without a writer.
+// The bytes to read may never come: a pipe without a writer.
 TEST_F(InterruptedRun, TheFirstSignalEndsTheWaitForAPipe) {
   ASSERT_EQ(mkfifo((program_.folder() / "pipe").c_str(), 0600), 0);
   program_.write("rays.yaml", std::string(kMachine) + "workload: {rays_from: pipe}\n");

@@ -82,7 +82,7 @@ TEST(StressCommand, TriesTheQueuesThatHandRaysOver) {
       EXPECT_GE(row["occupancy_mean"].get<double>(), 1.0);
       EXPECT_LE(row["occupancy_mean"].get<double>(), row["depth"].get<double>());
     }
-    EXPECT_GT(json["ring"][0]["refused"].get<double>(), 0);  // of depth 1
+    EXPECT_GT(json["ring"][0]["refused"].get<double>(), 0);  // this row has depth 1
     // A design for one thread on each side is refused by name.
     const Outcome refused = program.run({"stress", "a.yaml", "--in", key, "--queue", "spsc_ring", "--seconds", "0.05",
                                          "--messages", "100", "--pattern", "stream", "--force"});

@@ -17,7 +17,7 @@ enum class BaseMachine {
   kCornell,     ///< rays at the edges of boxes, eight copies of each
   kPlanes,      ///< with cull planes
   kBundles,     ///< with bundles
-  kNative,      ///< of the native engine
+  kNative,      ///< run by the native engine
   kTraffic,     ///< synthetic traffic
   kLinks        ///< with faults of links
 };

@@ -19,7 +19,7 @@ std::string result_of(Json report) {
   Json host = report["host"];
   report.erase("config");
   report.erase("ignored_keys");
-  report.erase("checksum");  // of the configuration as well
+  report.erase("checksum");  // it covers the configuration as well
   report.erase("host");
   if (report.contains("shading")) report["shading"].erase("workers");
   if (report.contains("links") && report["links"].is_array())

@@ -15,7 +15,7 @@ namespace carousel {
 
 struct KeyOutcome {
   using Json = nlohmann::ordered_json;
-  std::string refusal;  ///< of the configuration; empty if it was run
+  std::string refusal;  ///< why the configuration was refused; empty if it was run
   std::string result;   ///< the report apart from the configuration, or the error that ended the run
   Json config;          ///< as it was run
 };

@@ -1,4 +1,4 @@
-// What a user sees of meshes with one structure: the report and the terminal name their number, and the hits stay.
+// The report and the terminal name the number of meshes with one structure, and the hits stay.
 #include <string>
 
 #include <gmock/gmock.h>

@@ -33,8 +33,8 @@ class PacketResultsTest : public TimedRun {
         "shading: {workers: 4, cycles_per_shade: 900}\n",
         std::move(sets));
   }
-  /// Of rays that miss everything, so that there is one packet. Shading takes so long that the ray tested last ends the
-  /// run, and not the packet.
+  /// Traces rays that miss everything, so that there is one packet. Shading takes so long that the ray tested last ends
+  /// the run, and not the packet.
   Outcome missing(const std::string& results, const std::vector<std::string>& sets = {}) {
     const Json run = two_rays("camera,0,0,900,0,0,1,0,inf", results, sets);
     EXPECT_EQ(run["packets"]["issued"], 1u);

@@ -79,7 +79,7 @@ TEST_F(RayDataInMemory, WrittenLinesReachMemoryAtTheEnd) {
     EXPECT_GT(drained, 0u);
     EXPECT_EQ(drain["lines"], drained);
     EXPECT_EQ(drain["bytes"], 64 * drained);
-    EXPECT_GE(drain["cycles"].get<std::uint64_t>(), drained);  // of 64 bytes a cycle at most
+    EXPECT_GE(drain["cycles"].get<std::uint64_t>(), drained);  // at most 64 bytes are written a cycle
     EXPECT_EQ(bytes(r, "written lines"), 64 * (drained + back));
     EXPECT_EQ(r["memory"]["dram_lines_written"], back);
   }

@@ -132,7 +132,7 @@ TEST_F(RayWays, BaselineMakesTheTestsOfIndependentResources) {
   EXPECT_GT(ring["tests"]["box"]["count"], baseline["box"]["count"]);
 }
 
-// Of many rays some are traced again, whoever shaded them.
+// Some of many rays are traced again, whoever shaded them.
 TEST_F(RayWays, ALargeRunIsSampled) {
   const std::vector<std::string> sets{"image.width=96", "image.height=64", "engine.kind=native"};
   const auto run = [&](const char* threads) {

@@ -29,7 +29,7 @@ TEST_F(ShadeVectors, TakeAsLongAsHandsCompute) {
             one - 640 + 40 + 1 + 40);
 }
 
-// Of the same rays in the same machine; only the order of shading differs.
+// The pictures are of the same rays in the same machine; only the order of shading differs.
 TEST_F(ShadeVectors, SortedHaveOneShaderAndTheSamePicture) {
   for (const char* scene : {"cornell", "spheres"}) {
     for (const int width : {24, 40}) {

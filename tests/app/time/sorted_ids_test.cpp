@@ -13,7 +13,7 @@ class SortedIds : public TimedRun {
     for (const Json& resource : report["resources"]) sum += resource["units"]["handler_busy"].get<double>();
     return sum;
   }
-  /// Of all packets. But for the rays that begin, each has joined a collection when another packet retired.
+  /// The rays in all packets. But for the rays that begin, each has joined a collection when another packet retired.
   static double memberships(const Json& report) {
     return report["packets"]["rays_mean"].get<double>() * report["packets"]["issued"].get<double>();
   }

@@ -56,7 +56,7 @@ TEST_F(TravellingRays, AreChargedOnTheLinks) {
   EXPECT_EQ(bytes(load, "new rays"), 2 * 64u + 8);
 }
 
-// The same machine, cycle by cycle.
+// The machine of the test above is watched cycle by cycle.
 TEST_F(TravellingRays, ComeToTheirSlotsInTheCyclesOfThePage) {
   const app::Prepared prepared = app::prepare_config(
       "engine: {kind: cycle, what_if: false}\n"

@@ -14,9 +14,10 @@
 namespace carousel::ringbus {
 namespace {
 
-// Of one run of some thousand rays. The worst of 120 runs is +35 %: a bus with 7 slots a resource and the least
-// storage, where twice the places of a link let collections out that would have filled. Of other draws one was +49 %:
-// one resource with one context and a cache of 2 KiB, whose newest collections go first, and twice its 512 slots.
+// The bound of one run of some thousand rays. The worst of 120 runs is +35 %: a bus with 7 slots a resource and the
+// least storage, where twice the places of a link let collections out that would have filled. Among other draws one was
+// +49 %: one resource with one context and a cache of 2 KiB, whose newest collections go first, and twice its 512
+// slots.
 constexpr double kMostLonger = 0.4;
 constexpr double kMostMeanLonger = 0.05;  // in the mean of the runs with one class of parts doubled
 

@@ -56,8 +56,8 @@ class FourOnABus {
 
 TEST(BusBroadcast, OneCrossingReachesAllWhoHaveRaysOfThePacket) {
   FourOnABus four("owners");
-  four.packet(0, 0, 0b1011);  // of 0, 1 and 3
-  four.packet(1, 2, 0b0110);  // of 1 and 2
+  four.packet(0, 0, 0b1011);  // rays of 0, 1 and 3
+  four.packet(1, 2, 0b0110);  // rays of 1 and 2
   four.send(0, 0, 5, 10);     // its tail is at the bus in 10 + 4 + 5 - 1 = 18
   four.send(2, 1, 3, 10);     // in 10 + 4 + 3 - 1 = 16, and has the medium from 16 to 18
   four.run();
@@ -94,9 +94,9 @@ TEST(BusBroadcast, WithVisitAllTheOthersHearItToo) {
 
 TEST(BusBroadcast, WaitsForAPlaceAtEveryListenerAndLetsOthersGo) {
   FourOnABus four("owners");
-  four.packet(0, 0, 0b1010);  // of 1 and 3
-  four.packet(1, 2, 0b0010);  // of 1
-  four.packet(2, 2, 0b1000);  // of 3
+  four.packet(0, 0, 0b1010);  // rays of 1 and 3
+  four.packet(1, 2, 0b0010);  // a ray of 1
+  four.packet(2, 2, 0b1000);  // a ray of 3
   four.send(2, 1, 1, 0);
   four.send(0, 0, 1, 1);
   four.run();  // resource 1 has two packets now, and resource 3 one

@@ -100,7 +100,7 @@ TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
   ShapeBuffer buffer(config, LinkConfig{}, ports);
   const auto node = [](std::uint64_t i) { return ShapeNeed{ShapeSpan{4096 + i * 1024, 256 + 8 * 4 * 16}, {}}; };
   for (ShapeBuffer::User user = 0; user < 6; ++user) buffer.take(user, node(user), 0);
-  EXPECT_EQ(buffer.fetches(), 5u);  // of 12 places each, of 64
+  EXPECT_EQ(buffer.fetches(), 5u);  // each takes 12 of the 64 places
   EXPECT_EQ(buffer.counts().room_waits, 1u);
 }
 

@@ -90,7 +90,7 @@ TEST(Lanes, ASingleRayFillsOneLaneOrItsShapesDo) {
 /// When the tests of three packets end that come at the same time: one, one against boxes, and one against triangles.
 struct TestEnds {
   Cycle first, then_boxes, then_triangles;
-  Cycle busy_reads;  ///< of the ports
+  Cycle busy_reads;  ///< cycles of the ports
 };
 
 // 8 rays in 4 banks, `most` of them in one; box and triangle units for all at once, with a latency of 10.

@@ -134,7 +134,7 @@ TEST(Foretell, AKnownDeviationWidensTheInterval) {
 TEST(SteadyState, LeavesFillAndDrainOut) {
   CycleResult run = machine(
       10000, 5000, [](std::uint64_t) { return 10.0; }, 30000, 500);
-  for (auto& sample : run.progress) sample.busy = {8 * sample.completed};  // the same work for each ray
+  for (auto& sample : run.progress) sample.busy = {8 * sample.completed};  // each ray makes the same work
   run.all_begun->busy = {8 * run.all_begun->completed};
   run.uses[0].busy = 80000;
   const auto steady = steady_state(run, 10000, 400);

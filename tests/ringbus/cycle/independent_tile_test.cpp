@@ -36,7 +36,7 @@ class LoneTile {
     for (Cycle now; (now = std::min(tile_.next(), fetch_.next())) != kNever;) {
       while (fetch_.next() <= now) {
         const Cycle at = fetch_.next();
-        // What is asked for in one cycle follows one another on the wire, and the ray waits for the last.
+        // Requests of one cycle follow one another on the wire, and the ray waits for the last.
         memory_wait += at == last_fetch_ + 1 ? 1 : 34 / 2 + answer;
         last_fetch_ = at;
         fetched_.send(at + answer, {fetch_.take().tag});
@@ -56,7 +56,7 @@ class LoneTile {
   ResourceStatistics statistics() const { return tile_.statistics(); }
 
   std::uint64_t fetches = 0, completed = 0;
-  Cycle memory_wait = 0;  ///< of a lone ray for its strips and transforms
+  Cycle memory_wait = 0;  ///< cycles that a lone ray waits for its strips and transforms
   Cycle last_completed = 0;
 
  private:

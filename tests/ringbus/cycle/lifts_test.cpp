@@ -1,4 +1,4 @@
-// What may be lifted: every class of the machine's parts, as a user would set it, and each lift changes a machine that
+// Every class of the machine's parts may be relaxed, as a user would set it, and each what-if changes a machine that
 // the class limits.
 #include <algorithm>
 #include <set>

@@ -20,7 +20,7 @@ struct Factor {
 /// stands behind those that it needs.
 const std::vector<Factor>& machine_factors();
 
-/// The same list with other values for some keys.
+/// The list of machine_factors() with other values for some keys.
 std::vector<Factor> machine_factors_with(const std::vector<std::pair<std::string, std::vector<std::string>>>& changes);
 
 }  // namespace carousel::ringbus

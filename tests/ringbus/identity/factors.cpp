@@ -36,7 +36,7 @@ std::vector<Factor> scene_and_engine() {
       {"scene.levels", {"2", "5"}, {"scene.builtin=instances"}},
       {"test.non_opaque", kSwitch},          // half of the triangles, and spheres; rays have flags
       {"test.away", {"0.5", "100"}},         // rays start so many extents away from the scene
-      {"test.storage", {"ample", "least"}},  // of collections
+      {"test.storage", {"ample", "least"}},  // storage of collections
       {"test.link_faults", kSwitch},
       {"engine.kind", all<EngineKind>()},
       {"engine.threads", {"1", "2"}, {"engine.kind=native"}},

@@ -148,7 +148,7 @@ TEST(StoppedResource, MayHaveQuestionsOpen) {
     }
 }
 
-// The same whatever the host's threads do.
+// The outcome is the same whatever the host's threads do.
 TEST(StoppedResource, UnderVirtualTimeIsTheSameForAnyNumberOfThreads) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 400, 2);
   Cell cell = with_a_stop(EngineKind::kCycle, 4, 2, 25);
@@ -188,7 +188,7 @@ TEST(StoppedResource, MayStopWhenItsLastPacketsBringNothing) {
   for (const std::int64_t resources : {8, 16}) {
     Cell cell = with_a_stop(EngineKind::kNative, resources, 0, 1'000'000'000);
     cell.config.topology.shape = TopologyShape::kBidirectional;
-    cell.threads = 1;  // the same steps each time; packets go backwards by one resource a round of steps
+    cell.threads = 1;  // steps repeat each time; packets go backwards by one resource a round of steps
     const Outcome never = run_cell(scene, cell);
     ASSERT_EQ(never.fault, "");
     for (std::int64_t number = 0; number < resources; ++number)

@@ -96,7 +96,7 @@ TEST(OccupancySeries, JoinsNeighboursAndLosesNoSample) {
     EXPECT_GE(entry.most, most);  // it rises
     most = entry.most;
   }
-  EXPECT_LE(kSamples - seen, 32u * 512);  // what is open is less than an entry
+  EXPECT_LE(kSamples - seen, 32u * 512);  // the open entry has fewer samples than a full one
   EXPECT_LE(added, sum);
   EXPECT_EQ(most, 8u);
 }

@@ -224,7 +224,7 @@ TEST(FaultInjector, TheSameSeedGivesTheSameFaults) {
   EXPECT_EQ(a, b);
   EXPECT_EQ(same, 0u);
   EXPECT_NEAR(static_cast<double>(drops), 1000, 150);
-  EXPECT_NEAR(static_cast<double>(a.corrupted), 1500, 150);  // of those not dropped
+  EXPECT_NEAR(static_cast<double>(a.corrupted), 1500, 150);  // counted among frames that were not dropped
 }
 
 TEST(LinkFaultTimer, LosesTimeAndNothingElse) {

@@ -18,7 +18,7 @@ inline std::vector<QueueKind> queue_kinds() {
 #endif
 }
 
-/// Those of them that serve several threads on both sides.
+/// The kinds of queue_kinds() that serve several threads on both sides.
 inline std::vector<QueueKind> many_to_many_kinds() {
   std::vector<QueueKind> kinds = queue_kinds();
   std::erase_if(kinds, [](QueueKind kind) { return kind == QueueKind::kSpscRing || kind == QueueKind::kBoostSpsc; });

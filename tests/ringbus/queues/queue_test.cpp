@@ -1,4 +1,4 @@
-// The same tests for every queue that a link can be made of.
+// Every queue that a link can be made of passes the same tests.
 #include <algorithm>
 #include <array>
 #include <atomic>

@@ -75,7 +75,7 @@ class RankRuns : public testing::Test {
     shading::strip_effects(scene_, config_.shading.effects);
     accel_ = accel::build(scene_, config_.bvh, *make_tbb_executor(1), config_.accuracy);
   }
-  /// What rank `transport` makes of the picture; all of it without one.
+  /// The part of the picture that rank `transport` makes; all of it without one.
   Ended trace(Transport* transport, const std::function<void(std::size_t)>& shaded = {}, std::stop_token stop = {}) {
     if (transport == nullptr || config_.scene.placement == ScenePlacement::kReplicated)
       return trace(transport, shaded, std::move(stop), accel_);
@@ -132,7 +132,7 @@ class RankRuns : public testing::Test {
     return out;
   }
 
-  std::size_t slices_ = 0;  // of a timeline
+  std::size_t slices_ = 0;  // most slices of a timeline
   Config config_;
   scene::Scene scene_;
   accel::Accel accel_;

@@ -43,7 +43,7 @@ TEST(RankClocks, AreKnownToWithinTheirUncertainty) {
   for (const auto& clocks : found) EXPECT_EQ(clocks, found[0]);  // every rank knows all
   ASSERT_EQ(found[0].size(), 4u);
   EXPECT_EQ(found[0][0], RankClock());
-  EXPECT_EQ(found[0][2], RankClock());  // the same clock
+  EXPECT_EQ(found[0][2], RankClock());  // ranks 0 and 2 have one clock
   for (const std::size_t rank : {1u, 3u}) {
     const RankClock& clock = found[0][rank];
     EXPECT_GT(clock.uncertainty, 0u);

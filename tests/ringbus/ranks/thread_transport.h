@@ -14,7 +14,7 @@
 
 namespace carousel::ringbus {
 
-/// What ranks that are threads of one process share.
+/// The state that ranks share where they are threads of one process.
 struct RankThreads {
   explicit RankThreads(std::uint32_t ranks) : boxes(ranks), texts(ranks), numbers(ranks), all_here(ranks) {}
 

@@ -22,7 +22,7 @@ TEST(CollectionTable, FindsNothingWhenEmpty) {
   EXPECT_EQ(table.size(), 0u);
 }
 
-// The same node of two instances is two collections, and so are two nodes of one instance.
+// One node in two instances makes two collections, and so do two nodes of one instance.
 TEST(CollectionTable, TellsInstancesAndNodesApart) {
   CollectionTable table;
   std::uint32_t value = 0;

@@ -35,7 +35,7 @@ class Fibre {
   std::size_t stack_bytes_ = 0;
   bool started_ = true;
   ucontext_t start_{};
-  std::array<void*, 5> registers_{};  // of __builtin_setjmp
+  std::array<void*, 5> registers_{};  // saved by __builtin_setjmp
   void* shadow_ = nullptr;            // AddressSanitizer's
 };
 

@@ -73,7 +73,7 @@ Cell small_machine(std::mt19937& random) {
   }
 }
 
-/// What the runs of a test met; without some of it they would prove little.
+/// Counts of the events that the runs of a test met; without some of them the runs would prove little.
 struct Tally {
   std::uint64_t points = 0, restarts = 0, without_recovery = 0, resent = 0;
   std::uint64_t interrupted = 0, after_the_last_ray = 0;  // ended so; of these, with packets on their way home
@@ -118,7 +118,7 @@ class Trials {
 
   const Tally& tally() const { return tally_; }
   const SeededSchedule& schedule() const { return schedule_; }
-  /// Of the hits of the last run.
+  /// The digest of the hits of the last run.
   const HitsDigest& digest() const { return digest_; }
 
  private:

@@ -14,8 +14,8 @@ struct Cell {
   Config config;
   std::size_t threads = 1;
   bool tight_storage = false;  ///< bounded collection storage at its least
-  cycle::TraceWindow trace{};  ///< of the cycle engine
-  std::size_t samples = 0;     ///< of the time series
+  cycle::TraceWindow trace{};  ///< window in which the cycle engine keeps its steps
+  std::size_t samples = 0;     ///< most samples of the time series
   TimelineOptions timeline{};  ///< slices of time that are recorded
   std::stop_token stop{};      ///< ends the run, which is then incomplete
   bool non_opaque = false;     ///< half of the scene's triangles, and spheres; rays have flags

@@ -32,7 +32,7 @@ inline Config generous_machine() {
 
 /// A scarcity.
 struct Plant {
-  std::string name;  ///< of the class of parts
+  std::string name;  ///< name of the class of parts that is scarce
   std::function<void(Config&)> make;
   double longer = 0;  ///< by how much the lift may make the run longer, where the class does not limit the machine
 };

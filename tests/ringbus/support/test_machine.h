@@ -37,7 +37,7 @@ inline RunOptions on_threads(std::size_t threads) {
 struct Outcome {
   std::string fault;  ///< empty if nothing was
   RunResult result;
-  ResourceStatistics sum;  ///< of all resources
+  ResourceStatistics sum;  ///< sum over all resources
   std::uint64_t spilled = 0, refusals = 0;
 };
 

@@ -67,7 +67,7 @@ TEST(Traffic, EveryPacketIsDeliveredOnceAndNoneFasterThanAlone) {
   }
 }
 
-// The same packets travel whatever the warm-up is. Before issue 45 the links' use was that of the whole run.
+// Equal packets travel whatever the warm-up is. Before issue 45 the links' use was that of the whole run.
 TEST(Traffic, UseOfLinksLeavesTheWarmUpOut) {
   Config c = traffic_config(Shape::kRing, 8, Pattern::kUniform, 0.1, 4000);
   const auto flits_with = [&](double warm_up) {
@@ -82,7 +82,7 @@ TEST(Traffic, UseOfLinksLeavesTheWarmUpOut) {
   };
   const auto [all, moved] = flits_with(0);
   EXPECT_LE(all, moved);
-  EXPECT_NEAR(static_cast<double>(all), static_cast<double>(moved), 200);  // what drains after the window
+  EXPECT_NEAR(static_cast<double>(all), static_cast<double>(moved), 200);  // some flits drain after the window
   for (const double part : {0.1, 0.5, 0.9}) {
     const auto [flits, whole] = flits_with(part);
     EXPECT_EQ(whole, moved) << part;

@@ -49,7 +49,7 @@ void expect_outward(const Scene& scene, std::size_t instance, const Vec3& center
 TEST(GltfCompressed, SampleBoxes) {
   struct Sample {
     const char* name;
-    Vec3 center;  // of the mesh, before the node scales it
+    Vec3 center;  // centre of the mesh, before the node scales it
   };
   for (const auto& [name, center] : {Sample{"BoxDraco.gltf", Vec3(0)}, Sample{"BoxMeshopt.glb", Vec3(8191.5f)}}) {
     SCOPED_TRACE(name);

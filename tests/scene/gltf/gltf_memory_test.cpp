@@ -1,5 +1,5 @@
-// What a file announces is bounded by the memory of the import, and by nothing else: the densest honest files are read,
-// however few bytes they have, and files that announce more than the memory are refused before they get it.
+// The memory of the import, and nothing else, bounds the contents that a file announces: the densest honest files are
+// read, however few bytes they have, and files that announce more than the memory are refused before they get it.
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -231,7 +231,7 @@ TEST(ImportMemory, BombsAreRefusedByTheMemoryTheyWouldTake) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
-// The same file is a bomb to one budget and ordinary to another.
+// One file is a bomb to one budget and ordinary to another.
 TEST(ImportMemory, OrdinaryFileNeedsItsMemoryAndNoMore) {
   GltfBuilder b;
   b.mesh({{"POSITION", b.accessor(-1, 5126, 300'000, "VEC3")}});

@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 struct Model {
   const char* name;
   GltfBuilder file;
-  int mutants;  // of each kind; larger files take longer
+  int mutants;  // mutants of each kind; larger files take longer
 };
 
 std::vector<Model> models() {

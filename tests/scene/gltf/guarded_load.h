@@ -13,7 +13,7 @@ namespace carousel::scene {
 /// The outcome of loading one damaged model.
 struct LoadOutcome {
   enum class End { kLoaded, kRefused, kFault } end = End::kFault;
-  std::string path, message;  ///< of the SceneError; for a fault, a description
+  std::string path, message;  ///< path and text of the SceneError; for a fault, a description
 
   bool operator==(const LoadOutcome&) const = default;
 };

@@ -139,7 +139,7 @@ TEST(EffectsPlan, ATextureMakesGlassOfWhatIsMetalByDefault) {
 
 TEST(EffectsPlan, ImagesAreReadOnlyByEffectsThatAreOn) {
   scene::Scene scene = scene_that_calls_for(Effect::kClearcoat);
-  scene.materials[2].transmission.texture.emplace();  // of weight 0
+  scene.materials[2].transmission.texture.emplace();  // the transmission has weight 0
   const std::vector<bool> yes{true}, no{false};
   EXPECT_EQ(images_read(scene, {}), no);
   EXPECT_EQ(images_read(scene, {Choice::kAll, {}}), yes);

@@ -32,7 +32,7 @@ double mean_of(const std::vector<float>& rgb) {
   return sum;
 }
 
-/// Of the differences to the mean, over the mean squared.
+/// The mean of the squared differences to the mean, over the mean squared.
 double noise_of(const std::vector<float>& rgb) {
   const double m = mean_of(rgb);
   double sum = 0;

@@ -192,7 +192,7 @@ TEST(ReferenceBuild, CutsBoxesWithoutRemainder) {
   }
 }
 
-// What it is for: fewer boxes and triangles a ray among long triangles.
+// The reference build is for long triangles, among which it spares a ray boxes and triangles.
 TEST(ReferenceBuild, SparesTests) {
   const scene::Scene scene = long_and_small(3000, run_seed(), false);
   const RayBatch rays = mixed_rays(scene, 3000, run_seed());

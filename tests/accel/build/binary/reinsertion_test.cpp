@@ -52,9 +52,9 @@ BinaryTree by_halves(const std::vector<Aabb>& boxes) {
   return out;
 }
 
-/// What a tree comes to, found by a walk from its root with boxes of its own.
+/// The measures of a tree, found by a walk from its root with boxes of its own.
 struct Walked {
-  double area = 0;                                // of inner nodes
+  double area = 0;                                // area of inner nodes
   int depth = 0;                                  // levels below the root
   std::map<std::uint32_t, std::uint32_t> leaves;  // counts by first primitive
 };

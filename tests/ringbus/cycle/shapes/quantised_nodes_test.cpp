@@ -127,7 +127,7 @@ TEST(QuantisedNodes, CountBoxesThatOnlyRoundingHits) {
   accel::Accel small = full;
   accel::quantise_boxes(small);
   std::mt19937 random(7);
-  const auto corner = [&] {  // of any child
+  const auto corner = [&] {  // a corner of any child
     const accel::Node& node = full.nodes[random() % full.nodes.size()];
     const auto lane = static_cast<std::size_t>(random() % node.count);
     return Vec3{node.plane[0][lane], node.plane[4][lane], node.plane[2][lane]};
