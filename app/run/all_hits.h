@@ -11,9 +11,8 @@
 
 namespace carousel::app {
 
-/// All hits of a file's rays (`rays.query: all`), each once: nearest first, then by instance, primitive, u and v. What
-/// it holds of a ray that has been traced is a set, so a ray that is traced again, by another run as well, adds
-/// nothing.
+/// All hits of a file's rays (`rays.query: all`), each once: nearest first, then by instance, primitive, u and v. The
+/// hits of a traced ray are a set, so a ray that is traced again, by another run as well, adds nothing.
 class AllHits final : public HitSink {
  public:
   /// A ray may have `most` hits.

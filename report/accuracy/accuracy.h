@@ -69,7 +69,7 @@ struct TesterLimited {
 struct ModelledCost {
   double cycles_per_ray = 0;         ///< as configured
   std::vector<double> by_seed{};     ///< cycles a ray of each seed of the picture
-  double tester_cycles_per_ray = 0;  ///< those cycles in which a resource's test units of a kind were busy
+  double tester_cycles_per_ray = 0;  ///< cycles in which a resource's test units of a kind were busy
   double energy_pj_per_ray = 0;      ///< energy of the tests' products and sums
   double exact_volumes_per_ray = 0, bundle_tests_per_ray = 0, plane_tests_per_ray = 0;
   std::optional<TesterLimited> tester_limited{};

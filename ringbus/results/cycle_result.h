@@ -65,15 +65,15 @@ struct TileResult {
   std::uint64_t second_reads = 0;  ///< records that both ports have read for one test
   Cycle bank_conflicts =
       0;  ///< cycles of the ports, beyond those that the reads would take if they were even over the banks
-  std::optional<DistributorCounts> distributor;  ///< of a central machine with one
+  std::optional<DistributorCounts> distributor;  ///< only in a central machine with a distributor
   Utilisation dispatch;
   PacketKindCounts sent;
   ShapeBufferCounts shapes;
   StackTraffic stack;
   SpillBytes spilled;
   TransformedRayBytes transformed_rays;  ///< kept beside the records
-  LatencyHistogram round_trips;          ///< of its packets, from the issue queue until they retire
-  Log2Histogram collection_ages;         ///< of collections when packets were taken from them
+  LatencyHistogram round_trips;          ///< times of its packets from the issue queue until they retire
+  Log2Histogram collection_ages;         ///< ages of collections when packets were taken from them
   Cycle packet_cycles = 0;               ///< packets of its own in flight, summed over the cycles
   friend bool operator==(const TileResult&, const TileResult&) = default;
 };

@@ -7,7 +7,7 @@
 
 namespace carousel::scene {
 
-// Built-in scenes, generated without any file. The same arguments give the same bits, on any number of
+// Built-in scenes, generated without any file. Equal arguments give the same bits, on any number of
 // threads. Triangle and instance counts are aims, met as closely as the shapes allow, at least one.
 
 /// A closed Cornell box: coloured walls, a ceiling light, a brushed metal box, a white box with a metal ball.

@@ -79,7 +79,7 @@ class ShapeCache final : public Agent {
   struct Pending {
     std::uint32_t client = 0, tag = 0, lines_missing = 0;
     Cycle ready = 0;
-    std::uint64_t line = 0;   // the line that an own cache is asked for
+    std::uint64_t line = 0;   // the line that an own cache asks for
     std::uint32_t lines = 1;  // lines in the answer
     std::uint32_t push = 0;   // 1 + a place in pushes_; 0: the answer is for the client alone
     std::uint32_t walk = 0;   // 1 + a strip that ends by its flag; 0: the length was named

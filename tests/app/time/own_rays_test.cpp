@@ -41,7 +41,7 @@ class OwnRays : public TimedRun {
 };
 
 // Before: issue (2 IDs), own test, link, reading (2), other test. After: issue (2), link, reading (2), other test, link
-// back, reading (2), own test. Of two fetches the first misses the L2 that both share, the second hits.
+// back, reading (2), own test. The first fetch misses the L2 that both share, and the second hits.
 // The packet has 16 + 2 x 4 + 2 x 1 = 26 bytes, 4 cycles of a link of 8: the tail crosses it in 50 + 3.
 TEST_F(OwnRays, ComeALinkAndAReadingLaterForALonelyPacket) {
   EXPECT_EQ(later(), 53 + 2);

@@ -50,7 +50,7 @@ Plant on_positions(const std::string& where, const std::string& message, const s
   };
 }
 
-/// The same; the fault is where the primitive uses it.
+/// Changes the files of a victim; the fault is where a primitive uses the positions.
 Plant on_position_use(const std::string& message, const std::function<void(ModelFiles&, const Victim&)>& change) {
   return [=](ModelFiles& m) -> Verdict {
     const Victim victim(m);

@@ -88,7 +88,7 @@ class DramChannel {
   struct Plan {
     DramCycle at = kDramNever;
     std::uint64_t order = 0;
-    std::uint32_t index = 0, bank = 0;  // place and bank of the request
+    std::uint32_t index = 0, bank = 0;  // bank of the request, and its place, if it has one
     bool active = false;                // it has none: `index` is that in active_
     bool write = false;                 // the kind of the request, if it has a place
   };
