@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ringbus/cycle/fabric/ports.h"
-#include "ringbus/cycle/tile/id_census.h"
+#include "ringbus/cycle/tile/records/id_census.h"
 #include "ringbus/cycle/time/agent.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"

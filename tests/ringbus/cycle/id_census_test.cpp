@@ -1,5 +1,5 @@
 // The IDs of all resources at one time: the same times for all, and numbers as they were then.
-#include "ringbus/cycle/tile/id_census.h"
+#include "ringbus/cycle/tile/records/id_census.h"
 
 #include <gtest/gtest.h>
 

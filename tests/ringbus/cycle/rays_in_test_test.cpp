@@ -1,4 +1,4 @@
-#include "ringbus/cycle/tile/rays_in_test.h"
+#include "ringbus/cycle/tile/stages/rays_in_test.h"
 
 #include <gtest/gtest.h>
 

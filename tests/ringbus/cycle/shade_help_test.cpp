@@ -1,5 +1,5 @@
 // Resources with nothing to test shade: the exact cycles of a job, notes that cross, and that it helps.
-#include "ringbus/cycle/tile/shade_help.h"
+#include "ringbus/cycle/tile/stages/shade_help.h"
 
 #include <gtest/gtest.h>
 

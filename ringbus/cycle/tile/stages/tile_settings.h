@@ -25,6 +25,9 @@ struct TileSettings {
   Observation observed;
   Recording recording{};
   const ShapeBlocks* blocks = nullptr;  ///< by which collections are keyed; null: by nodes
+
+  /// A packet does not bring its shapes: each resource fetches those that it needs.
+  bool fetches_by_resource() const { return memory.fetch != MemoryConfig::Fetch::kPacket; }
 };
 
 inline TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/types/workload.h"
+#include "ringbus/cycle/testers/tester.h"
+#include "ringbus/protocol/machine.h"
+#include "ringbus/resource/resource.h"
+#include "ringbus/results/recording.h"
+#include "ringbus/results/trace.h"
+
+namespace carousel::ringbus::cycle {
+
+/// Writes down what happens at one resource: its steps always (two runs are compared by them), and slices of the
+/// timeline and the life of the followed ray where they are asked for. A recorder changes nothing else.
+class TileRecorder {
+ public:
+  /// Keeps a reference to the machine.
+  TileRecorder(ResourceId id, Machine& machine, const Recording& recording, TraceWindow steps)
+      : machine_(machine), id_(id), recording_(recording), trace_(id.value, steps) {}
+
+  const Trace& trace() const { return trace_; }
+  void step(Cycle now, StepKind kind, std::uint32_t packet, std::size_t rays) { trace_.note(now, kind, packet, rays); }
+
+  /// The units get tracks behind those of the dispatch stage and of `contexts`.
+  void record_units(Tester& tester, std::size_t contexts) const {
+    if (has_slices() && !has_ray())
+      tester.record(*recording_.slices, recording_.track + 1 + static_cast<std::uint32_t>(contexts));
+  }
+
+  void dispatched(Cycle begin, Cycle end, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip) {
+    if (has_slices()) [[unlikely]]
+      note_dispatch(begin, end, ids, kind, packet, has_trip);
+  }
+  void issued(PacketId id, Cycle now) {
+    if (has_slices()) [[unlikely]]
+      note_issued(id, now);
+  }
+  /// `since`, `begun`: the packet took the context, and its tests began.
+  void in_context(PacketId id, std::size_t context, Cycle since, Cycle begun, Cycle end) {
+    if (has_slices()) [[unlikely]]
+      note_context(id, context, since, begun, end);
+  }
+  void admitted(std::span<const RayId> rays, Cycle now) {
+    if (has_ray()) [[unlikely]]
+      note_admitted(rays, now);
+  }
+  /// A visit has tested rays of `packet`, which is a copy of packet `id` where others hear it at the same time.
+  void tested(const Packet& packet, PacketId id, Cycle at, const TestOutcome& outcome, const Resource& resource) {
+    if (has_ray()) [[unlikely]]
+      note_tested(packet, id, at, outcome, resource);
+  }
+  void retired(const Packet& packet, PacketId id, Cycle now) {
+    if (has_ray()) [[unlikely]]
+      note_retired(packet, id, now);
+  }
+  void completed(const HitBatch& rays, Cycle now) {
+    if (has_ray()) [[unlikely]]
+      note_completed(rays, now);
+  }
+
+ private:
+  bool has_slices() const { return recording_.slices != nullptr; }
+  bool has_ray() const { return recording_.ray != nullptr; }
+  void note_dispatch(Cycle begin, Cycle end, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
+  void note_issued(PacketId id, Cycle now);
+  void note_context(PacketId id, std::size_t context, Cycle since, Cycle begun, Cycle end);
+  void note_admitted(std::span<const RayId> rays, Cycle now);
+  void note_tested(const Packet& packet, PacketId id, Cycle at, const TestOutcome& outcome, const Resource& resource);
+  void note_retired(const Packet& packet, PacketId id, Cycle now);
+  void note_completed(const HitBatch& rays, Cycle now);
+  Hit hit_of(RayId ray) const;
+
+  Machine& machine_;
+  ResourceId id_;
+  Recording recording_;
+  Trace trace_;
+};
+
+}  // namespace carousel::ringbus::cycle

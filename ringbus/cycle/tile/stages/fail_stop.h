@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/config/fields/faults.h"
+#include "core/types/ids.h"
+#include "ringbus/cycle/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// When a resource stops or pauses (`faults.resource`), and whether it has told ray control that its work has come to
+/// nothing since another one has stopped.
+class FailStop {
+ public:
+  FailStop(const FaultsConfig::Resource& fault, ResourceId here) : fault_(fault), is_here_(fault.number == here.value) {
+    using Kind = FaultsConfig::Resource::Kind;
+    pauses_ = is_here_ && fault.kind == Kind::kPause;
+    stops_ = is_here_ && fault.kind == Kind::kStop;
+  }
+
+  /// Neither has happened yet, and one of them will.
+  bool is_ahead() const { return pauses_ || stops_; }
+  /// Tells whether the resource stops now, with so many completed rays; once.
+  bool stops(std::uint64_t completed) {
+    if (!stops_ || !is_due(completed)) return false;
+    stops_ = false;
+    return true;
+  }
+  /// The cycles for which it pauses from now on; once, otherwise 0.
+  Cycle pauses(std::uint64_t completed) {
+    if (!pauses_ || !is_due(completed)) return 0;
+    pauses_ = false;
+    return static_cast<Cycle>(fault_.cycles);
+  }
+  /// The one that stops.
+  ResourceId stopped() const { return ResourceId(static_cast<std::uint32_t>(fault_.number)); }
+
+  /// Nothing is under way any more. Tells whether ray control has to be told so; once until begin_anew().
+  bool tells_drained() {
+    const bool tells = !told_drained_;
+    told_drained_ = true;
+    return tells;
+  }
+  void begin_anew() { told_drained_ = false; }
+
+  void count_discarded(std::uint64_t packets) { discarded_ += packets; }
+  std::uint64_t packets_discarded() const { return discarded_; }
+
+ private:
+  bool is_due(std::uint64_t completed) const { return completed >= static_cast<std::uint64_t>(fault_.after_rays); }
+
+  FaultsConfig::Resource fault_;
+  bool is_here_, pauses_ = false, stops_ = false, told_drained_ = false;
+  std::uint64_t discarded_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle
