@@ -1,4 +1,4 @@
-/* What happens when a resource stops for good under virtual time (ringbus/cycle/tile/tile.cpp, ringbus/cycle/shading/shading_stop.cpp): R
+/* What happens when a resource stops for good under virtual time (ringbus/cycle/tile/tile.cpp, ringbus/cycle/shading/resource_loss.h): R
  * resources on a ring of links, resource 0 may stop at any moment. Ray control places rays: each has an owner, who tests
  * it, and an issuer, whose packet carries it round. When control has heard the last sign of life it orders all to discard
  * their work, waits until each has its packet home, and then places the rays that have not come back at the others.
