@@ -9,7 +9,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "core/config/config.h"
 #include "core/system/executor.h"
 #include "core/types/workload.h"

@@ -24,7 +24,7 @@ struct WideBox {
 };
 
 /// A binary tree over boxes, halved at the middle of the longest side until few are left: for a reference, which shares
-/// nothing with the structures that it judges (accel/build). Immutable once built.
+/// nothing with the structures that it judges (accel/builders). Immutable once built.
 class PlainTree {
  public:
   struct Node {

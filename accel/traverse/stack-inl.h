@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/build/binary/sah_build.cpp), above the
+/// Nodes on a traversal stack at most: binary depth is at most 72 (accel/builders/binary/sah_build.cpp), above the
 /// instances and again below one that is entered in passing; a level leaves at most seven siblings behind.
 inline constexpr int kStackCapacity = 1024;
 

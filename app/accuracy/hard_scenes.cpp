@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "app/accuracy/exact_answers.h"
 #include "core/system/executor.h"
 #include "scene/builtin/mesh_shapes.h"

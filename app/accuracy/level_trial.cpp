@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/planes/cull_planes.h"
 #include "app/accuracy/exact_answers.h"
 #include "app/accuracy/unit_cost.h"

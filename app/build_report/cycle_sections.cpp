@@ -5,9 +5,9 @@
 #include "app/build_report/memory_report.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/messages/memory_messages.h"
-#include "ringbus/cycle/steady_state.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
+#include "ringbus/verdict/steady_state.h"
 
 namespace carousel::app {
 

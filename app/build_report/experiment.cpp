@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/traverse/hit_oracle.h"
 #include "accel/traverse/verifying_workload.h"
 #include "app/build_report/build_report.h"

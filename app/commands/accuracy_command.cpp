@@ -25,7 +25,7 @@
 #include "report/html/study_pages.h"
 #include "report/read/document.h"
 #include "report/text/progress_line.h"
-#include "ringbus/cycle/what_if.h"
+#include "ringbus/verdict/what_if.h"
 
 namespace carousel::app {
 

@@ -9,7 +9,7 @@
 #include "report/run/judge_gains.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
-#include "ringbus/cycle/bottleneck_search.h"
+#include "ringbus/verdict/bottleneck_search.h"
 
 namespace carousel::app {
 

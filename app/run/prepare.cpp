@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <spdlog/spdlog.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/kernels.h"
 #include "app/area/machine_area.h"

@@ -9,7 +9,7 @@
 #include "app/run/memory_need.h"
 #include "core/system/executor.h"
 #include "report/csv/ray_csv.h"
-#include "ringbus/cycle/bottleneck_search.h"
+#include "ringbus/verdict/bottleneck_search.h"
 #include "shading/camera/image_file.h"
 
 namespace carousel::app {

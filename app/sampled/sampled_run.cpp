@@ -8,8 +8,8 @@
 #include "app/run/ray_progress.h"
 #include "report/text/number_text.h"
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/cycle/sample_estimate.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
+#include "ringbus/verdict/sample_estimate.h"
 
 namespace carousel::app {
 

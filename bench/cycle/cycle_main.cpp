@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "bench/common/machine_info.h"
 #include "bench/common/scenes.h"
 #include "bench/cycle/cycle_speed.h"

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "bench/common/machine_info.h"
 #include "bench/common/scenes.h"
 #include "bench/effects/effects_frames.h"

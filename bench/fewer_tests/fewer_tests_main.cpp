@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/reference_tracer.h"
 #include "bench/common/machine_info.h"

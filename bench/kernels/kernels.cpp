@@ -9,7 +9,7 @@
 #include <benchmark/benchmark.h>
 
 #include "accel/box/slab.h"
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/primitive/watertight.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/ray_check.h"

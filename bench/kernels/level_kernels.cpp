@@ -10,7 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
 #include "accel/traverse/ray_check.h"

@@ -6,7 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "bench/common/ring_runner.h"
 #include "bench/common/scenes.h"
 #include "bench/queues/queue_benchmarks.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "core/system/executor.h"
 
 namespace carousel::bench {

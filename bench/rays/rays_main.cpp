@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "bench/common/machine_info.h"
 #include "bench/common/marked_file.h"
 #include "bench/common/scenes.h"

@@ -9,7 +9,7 @@ namespace carousel {
 
 // One table says which parts of a machine its scene and the rest of its configuration put to use, by the keys of these
 // parts. Ignored keys are named by it (core/config/ignored_keys.h), the search for the bottleneck relaxes only parts
-// that are in use (ringbus/cycle/what_if.h), and only these have an area (app/area/machine_area.h).
+// that are in use (ringbus/verdict/what_if.h), and only these have an area (app/area/machine_area.h).
 
 /// The things in a scene that put test units to use. By default a scene may hold anything.
 struct SceneFacts {

@@ -5,10 +5,10 @@
 
 #include "core/system/error.h"
 #include "ringbus/cycle/progress_log.h"
-#include "ringbus/cycle/time/windows.h"
 #include "ringbus/cycle/wiring/byte_ledger.h"
 #include "ringbus/cycle/wiring/machine_series.h"
 #include "ringbus/cycle/wiring/simulated_machine.h"
+#include "ringbus/time/windows.h"
 
 namespace carousel::ringbus {
 

@@ -5,8 +5,8 @@
 #include <deque>
 #include <utility>
 
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/faults/fault_injector.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -13,13 +13,13 @@
 #include "core/statistics/ray_bytes.h"
 #include "core/statistics/shape_buffer_counts.h"
 #include "core/types/unit_kind.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/byte_row.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/dram_use.h"
 #include "ringbus/results/ray_data_use.h"
 #include "ringbus/results/strip_use.h"
 #include "ringbus/results/trace.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -245,7 +245,7 @@ Json run(const std::string& file) {
   const Tree tree(prepared.accel, config);
   RecordedWorkload workload(job.workload(), tree);
   ringbus::RunOptions options;
-  options.trace = {0, ringbus::cycle::kNever};
+  options.trace = {0, ringbus::kNever};
   const ringbus::RunResult result =
       ringbus::run_cycle(config, prepared.accel, prepared.scene_size(), workload, options);
   Json steps = Json::array();

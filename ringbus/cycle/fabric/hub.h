@@ -6,9 +6,9 @@
 
 #include "ringbus/cycle/fabric/port_counters.h"
 #include "ringbus/cycle/fabric/ports.h"
-#include "ringbus/cycle/time/agent.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/results/counter_samples.h"
+#include "ringbus/time/agent.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {

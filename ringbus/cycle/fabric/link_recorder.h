@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "ringbus/cycle/fabric/token.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/slice_log.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -7,10 +7,10 @@
 
 #include "ringbus/cycle/fabric/link_recorder.h"
 #include "ringbus/cycle/fabric/token.h"
-#include "ringbus/cycle/time/channel.h"
-#include "ringbus/cycle/time/fifo.h"
 #include "ringbus/faults/link_fault_timer.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/time/channel.h"
+#include "ringbus/time/fifo.h"
 
 namespace carousel::ringbus::cycle {
 

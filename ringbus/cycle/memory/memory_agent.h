@@ -7,11 +7,11 @@
 
 #include "core/config/config.h"
 #include "ringbus/cycle/messages/memory_messages.h"
-#include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/time/channel.h"
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/dram_use.h"
 #include "ringbus/results/memory_request.h"
+#include "ringbus/time/agent.h"
+#include "ringbus/time/channel.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/types/workload.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/rays/ray_id.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

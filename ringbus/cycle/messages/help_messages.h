@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/types/ray.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

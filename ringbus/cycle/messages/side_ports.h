@@ -7,7 +7,7 @@
 #include "ringbus/cycle/messages/control_messages.h"
 #include "ringbus/cycle/messages/help_messages.h"
 #include "ringbus/cycle/messages/memory_messages.h"
-#include "ringbus/cycle/time/channel.h"
+#include "ringbus/time/channel.h"
 
 namespace carousel::ringbus::cycle {
 

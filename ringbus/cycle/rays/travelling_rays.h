@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "ringbus/cycle/messages/control_messages.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/protocol/admission.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/protocol/ray_rounds.h"
 #include "ringbus/results/counter_samples.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ringbus/cycle/messages/side_ports.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

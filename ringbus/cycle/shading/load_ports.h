@@ -7,7 +7,7 @@
 
 #include "core/config/config.h"
 #include "core/types/ray.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

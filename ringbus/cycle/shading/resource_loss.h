@@ -6,9 +6,9 @@
 
 #include "core/config/config.h"
 #include "core/types/workload.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/faults/outstanding_rays.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -7,8 +7,8 @@
 #include "core/types/workload.h"
 #include "ringbus/cycle/shading/shade_queues.h"
 #include "ringbus/cycle/shading/shading_settings.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -9,7 +9,7 @@
 #include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/types/workload.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -20,12 +20,12 @@
 #include "ringbus/cycle/shading/shading_recorder.h"
 #include "ringbus/cycle/shading/shading_samples.h"
 #include "ringbus/cycle/shading/shading_settings.h"
-#include "ringbus/cycle/time/agent.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/observation.h"
 #include "ringbus/results/recording.h"
 #include "ringbus/results/trace.h"
+#include "ringbus/time/agent.h"
 
 namespace carousel::ringbus::cycle {
 

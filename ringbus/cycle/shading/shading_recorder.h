@@ -4,9 +4,9 @@
 #include <span>
 
 #include "core/types/workload.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/results/recording.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

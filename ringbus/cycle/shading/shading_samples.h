@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/counter_samples.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/numeric/log2_histogram.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/results/counter_samples.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

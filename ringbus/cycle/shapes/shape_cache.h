@@ -13,8 +13,8 @@
 #include "ringbus/cycle/shapes/line_cache.h"
 #include "ringbus/cycle/shapes/missing_lines.h"
 #include "ringbus/cycle/shapes/strip_walks.h"
-#include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/time/channel.h"
+#include "ringbus/time/agent.h"
+#include "ringbus/time/channel.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/build/quantised_boxes.h"
+#include "accel/builders/quantised_boxes.h"
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
 #include "ringbus/cycle/shapes/leaf_strips.h"
@@ -32,8 +32,8 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
 /// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
-/// nodes have 64 or 80 bytes, but for those that keep their boxes as floats (accel/build/quantised_boxes.h), and each
-/// primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
+/// nodes have 64 or 80 bytes, but for those that keep their boxes as floats (accel/builders/quantised_boxes.h), and
+/// each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
 ///
 /// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
 /// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive

@@ -5,7 +5,7 @@
 #include <queue>
 #include <vector>
 
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

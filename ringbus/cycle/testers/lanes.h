@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/config/fields/testers.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

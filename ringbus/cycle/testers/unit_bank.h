@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "core/config/config.h"
-#include "ringbus/cycle/time/clock.h"
-#include "ringbus/cycle/time/fifo.h"
 #include "ringbus/results/slice_log.h"
+#include "ringbus/time/clock.h"
+#include "ringbus/time/fifo.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -5,12 +5,12 @@
 
 #include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/tile/records/id_census.h"
-#include "ringbus/cycle/time/agent.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/trace.h"
+#include "ringbus/time/agent.h"
 
 namespace carousel::ringbus::cycle {
 

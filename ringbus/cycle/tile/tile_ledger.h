@@ -1,8 +1,8 @@
 #pragma once
 
 #include "ringbus/cycle/testers/tester.h"
-#include "ringbus/cycle/time/state_clock.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/time/state_clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -5,10 +5,10 @@
 #include <memory>
 
 #include "core/system/error.h"
-#include "ringbus/cycle/time/windows.h"
 #include "ringbus/cycle/traffic/traffic_node.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/protocol/flow_rules.h"
+#include "ringbus/time/windows.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {

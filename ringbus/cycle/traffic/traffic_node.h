@@ -8,11 +8,11 @@
 #include "core/config/config.h"
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/cycle/fabric/ports.h"
-#include "ringbus/cycle/time/agent.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
 #include "ringbus/cycle/traffic/traffic_token.h"
 #include "ringbus/protocol/flow_rules.h"
+#include "ringbus/time/agent.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {

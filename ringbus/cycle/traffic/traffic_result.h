@@ -11,9 +11,9 @@ namespace carousel::ringbus {
 
 /// The counts of a run of synthetic traffic. Latencies, offered and accepted load are of the window.
 struct TrafficResult {
-  bool complete = true;     ///< false: stopped early
-  cycle::Cycle cycles = 0;  ///< until the last packet was delivered
-  cycle::Cycle window_begin = 0, window_end = 0;
+  bool complete = true;  ///< false: stopped early
+  Cycle cycles = 0;      ///< until the last packet was delivered
+  Cycle window_begin = 0, window_end = 0;
   std::uint64_t packets = 0, delivered = 0;  ///< in all
   std::uint64_t flits = 1;                   ///< flits of a packet
   std::uint64_t offered = 0;                 ///< packets created within the window
@@ -23,8 +23,8 @@ struct TrafficResult {
   std::uint64_t hops = 0;                    ///< links crossed by packets
   LatencyHistogram latency;                  ///< latency of the packets offered
   std::vector<cycle::LinkUse> links;
-  std::vector<std::uint64_t> link_packets;   ///< by link
-  std::vector<cycle::Cycle> busy_in_window;  ///< by link: cycles of the window in which it moved a flit
+  std::vector<std::uint64_t> link_packets;  ///< by link
+  std::vector<Cycle> busy_in_window;        ///< by link: cycles of the window in which it moved a flit
   double wall_seconds = 0;
   std::size_t threads = 1;
 

@@ -6,7 +6,7 @@
 #include "core/config/config.h"
 #include "core/numeric/rng.h"
 #include "core/types/ids.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

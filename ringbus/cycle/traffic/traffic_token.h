@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

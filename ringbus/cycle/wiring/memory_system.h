@@ -6,9 +6,9 @@
 #include "core/config/config.h"
 #include "ringbus/cycle/memory/memory_agent.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
-#include "ringbus/cycle/time/wakeup_table.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/ray_data_use.h"
+#include "ringbus/time/wakeup_table.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -6,8 +6,8 @@
 #include "core/config/config.h"
 #include "ringbus/cycle/fabric/hub.h"
 #include "ringbus/cycle/fabric/ports.h"
-#include "ringbus/cycle/time/wakeup_table.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/time/wakeup_table.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "ringbus/cycle/messages/side_ports.h"
-#include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/time/wakeup_table.h"
+#include "ringbus/time/agent.h"
+#include "ringbus/time/wakeup_table.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -5,7 +5,7 @@
 
 #include "ringbus/cycle/tile/independent_tile.h"
 #include "ringbus/cycle/tile/tile.h"
-#include "ringbus/cycle/time/wait_cycle.h"
+#include "ringbus/time/wait_cycle.h"
 
 namespace carousel::ringbus::cycle {
 

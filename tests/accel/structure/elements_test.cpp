@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "accel/build/bounding_spheres.h"
+#include "accel/builders/bounding_spheres.h"
 #include "accel/exact/dyadic.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/structure/cull_plane.h"

@@ -1,6 +1,6 @@
 // Structures of more than two levels against every triangle tested in scalar code, which knows nothing of groups: bits
 // equal, whatever the levels, the level of accuracy and the distance of rays.
-#include "accel/build/group_levels.h"
+#include "accel/builders/group_levels.h"
 
 #include <algorithm>
 #include <cmath>

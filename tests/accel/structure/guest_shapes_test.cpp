@@ -11,9 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
-#include "accel/build/mesh_pieces.h"
-#include "accel/build/rank_shares.h"
+#include "accel/builders/build.h"
+#include "accel/builders/mesh_pieces.h"
+#include "accel/builders/rank_shares.h"
 #include "accel/structure/structure_size.h"
 #include "accel/traverse/kernels.h"
 #include "core/system/error.h"

@@ -2,7 +2,7 @@
 // rays from far away, whose hits often lie beside the box of their instance and then are none.
 #include <gtest/gtest.h>
 
-#include "accel/build/quantised_boxes.h"
+#include "accel/builders/quantised_boxes.h"
 #include "accel/traverse/verifying_workload.h"
 #include "scene/builtin/random_rotation.h"
 #include "tests/accel/structure/test_scenes.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/structure/accel.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/accel/traverse/test_rays.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/system/executor.h"

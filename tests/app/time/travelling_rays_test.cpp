@@ -68,7 +68,7 @@ TEST_F(TravellingRays, ComeToTheirSlotsInTheCyclesOfThePage) {
       "machine.yaml");
   app::RenderJob job(prepared);
   ringbus::RunOptions options;
-  options.trace = {0, ringbus::cycle::kNever};
+  options.trace = {0, ringbus::kNever};
   const ringbus::RunResult run =
       ringbus::run_cycle(prepared.config(), prepared.accel, prepared.scene_size(), job.workload(), options);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> placed, admitted;

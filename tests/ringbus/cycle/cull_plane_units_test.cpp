@@ -6,7 +6,7 @@
 #include "ringbus/cycle/shapes/shape_buffer.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
-#include "ringbus/cycle/what_if.h"
+#include "ringbus/verdict/what_if.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus::cycle {

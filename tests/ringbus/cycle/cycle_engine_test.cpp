@@ -73,13 +73,13 @@ TEST(CycleLedgers, LedgersAddUp) {
     const cycle::CycleResult& c = *out.result.cycle;
     for (std::size_t r = 0; r < c.tiles.size(); ++r) {
       const cycle::TileResult& tile = c.tiles[r];
-      cycle::Cycle sum = 0;
-      for (const cycle::Cycle state : tile.states) sum += state;
+      Cycle sum = 0;
+      for (const Cycle state : tile.states) sum += state;
       EXPECT_EQ(sum, c.cycles);
-      const cycle::Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
+      const Cycle testing = tile.states[static_cast<std::size_t>(cycle::TileState::kTesting)];
       for (const auto [kind, bank] : tile.units) EXPECT_LE(bank.busy, testing);
       for (const auto [kind, bank] : tile.units) {
-        cycle::Cycle busy = 0;
+        Cycle busy = 0;
         for (std::size_t state = 0; state < cycle::kTileStates; ++state) {
           EXPECT_LE(bank.busy_in[state], tile.states[state]);
           busy += bank.busy_in[state];
@@ -91,8 +91,8 @@ TEST(CycleLedgers, LedgersAddUp) {
       EXPECT_EQ(tile.round_trips.count(), out.result.resources[r].packets_issued);
       EXPECT_EQ(tile.packet_cycles, tile.round_trips.sum());
       // Jobs are shaded whole.
-      const cycle::Cycle shaded = tile.states[static_cast<std::size_t>(cycle::TileState::kShading)];
-      const cycle::Cycle job = static_cast<cycle::Cycle>(cell.config.shading.cycles_per_shade);
+      const Cycle shaded = tile.states[static_cast<std::size_t>(cycle::TileState::kShading)];
+      const Cycle job = static_cast<Cycle>(cell.config.shading.cycles_per_shade);
       EXPECT_EQ(job == 0 ? shaded : shaded % job, 0u);
       jobs += job == 0 ? 0 : shaded / job;
       // The banks are busy for the tests that the resource counted, rounded up a packet at a time; behind a distributor
@@ -180,7 +180,7 @@ TEST(CycleLedgers, ConservesRaysAndPacketsAtEveryStep) {
   std::size_t epochs = 0;
   for (std::uint32_t seed = run_seed(); seed < run_seed() + machines; ++seed) {
     Cell cell = random_cell(seed + 3000);
-    cell.trace = {0, cycle::kNever};
+    cell.trace = {0, kNever};
     const Outcome out = run_cell(scene, cell);
     SCOPED_TRACE("seed " + std::to_string(seed) + ": " + cell.text());
     ASSERT_EQ(out.fault, "");

@@ -4,7 +4,7 @@
 #include "accel/exact/exact_triangle.h"
 #include "accel/traverse/reference_tracer.h"
 #include "ringbus/cycle/testers/tester.h"
-#include "ringbus/cycle/what_if.h"
+#include "ringbus/verdict/what_if.h"
 #include "tests/core/config/config_issues.h"
 #include "tests/ringbus/support/test_machine.h"
 

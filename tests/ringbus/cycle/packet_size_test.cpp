@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus::cycle {

@@ -1,7 +1,7 @@
 // The time that any-hit calls take under virtual time: a trip to the unit, or to a shader worker and back.
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "tests/accel/structure/passing_scenes.h"
 #include "tests/ringbus/support/test_machine.h"
 
@@ -52,7 +52,7 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
     return result.cycle->cycles;
   };
   config.testers.units[UnitKind::kAnyHit] = {1, 1, 1};
-  const cycle::Cycle at_once = cycles();
+  const Cycle at_once = cycles();
   config.testers.units[UnitKind::kAnyHit] = {1, 1, 21};
   EXPECT_EQ(cycles() - at_once, 20u);
   config.testers.units[UnitKind::kAnyHit] = {1, 10, 1};
@@ -62,8 +62,8 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
 
   config.testers.any_hit = TestersConfig::AnyHit::kShader;
   config.shading.cycles_per_any_hit = 0;
-  const cycle::Cycle trip = cycles();
-  const auto hop = static_cast<cycle::Cycle>(config.topology.link.latency_cycles);
+  const Cycle trip = cycles();
+  const auto hop = static_cast<Cycle>(config.topology.link.latency_cycles);
   EXPECT_EQ(trip, at_once - 3 + 2 * hop) << "instead of three cycles in the unit";
   config.shading.cycles_per_any_hit = 7;
   EXPECT_EQ(cycles() - trip, 3u * 7u);

@@ -2,7 +2,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "tests/accel/structure/test_scenes.h"
 #include "tests/ringbus/support/test_machine.h"
 

@@ -6,13 +6,13 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/exact_reference.h"
 #include "accel/traverse/reference_tracer.h"
 #include "core/system/executor.h"
-#include "ringbus/cycle/bottleneck_search.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/verdict/bottleneck_search.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/mesh_shapes.h"
 #include "shading/surface/alpha_test.h"

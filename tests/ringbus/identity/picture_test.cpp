@@ -1,7 +1,7 @@
 // With real shading every native machine gives one digest of the hits and one of the image a scene.
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "shading/tracer/path_tracer.h"
 #include "tests/ringbus/identity/machine_space.h"
 

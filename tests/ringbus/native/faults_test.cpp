@@ -62,9 +62,8 @@ void expect_recovery(TestScene& scene, const Cell& cell) {
   const cycle::StopTimes& stop = *out.result.cycle->stop;
   EXPECT_EQ(stop.resource, cell.config.faults.resource.number);
   // Word of it, the silence, and at least the way to the resources and back.
-  const auto latency = static_cast<cycle::Cycle>(cell.config.topology.link.latency_cycles);
-  EXPECT_EQ(stop.noticed,
-            stop.stopped + latency + static_cast<cycle::Cycle>(cell.config.faults.resource.silence_cycles));
+  const auto latency = static_cast<Cycle>(cell.config.topology.link.latency_cycles);
+  EXPECT_EQ(stop.noticed, stop.stopped + latency + static_cast<Cycle>(cell.config.faults.resource.silence_cycles));
   EXPECT_GE(stop.restarted, stop.noticed + 2 * latency);
   EXPECT_LT(stop.restarted, out.result.cycle->cycles);
 }
@@ -168,7 +167,7 @@ TEST(StoppedResource, WhenAllIsDoneIsNotWaitedFor) {
   const Outcome never = run_cell(scene, cell);
   ASSERT_EQ(never.fault, "");
   // One of them completes the last ray of the run, and stops then.
-  cycle::Cycle first_end = cycle::kNever;
+  Cycle first_end = kNever;
   for (const std::int64_t resource : {0, 1}) {
     cell.config.faults.resource.number = resource;
     cell.config.faults.resource.after_rays =

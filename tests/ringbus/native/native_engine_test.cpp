@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "core/system/error.h"
 #include "ringbus/queues/spsc_ring.h"
 #include "tests/ringbus/support/test_machine.h"

@@ -231,7 +231,7 @@ TEST(LinkFaultTimer, LosesTimeAndNothingElse) {
   Config config;
   config.faults.links.drop = 0.5;
   cycle::LinkFaultTimer timer(config.faults.links, config.faults.seed, 0, 10);
-  cycle::Cycle now = 0, last = 0;
+  Cycle now = 0, last = 0;
   std::uint64_t waited = 0;
   for (int i = 0; i < 2000; ++i) {
     const auto delivery = timer.send(now, 2);
@@ -255,10 +255,10 @@ TEST(LinkFaultTimer, PlacesComeBackThoughAcknowledgementsFail) {
   config.faults.links = {0.3, 0.1, 0.2, 0.1, 0.2, 70};
   cycle::LinkFaultTimer timer(config.faults.links, config.faults.seed, 1, 10);
   std::uint64_t sent = 0, back = 0, late = 0;
-  cycle::Cycle now = 0;
+  Cycle now = 0;
   for (int i = 0; i < 500; ++i) {
     const auto delivery = timer.send(now, 3);
-    const cycle::Cycle at = std::max(delivery.arrival + 10, now);
+    const Cycle at = std::max(delivery.arrival + 10, now);
     ++sent;
     back += timer.recovered(at).places;
     const std::uint32_t heard = timer.acknowledge(at);
@@ -270,7 +270,7 @@ TEST(LinkFaultTimer, PlacesComeBackThoughAcknowledgementsFail) {
     // Now and then the sender has no more to send and waits for the rest.
     for (int wait = 0; i % 10 == 9 && back < sent; ++wait) {
       ASSERT_LT(wait, 1000);
-      ASSERT_NE(timer.next(), cycle::kNever);
+      ASSERT_NE(timer.next(), kNever);
       ASSERT_GE(timer.next(), at);
       now = timer.next();
       back += timer.recovered(now).places;

@@ -13,7 +13,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "core/config/load/load.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"

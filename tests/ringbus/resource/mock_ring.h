@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/brute_force.h"
 #include "core/system/executor.h"

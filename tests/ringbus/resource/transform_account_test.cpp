@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "ringbus/cycle/fabric/packet_size.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"

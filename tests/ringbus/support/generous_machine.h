@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "ringbus/cycle/what_if.h"
+#include "ringbus/verdict/what_if.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {

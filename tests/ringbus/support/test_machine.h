@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
 #include "accel/traverse/reference_tracer.h"

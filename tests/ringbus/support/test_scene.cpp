@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "accel/traverse/reference_tracer.h"
 #include "core/config/config.h"
 #include "core/system/executor.h"

@@ -266,7 +266,7 @@ TEST(TrafficSource, BurstsAreAsLongAsAskedFor) {
   cycle::TrafficSource source = source_of(c, ResourceId(0), gap);
   int bursts = 0;
   for (int i = 0; i < 100000; ++i) {
-    const cycle::Cycle before = source.created();
+    const Cycle before = source.created();
     source.advance();
     ASSERT_GT(source.created(), before);
     bursts += source.created() > before + 1;
@@ -276,7 +276,7 @@ TEST(TrafficSource, BurstsAreAsLongAsAskedFor) {
 
 TEST(LatencyHistogram, KeepsQuantilesWithinAThousandth) {
   LatencyHistogram h, half;
-  for (cycle::Cycle latency = 1; latency <= 100000; ++latency) (latency % 2 ? h : half).add(latency);
+  for (Cycle latency = 1; latency <= 100000; ++latency) (latency % 2 ? h : half).add(latency);
   h.add(half);
   EXPECT_EQ(h.count(), 100000u);
   EXPECT_EQ(h.mean(), 50000.5);

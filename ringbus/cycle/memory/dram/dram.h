@@ -6,8 +6,8 @@
 #include "core/config/fields/dram.h"
 #include "ringbus/cycle/memory/dram/dram_channel.h"
 #include "ringbus/cycle/memory/dram/dram_map.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/results/dram_use.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/numeric/latency_histogram.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "ringbus/cycle/tile/records/id_census.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/resource/resource.h"
 #include "ringbus/results/counter_samples.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "ringbus/cycle/tile/records/tile_recorder.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -4,7 +4,7 @@
 
 #include "core/config/fields/faults.h"
 #include "core/types/ids.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

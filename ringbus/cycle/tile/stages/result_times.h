@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/types/workload.h"
-#include "ringbus/cycle/time/clock.h"
 #include "ringbus/packets/packet.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

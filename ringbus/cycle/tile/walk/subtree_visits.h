@@ -7,7 +7,7 @@
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/walk/subtree_walk.h"
-#include "ringbus/cycle/time/event_wheel.h"
+#include "ringbus/time/event_wheel.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/box/slab.h"
-#include "accel/build/quantised_boxes.h"
+#include "accel/builders/quantised_boxes.h"
 #include "accel/traverse/kernels.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "tests/ringbus/support/timed_machine.h"

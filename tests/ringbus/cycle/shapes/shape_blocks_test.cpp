@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/build/build.h"
+#include "accel/builders/build.h"
 #include "core/system/executor.h"
 #include "tests/ringbus/support/test_scene.h"
 

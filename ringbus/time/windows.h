@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+
+#include "ringbus/time/agent.h"
+#include "ringbus/time/wakeup_table.h"
+
+namespace carousel::ringbus {
+
+/// Runs agents to the end of time: window after window of `lookahead` cycles, the least latency between any two
+/// agents (conservative synchronous windows; R. Fujimoto, Parallel discrete event simulation, CACM 33 (1990)).
+/// The result is the same for any number of threads. While fewer than eight agents a thread have something to do in a
+/// window, all run on the calling thread: to wait for each other would take longer.
+///
+/// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `keep_running` is called there before
+/// every 64th window with its first cycle, while no agent runs, so that it may look at all of them; when it answers
+/// false the run ends early. Exceptions of agents pass through. Returns the last window's first cycle, the time
+/// reached.
+///
+/// Agents that are not polled() must have all their channels connected to `wakeups`, which was made for `parts`.
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
+                  const std::function<bool(Cycle)>& keep_running);
+
+}  // namespace carousel::ringbus

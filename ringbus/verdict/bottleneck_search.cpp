@@ -1,0 +1,341 @@
+#include "ringbus/verdict/bottleneck_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/statistics/worth_naming.h"
+#include "ringbus/verdict/foretell.h"
+#include "ringbus/verdict/pilot_runs.h"
+#include "ringbus/verdict/steady_state.h"
+#include "ringbus/verdict/what_if.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+double rays_per_kilocycle(std::uint64_t rays, double cycles) {
+  return 1000 * static_cast<double>(rays) / std::max(1.0, cycles);
+}
+
+class Search {
+ public:
+  Search(const Config& config, const accel::Accel& accel, float scene_size, const PilotFactory& make_pilot,
+         const SearchedRun& run, const RunOptions& options, const SearchObserver& observe)
+      : config_(config), accel_(accel), run_(run), pilots_(accel, scene_size, make_pilot, run, options, observe) {
+    // The bottleneck is that of the whole machine, before a resource stops.
+    stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
+    if (stops_) config_.faults.resource = {};
+    lifts_ = what_ifs(config_, accel_);
+    out_.gains.resize(lifts_.size());
+  }
+
+  Bottleneck search() {
+    const std::uint64_t frame = run_.result.rays_completed;
+    const std::uint64_t first = frame / kScreening;
+    const std::vector<std::vector<std::size_t>> groups = grouped();
+    out_.paths = pilot_paths(config_, run_.paths, frame, first / (groups.size() + 1));
+    begin("first pilot", groups.size());
+    screen(groups);
+    std::vector<std::size_t> worth = worth_a_second_look();
+    const std::uint64_t larger =
+        pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
+    if (out_.complete) estimate(worth);
+    if (!out_.whole && larger > out_.paths + out_.paths / 2) {
+      out_.paths = larger;
+      begin("second pilot", worth.size());
+      simulate_base();
+    }
+    for (int doubled = 0; out_.complete; ++doubled) {
+      const bool alike = judge();
+      if (alike) {
+        lift_contenders(worth);
+        worth = perhaps_noise();
+        if (worth.empty()) break;
+      }
+      if (doubled == kDoublings) {
+        if (alike) break;
+        return without_gains();
+      }
+      out_.paths = std::min(run_.paths, 2 * out_.paths);
+      // Half as many classes, so that a larger pilot takes no longer.
+      worth.resize(std::min(worth.size(), std::max(kFewest, worth.size() / 2)));
+      begin("larger pilot", worth.size());
+      simulate_base();
+    }
+    if (!out_.complete) return without_gains();
+    std::stable_sort(out_.gains.begin(), out_.gains.end(),
+                     [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
+    return out_;
+  }
+
+ private:
+  static constexpr int kDoublings = 2;
+  static constexpr std::size_t kFewest = 2;
+  static constexpr std::uint64_t kScreening = 3;  // a third of the rays go to the first pilot
+  static constexpr double kEnough = 0.03;         // a gain that is worth a second look
+
+  Bottleneck without_gains() {
+    out_.gains.clear();
+    return out_;
+  }
+
+  void begin(const char* stage, std::size_t lifts) { pilots_.begin(stage, lifts + 1, out_.paths); }
+
+  std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
+    std::vector<RunResult> results = pilots_.simulate(machines);
+    out_.complete &= pilots_.complete();
+    out_.simulated = pilots_.simulated_rays();
+    return results;
+  }
+
+  /// The run itself is the pilot if that is the whole frame. Returns true if nothing is left to simulate for it.
+  bool base_is_the_run() {
+    out_.whole = out_.paths >= run_.paths;
+    if (!out_.whole || stops_) return false;
+    set_base(run_.result);
+    pilots_.leave_out_one();
+    return true;
+  }
+
+  void set_base(RunResult base) {
+    base_ = std::move(base);
+    out_.rays = base_.rays_completed;
+  }
+
+  void simulate_base() {
+    if (!base_is_the_run()) set_base(std::move(simulate({&config_}).front()));
+  }
+
+  Foretelling foretelling() const {
+    return {{&*base_.cycle, base_.rays_completed}, run_.result.rays_completed, 2 * fill_rays(slots_of(config_))};
+  }
+
+  /// By how much the run differs from what the pilot foretells, as a fraction.
+  double deviation() const {
+    return stops_ ? 0 : static_cast<double>(run_.result.cycle->cycles) / foretelling().cycles().value - 1;
+  }
+
+  /// True if the parts of a class had nothing to do for more than half of the run.
+  bool idle(const std::string& name) const {
+    constexpr double kIdle = 0.5;
+    const cycle::CycleResult& run = *run_.result.cycle;
+    for (const cycle::ClassUse& use : run.uses)
+      if (use.name == name) return static_cast<double>(use.busy) <= kIdle * use.parts * static_cast<double>(run.cycles);
+    return false;
+  }
+
+  /// All classes, those of idle parts in one group.
+  std::vector<std::vector<std::size_t>> grouped() const {
+    std::vector<std::vector<std::size_t>> out;
+    std::vector<std::size_t> of_idle;
+    for (std::size_t i = 0; i < lifts_.size(); ++i) {
+      if (idle(lifts_[i].name))
+        of_idle.push_back(i);
+      else
+        out.push_back({i});
+    }
+    if (!of_idle.empty()) out.push_back(of_idle);
+    return out;
+  }
+
+  /// Simulates the pilot as configured and with the classes of each group relaxed together; then parts of the groups
+  /// for which that may gain enough, down to single classes.
+  void screen(std::vector<std::vector<std::size_t>> groups) {
+    bool have_base = base_is_the_run();
+    while (!groups.empty()) {
+      std::vector<std::vector<std::size_t>> tried, parts;
+      std::deque<Config> together;
+      std::vector<const Config*> machines;
+      if (!have_base) machines.push_back(&config_);
+      for (std::vector<std::size_t>& group : groups) {
+        std::vector<const WhatIf*> lifts;
+        for (const std::size_t i : group) lifts.push_back(&lifts_[i]);
+        std::optional<Config> machine = group.size() == 1 ? lifts.front()->relaxed : relaxed_together(config_, lifts);
+        if (!machine) {
+          halve(group, parts);
+          continue;
+        }
+        machines.push_back(&together.emplace_back(std::move(*machine)));
+        tried.push_back(std::move(group));
+      }
+      std::vector<RunResult> results = simulate(machines);
+      if (!out_.complete) return;
+      if (!have_base) {
+        set_base(std::move(results.front()));
+        results.erase(results.begin());
+        have_base = true;
+      }
+      for (std::size_t k = 0; k < tried.size(); ++k) {
+        const bool warms =
+            std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return lifts_[i].keeps_shapes; });
+        const Estimate gain = foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0, warms);
+        if (tried[k].size() == 1) relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
+        // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
+        if (tried[k].size() == 1 || gain.value < kEnough)
+          for (const std::size_t i : tried[k]) note(i, gain, tried[k].size());
+        else
+          halve(tried[k], parts);
+      }
+      groups = std::move(parts);
+    }
+  }
+
+  void halve(const std::vector<std::size_t>& group, std::vector<std::vector<std::size_t>>& parts) {
+    const auto half = group.begin() + static_cast<std::ptrdiff_t>(group.size() / 2);
+    parts.emplace_back(group.begin(), half);
+    parts.emplace_back(half, group.end());
+    pilots_.expect_more(2);
+  }
+
+  void note(std::size_t i, const Estimate& gain, std::size_t together) {
+    const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
+    out_.gains[i] = {lifts_[i].name, lifts_[i].action, lifts_[i].sets, rate * (1 + gain.value),
+                     gain.value,     gain.low,         gain.high,      together};
+  }
+
+  /// Relaxes each of these classes with the present pilot.
+  void lift(const std::vector<std::size_t>& which) {
+    std::vector<const Config*> machines;
+    for (const std::size_t i : which) machines.push_back(&lifts_[i].relaxed);
+    std::vector<RunResult> results = simulate(machines);
+    if (!out_.complete) return;
+    for (std::size_t k = 0; k < which.size(); ++k) relaxed_[which[k]] = {std::move(results[k]), out_.paths};
+    estimate(which);
+  }
+
+  /// Notes the gains of classes that were relaxed with the present pilot, with what this is known to be off by.
+  void estimate(const std::vector<std::size_t>& classes) {
+    for (const std::size_t i : classes) {
+      const RunResult& result = relaxed_[i].result;
+      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation(), lifts_[i].keeps_shapes), 1);
+    }
+  }
+
+  /// Relaxes those of these classes that may be the best: of many, the two that promise most, and then those that may
+  /// still gain more. One that gains less than another surely does is left out, and keeps the gain of an earlier pilot.
+  void lift_contenders(const std::vector<std::size_t>& classes) {
+    constexpr std::size_t kMany = 4, kFirst = 2;
+    for (bool first = true;; first = false) {
+      double surely = 0;
+      for (const std::size_t i : classes) surely = std::max(surely, out_.gains[i].low);
+      std::vector<std::size_t> missing;
+      for (const std::size_t i : classes)
+        if (relaxed_[i].paths != out_.paths && out_.gains[i].high >= surely) missing.push_back(i);
+      if (first && missing.size() >= kMany) missing.resize(kFirst);
+      if (missing.empty()) break;
+      lift(missing);
+      if (!out_.complete) return;
+    }
+    for (const std::size_t i : classes)
+      if (relaxed_[i].paths != out_.paths) pilots_.leave_out_one();
+  }
+
+  /// The classes that the larger pilot simulates: those that might gain enough to be named, but not many.
+  std::vector<std::size_t> worth_a_second_look() const {
+    constexpr std::size_t kMost = 6;
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < out_.gains.size(); ++i)
+      if (out_.gains[i].together == 1 && (out_.whole || out_.gains[i].high >= kEnough)) out.push_back(i);
+    greatest_first(out);
+    if (!out_.whole && out.size() > kMost) out.resize(kMost);
+    return out;
+  }
+
+  /// The classes that may gain enough, the greatest gain first, if that one may be noise; else none. A larger pilot
+  /// tells it from noise.
+  std::vector<std::size_t> perhaps_noise() const {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < out_.gains.size() && !out_.whole; ++i)
+      if (out_.gains[i].together == 1 && out_.gains[i].gain >= kWorthIt) out.push_back(i);
+    greatest_first(out);
+    if (out.empty() || worth_naming(out_.gains[out.front()].gain, out_.gains[out.front()].low)) return {};
+    return out;
+  }
+
+  void greatest_first(std::vector<std::size_t>& classes) const {
+    std::stable_sort(classes.begin(), classes.end(),
+                     [&](std::size_t a, std::size_t b) { return out_.gains[a].gain > out_.gains[b].gain; });
+  }
+
+  /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
+  /// are alike.
+  bool judge() {
+    // Schedules differ by so much for no reason that the pilot could know.
+    constexpr double kTolerance = 0.02, kBusyTolerance = 0.05;
+    const Foretelling foretold = foretelling();
+    const Estimate cycles = foretold.cycles();
+    out_.uncertainty = (cycles.high - cycles.value) / cycles.value;
+    out_.unlike.clear();
+    if (stops_) {
+      out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, cycles.value);
+      return true;
+    }
+    const double ran = static_cast<double>(run_.result.cycle->cycles), allowed = out_.uncertainty + kTolerance;
+    out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, ran);
+    out_.deviation = deviation();
+    if (std::abs(out_.deviation) > allowed) {
+      out_.unlike = fmt::format("it foretells {:.0f} cycles for the frame, {:+.1f} % of the run's", cycles.value,
+                                100 * (cycles.value / ran - 1));
+      return false;
+    }
+    const std::vector<double> busy = foretold.busy();
+    for (std::size_t i = 0; i < busy.size(); ++i) {
+      const cycle::ClassUse& use = run_.result.cycle->uses[i];
+      if (use.parts <= 0) continue;
+      const double here = busy[i] / use.parts / cycles.value, there = static_cast<double>(use.busy) / use.parts / ran;
+      if (std::abs(here - there) <= std::max(here, there) * out_.uncertainty + kBusyTolerance) continue;
+      out_.unlike = fmt::format("its {} is {:.0f} % busy, and the run's {:.0f} %", use.name, 100 * here, 100 * there);
+      return false;
+    }
+    return true;
+  }
+
+  /// A relaxed machine's run, and the pilot that it was.
+  struct Relaxed {
+    RunResult result;
+    std::uint64_t paths = 0;
+  };
+
+  Config config_;
+  const accel::Accel& accel_;
+  const SearchedRun& run_;
+  PilotRuns pilots_;
+  bool stops_ = false;
+  std::vector<WhatIf> lifts_;
+  std::map<std::size_t, Relaxed> relaxed_;  // by index of lifts_
+  RunResult base_;
+  Bottleneck out_;
+};
+
+}  // namespace
+
+std::uint64_t slots_of(const Config& config) {
+  return static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
+}
+
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
+  // Three times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.
+  constexpr std::uint64_t kFills = 3, kLeastRays = 3000, kMostFills = 32, kMostRays = 80'000;
+  const std::uint64_t fill = 2 * fill_rays(slots_of(config));
+  const double rays_each =
+      static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
+  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(kMostRays, kMostFills * fill);
+  const auto pilot =
+      static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
+  // A pilot of most of the frame spares little, and the frame leaves no question.
+  return 3 * pilot >= 2 * paths ? paths : pilot;
+}
+
+Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
+                           const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
+                           const SearchObserver& observe) {
+  return Search(config, accel, scene_size, make_pilot, run, options, observe).search();
+}
+
+}  // namespace carousel::ringbus

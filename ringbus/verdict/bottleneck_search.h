@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "accel/structure/accel.h"
+#include "core/config/config.h"
+#include "ringbus/verdict/pilot_runs.h"
+
+namespace carousel::ringbus {
+
+/// The effect of one what-if on the frame's time.
+struct Gain {
+  std::string name, action;
+  std::vector<std::string> sets;  ///< assignments of the what-if, as values of --set
+  double rays_per_kilocycle = 0;  ///< throughput of the whole frame, foretold
+  double gain = 0;                ///< over the machine as configured, as a fraction of its throughput
+  double low = 0, high = 0;       ///< its interval of confidence
+  /// Classes that were relaxed together in the simulation, and gained so little that none was looked at alone.
+  std::size_t together = 1;
+};
+
+/// The bottleneck of a machine, found by simulating it with each class relaxed in turn.
+struct Bottleneck {
+  bool complete = true;  ///< false: interrupted; there are no gains
+  std::string unlike;    ///< how the pilot differs from the run; empty if it is like it; else there are no gains
+  double rays_per_kilocycle = 0;  ///< throughput of the machine as configured, over the whole frame
+  std::uint64_t paths = 0;        ///< paths of the pilot
+  std::uint64_t rays = 0;         ///< rays of the pilot, simulated for each class
+  std::uint64_t simulated = 0;    ///< rays of all simulations of the search
+  bool whole = false;             ///< the pilot is the whole frame
+  double deviation = 0;           ///< distance of the run's cycles from those that the pilot foretells, as a fraction
+  double uncertainty = 0;         ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
+  std::vector<Gain> gains;        ///< greatest first
+};
+
+/// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
+/// frame (foretell.h). A resource that stops is left out of account.
+///
+/// The classes of parts that the run kept busy for less than half of its time are relaxed together; only where that
+/// gains enough to matter they are told apart, by halves. This and each other class by itself is simulated for a first,
+/// small pilot; the classes that may be worth naming, at most six, for a second, larger one, the most promising first:
+/// those that surely gain less than another are left out. These pilots have together at most about as many rays as the
+/// run, but each has as many as the machine needs to be seen between fill and drain; where that is most of the frame,
+/// the pilot is the frame. The last pilot is compared with the run. If it is not like it, or if no class can be named
+/// since each gain may be noise, it is doubled, twice at most, for half of the classes. A pilot that is still not like
+/// the run finds out nothing.
+///
+/// As many simulations run at once as options.threads; `make_pilot` and its workloads are then called by several
+/// threads at once, each workload by one. The answer does not depend on that. Throws as run_cycle.
+Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
+                           const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
+                           const SearchObserver& observe = {});
+
+/// The ray slots of a machine.
+std::uint64_t slots_of(const Config& config);
+
+/// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; all of them if that
+/// is most of the frame.
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted);
+
+}  // namespace carousel::ringbus

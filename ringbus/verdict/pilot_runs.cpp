@@ -1,0 +1,73 @@
+#include "ringbus/verdict/pilot_runs.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <system_error>
+#include <thread>
+
+#include "ringbus/cycle/cycle_engine.h"
+
+namespace carousel::ringbus {
+
+void PilotRuns::begin(const char* stage, std::size_t machines, std::uint64_t paths) {
+  paths_ = paths;
+  state_ = {stage, 0, machines, 0, run_.result.rays_completed * paths / std::max<std::uint64_t>(1, run_.paths)};
+}
+
+RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
+  const std::unique_ptr<Workload> pilot = make_pilot_(machine, paths_);
+  RunOptions options = options_;
+  options.threads = threads;
+  // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.
+  options.warm = {&run_.result.cycle->cached_lines, 1 - static_cast<double>(paths_) / static_cast<double>(run_.paths)};
+  std::uint64_t shown = 0;
+  options.progress = [&](std::uint64_t completed) {
+    const std::lock_guard lock(mutex_);
+    state_.under_way += completed - shown;
+    state_.completed += completed - shown;
+    shown = completed;
+    if (observe_) observe_(state_);
+  };
+  options.progress(0);
+  RunResult result = run_cycle(machine, accel_, scene_size_, *pilot, options);
+  const std::lock_guard lock(mutex_);
+  complete_ &= result.complete;
+  simulated_rays_ += result.rays_completed;
+  state_.under_way -= shown;
+  ++state_.done;
+  return result;
+}
+
+std::vector<RunResult> PilotRuns::simulate(const std::vector<const Config*>& machines) {
+  std::vector<RunResult> results(machines.size());
+  if (machines.empty() || !complete_) return results;
+  const std::size_t at_once = std::min(machines.size(), std::max<std::size_t>(1, options_.threads));
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr error;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < machines.size();) {
+      try {
+        results[i] = simulate(*machines[i], std::max<std::size_t>(1, options_.threads / at_once));
+        if (results[i].complete) continue;
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        error = std::current_exception();
+      }
+      next = machines.size();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (std::size_t i = 1; i < at_once; ++i) others.emplace_back(work);
+    } catch (const std::system_error&) {
+      // No further thread can be started; those that run simulate everything.
+    }
+    work();
+  }
+  if (error) std::rethrow_exception(error);
+  return results;
+}
+
+}  // namespace carousel::ringbus
